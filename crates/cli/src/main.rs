@@ -1,0 +1,2 @@
+//! The etendue command.
+fn main() {}

@@ -1,0 +1,30 @@
+//! The words every stage of Étendue speaks.
+//!
+//! A local light field is the radiance around a central ray, a function of the four numbers at which a
+//! ray crosses a [virtual plane](VirtualPlane): position (x, y) and slopes (u, v), see [`TwoPlane`].
+//! A plane multiplies it by a [`Window`] and looks at it on a [`SliceGrid`] of frequencies; the outcome,
+//! measured or predicted, is a set of [`Slices`].
+//!
+//! Everything here is a value: nothing traces, transforms, predicts or touches a disk.
+//!
+//! Fourier transform, everywhere: F(Ω) = ∫ f(z) e^(−2πi Ω·z) dz, frequencies in cycles per unit
+//! (`docs/conventions.md`).
+
+mod crossing;
+mod frame;
+mod frequency;
+mod plane;
+mod projection;
+mod slices;
+mod window;
+
+pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
+pub use frame::{Frame, TwoPlane};
+pub use frequency::{FrequencyAxis, SliceGrid};
+pub use plane::{Side, VirtualPlane};
+pub use projection::{Projection, ProjectionGrid};
+pub use slices::Slices;
+pub use window::{CosineTerm, Profile, Window};
+
+/// Complex numbers of a spectrum.
+pub type Complex = num_complex::Complex<f64>;

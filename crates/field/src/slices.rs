@@ -1,0 +1,81 @@
+use crate::{Complex, SliceGrid};
+use ndarray::{Array2, Array3, ArrayView3};
+
+/// The slices S_φ(ρ, ν) = ℓ̂(ρ cos φ, ρ sin φ, ν cos φ, ν sin φ) of the spectrum of a windowed light field.
+///
+/// The field is real, so S(−ρ, −ν) is the conjugate of S(ρ, ν) and only ρ ≥ 0 is held:
+/// `half` is [azimuth, ρ ≥ 0, ν], ν ascending from −max to +max.
+///
+/// Unit: that of ∫ L W dx dy du dv, W m⁻² sr⁻¹ · m².
+#[derive(Clone, Debug, PartialEq)]
+pub struct Slices {
+    /// The frequencies.
+    pub grid: SliceGrid,
+    /// The values at ρ ≥ 0, [azimuth, ρ ≥ 0, ν].
+    pub half: Array3<Complex>,
+}
+
+impl Slices {
+    /// All zero.
+    #[must_use]
+    pub fn zeros(grid: SliceGrid) -> Self {
+        Self {
+            grid,
+            half: Array3::zeros(grid.half_shape()),
+        }
+    }
+
+    /// The value ℓ̂(0) = ∫ L W.
+    #[must_use]
+    pub fn at_zero(&self) -> f64 {
+        self.half[[0, 0, self.grid.nu.half]].re
+    }
+
+    /// All frequencies, [azimuth, ρ, ν], ρ and ν ascending.
+    #[must_use]
+    pub fn full(&self) -> Array3<Complex> {
+        self.unfold(self.half.view(), |s| s.conj())
+    }
+
+    /// |S|² averaged over the azimuths, [ρ, ν], ρ and ν ascending.
+    #[must_use]
+    pub fn radial_power(&self) -> Array2<f64> {
+        let mut power = Array2::zeros((self.grid.rho.count(), self.grid.nu.count()));
+        for slice in self.full().outer_iter() {
+            power.zip_mut_with(&slice, |p, s| *p += s.norm_sqr());
+        }
+        power / self.grid.azimuths as f64
+    }
+
+    /// Fills ρ < 0 of an array on the half-plane from S(−ρ, −ν) = `mirrored`(S(ρ, ν)).
+    #[must_use]
+    fn unfold<T: Copy>(&self, half: ArrayView3<'_, T>, mirrored: impl Fn(T) -> T) -> Array3<T> {
+        unfold(&self.grid, half, mirrored)
+    }
+}
+
+/// Spreads values on the half-plane ρ ≥ 0, [azimuth, ρ ≥ 0, ν], over all frequencies [azimuth, ρ, ν].
+pub(crate) fn unfold<T: Copy>(
+    grid: &SliceGrid,
+    half: ArrayView3<'_, T>,
+    mirrored: impl Fn(T) -> T,
+) -> Array3<T> {
+    let zero = grid.rho.half;
+    let last = grid.nu.count() - 1;
+    Array3::from_shape_fn(grid.full_shape(), |(k, i, n)| {
+        if i >= zero {
+            half[[k, i - zero, n]]
+        } else {
+            mirrored(half[[k, zero - i, last - n]])
+        }
+    })
+}
+
+impl SliceGrid {
+    /// Spreads real values that are even in (ρ, ν), such as errors or powers, from the half-plane
+    /// [azimuth, ρ ≥ 0, ν] over all frequencies [azimuth, ρ, ν].
+    #[must_use]
+    pub fn unfold_even(&self, half: ArrayView3<'_, f64>) -> Array3<f64> {
+        unfold(self, half, |value| value)
+    }
+}

@@ -1,0 +1,182 @@
+use crate::TwoPlane;
+use serde::{Deserialize, Serialize};
+
+/// One factor of a [`Window`]: 1 at its centre, zero outside |t| < half-width.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Profile {
+    /// cos²(π t / 2h) on |t| < h.
+    Hann(f64),
+    /// 1 on |t| < h.
+    Box(f64),
+    /// exp(−π t² / width²), cut at |t| < cut.
+    Gaussian {
+        /// The width: the full integral of the uncut Gaussian.
+        width: f64,
+        /// Half-width of the support.
+        cut: f64,
+    },
+}
+
+/// One term `weight` · cos(2π `frequency` t) of a window's profile inside its support.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct CosineTerm {
+    /// Cycles per unit, ≥ 0.
+    pub frequency: f64,
+    /// Amplitude of the cosine.
+    pub weight: f64,
+}
+
+impl Profile {
+    /// Half-width of the support.
+    #[inline]
+    #[must_use]
+    pub fn half_width(&self) -> f64 {
+        match *self {
+            Self::Hann(h) | Self::Box(h) => h,
+            Self::Gaussian { cut, .. } => cut,
+        }
+    }
+
+    /// The profile at `t`.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, t: f64) -> f64 {
+        if t.abs() >= self.half_width() {
+            return 0.0;
+        }
+        match *self {
+            Self::Hann(h) => {
+                let c = (std::f64::consts::FRAC_PI_2 * t / h).cos();
+                c * c
+            }
+            Self::Box(_) => 1.0,
+            Self::Gaussian { width, .. } => (-std::f64::consts::PI * (t / width).powi(2)).exp(),
+        }
+    }
+
+    /// The same shape, `factor` times as wide.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        match *self {
+            Self::Hann(h) => Self::Hann(h * factor),
+            Self::Box(h) => Self::Box(h * factor),
+            Self::Gaussian { width, cut } => Self::Gaussian {
+                width: width * factor,
+                cut: cut * factor,
+            },
+        }
+    }
+
+    /// The profile inside its support as a sum of cosines.
+    ///
+    /// Exact for Hann and Box. A Gaussian is written as the sum of its copies a period 2L apart, a
+    /// Fourier series; L is chosen so that the copies add less than 10⁻¹⁶ inside the cut, and terms
+    /// below 10⁻¹⁷ are left out.
+    #[must_use]
+    pub fn cosine_terms(&self) -> Vec<CosineTerm> {
+        match *self {
+            Self::Hann(h) => vec![
+                CosineTerm {
+                    frequency: 0.0,
+                    weight: 0.5,
+                },
+                CosineTerm {
+                    frequency: 0.5 / h,
+                    weight: 0.5,
+                },
+            ],
+            Self::Box(_) => vec![CosineTerm {
+                frequency: 0.0,
+                weight: 1.0,
+            }],
+            Self::Gaussian { width, cut } => {
+                // exp(−π (2L − cut)²/width²) < 1e-16 needs (2L − cut) > 3.43 width.
+                let period = cut + 3.5 * width;
+                (0..)
+                    .map(|n| {
+                        let frequency = f64::from(n) / period;
+                        let coefficient = width / period
+                            * (-std::f64::consts::PI * (width * frequency).powi(2)).exp();
+                        CosineTerm {
+                            frequency,
+                            weight: if n == 0 {
+                                coefficient
+                            } else {
+                                2.0 * coefficient
+                            },
+                        }
+                    })
+                    .take_while(|term| term.weight > 1e-17)
+                    .collect()
+            }
+        }
+    }
+}
+
+/// The window of a virtual plane: the product of four profiles, one for each coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Window {
+    /// Along x, metres.
+    pub x: Profile,
+    /// Along y, metres.
+    pub y: Profile,
+    /// Along u, slope.
+    pub u: Profile,
+    /// Along v, slope.
+    pub v: Profile,
+}
+
+impl Window {
+    /// The window at a ray; zero outside.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, z: &TwoPlane) -> f64 {
+        if !self.contains(z) {
+            return 0.0;
+        }
+        self.x.value(z.x) * self.y.value(z.y) * self.u.value(z.u) * self.v.value(z.v)
+    }
+
+    /// Whether a ray is inside the support.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, z: &TwoPlane) -> bool {
+        z.x.abs() < self.x.half_width()
+            && z.y.abs() < self.y.half_width()
+            && z.u.abs() < self.u.half_width()
+            && z.v.abs() < self.v.half_width()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn cosine_terms_add_up_to_the_profile() {
+        for profile in [
+            Profile::Hann(0.7),
+            Profile::Box(0.3),
+            Profile::Gaussian {
+                width: 0.35,
+                cut: 0.6,
+            },
+            Profile::Gaussian {
+                width: 0.35,
+                cut: 1.3,
+            },
+        ] {
+            let terms = profile.cosine_terms();
+            for i in 0..50 {
+                let t = profile.half_width() * (f64::from(i) / 50.0);
+                let sum: f64 = terms
+                    .iter()
+                    .map(|c| c.weight * (std::f64::consts::TAU * c.frequency * t).cos())
+                    .sum();
+                // The Gaussian's copies and dropped terms stay below 1e-15; the rest is rounding.
+                assert!((sum - profile.value(t)).abs() < 3e-15, "{profile:?} at {t}");
+            }
+        }
+    }
+}

@@ -1,0 +1,2 @@
+//! Validation.
+fn main() {}
