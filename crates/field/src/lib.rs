@@ -15,6 +15,8 @@ mod frame;
 mod frequency;
 mod plane;
 mod projection;
+pub mod random;
+mod rectangle;
 mod slices;
 mod window;
 
@@ -23,6 +25,7 @@ pub use frame::{Frame, TwoPlane};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use plane::{Side, VirtualPlane};
 pub use projection::{Projection, ProjectionGrid};
+pub use rectangle::Rectangle;
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};
 

@@ -1,0 +1,34 @@
+use serde::Serialize;
+
+/// A rectangle in a plane orthogonal to the central ray, edges along X and Y, coordinates relative to the ray.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Rectangle {
+    /// Centre (x, y), in metres.
+    pub center: [f64; 2],
+    /// Side lengths along X and Y, in metres.
+    pub size: [f64; 2],
+}
+
+impl Rectangle {
+    /// Lowest and highest coordinate along X (`axis` 0) or Y (`axis` 1).
+    #[inline]
+    #[must_use]
+    pub fn extent(&self, axis: usize) -> [f64; 2] {
+        let half = 0.5 * self.size[axis];
+        [self.center[axis] - half, self.center[axis] + half]
+    }
+
+    /// Whether the point (x, y) lies in it, edges included.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, x: f64, y: f64) -> bool {
+        2.0 * (x - self.center[0]).abs() <= self.size[0]
+            && 2.0 * (y - self.center[1]).abs() <= self.size[1]
+    }
+
+    /// Area, in square metres.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.size[0] * self.size[1]
+    }
+}

@@ -1,0 +1,75 @@
+use crate::{SceneError, SceneFile};
+use serde_json::Value;
+
+impl SceneFile {
+    /// The scene file with the field at `path` (such as `blockers.0.fill`) set to `value`.
+    ///
+    /// Names of variants (`Rectangle`, `JitteredSquares`) may be left out of the path.
+    ///
+    /// # Errors
+    /// [`SceneError::Override`] when the path names no field or the value does not fit it.
+    pub fn with(self, path: &str, value: &str) -> Result<Self, SceneError> {
+        let fault = |message: String| SceneError::Override {
+            path: format!("{path}={value}"),
+            message,
+        };
+        let mut tree = serde_json::to_value(&self).map_err(|e| fault(e.to_string()))?;
+        let mut place = &mut tree;
+        for name in path.split('.') {
+            let available = names(place);
+            place = step(place, name)
+                .ok_or_else(|| fault(format!("no field `{name}` here; allowed: {available}")))?;
+        }
+        *place = parsed(value);
+        serde_json::from_value(tree).map_err(|e| fault(e.to_string()))
+    }
+}
+
+/// The child `name` of a node, looking through a variant's name.
+fn step<'a>(node: &'a mut Value, name: &str) -> Option<&'a mut Value> {
+    match node {
+        Value::Array(items) => items.get_mut(name.parse::<usize>().ok()?),
+        Value::Object(fields) => {
+            if is_variant(fields) && !fields.contains_key(name) {
+                return step(fields.values_mut().next()?, name);
+            }
+            fields.get_mut(name)
+        }
+        _ => None,
+    }
+}
+
+fn is_variant(fields: &serde_json::Map<String, Value>) -> bool {
+    fields.len() == 1 && fields.keys().all(|k| k.starts_with(char::is_uppercase))
+}
+
+fn names(node: &Value) -> String {
+    match node {
+        Value::Array(items) => format!("0 to {}", items.len().saturating_sub(1)),
+        Value::Object(fields) if is_variant(fields) => fields.values().map(names).collect(),
+        Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
+        _ => "nothing below a value".to_owned(),
+    }
+}
+
+/// JSON if it is, whole numbers such as 1e6 as integers, text otherwise.
+fn parsed(text: &str) -> Value {
+    match serde_json::from_str(text) {
+        Ok(Value::Number(n)) => n
+            .as_f64()
+            .and_then(whole)
+            .map_or(Value::Number(n), Value::from),
+        Ok(value) => value,
+        Err(_) => Value::String(text.to_owned()),
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked to be a whole number below 2^53"
+)]
+fn whole(x: f64) -> Option<u64> {
+    let small = (0.0..9_007_199_254_740_992.0).contains(&x);
+    (small && x.fract() == 0.0).then_some(x as u64)
+}

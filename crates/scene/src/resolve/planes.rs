@@ -1,0 +1,223 @@
+//! Virtual planes: their place on the path, their window and their frequencies.
+
+use super::faults::show;
+use super::{Resolver, SAME_PLANE, Stop};
+use crate::fault::Fault;
+use crate::file::{AxisFile, FrequenciesFile, Place, SceneFile, WindowFile};
+use etendue_field::{Frame, FrequencyAxis, Profile, Side, SliceGrid, VirtualPlane, Window};
+
+/// Bytes of one complex number.
+const COMPLEX: f64 = 16.0;
+impl Resolver<'_> {
+    pub(super) fn planes(
+        &mut self,
+        file: &SceneFile,
+        frame: &Frame,
+        length: f64,
+        stops: &[Stop<'_>],
+    ) -> Vec<VirtualPlane> {
+        if file.planes.is_empty() {
+            self.faults.add("planes", "empty", "at least one plane");
+        }
+        let mut planes = Vec::new();
+        for (i, plane) in file.planes.iter().enumerate() {
+            let of = format!("planes[{i}]");
+            let place = self.place(&format!("{of}.at"), &plane.at, length, stops);
+            let window = match &plane.window {
+                Some(window) => self.window(&format!("{of}.window"), window),
+                None => self.window("window", &file.window),
+            };
+            let grid = match &plane.frequencies {
+                Some(f) => self.frequencies(&format!("{of}.frequencies"), f, &window),
+                None => self.frequencies("frequencies", &file.frequencies, &window),
+            };
+            let (Some((distance, side)), Some(grid)) = (place, grid) else {
+                continue;
+            };
+            planes.push(VirtualPlane {
+                name: plane.name.clone(),
+                distance,
+                side,
+                frame: frame.travelled(distance),
+                window,
+                grid,
+            });
+        }
+        // Planes share the scene's window and frequencies: say a fault of theirs once.
+        self.faults.0.dedup();
+        let mut seen: Vec<Fault> = Vec::new();
+        self.faults.0.retain(|fault| {
+            let new = !seen.contains(fault);
+            seen.push(fault.clone());
+            new
+        });
+        planes
+    }
+
+    fn place(
+        &mut self,
+        of: &str,
+        place: &Place,
+        length: f64,
+        stops: &[Stop<'_>],
+    ) -> Option<(f64, Side)> {
+        let known = || -> String {
+            let names: Vec<&str> = stops.iter().map(|s| s.name).collect();
+            format!("one of {}", names.join(", "))
+        };
+        match place {
+            Place::Emission => Some((0.0, Side::After)),
+            Place::Before(name) | Place::After(name) => {
+                let Some(stop) = stops.iter().find(|s| s.name == name) else {
+                    self.faults.add(of, show(place), known());
+                    return None;
+                };
+                let before = matches!(place, Place::Before(_));
+                if stop.surface && !before {
+                    let allowed = "Before(…): light leaving a surface is not measured yet";
+                    self.faults.add(of, show(place), allowed);
+                } else if stop.distance > length {
+                    let allowed = format!("a place on the path, which ends at {length} m");
+                    self.faults.add(of, show(place), allowed);
+                }
+                Some((
+                    stop.distance,
+                    if before { Side::Before } else { Side::After },
+                ))
+            }
+            Place::Distance(distance) => {
+                if !(*distance >= 0.0 && *distance <= length) && !length.is_nan() {
+                    let allowed = format!("0 to {length} m: the path from the light to its end");
+                    self.faults.add(of, show(place), allowed);
+                }
+                if let Some(stop) = stops.iter().find(|s| near(s.distance, *distance)) {
+                    let name = stop.name;
+                    let allowed =
+                        format!("Before(\"{name}\") or After(\"{name}\") at that distance");
+                    self.faults.add(of, show(place), allowed);
+                }
+                Some((*distance, Side::After))
+            }
+        }
+    }
+
+    fn window(&mut self, of: &str, window: &WindowFile) -> Window {
+        let resolved = Window {
+            x: window.x,
+            y: window.y.unwrap_or(window.x),
+            u: window.u,
+            v: window.v.unwrap_or(window.u),
+        };
+        let profiles = [
+            ("x", resolved.x),
+            ("y", resolved.y),
+            ("u", resolved.u),
+            ("v", resolved.v),
+        ];
+        for (axis, profile) in profiles {
+            let stated = (axis != "y" || window.y.is_some()) && (axis != "v" || window.v.is_some());
+            if stated {
+                self.profile(&format!("{of}.{axis}"), &profile);
+            }
+        }
+        resolved
+    }
+
+    fn profile(&mut self, of: &str, profile: &Profile) {
+        match *profile {
+            Profile::Hann(h) | Profile::Box(h) => self.faults.positive(of, h),
+            Profile::Gaussian { width, cut } => {
+                self.faults.positive(format!("{of}.width"), width);
+                self.faults.positive(format!("{of}.cut"), cut);
+                // A series of copies needs as many terms as the cut is wide.
+                if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
+                    let allowed = "at most 10 widths: beyond 3.5 the Gaussian is below 1e-16";
+                    self.faults.add(format!("{of}.cut"), show(cut), allowed);
+                }
+            }
+        }
+    }
+
+    fn frequencies(
+        &mut self,
+        of: &str,
+        file: &FrequenciesFile,
+        window: &Window,
+    ) -> Option<SliceGrid> {
+        if !(1..=1024).contains(&file.azimuths) {
+            self.faults
+                .add(format!("{of}.azimuths"), show(file.azimuths), "1 to 1024");
+        }
+        let half_x = window.x.half_width().max(window.y.half_width());
+        let half_u = window.u.half_width().max(window.v.half_width());
+        let rho = self.axis(&format!("{of}.rho"), &file.rho, half_x);
+        let nu = self.axis(&format!("{of}.nu"), &file.nu, half_u);
+        Some(SliceGrid {
+            azimuths: file.azimuths as usize,
+            rho: rho?,
+            nu: nu?,
+        })
+    }
+
+    fn axis(&mut self, of: &str, axis: &AxisFile, half_width: f64) -> Option<FrequencyAxis> {
+        let natural = 0.5 / half_width;
+        let spacing = axis.spacing.unwrap_or(natural);
+        self.faults.positive(format!("{of}.max"), axis.max);
+        if axis.spacing.is_some() {
+            self.faults.positive(format!("{of}.spacing"), spacing);
+            if spacing > natural * (1.0 + SAME_PLANE) {
+                let allowed = format!("at most 1/(2 · half-width of the window) = {natural}");
+                self.faults
+                    .add(format!("{of}.spacing"), show(spacing), allowed);
+            }
+        }
+        // Rounding must not add a frequency to a max that is a multiple of the spacing.
+        let half = (axis.max / spacing - 1e-9).ceil();
+        if !half.is_finite() || half < 1.0 {
+            return None;
+        }
+        if half > f64::from(u32::MAX) {
+            self.faults.add(
+                format!("{of}.max"),
+                format!("{} spacings of {spacing}", show(half)),
+                "fewer than 2^32 frequencies",
+            );
+            return None;
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "checked to be in 1..2^32"
+        )]
+        let half = half as usize;
+        Some(FrequencyAxis { half, spacing })
+    }
+
+    /// The spectra of all batches are held until the errors are known.
+    pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
+        let cells =
+            |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
+        // Beside the batches: prediction, one derivative per parameter, errors; 16 of each is ample.
+        let copies = f64::from(batches) + 16.0;
+        let bytes: f64 = planes
+            .iter()
+            .map(|p| cells(&p.grid) * COMPLEX * copies)
+            .sum();
+        if bytes > memory as f64 {
+            self.faults.0.push(Fault {
+                field: "frequencies of all planes".to_owned(),
+                value: format!("{} of spectra over {batches} batches", gigabytes(bytes)),
+                allowed: format!("what memory holds here, {}", gigabytes(memory as f64)),
+                memory: true,
+            });
+        }
+    }
+}
+
+fn gigabytes(bytes: f64) -> String {
+    format!("{:.1} GB", bytes / 1e9)
+}
+
+fn near(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME_PLANE * a.abs()
+}

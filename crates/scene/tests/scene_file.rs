@@ -1,0 +1,199 @@
+//! Scene files: what is read, what is refused, and how the refusal reads.
+
+use etendue_scene::{Fault, Scene, SceneError, SceneFile, resolve};
+
+const FIG9B: &str = include_str!("../../../scenes/fig9b.ron");
+
+fn scene(text: &str) -> Result<Scene, SceneError> {
+    resolve("test", SceneFile::parse(text)?, u64::MAX)
+}
+
+fn faults(text: &str) -> Vec<Fault> {
+    match scene(text) {
+        Err(SceneError::Values(faults)) => faults,
+        other => panic!("expected faults of value, got {other:?}"),
+    }
+}
+
+/// fig9b with `from` replaced by `to`; `from` must be there.
+fn edited(from: &str, to: &str) -> String {
+    assert!(FIG9B.contains(from), "{from} is not in the scene");
+    FIG9B.replacen(from, to, 1)
+}
+
+#[test]
+fn fig9b_resolves_to_what_it_says() {
+    let scene = scene(FIG9B).unwrap();
+    let distances: Vec<f64> = scene.planes.iter().map(|p| p.distance).collect();
+    assert_eq!(distances, [0.0, 1.0, 1.0, 2.0]);
+    assert_eq!(scene.path.length, 2.0);
+    assert_eq!(scene.blockers[0].rectangles.len(), 400);
+    assert_eq!(scene.planes[0].grid.full_shape(), [8, 33, 65]);
+}
+
+#[test]
+fn jitter_keeps_squares_apart_and_follows_its_seed() {
+    let squares = |seed: &str| {
+        let text =
+            edited("jitter: 0.3, //", "jitter: 0.4, //").replace("seed: 1,\n        )", seed);
+        scene(&text).unwrap().blockers[0].rectangles.clone()
+    };
+    let (a, b) = (squares("seed: 1)"), squares("seed: 2)"));
+    assert_ne!(a, b);
+    for (i, p) in a.iter().enumerate() {
+        for q in &a[..i] {
+            let apart = (0..2).any(|k| (p.center[k] - q.center[k]).abs() >= 0.06 - 1e-12); // rounding
+            assert!(apart, "{p:?} overlaps {q:?}");
+        }
+    }
+}
+
+/// The same scene moved and turned in the world is the same experiment.
+#[test]
+fn rotation_of_the_world_changes_nothing() {
+    let turned = FIG9B
+        .replace("center: (0, 0, 0)", "center: (1, 2, 3)")
+        .replace("center: (0, 0, 1)", "center: (2, 2, 3)")
+        .replace("center: (0, 0, 2)", "center: (3, 2, 3)")
+        .replace(
+            "direction: (0, 0, 1), x_axis: (1, 0, 0)",
+            "direction: (5, 0, 0), x_axis: (1, 1, 0)",
+        );
+    let (a, b) = (scene(FIG9B).unwrap(), scene(&turned).unwrap());
+    assert_eq!(a.blockers, b.blockers);
+    assert_eq!(a.path.length, b.path.length);
+    assert_eq!(b.planes[3].frame.origin.to_array(), [3.0, 2.0, 3.0]);
+}
+
+#[test]
+fn faults_are_reported_together_with_field_value_and_range() {
+    let text = edited("fill: 0.6, ", "fill: -1, ")
+        .replace("albedo: 0.5", "albedo: NaN")
+        .replace("size: (0.2, 0.2)", "size: (0.2, inf)")
+        .replace("photons: 10_000_000", "photons: 3");
+    let fields: Vec<String> = faults(&text).into_iter().map(|f| f.field).collect();
+    for field in [
+        "light.size[1]",
+        "surfaces[0].albedo",
+        "blockers[0].fill",
+        "run.photons",
+    ] {
+        assert!(
+            fields.iter().any(|f| f == field),
+            "{field} not in {fields:?}"
+        );
+    }
+}
+
+#[test]
+fn each_bad_value_is_named() {
+    for (from, to, field) in [
+        ("at: Emission", "at: Distance(-0.5)", "planes[0].at"),
+        ("at: Emission", "at: Distance(2.5)", "planes[0].at"),
+        ("at: Emission", "at: Distance(1)", "planes[0].at"),
+        ("at: Emission", "at: Distance(NaN)", "planes[0].at"),
+        ("Before(\"floor\")", "Before(\"roof\")", "planes[3].at"),
+        ("Before(\"floor\")", "After(\"floor\")", "planes[3].at"),
+        ("visits: [\"floor\"]", "visits: []", "path.visits"),
+        (
+            "visits: [\"floor\"]",
+            "visits: [\"blockers\"]",
+            "path.visits[0]",
+        ),
+        (
+            "x_axis: (1, 0, 0)",
+            "x_axis: (0, 0, 2)",
+            "path.direction and path.x_axis",
+        ),
+        (
+            "center: (0, 0, 1)",
+            "center: (0, 0, 3)",
+            "blockers[0].center",
+        ),
+        (
+            "center: (0, 0, 1)",
+            "center: (0, 0, -1)",
+            "blockers[0].center",
+        ),
+        ("center: (0, 0, 2)", "center: (9, 0, 2)", "path.visits[0]"),
+        ("count: (20, 20)", "count: (0, 20)", "blockers[0].count"),
+        ("jitter: 0.3", "jitter: 0.5", "blockers[0].jitter"),
+        ("x: Hann(0.5)", "x: Hann(0)", "window.x"),
+        (
+            "rho: (max: 16)",
+            "rho: (max: 16, spacing: 2)",
+            "frequencies.rho.spacing",
+        ),
+        ("rho: (max: 16)", "rho: (max: -1)", "frequencies.rho.max"),
+        ("rho: (max: 16)", "rho: (max: 1e300)", "frequencies.rho.max"),
+        ("azimuths: 8", "azimuths: 0", "frequencies.azimuths"),
+        ("name: \"light\"", "name: \"../light\"", "planes[0].name"),
+        ("name: \"light\"", "name: \"receiver\"", "planes: name"),
+        ("alpha: 0.01", "alpha: 0", "run.alpha"),
+        ("batches: 64", "batches: 8", "run.batches"),
+    ] {
+        let found = faults(&edited(from, to));
+        assert!(found.iter().any(|f| f.field == field), "{to}: {found:?}");
+    }
+}
+
+#[test]
+fn syntax_faults_say_where_and_what_is_allowed() {
+    for (text, parts) in [
+        (
+            edited("pitch: 0.1", "pich: 0.1"),
+            vec!["line 11", "pich", "pitch"],
+        ),
+        (edited("fill: 0.6", "fill: \"much\""), vec!["line 12"]),
+        (edited("Hann(0.5)", "Han(0.5)"), vec!["Han", "Hann"]),
+        (FIG9B[..500].to_owned(), vec!["line", "column"]),
+    ] {
+        let message = scene(&text).unwrap_err().to_string();
+        for part in parts {
+            assert!(message.contains(part), "{part} not in: {message}");
+        }
+    }
+}
+
+#[test]
+fn a_grid_larger_than_memory_says_how_large() {
+    let file = SceneFile::parse(&edited("rho: (max: 16)", "rho: (max: 1e6)")).unwrap();
+    match resolve("test", file, 24_000_000_000) {
+        Err(SceneError::Values(faults)) => {
+            assert!(faults.iter().all(|f| f.memory), "{faults:?}");
+            assert!(faults[0].value.contains("GB"), "{faults:?}");
+        }
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn overrides_reach_every_kind_of_field() {
+    let file = SceneFile::parse(FIG9B).unwrap();
+    let set = |path: &str, value: &str| file.clone().with(path, value);
+    let scene =
+        |path: &str, value: &str| resolve("test", set(path, value).unwrap(), u64::MAX).unwrap();
+    assert_eq!(scene("run.photons", "1e6").run.photons, 1_000_000);
+    assert_eq!(scene("light.radiance", "2").light.radiance, 2.0);
+    assert_eq!(
+        scene("blockers.0.count.1", "3").blockers[0]
+            .rectangles
+            .len(),
+        60
+    );
+    assert_eq!(
+        scene("frequencies.rho.spacing", "0.5").planes[0]
+            .grid
+            .rho
+            .half,
+        32
+    );
+    for (path, value, part) in [
+        ("run.photon", "3", "photons"),
+        ("planes.9.name", "a", "0 to 3"),
+        ("run.photons", "many", "invalid type"),
+    ] {
+        let message = set(path, value).unwrap_err().to_string();
+        assert!(message.contains(part), "{part} not in: {message}");
+    }
+}
