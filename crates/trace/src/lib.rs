@@ -1,1 +1,16 @@
-//! trace
+//! Photon tracing: from a [`Scene`](etendue_scene::Scene) to crossings of its virtual planes.
+//!
+//! [`Tracer`] emits photons from the light, finds what each meets first and reports every virtual plane it
+//! crosses before that. It keeps the ledger of flux, and knows nothing of windows' spectra or of theory.
+//!
+//! Everything is computed in the frame of the central ray at the light, so a direction is (u, v, 1) and a
+//! distance along the ray is a coordinate. Random numbers are functions of (seed, photon), so a photon's
+//! life does not depend on who traces it.
+
+mod bvh;
+mod emit;
+mod proposal;
+mod tracer;
+
+pub use emit::Emitter;
+pub use tracer::Tracer;
