@@ -1,1 +1,67 @@
-//! theory
+//! Predicted spectra of local light fields, in closed form.
+//!
+//! In goes a [`Chain`]: a uniform rectangular light, travel, and opaque rectangles in planes. Out come the
+//! values a measurement would have without noise: the [`slices`] of the windowed spectrum, their
+//! [`derivative`] by any length of the chain, and the [`projection`] on (x, u).
+//!
+//! Travel is a shear of (position, slope), so every edge stays a straight line and every field is a signed
+//! sum of products of convex polygons, one in (x, u) and one in (y, v); a window is a sum of cosines on a
+//! box. The transform of such a polygon is known in closed form: no quadrature, no grid, no aliasing.
+//!
+//! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no evidence.
+//!
+//! ```
+//! use etendue_field::{FrequencyAxis, Profile, Rectangle, SliceGrid, Window};
+//! use etendue_theory::{Chain, Operator, Source, at, slices};
+//!
+//! let square = |side| Rectangle { center: [0.0, 0.0], size: [side, side] };
+//! let travel = |from: &str, to: &str| Operator::Travel { from: from.into(), to: to.into(), distance: 1.0 };
+//! let chain = Chain {
+//!     source: Source { name: "light".into(), rectangle: square(0.2), radiance: 1.0 },
+//!     operators: vec![
+//!         travel("light", "blocker"),
+//!         Operator::Visibility { name: "blocker".into(), blockers: vec![square(0.1)] },
+//!         travel("blocker", "receiver"),
+//!     ],
+//! };
+//! let (x, u) = (Profile::Hann(0.5), Profile::Hann(0.3));
+//! let window = Window { x, y: x, u, v: u };
+//! let axis = |spacing| FrequencyAxis { half: 4, spacing };
+//! let grid = SliceGrid { azimuths: 2, rho: axis(1.0), nu: axis(1.7) };
+//! let prediction = slices(&chain, &window, &grid);
+//! let plain = at(&chain, &window, grid.frequency(1, 2.0, -1.7));
+//! assert!((prediction.half[[1, 2, 3]] - plain).norm() < 1e-10 * prediction.at_zero());
+//! ```
+
+mod chain;
+mod corners;
+mod derivative;
+mod expansion;
+mod fast;
+pub mod gaussian;
+mod jitter;
+#[cfg(test)]
+mod laws;
+mod parameter;
+mod plain;
+mod polygon;
+mod projection;
+mod quadrature;
+#[cfg(test)]
+mod reference;
+mod row;
+mod shading;
+mod sinc;
+#[cfg(test)]
+mod testing;
+mod wave;
+
+pub use chain::{Chain, Operator, Source};
+pub use derivative::derivative;
+pub use etendue_field::Rectangle;
+pub use fast::slices;
+pub use jitter::{JitteredArray, jittered_array_power};
+pub use parameter::Parameter;
+pub use plain::at;
+pub use projection::projection;
+pub use shading::{g_hat, g_hat_3d};

@@ -1,0 +1,72 @@
+//! Arithmetic along a row of frequencies.
+
+use etendue_field::Complex;
+use std::f64::consts::TAU;
+
+/// Frequencies with a common position frequency, in cycles per half-width.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Row {
+    /// Frequency along the position.
+    pub(crate) position: f64,
+    /// Spacing along the slope; the slope frequencies are (n − half) · step, 0 ≤ n ≤ 2 half.
+    pub(crate) step: f64,
+    pub(crate) half: usize,
+}
+
+/// Real and imaginary parts apart, so that loops over a row become vector instructions.
+#[derive(Clone, Debug)]
+pub(crate) struct Parts {
+    pub(crate) re: Vec<f64>,
+    pub(crate) im: Vec<f64>,
+}
+
+impl Parts {
+    pub(crate) fn zeros(len: usize) -> Self {
+        Self {
+            re: vec![0.0; len],
+            im: vec![0.0; len],
+        }
+    }
+}
+
+impl Row {
+    pub(crate) fn count(&self) -> usize {
+        2 * self.half + 1
+    }
+
+    pub(crate) fn frequency(&self, n: usize) -> [f64; 2] {
+        [self.position, (n as f64 - self.half as f64) * self.step]
+    }
+
+    /// scale · exp(−2πi k·p) along the row, by powers outwards from the middle.
+    pub(crate) fn exponentials(&self, p: [f64; 2], scale: f64, to: &mut Parts) {
+        let middle = Complex::cis(-TAU * self.position * p[0]) * scale;
+        let up = Complex::cis(-TAU * self.step * p[1]);
+        let (mut above, mut below) = (middle, middle);
+        (to.re[self.half], to.im[self.half]) = (middle.re, middle.im);
+        for j in 1..=self.half {
+            above *= up;
+            below *= up.conj();
+            (to.re[self.half + j], to.im[self.half + j]) = (above.re, above.im);
+            (to.re[self.half - j], to.im[self.half - j]) = (below.re, below.im);
+        }
+    }
+}
+
+pub(crate) fn add_scaled(to: &mut [f64], values: &[f64], factor: f64) {
+    for (t, v) in to.iter_mut().zip(values) {
+        *t += v * factor;
+    }
+}
+
+/// to[range] += a · b.
+pub(crate) fn add_product(to: &mut Parts, range: std::ops::Range<usize>, a: &Parts, b: &Parts) {
+    let re = to.re[range.clone()].iter_mut();
+    let im = to.im[range].iter_mut();
+    let a = a.re.iter().zip(&a.im);
+    let b = b.re.iter().zip(&b.im);
+    for (((re, im), (a_re, a_im)), (b_re, b_im)) in re.zip(im).zip(a).zip(b) {
+        *re += a_re * b_re - a_im * b_im;
+        *im += a_re * b_im + a_im * b_re;
+    }
+}
