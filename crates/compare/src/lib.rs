@@ -1,1 +1,21 @@
-//! compare
+//! Measured against predicted, in units of statistical error.
+//!
+//! [`chain()`] reads theory's chain off a scene: the only code that sees both. A [`Prediction`] is all that
+//! theory says about a plane; [`compare`] holds a measurement against it and comes to a [`Verdict`].
+//! [`Residuals`] are the difference, batch by batch, with the tests made on it.
+//!
+//! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
+
+mod chain;
+mod plane;
+mod prediction;
+mod report;
+mod residuals;
+mod score;
+
+pub use chain::chain;
+pub use plane::{PlaneComparison, compare};
+pub use prediction::{Class, PredictedParameter, Prediction};
+pub use report::{Bandwidth, Pair, PlaneReport, Verdict, sidak};
+pub use residuals::Residuals;
+pub use score::ParameterReport;

@@ -1,0 +1,219 @@
+use crate::prediction::Prediction;
+use crate::report::{Bandwidth, Pair, PlaneReport, Verdict};
+use crate::residuals::Residuals;
+use crate::score::score;
+use etendue_field::{PlaneTally, SliceGrid, Slices};
+use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
+use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, shear_slope};
+use etendue_spectrum::{CrossPower, Measurement, RadialPower};
+use ndarray::{Array2, Array3, ArrayView2};
+
+/// A plane compared: the report, and the arrays behind it.
+#[derive(Clone, Debug)]
+pub struct PlaneComparison {
+    /// Every number, and the verdict.
+    pub report: PlaneReport,
+    /// The measured slices: the mean over batches.
+    pub measured: Slices,
+    /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
+    pub sigma: Array3<f64>,
+    /// The measured radial spectrum.
+    pub radial: RadialPower,
+    /// The predicted radial spectrum, [ρ, ν].
+    pub predicted_radial: Array2<f64>,
+    /// The measured light field in (x, u).
+    pub projection: ProjectionEstimate,
+}
+
+/// A field of which less than this share of the light without blockers is left is predicted to be dark:
+/// a prediction is a difference of transforms of that size, good to 10⁻¹⁵ of it.
+const DARK: f64 = 1e-12;
+
+/// Compares plane `index` of a measurement with its prediction; it passes when p ≥ `level`.
+///
+/// `seed` keys the random signs of the p-value.
+///
+/// # Errors
+/// When the measurement has too few batches for errors.
+pub fn compare(
+    measurement: &Measurement,
+    index: usize,
+    prediction: &Prediction,
+    level: f64,
+    seed: u64,
+) -> Result<PlaneComparison, TooFewBatches> {
+    let plane = &measurement.planes()[index];
+    let tally = measurement.tally(index);
+    let residuals = Residuals::new(measurement, index, &prediction.slices);
+    let estimate = estimate::slices(measurement, index)?;
+    let power = CrossPower::new(measurement, index)?;
+    let predicted_radial = prediction.slices.radial_power();
+    let agreement = Agreement::new(&residuals, &estimate.variance, &prediction.slices);
+    let p_value = residuals.p_value(seed);
+    let grid = &plane.grid;
+    let pair =
+        |of: &dyn Fn(ArrayView2<'_, f64>) -> Option<f64>| pair(&power, &predicted_radial, of);
+
+    let report = PlaneReport {
+        name: plane.name.clone(),
+        class: prediction.class,
+        chain: prediction.chain.describe(),
+        frame: plane.frame,
+        distance: plane.distance,
+        crossed: tally.crossed,
+        in_window: tally.inside,
+        outside_window: tally.outside,
+        relative_error: agreement.relative_error(),
+        noise_limit: agreement.noise_limit(),
+        excess: agreement.excess(),
+        excess_squared_error: agreement.excess_squared_error,
+        noise_floor_db: agreement.noise_floor_db,
+        chi2_per_dof: residuals.chi2_per_dof(&estimate.variance),
+        p_value,
+        parameters: prediction
+            .parameters
+            .iter()
+            .filter_map(|p| score(&residuals, &estimate.variance, p))
+            .collect(),
+        slope: pair(&|p| shear_slope(p, grid)),
+        bandwidth_95: Bandwidth {
+            rho: pair(&|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
+            nu: pair(&|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
+        },
+        verdict: verdict(prediction, &tally, p_value, level),
+        warnings: warnings(&agreement, &predicted_radial, grid),
+    };
+    Ok(PlaneComparison {
+        report,
+        measured: estimate.mean,
+        sigma: estimate.variance.mapv(f64::sqrt),
+        radial: power.radial(),
+        predicted_radial,
+        projection: estimate::projection(measurement, index)?,
+    })
+}
+
+/// A number read off both powers by the same estimator.
+fn pair(
+    power: &CrossPower<'_>,
+    predicted: &Array2<f64>,
+    of: &dyn Fn(ArrayView2<'_, f64>) -> Option<f64>,
+) -> Pair {
+    let measured = power.statistic(of);
+    Pair {
+        measured: measured.map(|m| m.value),
+        predicted: of(predicted.view()),
+        error: measured.map(|m| m.error),
+    }
+}
+
+/// An exact prediction passes when p reaches the level; a dark one when not a single photon came.
+fn verdict(
+    prediction: &Prediction,
+    tally: &PlaneTally,
+    p_value: Option<f64>,
+    level: f64,
+) -> Verdict {
+    let lit = prediction.unblocked * DARK;
+    let dark = prediction.slices.half.iter().all(|f| f.norm() <= lit);
+    let pass = match p_value {
+        Some(p) => p >= level && !dark,
+        None => dark && tally.inside == 0,
+    };
+    if pass { Verdict::Pass } else { Verdict::Fail }
+}
+
+/// How far measured and predicted are apart, over the independent frequencies.
+struct Agreement {
+    /// Σ|S − F|², Σσ² and Σ|F|².
+    difference: f64,
+    noise: f64,
+    predicted: f64,
+    excess_squared_error: Option<f64>,
+    noise_floor_db: Option<f64>,
+}
+
+impl Agreement {
+    fn new(residuals: &Residuals, variance: &Array3<f64>, prediction: &Slices) -> Self {
+        let predicted = residuals.sum(&prediction.half, variance, |f, _| f.norm_sqr());
+        let noise = residuals.sum(&prediction.half, variance, |_, v| *v);
+        let difference = residuals.sum(&residuals.mean(), variance, |m, _| m.norm_sqr());
+        let peak = prediction
+            .half
+            .iter()
+            .map(|f| f.norm_sqr())
+            .fold(0.0, f64::max);
+        let mean_noise = noise / residuals.frequencies() as f64;
+        Self {
+            difference,
+            noise,
+            predicted,
+            excess_squared_error: (predicted > 0.0)
+                .then(|| cross_power_error(&residuals.products(false)) / predicted),
+            noise_floor_db: (peak > 0.0 && noise > 0.0).then(|| 10.0 * (mean_noise / peak).log10()),
+        }
+    }
+
+    fn relative(&self, squared: f64) -> Option<f64> {
+        (self.predicted > 0.0).then(|| (squared.abs() / self.predicted).sqrt().copysign(squared))
+    }
+
+    fn relative_error(&self) -> Option<f64> {
+        self.relative(self.difference)
+    }
+
+    fn noise_limit(&self) -> Option<f64> {
+        self.relative(self.noise)
+    }
+
+    fn excess(&self) -> Option<f64> {
+        self.relative(self.difference - self.noise)
+    }
+}
+
+/// Jackknife error of U = Σ_{b≠c} H_bc / (R (R − 1)), the unbiased power of the residuals.
+fn cross_power_error(products: &Array2<f64>) -> f64 {
+    let r = products.nrows() as f64;
+    let off_diagonal = |b: usize| products.row(b).sum() - products[[b, b]];
+    let rows: Vec<f64> = (0..products.nrows()).map(off_diagonal).collect();
+    let total: f64 = rows.iter().sum();
+    let left_out: Vec<f64> = rows
+        .iter()
+        .map(|row| (total - 2.0 * row) / ((r - 1.0) * (r - 2.0)))
+        .collect();
+    let mean = left_out.iter().sum::<f64>() / r;
+    let spread: f64 = left_out.iter().map(|u| (u - mean).powi(2)).sum();
+    ((r - 1.0) / r * spread).sqrt()
+}
+
+/// The highest predicted power on the border of the grid that goes without a warning, below the peak.
+const BORDER: f64 = 1e-3;
+
+/// Limits of the measurement, in words.
+fn warnings(agreement: &Agreement, predicted: &Array2<f64>, grid: &SliceGrid) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if let Some(limit) = agreement.noise_limit().filter(|limit| *limit > 0.5) {
+        warnings.push(format!(
+            "noise is {:.0} % of the spectrum: too few photons to tell much",
+            100.0 * limit
+        ));
+    }
+    let peak = predicted.iter().copied().fold(0.0, f64::max);
+    let at = |axis: ndarray::Axis| {
+        let first = predicted.index_axis(axis, 0);
+        first.iter().copied().fold(0.0, f64::max)
+    };
+    for (name, axis, max) in [
+        ("rho", ndarray::Axis(0), grid.rho.max()),
+        ("nu", ndarray::Axis(1), grid.nu.max()),
+    ] {
+        let border = at(axis);
+        if border > BORDER * peak {
+            warnings.push(format!(
+                "the spectrum goes on beyond the grid: at |{name}| = {max} it is {:.0} dB below its peak",
+                -10.0 * (border / peak).log10()
+            ));
+        }
+    }
+    warnings
+}

@@ -1,0 +1,85 @@
+use crate::prediction::Class;
+use crate::score::ParameterReport;
+use etendue_field::Frame;
+use serde::Serialize;
+
+/// What a plane or a run comes to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Verdict {
+    /// Measured and predicted agree.
+    Pass,
+    /// They do not.
+    Fail,
+}
+
+/// Measured and predicted values of one number.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Pair {
+    /// From the photons.
+    pub measured: Option<f64>,
+    /// From theory, by the same estimator.
+    pub predicted: Option<f64>,
+    /// Standard error of the measured value.
+    pub error: Option<f64>,
+}
+
+/// The bandwidths along both axes.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Bandwidth {
+    /// Along ρ, cycles per metre.
+    pub rho: Pair,
+    /// Along ν, cycles per unit slope.
+    pub nu: Pair,
+}
+
+/// Everything one plane comes to, as in `summary.json`.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct PlaneReport {
+    /// Name of the plane.
+    pub name: String,
+    /// Kind of prediction.
+    pub class: Class,
+    /// The chain, a line for each step.
+    pub chain: Vec<String>,
+    /// The plane's frame, world coordinates.
+    pub frame: Frame,
+    /// Distance from the light along the central ray, metres.
+    pub distance: f64,
+    /// Photons that crossed the plane.
+    pub crossed: u64,
+    /// Those inside the window.
+    pub in_window: u64,
+    /// Those outside.
+    pub outside_window: u64,
+    /// ‖S − F‖/‖F‖ over the independent frequencies.
+    pub relative_error: Option<f64>,
+    /// √Σσ²/‖F‖: the relative error that noise alone would make.
+    pub noise_limit: Option<f64>,
+    /// Signed root of relative error² − noise limit²: the disagreement beyond noise.
+    pub excess: Option<f64>,
+    /// Standard error of the square of `excess`, from a jackknife over batches.
+    pub excess_squared_error: Option<f64>,
+    /// 10 log₁₀ of the mean σ² over the largest |F|².
+    pub noise_floor_db: Option<f64>,
+    /// Mean of |S − F|²/σ², corrected for σ² being estimated.
+    pub chi2_per_dof: Option<f64>,
+    /// Probability of a disagreement as large as the one seen, if there is none.
+    pub p_value: Option<f64>,
+    /// The score test of each parameter of the chain.
+    pub parameters: Vec<ParameterReport>,
+    /// Shear slope of the radial spectrum, metres.
+    pub slope: Pair,
+    /// 95 % bandwidth of the radial spectrum.
+    pub bandwidth_95: Bandwidth,
+    /// What it comes to.
+    pub verdict: Verdict,
+    /// Limits of the measurement, in words.
+    pub warnings: Vec<String>,
+}
+
+/// Level of one of `planes` tests so that all pass together with probability 1 − `alpha` (Šidák 1967).
+#[must_use]
+pub fn sidak(alpha: f64, planes: usize) -> f64 {
+    1.0 - (1.0 - alpha).powf(1.0 / planes as f64)
+}

@@ -1,0 +1,208 @@
+use etendue_field::random::{self, Stream};
+use etendue_field::{Complex, SliceGrid, Slices};
+use etendue_spectrum::{Measurement, PlaneBatch};
+use ndarray::{Array2, Array3};
+
+/// Measured minus predicted slices, batch by batch.
+///
+/// The residual of a batch is r_b = S_b − F. Under the hypothesis each is an independent draw with mean zero.
+#[derive(Clone, Debug)]
+pub struct Residuals {
+    grid: SliceGrid,
+    /// One for each batch, [azimuth, ρ ≥ 0, ν].
+    batches: Vec<Array3<Complex>>,
+}
+
+/// Rounds of random signs: the p-value is known to a part in 20,000.
+const ROUNDS: u64 = 19_999;
+
+impl Residuals {
+    /// The residuals of plane `plane` of a measurement from `prediction`.
+    ///
+    /// # Panics
+    /// When the plane was measured on other frequencies than the prediction's.
+    #[must_use]
+    pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
+        let residual = |batch: &PlaneBatch| {
+            let (measured, predicted) = (batch.slices.grid, prediction.grid);
+            assert_eq!(measured, predicted, "frequencies measured and predicted");
+            &batch.slices.half - &prediction.half
+        };
+        Self {
+            grid: prediction.grid,
+            batches: measurement.at_plane(plane).map(residual).collect(),
+        }
+    }
+
+    /// Number of batches R.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.batches.len()
+    }
+
+    /// The residual of each batch, [azimuth, ρ ≥ 0, ν].
+    pub(crate) fn each(&self) -> impl Iterator<Item = &Array3<Complex>> {
+        self.batches.iter()
+    }
+
+    /// S − F, [azimuth, ρ ≥ 0, ν].
+    #[must_use]
+    pub fn mean(&self) -> Array3<Complex> {
+        let mut sum = Array3::zeros(self.grid.half_shape());
+        for residual in &self.batches {
+            sum += residual;
+        }
+        sum / Complex::from(self.count() as f64)
+    }
+
+    /// Variance of S − F from the spread of the batches: Σ|r_b − r̄|² / (R (R − 1)), [azimuth, ρ ≥ 0, ν].
+    #[must_use]
+    pub fn variance(&self) -> Array3<f64> {
+        let mean = self.mean();
+        let mut sum = Array3::zeros(self.grid.half_shape());
+        for residual in &self.batches {
+            ndarray::Zip::from(&mut sum)
+                .and(residual)
+                .and(&mean)
+                .for_each(|sum: &mut f64, r, m| *sum += (r - m).norm_sqr());
+        }
+        let r = self.count() as f64;
+        sum / (r * (r - 1.0))
+    }
+
+    /// The independent cells of an array on the half-plane, in one order for all arrays.
+    fn cells<'a, T>(&self, array: &'a Array3<T>) -> impl Iterator<Item = &'a T> {
+        let grid = self.grid;
+        array
+            .indexed_iter()
+            .filter(move |((_, m, n), _)| grid.is_independent(*m, *n))
+            .map(|(_, value)| value)
+    }
+
+    /// Number of independent frequencies.
+    #[must_use]
+    pub fn frequencies(&self) -> usize {
+        self.cells(&self.batches[0]).count()
+    }
+
+    /// Sum of `term` over the independent frequencies of two arrays.
+    pub(crate) fn sum<A, B>(
+        &self,
+        a: &Array3<A>,
+        b: &Array3<B>,
+        term: impl Fn(&A, &B) -> f64,
+    ) -> f64 {
+        self.cells(a)
+            .zip(self.cells(b))
+            .map(|(a, b)| term(a, b))
+            .sum()
+    }
+
+    /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ > 0.
+    ///
+    /// σ² is itself estimated from R batches; for complex normal residuals that lifts the mean by
+    /// (R − 1)/(R − 2), which is divided out. `None` when no photon came.
+    #[must_use]
+    pub fn chi2_per_dof(&self, variance: &Array3<f64>) -> Option<f64> {
+        let resolved = self.cells(variance).filter(|v| **v > 0.0).count();
+        if resolved == 0 {
+            return None;
+        }
+        let sum = self.sum(&self.mean(), variance, |m, v| {
+            if *v > 0.0 { m.norm_sqr() / v } else { 0.0 }
+        });
+        let r = self.count() as f64;
+        Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
+    }
+
+    /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with s = 1
+    /// or s = Σ_b |r_b|² at each frequency.
+    pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
+        let r = self.count();
+        let mut scale = Array3::from_elem(self.grid.half_shape(), 1.0);
+        if normalised {
+            scale.fill(0.0);
+            for residual in &self.batches {
+                scale.zip_mut_with(residual, |s, r| *s += r.norm_sqr());
+            }
+        }
+        let mut products = Array2::zeros((r, r));
+        for k in 0..self.grid.azimuths {
+            let rows: Vec<f64> = self
+                .batches
+                .iter()
+                .flat_map(|residual| self.row(residual, &scale, k))
+                .collect();
+            let columns = rows.len() / r;
+            if let Ok(rows) = Array2::from_shape_vec((r, columns), rows) {
+                products += &rows.dot(&rows.t());
+            }
+        }
+        products
+    }
+
+    /// Real and imaginary parts of the independent cells of azimuth `k`, over the root of `scale`.
+    fn row(&self, residual: &Array3<Complex>, scale: &Array3<f64>, k: usize) -> Vec<f64> {
+        let plane = residual.index_axis(ndarray::Axis(0), k);
+        let scale = scale.index_axis(ndarray::Axis(0), k);
+        let mut row = Vec::with_capacity(2 * plane.len());
+        for (((m, n), value), scale) in plane.indexed_iter().zip(scale) {
+            if self.grid.is_independent(m, n) {
+                let root = if *scale > 0.0 {
+                    1.0 / scale.sqrt()
+                } else {
+                    0.0
+                };
+                row.extend([value.re * root, value.im * root]);
+            }
+        }
+        row
+    }
+
+    /// The p-value of the hypothesis that every residual has mean zero.
+    ///
+    /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a residual is
+    /// as likely as its negative, so the statistic under random signs is a draw from its own distribution,
+    /// correlations between neighbouring frequencies included. p is the share of rounds, the observed one
+    /// counted in, that reach the observed value.
+    ///
+    /// `None` when no photon came.
+    #[must_use]
+    pub fn p_value(&self, seed: u64) -> Option<f64> {
+        let products = self.products(true);
+        if products.diag().sum() <= 0.0 {
+            return None;
+        }
+        let r = self.count();
+        let observed = signed_sum(&products, &vec![1.0; r]);
+        let reached = (0..ROUNDS)
+            .filter(|round| signed_sum(&products, &signs(seed, *round, r)) >= observed)
+            .count();
+        Some((reached + 1) as f64 / (ROUNDS + 1) as f64)
+    }
+}
+
+/// Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.
+fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
+    let mut sum = 0.0;
+    for (b, row) in products.outer_iter().enumerate() {
+        let ahead: f64 = row.iter().zip(&signs[..b]).map(|(h, s)| h * s).sum();
+        sum += signs[b] * ahead;
+    }
+    sum
+}
+
+/// Random signs for the batches of one round.
+fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
+    let mut signs = Vec::with_capacity(count + 128);
+    for block in 0.. {
+        if signs.len() >= count {
+            break;
+        }
+        for word in random::words(seed, Stream::Flip, round, block) {
+            signs.extend((0..32).map(|bit| if word >> bit & 1 == 0 { 1.0 } else { -1.0 }));
+        }
+    }
+    signs.truncate(count);
+    signs
+}

@@ -1,0 +1,27 @@
+use etendue_field::{Ledger, PlaneTally, Projection, Slices};
+
+/// What one batch of photons measured at one plane.
+///
+/// Slices and projection are means per emitted photon of the batch: each is by itself an unbiased estimate.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlaneBatch {
+    /// Photons that crossed the plane, in and out of its window.
+    pub tally: PlaneTally,
+    /// The slices of the windowed field.
+    pub slices: Slices,
+    /// The windowed field over (x, u).
+    pub projection: Projection,
+}
+
+/// What one batch of photons measured: a replicate, independent of all others.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Batch {
+    /// Its number.
+    pub index: u32,
+    /// Photons emitted, those that end with zero weight included.
+    pub emitted: u64,
+    /// What became of their flux.
+    pub ledger: Ledger,
+    /// One entry for each virtual plane, in the order of the measurement's planes.
+    pub planes: Vec<PlaneBatch>,
+}

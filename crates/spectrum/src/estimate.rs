@@ -1,0 +1,115 @@
+//! Means over batches with their standard errors.
+
+use crate::measurement::Measurement;
+use etendue_field::{Complex, Projection, Slices};
+use ndarray::{Array2, Array3};
+
+/// The measured slices of a plane.
+///
+/// The mean over batches is plain: each batch is unbiased, and so is their mean, whatever the batches hold.
+/// Batches differ by one emitted photon at most, so weighting them would gain nothing.
+#[derive(Clone, Debug)]
+pub struct SliceEstimate {
+    /// Number R of batches.
+    pub batches: usize,
+    /// The mean S̄ of the batches S_r.
+    pub mean: Slices,
+    /// σ², the variance of the mean: E|S̄ − E S̄|², estimated without bias by Σ|S_r − S̄|²/(R(R−1)), also
+    /// when the batches differ in size. [azimuth, ρ ≥ 0, ν].
+    pub variance: Array3<f64>,
+}
+
+/// A measured projection.
+#[derive(Clone, Debug)]
+pub struct ProjectionEstimate {
+    /// The mean over batches.
+    pub mean: Projection,
+    /// The standard error of each cell, [x, u].
+    pub standard_error: Array2<f64>,
+}
+
+/// There are not enough batches to tell an error.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{have} batches are too few for an error: at least {need} are needed")]
+pub struct TooFewBatches {
+    /// Batches there are.
+    pub have: usize,
+    /// Batches that would do.
+    pub need: usize,
+}
+
+impl TooFewBatches {
+    /// Fails when a measurement holds fewer than `need` batches.
+    pub(crate) fn check(measurement: &Measurement, need: usize) -> Result<(), Self> {
+        let have = measurement.batches().len();
+        if have < need {
+            return Err(Self { have, need });
+        }
+        Ok(())
+    }
+}
+
+/// The mean slices at plane `plane` with their variance.
+///
+/// # Errors
+///
+/// With fewer than two batches.
+pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, TooFewBatches> {
+    TooFewBatches::check(measurement, 2)?;
+    let batches = measurement.batches().len();
+    let each = || measurement.at_plane(plane).map(|batch| &batch.slices.half);
+    let grid = measurement.planes()[plane].grid;
+
+    let mut mean = Slices::zeros(grid);
+    for half in each() {
+        mean.half += half;
+    }
+    mean.half /= Complex::from(batches as f64);
+
+    let mut variance = Array3::zeros(grid.half_shape());
+    for half in each() {
+        ndarray::Zip::from(&mut variance)
+            .and(half)
+            .and(&mean.half)
+            .for_each(|sum: &mut f64, s, m| *sum += (s - m).norm_sqr());
+    }
+    variance /= (batches * (batches - 1)) as f64;
+    Ok(SliceEstimate {
+        batches,
+        mean,
+        variance,
+    })
+}
+
+/// The mean projection at plane `plane` with its standard error.
+///
+/// # Errors
+///
+/// With fewer than two batches.
+pub fn projection(
+    measurement: &Measurement,
+    plane: usize,
+) -> Result<ProjectionEstimate, TooFewBatches> {
+    TooFewBatches::check(measurement, 2)?;
+    let batches = measurement.batches().len();
+    let each = || measurement.at_plane(plane).map(|batch| &batch.projection);
+    let grid = each().next().map(|projection| projection.grid);
+    let Some(grid) = grid else {
+        return Err(TooFewBatches { have: 0, need: 2 });
+    };
+
+    let mut mean = Array2::<f64>::zeros((grid.bins, grid.bins));
+    for projection in each() {
+        mean += &projection.values;
+    }
+    mean /= batches as f64;
+
+    let mut squares = Array2::<f64>::zeros(mean.raw_dim());
+    for projection in each() {
+        squares += &(&projection.values - &mean).mapv(|d| d * d);
+    }
+    Ok(ProjectionEstimate {
+        standard_error: (squares / (batches * (batches - 1)) as f64).mapv(f64::sqrt),
+        mean: Projection { grid, values: mean },
+    })
+}

@@ -1,0 +1,42 @@
+use etendue_field::{Projection, ProjectionGrid, TwoPlane};
+use ndarray::Array2;
+
+/// A sum of weighted rays on its way to the primal side of the slice at azimuth 0: see [`Projection`].
+#[derive(Clone, Debug)]
+pub struct ProjectionHistogram {
+    grid: ProjectionGrid,
+    /// Σ w over the rays of each cell, [x, u].
+    sums: Array2<f64>,
+}
+
+impl ProjectionHistogram {
+    /// An empty histogram over `grid`.
+    #[must_use]
+    pub fn new(grid: ProjectionGrid) -> Self {
+        Self {
+            grid,
+            sums: Array2::zeros((grid.bins, grid.bins)),
+        }
+    }
+
+    /// Adds a ray; one outside the grid adds nothing.
+    #[inline]
+    pub fn deposit(&mut self, ray: &TwoPlane, weight: f64) {
+        if let Some(cell) = self.grid.cell(ray.x, ray.u) {
+            self.sums[cell] += weight;
+        }
+    }
+
+    /// Σ w · `scale` / (area of a cell) for each cell; empties the histogram.
+    ///
+    /// With `scale` = 1/emitted it estimates the mean of ∫∫ L W dy dv over each cell.
+    #[must_use]
+    pub fn finish(&mut self, scale: f64) -> Projection {
+        let values = &self.sums * (scale / self.grid.cell_area());
+        self.sums.fill(0.0);
+        Projection {
+            grid: self.grid,
+            values,
+        }
+    }
+}

@@ -1,0 +1,71 @@
+use ndarray::{Array, Dimension};
+
+/// A number with its standard error.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Uncertain {
+    /// The number.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+/// The delete-one jackknife: the variance of an estimate from its values θ_r with batch r left out,
+/// (R−1)/R Σ (θ_r − θ̄)² (Efron and Stein 1981).
+///
+/// It takes the values one after another and keeps running sums (Welford 1962).
+pub(crate) struct Jackknife<D: Dimension> {
+    count: usize,
+    mean: Array<f64, D>,
+    squares: Array<f64, D>,
+}
+
+impl<D: Dimension> Jackknife<D> {
+    /// For values of the given shape.
+    pub(crate) fn new(shape: D) -> Self {
+        Self {
+            count: 0,
+            mean: Array::zeros(shape.clone()),
+            squares: Array::zeros(shape),
+        }
+    }
+
+    /// Takes the estimate with one more batch left out.
+    pub(crate) fn add(&mut self, value: &Array<f64, D>) {
+        self.count += 1;
+        let count = self.count as f64;
+        ndarray::Zip::from(&mut self.mean)
+            .and(&mut self.squares)
+            .and(value)
+            .for_each(|mean, squares, value| {
+                let from_old = value - *mean;
+                *mean += from_old / count;
+                *squares += from_old * (value - *mean);
+            });
+    }
+
+    /// The variance of the estimate.
+    pub(crate) fn variance(self) -> Array<f64, D> {
+        let count = self.count as f64;
+        self.squares * ((count - 1.0) / count)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::arr0;
+
+    #[test]
+    fn the_variance_of_a_mean_is_the_usual_one() {
+        let values = [1.0, 4.0, -2.0, 0.5, 7.0];
+        let n = values.len() as f64;
+        let sum: f64 = values.iter().sum();
+        let mut jackknife = Jackknife::new(ndarray::Ix0());
+        for value in values {
+            jackknife.add(&arr0((sum - value) / (n - 1.0)));
+        }
+        let squares: f64 = values.iter().map(|v| (v - sum / n).powi(2)).sum();
+        let usual = squares / (n * (n - 1.0));
+        assert!((jackknife.variance().into_scalar() - usual).abs() < 1e-14); // rounding
+    }
+}

@@ -1,0 +1,108 @@
+use crate::batch::{Batch, PlaneBatch};
+use crate::histogram::ProjectionHistogram;
+use crate::measurement::Measurement;
+use crate::transform::{Accumulator, SliceTransform};
+use etendue_field::{Crossing, PhotonSource, PlaneTally, ProjectionGrid, VirtualPlane, Window};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Cells of a projection along x and along u.
+pub const PROJECTION_BINS: usize = 128;
+
+/// Measures `batches` of photons from `source` at `planes`, on the threads of the current rayon pool.
+///
+/// A batch is the sequential work of one thread, so the result is the same to the bit on any number of
+/// threads. `progress` is told the photons as they are traced. Once `cancelled` returns true no further
+/// batch is begun; those under way are finished and the result is the partial one of the batches done.
+///
+/// A batch that emits nothing measures nothing and is left out: with fewer photons than batches the result
+/// holds as many batches as photons.
+#[must_use]
+pub fn measure(
+    source: &dyn PhotonSource,
+    planes: &[VirtualPlane],
+    batches: Range<u32>,
+    progress: &(dyn Fn(u64) + Sync),
+    cancelled: &(dyn Fn() -> bool + Sync),
+) -> Measurement {
+    let plans: Vec<_> = planes
+        .iter()
+        .map(|p| SliceTransform::new(&p.grid))
+        .collect();
+    let recorders = || -> Vec<Recorder<'_>> {
+        let pairs = planes.iter().zip(&plans);
+        pairs
+            .map(|(plane, plan)| Recorder::new(plane, plan))
+            .collect()
+    };
+    let measured: Vec<Option<Batch>> = batches
+        .into_par_iter()
+        .with_max_len(1)
+        .map_init(recorders, |recorders, index| {
+            let wanted = source.emitted(index) > 0 && !cancelled();
+            wanted.then(|| measure_batch(source, index, recorders, progress))
+        })
+        .collect();
+    Measurement::of(planes, measured.into_iter().flatten())
+}
+
+fn measure_batch(
+    source: &dyn PhotonSource,
+    index: u32,
+    recorders: &mut [Recorder<'_>],
+    progress: &(dyn Fn(u64) + Sync),
+) -> Batch {
+    let record = &mut |plane: usize, crossings: &[Crossing]| recorders[plane].record(crossings);
+    let ledger = source.emit(index, record, &|photons| progress(photons));
+    let emitted = source.emitted(index);
+    let scale = 1.0 / emitted as f64;
+    Batch {
+        index,
+        emitted,
+        ledger,
+        planes: recorders.iter_mut().map(|r| r.finish(scale)).collect(),
+    }
+}
+
+/// Takes the crossings of one plane, applies its window and keeps the sums.
+struct Recorder<'plan> {
+    window: Window,
+    tally: PlaneTally,
+    slices: Accumulator<'plan>,
+    projection: ProjectionHistogram,
+}
+
+impl<'plan> Recorder<'plan> {
+    fn new(plane: &VirtualPlane, plan: &'plan SliceTransform) -> Self {
+        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+        Self {
+            window: plane.window,
+            tally: PlaneTally::default(),
+            slices: plan.accumulator(),
+            projection: ProjectionHistogram::new(cells),
+        }
+    }
+
+    fn record(&mut self, crossings: &[Crossing]) {
+        for Crossing { ray, weight } in crossings {
+            self.tally.crossed += 1;
+            if !self.window.contains(ray) {
+                self.tally.outside += 1;
+                continue;
+            }
+            self.tally.inside += 1;
+            let weight = weight * self.window.value(ray);
+            self.slices.deposit(ray, weight);
+            self.projection.deposit(ray, weight);
+        }
+    }
+
+    /// What was recorded, per emitted photon; ready for the next batch.
+    fn finish(&mut self, scale: f64) -> PlaneBatch {
+        PlaneBatch {
+            tally: std::mem::take(&mut self.tally),
+            slices: self.slices.finish(scale),
+            projection: self.projection.finish(scale),
+        }
+    }
+}

@@ -1,0 +1,133 @@
+use crate::estimate::TooFewBatches;
+use crate::jackknife::{Jackknife, Uncertain};
+use crate::measurement::Measurement;
+use etendue_field::{Complex, SliceGrid, Slices};
+use ndarray::{Array2, Array3, ArrayView2, Axis};
+
+/// The measured radial power of a plane: |S_φ|² averaged over the azimuths, [ρ, ν] ascending.
+#[derive(Clone, Debug)]
+pub struct RadialPower {
+    /// The power without the noise of the photons: unbiased, and negative where noise has it so.
+    pub power: Array2<f64>,
+    /// What the photons' noise added to the power of the mean spectrum, and was left out.
+    pub shot_noise: Array2<f64>,
+    /// The standard error of `power`, by the delete-one jackknife over R batches. On the safe side where
+    /// there is nothing but noise: there it is √(2(R−1)/(R−2)) times too large.
+    pub sigma: Array2<f64>,
+}
+
+/// The power spectrum of a plane by crossing independent batches:
+///
+/// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
+///
+/// the mean of Re(S_r conj S_s) over all pairs r ≠ s. The noises of two batches are independent, so U is an
+/// unbiased estimate of |F|² whatever the photons of one batch have in common.
+///
+/// Without batch r it is (T − 2 row_r)/((R−1)(R−2)), T being R(R−1) U and row_r = Σ_(s≠r) Re(S_r conj S_s):
+/// no copies for the jackknife.
+#[derive(Clone, Debug)]
+pub struct CrossPower<'m> {
+    grid: SliceGrid,
+    batches: Vec<&'m Slices>,
+    /// Σ S_r, [azimuth, ρ ≥ 0, ν].
+    sum: Array3<Complex>,
+    /// T averaged over the azimuths, [ρ ≥ 0, ν].
+    pairs: Array2<f64>,
+}
+
+impl<'m> CrossPower<'m> {
+    /// The cross power of plane `plane`.
+    ///
+    /// # Errors
+    ///
+    /// With fewer than three batches, the least a jackknife can do with.
+    pub fn new(measurement: &'m Measurement, plane: usize) -> Result<Self, TooFewBatches> {
+        TooFewBatches::check(measurement, 3)?;
+        let grid = measurement.planes()[plane].grid;
+        let batches: Vec<_> = measurement.at_plane(plane).map(|b| &b.slices).collect();
+        let mut sum = Array3::zeros(grid.half_shape());
+        let mut squares = Array3::zeros(grid.half_shape());
+        for slices in &batches {
+            sum += &slices.half;
+            squares.zip_mut_with(&slices.half, |sum: &mut f64, s| *sum += s.norm_sqr());
+        }
+        let pairs = mean(&(sum.mapv(|s: Complex| s.norm_sqr()) - squares));
+        Ok(Self {
+            grid,
+            batches,
+            sum,
+            pairs,
+        })
+    }
+
+    /// The power U, [ρ, ν].
+    #[must_use]
+    pub fn power(&self) -> Array2<f64> {
+        let r = self.batches.len() as f64;
+        self.unfold(&(&self.pairs / (r * (r - 1.0))))
+    }
+
+    /// The power without batch number `left_out` of those there are, [ρ, ν].
+    ///
+    /// # Panics
+    ///
+    /// When there are not so many batches.
+    #[must_use]
+    pub fn without(&self, left_out: usize) -> Array2<f64> {
+        let r = self.batches.len() as f64;
+        let mut row = Array3::zeros(self.grid.half_shape());
+        ndarray::Zip::from(&mut row)
+            .and(&self.batches[left_out].half)
+            .and(&self.sum)
+            .for_each(|row: &mut f64, s, sum| *row = (s.conj() * (sum - s)).re);
+        let power = (&self.pairs - mean(&row) * 2.0) / ((r - 1.0) * (r - 2.0));
+        self.unfold(&power)
+    }
+
+    /// Power, shot noise and standard error.
+    #[must_use]
+    pub fn radial(&self) -> RadialPower {
+        let power = self.power();
+        let r = self.batches.len() as f64;
+        let of_mean = mean(&self.sum.mapv(|s| s.norm_sqr() / (r * r)));
+        let mut jackknife = Jackknife::new(power.raw_dim());
+        for left_out in 0..self.batches.len() {
+            jackknife.add(&self.without(left_out));
+        }
+        RadialPower {
+            shot_noise: self.unfold(&of_mean) - &power,
+            sigma: jackknife.variance().mapv(f64::sqrt),
+            power,
+        }
+    }
+
+    /// A number read off the power, such as a slope or a bandwidth, with its standard error by the jackknife.
+    ///
+    /// `None` when the number does not exist, with all batches or with one left out.
+    pub fn statistic(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Option<Uncertain> {
+        let value = of(self.power().view())?;
+        let mut jackknife = Jackknife::new(ndarray::Ix0());
+        for left_out in 0..self.batches.len() {
+            jackknife.add(&ndarray::arr0(of(self.without(left_out).view())?));
+        }
+        Some(Uncertain {
+            value,
+            error: jackknife.variance().into_scalar().sqrt(),
+        })
+    }
+
+    /// From ρ ≥ 0 to all ρ: a power is even.
+    fn unfold(&self, half: &Array2<f64>) -> Array2<f64> {
+        let one = SliceGrid {
+            azimuths: 1,
+            ..self.grid
+        };
+        let full = one.unfold_even(half.view().insert_axis(Axis(0)));
+        full.index_axis_move(Axis(0), 0)
+    }
+}
+
+/// The mean over azimuths.
+fn mean(slices: &Array3<f64>) -> Array2<f64> {
+    slices.sum_axis(Axis(0)) / slices.len_of(Axis(0)) as f64
+}

@@ -1,0 +1,138 @@
+use crate::block::{Block, GROUP};
+use crate::kernel::{Kernel, WIDTH};
+use fearless_simd::{Simd, f64x4, prelude::*};
+
+/// How the rays of one azimuth φ fall on its fine grid, a period of `rows` × `columns` cells.
+///
+/// Rows divide the period 1/spacing of p = x cos φ + y sin φ, the conjugate of ρ; columns that of
+/// q = u cos φ + v sin φ, the conjugate of ν.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Placement {
+    /// cos φ and sin φ times the spacing of ρ: periods per metre.
+    pub(crate) rho: [f64; 2],
+    /// cos φ and sin φ times the spacing of ν: periods per unit slope.
+    pub(crate) nu: [f64; 2],
+    /// Cells of a period of p.
+    pub(crate) rows: usize,
+    /// Cells of a period of q.
+    pub(crate) columns: usize,
+}
+
+impl Placement {
+    /// Rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3, j − 3] of the
+    /// period: a ray reaches eight cells, and those outside are wrapped once, after all spreading.
+    pub(crate) fn padded(&self) -> [usize; 2] {
+        [self.rows + WIDTH, self.columns + WIDTH]
+    }
+}
+
+/// A group of rays on the fine grid.
+struct Group {
+    /// The first padded cell of each.
+    start: [usize; GROUP],
+    /// How far beyond its row each lies.
+    row: [f64; GROUP],
+    /// How far beyond its column each lies.
+    column: [f64; GROUP],
+    /// Weight times the taps of the rows, [tap, ray].
+    down: [[f64; GROUP]; WIDTH],
+    /// The taps of the columns, [ray, tap].
+    across: [[f64; WIDTH]; GROUP],
+}
+
+/// Adds the rays of a padded block to the padded fine grid of one azimuth, row by row.
+///
+/// Done in three short loops over a group, not in one long one: a processor then has several rays in
+/// flight at a time, which is 1.8 times as fast.
+#[inline(always)]
+pub(crate) fn spread<S: Simd>(
+    simd: S,
+    kernel: &Kernel,
+    placement: &Placement,
+    block: &Block,
+    fine: &mut [f64],
+) {
+    let mut group = Group {
+        start: [0; GROUP],
+        row: [0.0; GROUP],
+        column: [0.0; GROUP],
+        down: [[0.0; GROUP]; WIDTH],
+        across: [[0.0; WIDTH]; GROUP],
+    };
+    for from in (0..block.weight.len()).step_by(GROUP) {
+        place(&mut group, placement, block, from);
+        weigh(simd, &mut group, kernel, &block.weight[from..from + GROUP]);
+        add(simd, &group, placement.padded()[1], fine);
+    }
+}
+
+/// Finds the cells of the rays from `from` on.
+#[inline(always)]
+fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
+    let [stride, rays] = [placement.padded()[1], from + GROUP];
+    let (x, y) = (&block.x[from..rays], &block.y[from..rays]);
+    let (u, v) = (&block.u[from..rays], &block.v[from..rays]);
+    for i in 0..GROUP {
+        let (row, f) = cell(x[i], y[i], placement.rho, placement.rows);
+        let (column, g) = cell(u[i], v[i], placement.nu, placement.columns);
+        group.start[i] = row * stride + column;
+        group.row[i] = f;
+        group.column[i] = g;
+    }
+}
+
+/// The cell of a point among the `count` of a period, and how far beyond it the point lies.
+///
+/// A point outside the period is moved into it by whole periods. Nothing is lost: at frequencies m · spacing
+/// e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
+#[inline(always)]
+fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
+    /// 2⁵²: added to a smaller whole number, leaves it in the low bits; quicker than a checked cast.
+    const WHOLE: f64 = 4_503_599_627_370_496.0;
+    let periods = a * along[0] + b * along[1];
+    let cells = (periods - periods.floor()) * count as f64;
+    let whole = cells.floor();
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "the low bits hold the number"
+    )]
+    let cell = (whole + WHOLE).to_bits() as u32;
+    (cell as usize, cells - whole)
+}
+
+/// Works out the taps.
+#[inline(always)]
+fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel, weight: &[f64]) {
+    for i in (0..GROUP).step_by(4) {
+        let four = i..i + 4;
+        let taps = kernel.taps_of_four(simd, f64x4::from_slice(simd, &group.row[four.clone()]));
+        let weight = f64x4::from_slice(simd, &weight[four.clone()]);
+        for (down, tap) in group.down.iter_mut().zip(taps) {
+            (tap * weight).store_slice(&mut down[four.clone()]);
+        }
+    }
+    for (across, f) in group.across.iter_mut().zip(group.column) {
+        let [a, b] = kernel.taps(simd, f);
+        let (left, right) = across.split_at_mut(WIDTH / 2);
+        a.store_slice(left);
+        b.store_slice(right);
+    }
+}
+
+/// Adds each ray to its 8 × 8 cells.
+#[inline(always)]
+fn add<S: Simd>(simd: S, group: &Group, stride: usize, fine: &mut [f64]) {
+    for (i, across) in group.across.iter().enumerate() {
+        let (left, right) = across.split_at(WIDTH / 2);
+        let left = f64x4::from_slice(simd, left);
+        let right = f64x4::from_slice(simd, right);
+        let start = group.start[i];
+        let cells = &mut fine[start..start + (WIDTH - 1) * stride + WIDTH];
+        for (j, down) in group.down.iter().enumerate() {
+            let row = &mut cells[j * stride..j * stride + WIDTH];
+            let (l, r) = row.split_at_mut(WIDTH / 2);
+            (f64x4::from_slice(simd, l) + left * down[i]).store_slice(l);
+            (f64x4::from_slice(simd, r) + right * down[i]).store_slice(r);
+        }
+    }
+}

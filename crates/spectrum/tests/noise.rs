@@ -1,0 +1,178 @@
+//! What photons' noise does to spectra, and what is done about it.
+
+mod common;
+
+use common::{Shower, boxed, grid, plane};
+use etendue_field::{Ledger, PhotonSource, SliceGrid, VirtualPlane};
+use etendue_spectrum::{CrossPower, Measurement, estimate, measure, moments};
+use ndarray::{Axis, Slice};
+
+/// Photons uniform in a box a whole period wide, seen at azimuth 0: no structure but noise.
+fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
+    let window = boxed();
+    let plane = plane("white", window, grid(&window, 1, [12, 16], fineness));
+    let source = Inside(Shower {
+        seed,
+        photons,
+        batches,
+        planes: vec![plane],
+    });
+    let planes: &[VirtualPlane] = &source.0.planes;
+    measure(&source, planes, 0..batches, &|_| (), &|| false)
+}
+
+/// A shower with every photon inside the window.
+struct Inside(Shower);
+
+impl PhotonSource for Inside {
+    fn emitted(&self, batch: u32) -> u64 {
+        self.0.emitted(batch)
+    }
+
+    fn emit(
+        &self,
+        batch: u32,
+        record: &mut dyn FnMut(usize, &[etendue_field::Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        let mut inner = |plane: usize, block: &[etendue_field::Crossing]| {
+            let mut block = block.to_vec();
+            for crossing in &mut block {
+                for t in [&mut crossing.ray.x, &mut crossing.ray.y] {
+                    *t /= 1.0267;
+                }
+                for t in [&mut crossing.ray.u, &mut crossing.ray.v] {
+                    *t /= 1.0267;
+                }
+            }
+            record(plane, &block);
+        };
+        self.0.emit(batch, &mut inner, progress)
+    }
+}
+
+/// E w² of weights uniform in [0, 2).
+const SQUARE: f64 = 4.0 / 3.0;
+
+#[test]
+fn white_noise_is_flat() {
+    let (photons, batches) = (128_000, 64);
+    let measurement = white(1, photons, batches, 1.0);
+    let expected = SQUARE / (photons as f64 / f64::from(batches)); // of |S_r|²: Σw²/n²
+    let grid = measurement.planes()[0].grid;
+    let mut chi2 = 0.0;
+    for m in 1..=grid.rho.half {
+        let each = measurement.at_plane(0).map(|batch| {
+            let slice = batch.slices.half.index_axis(Axis(0), 0);
+            let row = slice.index_axis_move(Axis(0), m);
+            row.mapv(|s| s.norm_sqr() / expected).sum()
+        });
+        // |S|² is exponential: its standard deviation is its mean.
+        let count = f64::from(batches) * grid.nu.count() as f64;
+        let z = (each.sum::<f64>() / count - 1.0) * count.sqrt();
+        chi2 += z * z;
+    }
+    let bins = grid.rho.half as f64;
+    // Four standard deviations of χ² of 12 degrees; a tilt of the kernel's correction by 10 % gives 100s.
+    assert!(chi2 < bins + 4.0 * (2.0 * bins).sqrt(), "{chi2}");
+    assert!(chi2 > 2.0, "{chi2}"); // below 2 with probability 1e-4: the noise would be too smooth
+}
+
+#[test]
+fn removing_shot_noise_leaves_nothing_of_white_noise() {
+    let (photons, batches) = (32_000, 64);
+    let measurement = white(2, photons, batches, 1.0);
+    let radial = CrossPower::new(&measurement, 0).unwrap().radial();
+    let noise = SQUARE / photons as f64;
+    // One half of the plane, the line ρ = 0 left out: independent frequencies.
+    let zero = measurement.planes()[0].grid.rho.half;
+    let power = radial.power.slice_axis(Axis(0), Slice::from(zero + 1..));
+    let count = power.len() as f64;
+    let mean = power.sum() / count;
+    // Var U = s⁴/(R(R−1)) for each frequency, s² = R · noise; four standard deviations of the mean of all.
+    let sd = noise / count.sqrt() * (64.0_f64 / 63.0).sqrt();
+    assert!(mean.abs() < 4.0 * sd, "{mean} {sd}");
+    // Left in, it would be 20 standard deviations.
+    let shot_noise = radial
+        .shot_noise
+        .slice_axis(Axis(0), Slice::from(zero + 1..));
+    let left_in = shot_noise.sum() / count;
+    assert!((left_in / noise - 1.0).abs() < 0.02, "{left_in}"); // Σw² of 32000 weights: 0.5 %, four of them
+    assert!(left_in > 15.0 * sd);
+    // Where there is nothing but noise the jackknife's variance is 2(R−1)/(R−2) times the true one.
+    let sigma = radial.sigma.slice_axis(Axis(0), Slice::from(zero + 1..));
+    let variance = sigma.mapv(|s| s * s).sum() / count;
+    let ratio = variance / (sd * sd * count) / (2.0 * 63.0 / 62.0);
+    assert!((ratio - 1.0).abs() < 0.1, "{ratio}"); // 396 frequencies of 63 degrees of freedom: 1 %, tails more
+}
+
+#[test]
+fn the_variance_of_the_slices_is_the_photons_noise() {
+    let (photons, batches) = (32_000, 64);
+    let measurement = white(3, photons, batches, 1.0);
+    let estimate = estimate::slices(&measurement, 0).unwrap();
+    let variance = estimate.variance.slice_axis(Axis(1), Slice::from(1..));
+    let mean = variance.sum() / variance.len() as f64;
+    let expected = SQUARE / photons as f64;
+    // 396 frequencies of 63 degrees of freedom each: 0.6 %, four of them.
+    assert!((mean / expected - 1.0).abs() < 0.025, "{}", mean / expected);
+    assert_eq!(estimate.batches, 64);
+    let projection = estimate::projection(&measurement, 0).unwrap();
+    let cells = projection.mean.values.len() as f64;
+    let mean = projection.mean.values.sum() / cells;
+    // Mean weight 1 over the area 1.6 · 0.8; Σw of 32000 photons: 0.3 %, four of them.
+    assert!((mean * 1.28 - 1.0).abs() < 0.013, "{mean}");
+    let variance = projection.standard_error.mapv(|e| e * e).sum() / cells;
+    let one = SQUARE * cells / (photons as f64 * 1.28 * 1.28);
+    assert!((variance / one - 1.0).abs() < 0.05, "{}", variance / one); // 2 photons a cell, 16384 cells: 1 %
+}
+
+/// The field of the box on a grid three times finer than its period: known power, not zero.
+#[test]
+fn jackknife_intervals_cover_the_truth() {
+    let (trials, batches) = (300, 16);
+    let (mut covered, mut halved, mut statistics) = (0, 0, 0);
+    for trial in 0..trials {
+        let measurement = white(1_000 + trial, 3_200, batches, 3.0);
+        let cross = CrossPower::new(&measurement, 0).unwrap();
+        let grid: SliceGrid = measurement.planes()[0].grid;
+        let [i, j] = [grid.rho.half + 1, grid.nu.half];
+        // |F|² = sinc²(ρ · 1.6), mean weight 1.
+        let t = std::f64::consts::PI * grid.rho.value(i) * 1.6;
+        let truth = (t.sin() / t).powi(2);
+        let radial = cross.radial();
+        let off = (radial.power[[i, j]] - truth).abs();
+        let interval = 2.131 * radial.sigma[[i, j]]; // Student's t, 15 degrees, 97.5 %
+        covered += u32::from(off < interval);
+        halved += u32::from(off < 0.5 * interval);
+
+        // A field without shear has slope zero.
+        let slope = cross.statistic(|power| moments::shear_slope(power, &grid));
+        let slope = slope.unwrap();
+        statistics += u32::from(slope.value.abs() < 2.131 * slope.error);
+    }
+    let share = |count: u32| f64::from(count) / trials as f64;
+    // 95 % of 300 trials: ± 1.3 %, three of them, and the jackknife's own 1 %.
+    assert!((0.90..0.99).contains(&share(covered)));
+    assert!((0.90..0.995).contains(&share(statistics)));
+    assert!(share(halved) < 0.80); // an error half as large is seen: it covers 70 %
+}
+
+#[test]
+fn leaving_one_out_is_the_power_of_the_others() {
+    let whole = white(4, 400, 8, 2.0);
+    let cross = CrossPower::new(&whole, 0).unwrap();
+    for left_out in [0, 3, 7] {
+        let mut others = Measurement::new(whole.planes().to_vec());
+        for batch in whole.batches().filter(|b| b.index != left_out) {
+            others.insert(batch.clone()).unwrap();
+        }
+        let expected = CrossPower::new(&others, 0).unwrap().power();
+        let found = cross.without(left_out as usize);
+        let largest = expected.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let error = (found - expected)
+            .iter()
+            .fold(0.0, |a: f64, b| a.max(b.abs()));
+        assert!(error < 1e-13 * largest); // rounding of differences of sums of 8 squares
+    }
+}

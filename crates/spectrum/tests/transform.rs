@@ -1,0 +1,162 @@
+//! The fast transform against the plain sum.
+
+mod common;
+
+use common::{Random, boxed, grid, hann};
+use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, Window};
+use etendue_spectrum::{SliceTransform, direct};
+
+fn fast(crossings: &[Crossing], window: &Window, grid: &SliceGrid) -> Slices {
+    let plan = SliceTransform::new(grid);
+    let mut sum = plan.accumulator();
+    for crossing in crossings {
+        sum.deposit(&crossing.ray, crossing.weight * window.value(&crossing.ray));
+    }
+    sum.finish(1.0)
+}
+
+/// The largest difference over all frequencies, relative to Σ|w|.
+fn error(a: &Slices, b: &Slices, crossings: &[Crossing], window: &Window) -> f64 {
+    let differences = a.half.iter().zip(&b.half).map(|(a, b)| (a - b).norm());
+    let largest = differences.fold(0.0, f64::max);
+    let weight = |c: &Crossing| (c.weight * window.value(&c.ray)).abs();
+    largest / crossings.iter().map(weight).sum::<f64>()
+}
+
+#[test]
+fn the_transform_is_the_plain_sum() {
+    let mut random = Random(1);
+    for window in [hann(), boxed()] {
+        for (azimuths, half, fineness) in [
+            (8, [16, 32], 1.0),
+            (8, [9, 7], 2.5),
+            (3, [5, 12], 1.3),
+            (1, [0, 1], 1.0),
+            (5, [31, 16], 1.0),
+        ] {
+            let grid = grid(&window, azimuths, half, fineness);
+            let many: Vec<_> = (0..1000).map(|_| random.crossing(&window, 1.0)).collect();
+            // The corners, where x cos φ + y sin φ goes beyond a period; one ray has no mate to average with.
+            let corner = |sign: f64| Crossing {
+                ray: TwoPlane {
+                    x: 0.999_999 * window.x.half_width(),
+                    y: 0.999 * sign * window.y.half_width(),
+                    u: -0.999_999 * window.u.half_width(),
+                    v: 0.99 * sign * window.v.half_width(),
+                },
+                weight: 1e9,
+            };
+            let sets = [
+                many,
+                vec![corner(1.0)],
+                vec![corner(-1.0), random.crossing(&window, 0.5)],
+            ];
+            for crossings in sets {
+                let plain = direct::slices(&crossings, |z| window.value(z), &grid);
+                let error = error(
+                    &fast(&crossings, &window, &grid),
+                    &plain,
+                    &crossings,
+                    &window,
+                );
+                assert!(error < 2e-7, "{error}"); // the bound stated at `SliceTransform`
+            }
+        }
+    }
+}
+
+#[test]
+fn a_wrong_spacing_is_seen() {
+    let window = hann();
+    let right = grid(&window, 4, [8, 8], 1.0);
+    let mut wrong = right;
+    wrong.rho.spacing *= 1.0 + 1e-5;
+    let mut random = Random(2);
+    let crossings: Vec<_> = (0..100).map(|_| random.crossing(&window, 1.0)).collect();
+    let plain = direct::slices(&crossings, |z| window.value(z), &wrong);
+    // A phase wrong by 2π · 8 · 1e-5 · 0.3 periods, averaged over a hundred rays.
+    assert!(
+        error(
+            &fast(&crossings, &window, &right),
+            &plain,
+            &crossings,
+            &window
+        ) > 3e-6
+    );
+}
+
+#[test]
+fn an_accumulator_is_used_again() {
+    let window = hann();
+    let grid = grid(&window, 2, [4, 4], 1.0);
+    let plan = SliceTransform::new(&grid);
+    let mut random = Random(3);
+    let crossings: Vec<_> = (0..10_000).map(|_| random.crossing(&window, 1.0)).collect();
+    let mut sum = plan.accumulator();
+    let mut twice = Vec::new();
+    for _ in 0..2 {
+        for crossing in &crossings {
+            sum.deposit(&crossing.ray, crossing.weight);
+        }
+        twice.push(sum.finish(0.25));
+    }
+    assert_eq!(twice[0], twice[1]);
+    assert!((sum.finish(1.0).at_zero()).abs() < f64::MIN_POSITIVE);
+}
+
+/// On a lattice of n positions the discrete Parseval identity is exact: the mean of |S|² over n successive
+/// frequencies of spacing 1/(n a) is the sum of the squared weights.
+#[test]
+fn power_over_all_frequencies_is_the_sum_of_squares() {
+    let (half, step) = ([10, 7], [0.05, 0.03]);
+    let axis = |half, step| etendue_field::FrequencyAxis {
+        half,
+        spacing: 1.0 / ((2 * half + 1) as f64 * step),
+    };
+    let grid = SliceGrid {
+        azimuths: 1,
+        rho: axis(half[0], step[0]),
+        nu: axis(half[1], step[1]),
+    };
+    let plan = SliceTransform::new(&grid);
+    let mut sum = plan.accumulator();
+    let mut random = Random(4);
+    let mut squares = 0.0;
+    for i in 0..grid.rho.count() {
+        for j in 0..grid.nu.count() {
+            let ray = TwoPlane {
+                x: (i as f64 - 4.0) * step[0],
+                y: random.within(1.0), // azimuth 0 does not see it
+                u: (j as f64 - 7.0) * step[1],
+                v: random.within(1.0),
+            };
+            let weight = random.unit();
+            squares += weight * weight;
+            sum.deposit(&ray, weight);
+        }
+    }
+    let power = sum.finish(1.0).radial_power();
+    let mean = power.sum() / power.len() as f64;
+    // Each |S|² is off by 2 · 1e-7 Σw |S|; 21 · 15 rays of mean weight 1/2, so Σw = 158, |S| ~ √Σw², few large.
+    assert!((mean / squares - 1.0).abs() < 1e-5, "{mean} {squares}");
+}
+
+#[test]
+fn one_ray_is_one_exponential() {
+    let window = hann();
+    let grid = grid(&window, 6, [3, 3], 1.0);
+    let ray = TwoPlane {
+        x: 0.21,
+        y: -0.13,
+        u: 0.11,
+        v: 0.07,
+    };
+    let one = [Crossing { ray, weight: 2.0 }];
+    let k = 2;
+    let (rho, nu) = (grid.rho.value(5), grid.nu.value(1));
+    let (sin, cos) = grid.azimuth(k).sin_cos();
+    let cycles = rho * (ray.x * cos + ray.y * sin) + nu * (ray.u * cos + ray.v * sin);
+    let expected = Complex::from_polar(2.0, -std::f64::consts::TAU * cycles);
+    let found = direct::slices(&one, |_| 1.0, &grid).half[[k, 2, 1]];
+    assert!((found - expected).norm() < 1e-14); // rounding of a phase of a few turns
+}
