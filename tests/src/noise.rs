@@ -9,7 +9,7 @@ use etendue_scene::Scene;
 pub(crate) fn planes(photons: u64, seed: u64) -> Section {
     let reports = reports(&fig9b(photons, seed));
     Section {
-        title: format!("Every plane at {photons:.0e} photons"),
+        title: format!("Every plane at {:.0e} photons", photons as f64),
         text: "Required: p at least α = 1 % after Šidák over the planes.".to_owned(),
         header: HEADER.to_vec(),
         passed: reports.iter().all(passes),
@@ -40,9 +40,20 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> Section {
     // Two-sided 1 % of the largest of this many normal numbers, Šidák.
     let bound = 3.5;
     Section {
-        title: format!("Parameters recovered at {photons:.0e} photons"),
-        text: format!("Required: every parameter within {bound} errors of the scene's (1 % for the largest of {}).", rows.len()),
-        header: vec!["plane", "parameter", "scene", "measured", "error", "off by (errors)", "smallest detectable change"],
+        title: format!("Parameters recovered at {:.0e} photons", photons as f64),
+        text: format!(
+            "Required: every parameter within {bound} errors of the scene's (1 % for the largest of {}).",
+            rows.len()
+        ),
+        header: vec![
+            "plane",
+            "parameter",
+            "scene",
+            "measured",
+            "error",
+            "off by (errors)",
+            "smallest detectable change",
+        ],
         passed: worst < bound,
         rows,
     }
@@ -64,10 +75,16 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> Section {
     });
     Section {
         title: "Noise floor of the receiver plane".to_owned(),
-        text: "Required: p at least α = 1 %, and a floor that falls 10 dB per decade within 0.1 dB.".to_owned(),
+        text:
+            "Required: p at least α = 1 %, and a floor that falls 10 dB per decade within 0.1 dB."
+                .to_owned(),
         header: HEADER.to_vec(),
         passed: falls && reports.iter().all(passes),
-        rows: reports.iter().zip(photons).map(|(r, n)| row(*n, r)).collect(),
+        rows: reports
+            .iter()
+            .zip(photons)
+            .map(|(r, n)| row(*n, r))
+            .collect(),
     }
 }
 
@@ -83,9 +100,11 @@ const HEADER: [&str; 8] = [
 ];
 
 fn row(photons: u64, report: &PlaneReport) -> Vec<String> {
-    let show = |value: Option<f64>, digits: usize| value.map_or("–".to_owned(), |v| format!("{v:.digits$}"));
+    let show = |value: Option<f64>, digits: usize| {
+        value.map_or("–".to_owned(), |v| format!("{v:.digits$}"))
+    };
     vec![
-        format!("{photons:.0e}", photons = photons as f64),
+        format!("{:.0e}", photons as f64),
         report.name.clone(),
         report.in_window.to_string(),
         show(report.chi2_per_dof, 4),

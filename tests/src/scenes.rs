@@ -28,7 +28,13 @@ pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
 
 /// Measures a scene with photons from `source`.
 pub(crate) fn measured(scene: &Scene, source: &impl PhotonSource) -> Measurement {
-    measure(source, &scene.planes, 0..scene.run.batches, &|_| (), &|| false)
+    measure(
+        source,
+        &scene.planes,
+        0..scene.run.batches,
+        &|_| (),
+        &|| false,
+    )
 }
 
 /// Measures a scene with its own tracer.
@@ -38,5 +44,9 @@ pub(crate) fn traced(scene: &Scene) -> Measurement {
 
 /// The predictions of all planes of a scene.
 pub(crate) fn predicted(scene: &Scene) -> Vec<Prediction> {
-    scene.planes.iter().map(|plane| Prediction::new(scene, plane)).collect()
+    scene
+        .planes
+        .iter()
+        .map(|plane| Prediction::new(scene, plane))
+        .collect()
 }

@@ -1,2 +1,36 @@
-//! The etendue command.
-fn main() {}
+//! The `etendue` command: parses, calls the stages, writes what they give.
+//!
+//! `run` measures a scene, predicts it, compares and draws; `check` says what a scene says.
+
+mod args;
+mod check;
+mod failure;
+mod files;
+mod load;
+mod machine;
+mod photons;
+mod pictures;
+mod progress;
+mod results;
+mod run;
+mod summary;
+mod table;
+
+use args::{Cli, Command};
+use clap::Parser;
+use std::process::ExitCode;
+
+#[expect(clippy::print_stderr, reason = "this is where a command line speaks")]
+fn main() -> ExitCode {
+    let outcome = match Cli::parse().command {
+        Command::Run(args) => run::run(&args),
+        Command::Check(args) => check::check(&args),
+    };
+    match outcome {
+        Ok(code) => ExitCode::from(code),
+        Err(failure) => {
+            eprintln!("error: {}", failure.message);
+            ExitCode::from(failure.code)
+        }
+    }
+}

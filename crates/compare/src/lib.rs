@@ -15,7 +15,7 @@ mod score;
 
 pub use chain::chain;
 pub use plane::{PlaneComparison, compare};
-pub use prediction::{Class, PredictedParameter, Prediction};
+pub use prediction::{Class, PredictedParameter, Prediction, steps};
 pub use report::{Bandwidth, Pair, PlaneReport, Verdict, sidak};
 pub use residuals::Residuals;
 pub use score::ParameterReport;

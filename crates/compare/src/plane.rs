@@ -1,4 +1,4 @@
-use crate::prediction::Prediction;
+use crate::prediction::{Prediction, steps};
 use crate::report::{Bandwidth, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
 use crate::score::score;
@@ -57,7 +57,7 @@ pub fn compare(
     let report = PlaneReport {
         name: plane.name.clone(),
         class: prediction.class,
-        chain: prediction.chain.describe(),
+        chain: steps(&prediction.chain, &plane.window),
         frame: plane.frame,
         distance: plane.distance,
         crossed: tally.crossed,
@@ -187,7 +187,7 @@ fn cross_power_error(products: &Array2<f64>) -> f64 {
 }
 
 /// The highest predicted power on the border of the grid that goes without a warning, below the peak.
-const BORDER: f64 = 1e-3;
+const BORDER: f64 = 1e-2;
 
 /// Limits of the measurement, in words.
 fn warnings(agreement: &Agreement, predicted: &Array2<f64>, grid: &SliceGrid) -> Vec<String> {
@@ -210,7 +210,8 @@ fn warnings(agreement: &Agreement, predicted: &Array2<f64>, grid: &SliceGrid) ->
         let border = at(axis);
         if border > BORDER * peak {
             warnings.push(format!(
-                "the spectrum goes on beyond the grid: at |{name}| = {max} it is {:.0} dB below its peak",
+                "the spectrum goes on beyond |{name}| = {max}, where it is {:.0} dB below its peak; bandwidths \
+                 count what is inside",
                 -10.0 * (border / peak).log10()
             ));
         }

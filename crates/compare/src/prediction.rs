@@ -1,5 +1,5 @@
 use crate::chain::chain;
-use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
+use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::{Chain, Operator};
@@ -11,6 +11,20 @@ use serde::Serialize;
 pub enum Class {
     /// Equals the expectation of the measurement, in closed form.
     Exact,
+}
+
+impl Class {
+    /// The kind of prediction a chain has. Travel and visibility in planes have closed forms: it is exact.
+    #[must_use]
+    pub fn of(chain: &Chain) -> Self {
+        // A new operator must say here what it does to the class.
+        chain
+            .operators
+            .iter()
+            .fold(Self::Exact, |class, operator| match operator {
+                Operator::Travel { .. } | Operator::Visibility { .. } => class,
+            })
+    }
 }
 
 /// Everything theory says about a plane.
@@ -41,6 +55,17 @@ pub struct PredictedParameter {
     pub derivative: Slices,
 }
 
+/// The steps that make the spectrum of a plane, a line for each: the chain, and the window last.
+#[must_use]
+pub fn steps(chain: &Chain, window: &Window) -> Vec<String> {
+    let Window { x, y, u, v } = window;
+    let mut steps = chain.describe();
+    steps.push(format!(
+        "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
+    ));
+    steps
+}
+
 impl Prediction {
     /// Predicts a plane of a scene.
     #[must_use]
@@ -67,7 +92,7 @@ impl Prediction {
         open.operators
             .retain(|o| matches!(o, Operator::Travel { .. }));
         Self {
-            class: Class::Exact,
+            class: Class::of(&chain),
             unblocked: etendue_theory::at(&open, &plane.window, [0.0; 4]).re,
             projection: etendue_theory::projection(&chain, &plane.window, &grid),
             chain,

@@ -35,6 +35,17 @@ impl Ledger {
         self.stopped += other.stopped;
     }
 
+    /// The account times a number.
+    #[must_use]
+    pub fn scaled(&self, factor: f64) -> Self {
+        Self {
+            emitted: factor * self.emitted,
+            absorbed: factor * self.absorbed,
+            escaped: factor * self.escaped,
+            stopped: factor * self.stopped,
+        }
+    }
+
     /// (emitted − absorbed − escaped − stopped) / emitted; zero when nothing was emitted.
     #[must_use]
     pub fn imbalance(&self) -> f64 {

@@ -4,8 +4,8 @@ use etendue_field::TwoPlane;
 pub(crate) const GROUP: usize = 32;
 
 /// Rays of a full block. The block is read once for each azimuth while the azimuth's fine grid stays in the
-/// cache; anything from one to sixteen thousand was as fast.
-const CAPACITY: usize = 4096;
+/// cache; with four planes in turn, blocks of 16384 were 8 % faster than blocks of 4096.
+const CAPACITY: usize = 16384;
 
 /// Rays waiting to be spread, one array for each coordinate, in the order in which they came.
 #[derive(Clone, Debug)]

@@ -7,7 +7,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// Cells of a projection along x and along u.
-pub const PROJECTION_BINS: usize = 128;
+pub const PROJECTION_BINS: usize = 64;
 
 /// Measures `batches` of photons from `source` at `planes`, on the threads of the current rayon pool.
 ///

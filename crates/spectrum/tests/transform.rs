@@ -91,7 +91,9 @@ fn an_accumulator_is_used_again() {
     let grid = grid(&window, 2, [4, 4], 1.0);
     let plan = SliceTransform::new(&grid);
     let mut random = Random(3);
-    let crossings: Vec<_> = (0..10_000).map(|_| random.crossing(&window, 1.0)).collect();
+    let crossings: Vec<_> = (0..40_000) // several blocks
+        .map(|_| random.crossing(&window, 1.0))
+        .collect();
     let mut sum = plan.accumulator();
     let mut twice = Vec::new();
     for _ in 0..2 {
@@ -101,6 +103,12 @@ fn an_accumulator_is_used_again() {
         twice.push(sum.finish(0.25));
     }
     assert_eq!(twice[0], twice[1]);
+    let mut plain = direct::slices(&crossings, |_| 1.0, &grid);
+    plain.half.mapv_inplace(|s| s * 0.25);
+    let tolerance = 2e-7 * plain.at_zero(); // the bound stated at `SliceTransform`; weights are ≥ 0
+    for (a, b) in twice[0].half.iter().zip(&plain.half) {
+        assert!((a - b).norm() < tolerance);
+    }
     assert!((sum.finish(1.0).at_zero()).abs() < f64::MIN_POSITIVE);
 }
 

@@ -1,0 +1,52 @@
+use crate::args::CheckArgs;
+use crate::failure::Failure;
+use crate::{load, pictures};
+use etendue_compare::{Class, chain, steps};
+use etendue_scene::Scene;
+
+/// `etendue check`: returns the exit code.
+#[expect(
+    clippy::print_stdout,
+    reason = "the description is what the user asked for"
+)]
+pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
+    let scene = load::scene(&args.scene, &[])?;
+    println!("{}", description(&scene));
+    if let Some(path) = &args.draw {
+        pictures::draw_scene(&scene, path)?;
+        println!("\ndrawn in {}", path.display());
+    }
+    Ok(0)
+}
+
+fn description(scene: &Scene) -> String {
+    let run = &scene.run;
+    let mut lines = vec![
+        format!("{}: sound", scene.name),
+        format!(
+            "central ray: {} m, photons: {} in {} batches, {:?} emission, α = {}",
+            scene.path.length, run.photons, run.batches, run.emission, run.alpha
+        ),
+    ];
+    for plane in &scene.planes {
+        let chain = chain(scene, plane);
+        let [k, rho, nu] = plane.grid.full_shape();
+        lines.push(format!(
+            "\n{}: {} m along the central ray, prediction: {:?}",
+            plane.name,
+            plane.distance,
+            Class::of(&chain)
+        ));
+        lines.extend(
+            steps(&chain, &plane.window)
+                .iter()
+                .map(|step| format!("  {step}")),
+        );
+        lines.push(format!(
+            "  looked at in {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per unit slope",
+            plane.grid.rho.max(),
+            plane.grid.nu.max()
+        ));
+    }
+    lines.join("\n")
+}

@@ -1,0 +1,35 @@
+use std::fmt::Display;
+use std::path::Path;
+
+/// Why a command stopped: the message for the user and the exit code.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    pub(crate) message: String,
+    pub(crate) code: u8,
+}
+
+/// Exit code of bad input.
+const BAD_INPUT: u8 = 2;
+/// Exit code of a run that cannot be made here: directory, disk, memory, interruption.
+const CANNOT_RUN: u8 = 3;
+
+impl Failure {
+    pub(crate) fn bad_input(message: impl Display) -> Self {
+        Self {
+            message: message.to_string(),
+            code: BAD_INPUT,
+        }
+    }
+
+    pub(crate) fn cannot_run(message: impl Display) -> Self {
+        Self {
+            message: message.to_string(),
+            code: CANNOT_RUN,
+        }
+    }
+
+    /// The result file or folder `path` could not be written.
+    pub(crate) fn write(path: &Path, reason: impl Display) -> Self {
+        Self::cannot_run(format!("cannot write {}: {reason}", path.display()))
+    }
+}

@@ -1,0 +1,126 @@
+//! The array files of one plane: `slices.npz`, `radial.npz`, `radial.exr`.
+
+use crate::failure::Failure;
+use crate::results::{Npz, Results};
+use crate::summary::Summary;
+use etendue_compare::{PlaneComparison, Prediction};
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
+    IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
+};
+use ndarray::{Array1, Array2};
+use std::io::Cursor;
+
+pub(crate) fn write(
+    results: &mut Results,
+    summary: &Summary,
+    prediction: &Prediction,
+    plane: &PlaneComparison,
+) -> Result<(), Failure> {
+    let name = &plane.report.name;
+    results.write(&format!("{name}/slices.npz"), &slices(prediction, plane)?)?;
+    results.write(&format!("{name}/radial.npz"), &radial(plane)?)?;
+    results.write(&format!("{name}/radial.exr"), &radial_exr(summary, plane)?)
+}
+
+fn slices(prediction: &Prediction, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
+    let grid = plane.measured.grid;
+    let azimuth: Array1<f64> = (0..grid.azimuths).map(|k| grid.azimuth(k)).collect();
+    Npz::new()
+        .add("azimuth", &azimuth)?
+        .add("measured", &plane.measured.full())?
+        .add("predicted", &prediction.slices.full())?
+        .add("sigma", &grid.unfold_even(plane.sigma.view()))?
+        .add("rho", &Array1::from(grid.rho.values()))?
+        .add("nu", &Array1::from(grid.nu.values()))?
+        .bytes()
+}
+
+fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
+    let grid = plane.measured.grid;
+    Npz::new()
+        .add("power", &plane.radial.power)?
+        .add("predicted_power", &plane.predicted_radial)?
+        .add("sigma", &plane.radial.sigma)?
+        .add("shot_noise", &plane.radial.shot_noise)?
+        .add("rho", &Array1::from(grid.rho.values()))?
+        .add("nu", &Array1::from(grid.nu.values()))?
+        .bytes()
+}
+
+/// Measured minus predicted radial power over its standard error.
+pub(crate) fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
+    z(
+        &plane.radial.power,
+        &plane.predicted_radial,
+        &plane.radial.sigma,
+    )
+}
+
+/// (measured − predicted) / sigma; NaN where no photon told an error.
+pub(crate) fn z(
+    measured: &Array2<f64>,
+    predicted: &Array2<f64>,
+    sigma: &Array2<f64>,
+) -> Array2<f64> {
+    let mut z = measured - predicted;
+    z.zip_mut_with(sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });
+    z
+}
+
+/// Four parts of one channel Y each; ρ to the right, ν upwards.
+fn radial_exr(summary: &Summary, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
+    let power = &plane.radial.power;
+    let difference = power - &plane.predicted_radial;
+    let parts = [
+        ("measured", power),
+        ("predicted", &plane.predicted_radial),
+        ("difference", &difference),
+        ("z", &radial_z(plane)),
+    ];
+    let (width, height) = power.dim();
+    let layers = parts.map(|(name, values)| {
+        let mut attributes = LayerAttributes::named(name);
+        attributes.other.extend([provenance(summary, plane)]);
+        let pixels = (0..height)
+            .rev()
+            .flat_map(|j| (0..width).map(move |i| (i, j)));
+        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        let samples = pixels.map(|at| values[at] as f32).collect();
+        let channel = AnyChannel::new("Y", FlatSamples::F32(samples));
+        let channels = AnyChannels::sort(std::iter::once(channel).collect());
+        Layer::new(
+            (width, height),
+            attributes,
+            Encoding::FAST_LOSSLESS,
+            channels,
+        )
+    });
+    let image = Image::from_layers(
+        ImageAttributes::new(IntegerBounds::from_dimensions((width, height))),
+        Vec::from(layers),
+    );
+    let mut bytes = Cursor::new(Vec::new());
+    image
+        .write()
+        .to_buffered(&mut bytes)
+        .map_err(Failure::cannot_run)?;
+    Ok(bytes.into_inner())
+}
+
+/// What the arrays were made from: one attribute, since the order of several would be left to chance.
+fn provenance(summary: &Summary, plane: &PlaneComparison) -> (Text, AttributeValue) {
+    let grid = plane.measured.grid;
+    let text = serde_json::json!({
+        "scene": summary.scene,
+        "scene_hash": summary.scene_hash,
+        "plane": plane.report.name,
+        "version": summary.version,
+        "seed": summary.seed,
+        "photons": summary.photons,
+        "rho_max": grid.rho.max(),
+        "nu_max": grid.nu.max(),
+    });
+    let text = Text::new_or_panic(text.to_string());
+    (Text::new_or_panic("provenance"), AttributeValue::Text(text))
+}

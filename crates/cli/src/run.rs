@@ -1,0 +1,120 @@
+use crate::args::{Expect, RunArgs, Save};
+use crate::failure::Failure;
+use crate::results::Results;
+use crate::summary::{Stopwatch, Summary};
+use crate::{files, load, photons, pictures, progress, table};
+use etendue_compare::{PlaneComparison, Prediction, Verdict, compare, sidak};
+use etendue_scene::Scene;
+use etendue_spectrum::{Measurement, measure};
+use etendue_trace::Tracer;
+use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicBool, Ordering};
+
+/// Set when the user asks to stop.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+
+/// `etendue run`: returns the exit code.
+pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
+    let scene = load::scene(&args.scene, &options(args))?;
+    let folder = args
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("out").join(&scene.name));
+    let results = Results::create(&folder)?;
+    ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed))
+        .map_err(Failure::cannot_run)?;
+    let pool = rayon::ThreadPoolBuilder::new()
+        .num_threads(args.threads.unwrap_or(0).into())
+        .build()
+        .map_err(Failure::cannot_run)?;
+    pool.install(|| measured_run(args, &scene, results))
+}
+
+/// The command line's own options as overrides of the scene.
+fn options(args: &RunArgs) -> Vec<(&'static str, String)> {
+    let photons = args.photons.map(|n| ("run.photons", n.to_string()));
+    let seed = args.seed.map(|n| ("run.seed", n.to_string()));
+    photons.into_iter().chain(seed).collect()
+}
+
+fn measured_run(args: &RunArgs, scene: &Scene, results: Results) -> Result<u8, Failure> {
+    let mut watch = Stopwatch::start();
+    let measurement = trace(scene, args.quiet)?;
+    watch.lap("trace");
+
+    let stage = progress::stage("predicting and comparing", args.quiet);
+    let predictions: Vec<Prediction> = scene
+        .planes
+        .iter()
+        .map(|plane| Prediction::new(scene, plane))
+        .collect();
+    watch.lap("predict");
+    let planes = compared(scene, &measurement, &predictions)?;
+    watch.lap("compare");
+    stage.set_message("writing results");
+
+    let summary = Summary::new(scene, &measurement, &planes);
+    let folder = written(args, scene, results, &summary, &predictions, &planes, watch)?;
+    stage.finish_and_clear();
+    if !args.quiet {
+        table::print(&summary, &folder);
+    }
+    let agrees = summary.verdict == Verdict::Pass;
+    let wanted = agrees != (args.expect == Some(Expect::Disagreement));
+    Ok(u8::from(!wanted))
+}
+
+fn trace(scene: &Scene, quiet: bool) -> Result<Measurement, Failure> {
+    let bar = progress::photons(scene.run.photons, quiet);
+    let measurement = measure(
+        &Tracer::new(scene),
+        &scene.planes,
+        0..scene.run.batches,
+        &|photons| bar.inc(photons),
+        &|| INTERRUPTED.load(Ordering::Relaxed),
+    );
+    bar.finish_and_clear();
+    if INTERRUPTED.load(Ordering::Relaxed) {
+        return Err(Failure::cannot_run("interrupted; nothing was written"));
+    }
+    Ok(measurement)
+}
+
+fn compared(
+    scene: &Scene,
+    measurement: &Measurement,
+    predictions: &[Prediction],
+) -> Result<Vec<PlaneComparison>, Failure> {
+    let level = sidak(scene.run.alpha, scene.planes.len());
+    predictions
+        .iter()
+        .enumerate()
+        .map(|(i, prediction)| {
+            compare(measurement, i, prediction, level, scene.run.seed).map_err(Failure::cannot_run)
+        })
+        .collect()
+}
+
+/// Writes everything; the summary last.
+fn written(
+    args: &RunArgs,
+    scene: &Scene,
+    mut results: Results,
+    summary: &Summary,
+    predictions: &[Prediction],
+    planes: &[PlaneComparison],
+    mut watch: Stopwatch,
+) -> Result<PathBuf, Failure> {
+    results.begin()?;
+    for (prediction, plane) in predictions.iter().zip(planes) {
+        files::write(&mut results, summary, prediction, plane)?;
+        pictures::plane(&mut results, prediction, plane)?;
+    }
+    pictures::path(&mut results, scene, predictions, planes)?;
+    if args.save.contains(&Save::Photons) {
+        photons::save(&mut results, scene, planes)?;
+    }
+    watch.lap("write");
+    results.write_unlisted("timing.json", &watch.json(scene.run.photons))?;
+    results.finish(|files| summary.json(files))
+}

@@ -1,0 +1,124 @@
+use crate::machine;
+use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
+use etendue_field::Ledger;
+use etendue_scene::{Emission, Scene};
+use etendue_spectrum::Measurement;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// `summary.json`, all but the hashes of the files.
+#[derive(Debug, Serialize)]
+pub(crate) struct Summary {
+    pub(crate) scene: String,
+    /// BLAKE3 of the scene file as JSON, defaults and overrides included.
+    pub(crate) scene_hash: String,
+    pub(crate) version: &'static str,
+    pub(crate) seed: u64,
+    pub(crate) method: &'static str,
+    pub(crate) emission: Emission,
+    /// Photons emitted.
+    pub(crate) photons: u64,
+    pub(crate) batches: u32,
+    /// Flux, W.
+    pub(crate) ledger: Ledger,
+    /// (emitted − absorbed − escaped − stopped) / emitted.
+    pub(crate) ledger_imbalance: f64,
+    pub(crate) verdict: Verdict,
+    pub(crate) alpha: f64,
+    pub(crate) planes: Vec<PlaneReport>,
+}
+
+impl Summary {
+    pub(crate) fn new(
+        scene: &Scene,
+        measurement: &Measurement,
+        planes: &[PlaneComparison],
+    ) -> Self {
+        let reports: Vec<PlaneReport> = planes.iter().map(|p| p.report.clone()).collect();
+        let pass = reports.iter().all(|plane| plane.verdict == Verdict::Pass);
+        let sums = measurement.ledger();
+        let photons = measurement.emitted();
+        // Cannot fail: a scene file is plain data with finite numbers.
+        let text = serde_json::to_vec(&scene.file).unwrap_or_default();
+        Self {
+            scene: scene.name.clone(),
+            scene_hash: blake3::hash(&text).to_hex().to_string(),
+            version: env!("CARGO_PKG_VERSION"),
+            seed: scene.run.seed,
+            method: "photons",
+            emission: scene.run.emission,
+            photons,
+            batches: scene.run.batches,
+            ledger: sums.scaled(1.0 / photons as f64),
+            ledger_imbalance: sums.imbalance(),
+            verdict: if pass { Verdict::Pass } else { Verdict::Fail },
+            alpha: scene.run.alpha,
+            planes: reports,
+        }
+    }
+
+    /// The file's bytes; `files` maps each file to its BLAKE3 hash.
+    pub(crate) fn json(&self, files: &BTreeMap<String, String>) -> Vec<u8> {
+        #[derive(Serialize)]
+        struct WithFiles<'a> {
+            #[serde(flatten)]
+            summary: &'a Summary,
+            files: &'a BTreeMap<String, String>,
+        }
+        json(&WithFiles {
+            summary: self,
+            files,
+        })
+    }
+}
+
+/// Readable JSON with a final newline. Numbers that are not finite become null.
+pub(crate) fn json(value: &impl Serialize) -> Vec<u8> {
+    // Cannot fail: all keys are text.
+    let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
+    bytes.push(b'\n');
+    bytes
+}
+
+/// Seconds of each stage.
+#[derive(Debug)]
+pub(crate) struct Stopwatch {
+    last: Instant,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl Stopwatch {
+    pub(crate) fn start() -> Self {
+        Self {
+            last: Instant::now(),
+            seconds: Vec::new(),
+        }
+    }
+
+    /// Ends a stage.
+    pub(crate) fn lap(&mut self, stage: &'static str) {
+        self.seconds
+            .push((stage, self.last.elapsed().as_secs_f64()));
+        self.last = Instant::now();
+    }
+
+    /// `timing.json`.
+    pub(crate) fn json(&self, photons: u64) -> Vec<u8> {
+        #[derive(Serialize)]
+        struct Timing {
+            seconds: BTreeMap<&'static str, f64>,
+            threads: usize,
+            /// Emitted photons over the seconds of tracing and transforming.
+            photons_per_second: Option<f64>,
+            peak_memory_bytes: Option<u64>,
+        }
+        let trace = self.seconds.iter().find(|(stage, _)| *stage == "trace");
+        json(&Timing {
+            seconds: self.seconds.iter().copied().collect(),
+            threads: rayon::current_num_threads(),
+            photons_per_second: trace.map(|(_, seconds)| photons as f64 / seconds),
+            peak_memory_bytes: machine::peak_memory(),
+        })
+    }
+}

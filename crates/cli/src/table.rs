@@ -1,0 +1,186 @@
+//! What the run came to, at a glance.
+
+use crate::summary::Summary;
+use etendue_compare::{PlaneReport, Verdict};
+use std::path::Path;
+
+#[expect(clippy::print_stdout, reason = "the table is what the user asked for")]
+pub(crate) fn print(summary: &Summary, folder: &Path) {
+    println!("{}", text(summary));
+    println!("results in {}", folder.display());
+}
+
+fn text(summary: &Summary) -> String {
+    let mut lines = vec![
+        format!(
+            "{}: {} photons, seed {}, ledger closes to {:.0e}",
+            summary.scene,
+            grouped(summary.photons),
+            summary.seed,
+            summary.ledger_imbalance.abs(),
+        ),
+        String::new(),
+    ];
+    lines.extend(aligned(planes(summary)));
+    lines.push(String::new());
+    lines.extend(aligned(parameters(summary)));
+    lines.push(String::new());
+    for plane in &summary.planes {
+        lines.extend(
+            plane
+                .warnings
+                .iter()
+                .map(|w| format!("warning: {}: {w}", plane.name)),
+        );
+    }
+    lines.push(format!("verdict: {}", verdict_text(summary)));
+    lines.join("\n")
+}
+
+/// How far measured and predicted are apart, plane by plane.
+fn planes(summary: &Summary) -> Vec<Vec<String>> {
+    let header = [
+        "plane",
+        "in window",
+        "χ²/dof",
+        "p",
+        "rel. error",
+        "of it noise",
+        "shear slope [m]",
+        "predicted",
+        "verdict",
+    ];
+    let row = |plane: &PlaneReport| {
+        vec![
+            plane.name.clone(),
+            grouped(plane.in_window),
+            number(plane.chi2_per_dof, 3),
+            number(plane.p_value, 4),
+            percent(plane.relative_error),
+            percent(plane.noise_limit),
+            match (plane.slope.measured, plane.slope.error) {
+                (Some(value), Some(error)) => uncertain(value, error),
+                _ => number(None, 0),
+            },
+            number(plane.slope.predicted, 4),
+            word(plane.verdict).to_owned(),
+        ]
+    };
+    std::iter::once(header.map(str::to_owned).to_vec())
+        .chain(summary.planes.iter().map(row))
+        .collect()
+}
+
+/// The parameters of the chain as the photons measure them.
+fn parameters(summary: &Summary) -> Vec<Vec<String>> {
+    let header = [
+        "plane",
+        "parameter",
+        "scene [m]",
+        "measured [m]",
+        "smallest detectable change",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for plane in &summary.planes {
+        for parameter in &plane.parameters {
+            rows.push(vec![
+                plane.name.clone(),
+                parameter.name.clone(),
+                parameter.scene.to_string(),
+                uncertain(parameter.measured, parameter.error),
+                format!(
+                    "{:.2} %",
+                    100.0 * parameter.detectable / parameter.scene.abs()
+                ),
+            ]);
+        }
+    }
+    rows
+}
+
+/// Columns as wide as their widest cell, two spaces apart; text to the left, numbers to the right.
+fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    let text = |column: usize| {
+        let is_text = |cell: &String| cell.starts_with(|c: char| c.is_ascii_alphabetic());
+        rows.get(1).is_some_and(|row| is_text(&row[column]))
+    };
+    let is_text: Vec<bool> = (0..widths.len()).map(text).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).zip(&is_text);
+        let padded: Vec<String> = cells
+            .map(|((cell, &width), text)| {
+                if *text {
+                    format!("{cell:<width$}")
+                } else {
+                    format!("{cell:>width$}")
+                }
+            })
+            .collect();
+        padded.join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
+}
+
+fn verdict_text(summary: &Summary) -> String {
+    let failed: Vec<&str> = summary
+        .planes
+        .iter()
+        .filter(|p| p.verdict == Verdict::Fail)
+        .map(|p| p.name.as_str())
+        .collect();
+    let alpha = 100.0 * summary.alpha;
+    if failed.is_empty() {
+        format!("pass: no plane disagrees with its prediction (α = {alpha} % over all planes)")
+    } else {
+        format!(
+            "fail: measured and predicted disagree at {}",
+            failed.join(", ")
+        )
+    }
+}
+
+pub(crate) fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "pass",
+        Verdict::Fail => "fail",
+    }
+}
+
+fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".to_owned(), |v| format!("{v:.digits$}"))
+}
+
+fn percent(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |v| format!("{:.3} %", 100.0 * v))
+}
+
+/// Value ± error, to two digits of the error.
+fn uncertain(value: f64, error: f64) -> String {
+    if !(error > 0.0 && error.is_finite()) {
+        return format!("{value}");
+    }
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 0 and 17"
+    )]
+    let digits = (1.0 - error.log10().floor()).clamp(0.0, 17.0) as usize;
+    format!("{value:.digits$} ± {error:.digits$}")
+}
+
+/// 10000000 as 10 000 000.
+fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let groups: Vec<&str> = digits
+        .as_bytes()
+        .rchunks(3)
+        .rev()
+        .map(|group| std::str::from_utf8(group).unwrap_or_default())
+        .collect();
+    groups.join(" ")
+}

@@ -1,0 +1,129 @@
+//! Over many seeds p must be uniform, χ²/dof must be 1 and pulls must have unit variance.
+
+use crate::report::Section;
+use crate::scenes::{fig9b, predicted, traced};
+use crate::statistics::{mean, uniformity};
+use etendue_compare::{PlaneReport, Prediction, compare, sidak};
+use rayon::prelude::*;
+
+/// What the seeds gave, plane by plane.
+struct Plane {
+    name: String,
+    p_values: Vec<f64>,
+    chi2: Vec<f64>,
+    /// (measured − scene) / error of every parameter.
+    pulls: Vec<f64>,
+}
+
+/// Compares `fig9b` at `photons` over `seeds` seeds, from 1 on, and judges the statistics.
+///
+/// Then judges them again as if σ had been 10 % too small and too large: both must be found out.
+pub(crate) fn calibration(seeds: u64, photons: u64) -> Vec<Section> {
+    let planes = sample(seeds, photons);
+    let judged = |scale: f64| judge(&planes, seeds, photons, scale);
+    let mut sections = vec![judged(1.0)];
+    for scale in [0.9, 1.1] {
+        let mut section = judged(scale);
+        section.title = format!("The same with σ scaled by {scale}");
+        section.text = "Required: the calibration above is found to fail.".to_owned();
+        section.passed = !section.passed;
+        sections.push(section);
+    }
+    sections
+}
+
+fn sample(seeds: u64, photons: u64) -> Vec<Plane> {
+    let predictions = predicted(&fig9b(photons, 1));
+    let reports: Vec<Vec<PlaneReport>> = (1..=seeds)
+        .into_par_iter()
+        .map(|seed| reports(photons, seed, &predictions))
+        .collect();
+    (0..predictions.len())
+        .map(|i| {
+            let of_plane = || reports.iter().map(move |r| &r[i]);
+            Plane {
+                name: reports[0][i].name.clone(),
+                p_values: of_plane().filter_map(|r| r.p_value).collect(),
+                chi2: of_plane().filter_map(|r| r.chi2_per_dof).collect(),
+                pulls: of_plane()
+                    .flat_map(|r| r.parameters.iter())
+                    .map(|p| (p.measured - p.scene) / p.error)
+                    .collect(),
+            }
+        })
+        .collect()
+}
+
+fn reports(photons: u64, seed: u64, predictions: &[Prediction]) -> Vec<PlaneReport> {
+    let scene = fig9b(photons, seed);
+    let measurement = traced(&scene);
+    let level = sidak(scene.run.alpha, scene.planes.len());
+    let report = |(i, prediction)| {
+        compare(&measurement, i, prediction, level, seed)
+            .expect("a resolved scene has enough batches")
+            .report
+    };
+    predictions.iter().enumerate().map(report).collect()
+}
+
+fn judge(planes: &[Plane], seeds: u64, photons: u64, scale: f64) -> Section {
+    let mut passed = true;
+    let mut rows = Vec::new();
+    let all: Vec<f64> = planes
+        .iter()
+        .flat_map(|p| p.p_values.iter().copied())
+        .collect();
+    // Two binomial standard deviations around 10 %: 8.1 to 11.9 % for 1,000 seeds.
+    let allowed = 2.0 * (0.1 * 0.9 / seeds as f64).sqrt();
+    let below = |p: &[f64]| p.iter().filter(|p| **p < 0.1).count() as f64 / p.len() as f64;
+    for plane in planes {
+        let uniform = uniformity(&plane.p_values);
+        let chi2: Vec<f64> = plane.chi2.iter().map(|t| t / (scale * scale)).collect();
+        let [chi2, error] = mean(&chi2);
+        let squares: Vec<f64> = plane.pulls.iter().map(|z| (z / scale).powi(2)).collect();
+        let [pull, pull_error] = mean(&squares);
+        // A pull from R = 64 batches is Student's: its square has the mean 63/61.
+        let expected_pull = 63.0 / 61.0;
+        passed &= uniform >= 1.0 - 0.99_f64.powf(1.0 / planes.len() as f64); // 1 % over the planes
+        // Four standard errors, and 0.3 % for the few frequencies whose residual is real, not complex.
+        passed &= (chi2 - 1.0).abs() < 4.0 * error + 0.003;
+        passed &= (pull - expected_pull).abs() < 4.0 * pull_error; // four standard errors
+        rows.push(vec![
+            plane.name.clone(),
+            format!("{uniform:.3}"),
+            format!("{:.1} %", 100.0 * below(&plane.p_values)),
+            format!("{chi2:.4} ± {error:.4}"),
+            format!("{pull:.3} ± {pull_error:.3}"),
+        ]);
+    }
+    let share = below(&all);
+    passed &= (share - 0.1).abs() < allowed;
+    rows.push(vec![
+        "all".into(),
+        "".into(),
+        format!("{:.1} %", 100.0 * share),
+        "".into(),
+        "".into(),
+    ]);
+    Section {
+        title: format!(
+            "Calibration over {seeds} seeds at {:.0e} photons",
+            photons as f64
+        ),
+        text: format!(
+            "Required: p uniform by Kolmogorov–Smirnov at 1 % over the planes; the share of p below 10 % within \
+             {:.1} and {:.1} %; mean χ²/dof = 1 and mean squared pull = 63/61 within four standard errors.",
+            100.0 * (0.1 - allowed),
+            100.0 * (0.1 + allowed)
+        ),
+        header: vec![
+            "plane",
+            "KS p of uniformity",
+            "p < 10 %",
+            "mean χ²/dof",
+            "mean squared pull",
+        ],
+        rows,
+        passed,
+    }
+}
