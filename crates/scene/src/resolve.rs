@@ -92,8 +92,8 @@ impl Resolver<'_> {
     fn frame(&mut self, file: &SceneFile) -> Option<Frame> {
         let LightFile::Rectangle { center, .. } = &file.light;
         let path = &file.path;
-        self.faults.finite("path.direction", &path.direction);
-        self.faults.finite("path.x_axis", &path.x_axis);
+        self.faults.coordinates("path.direction", &path.direction);
+        self.faults.coordinates("path.x_axis", &path.x_axis);
         let (d, x) = (DVec3::from(path.direction), DVec3::from(path.x_axis));
         let frame = Frame::new(DVec3::from(*center), d, x);
         if frame.is_none() && d.is_finite() && x.is_finite() {
@@ -113,7 +113,7 @@ impl Resolver<'_> {
             size,
             radiance,
         } = light;
-        self.faults.finite("light.center", center);
+        self.faults.coordinates("light.center", center);
         self.size("light", size);
         self.faults.positive("light.radiance", *radiance);
         Light {
@@ -133,7 +133,8 @@ impl Resolver<'_> {
 
     fn surface(&mut self, i: usize, surface: &SurfaceFile, frame: &Frame) -> Surface {
         let of = format!("surfaces[{i}]");
-        self.faults.finite(&format!("{of}.center"), &surface.center);
+        self.faults
+            .coordinates(&format!("{of}.center"), &surface.center);
         self.size(&of, &surface.size);
         self.faults
             .within(format!("{of}.albedo"), surface.albedo, 0.0..=1.0);
@@ -212,7 +213,7 @@ impl Resolver<'_> {
             seed,
         } = blockers;
         let of = format!("blockers[{i}]");
-        self.faults.finite(&format!("{of}.center"), center);
+        self.faults.coordinates(&format!("{of}.center"), center);
         let total = u64::from(count[0]) * u64::from(count[1]);
         if !(1..=MOST_BLOCKERS).contains(&total) {
             self.faults.add(
@@ -293,8 +294,8 @@ impl Resolver<'_> {
     }
 
     fn run(&mut self, run: &RunFile) {
-        if !(32..=4096).contains(&run.batches) {
-            let allowed = "32 to 4096: errors come from the spread of batches";
+        if !(32..=1024).contains(&run.batches) {
+            let allowed = "32 to 1024: errors come from the spread of batches";
             self.faults.add("run.batches", show(run.batches), allowed);
         }
         // A batch of one photon has a spread, one of none has not.

@@ -21,7 +21,7 @@ impl Faults {
         });
     }
 
-    /// Requires a finite number in a closed range.
+    /// Requires a number in a closed range.
     pub(super) fn within(
         &mut self,
         field: impl Into<String>,
@@ -29,27 +29,27 @@ impl Faults {
         range: RangeInclusive<f64>,
     ) {
         if !range.contains(&value) {
-            self.add(
-                field,
-                show(value),
-                format!("{} to {}", range.start(), range.end()),
-            );
+            let (low, high) = range.into_inner();
+            self.add(field, show(value), format!("{low:?} to {high:?}"));
         }
     }
 
-    /// Requires a length or width: finite and above zero.
+    /// Requires a size, a width or a frequency.
     pub(super) fn positive(&mut self, field: impl Into<String>, value: f64) {
-        if !(value > 0.0 && value.is_finite()) {
-            self.add(field, show(value), "a finite number above 0");
-        }
+        self.within(field, value, 1.0 / LARGEST..=LARGEST);
     }
 
-    pub(super) fn finite(&mut self, field: &str, values: &[f64]) {
-        for (i, value) in values.iter().enumerate().filter(|(_, v)| !v.is_finite()) {
-            self.add(format!("{field}[{i}]"), show(*value), "a finite number");
+    /// Requires coordinates.
+    pub(super) fn coordinates(&mut self, field: &str, values: &[f64]) {
+        for (i, value) in values.iter().enumerate() {
+            self.within(format!("{field}[{i}]"), *value, -LARGEST..=LARGEST);
         }
     }
 }
+
+/// The largest number a scene may hold, and the inverse of the smallest size: their products to the sixth
+/// power, which a power spectrum has, stay far inside what f64 holds.
+const LARGEST: f64 = 1e9;
 
 pub(super) fn show(value: impl Debug) -> String {
     format!("{value:?}")

@@ -86,7 +86,7 @@ impl Resolver<'_> {
                 ))
             }
             Place::Distance(distance) => {
-                if !(*distance >= 0.0 && *distance <= length) && !length.is_nan() {
+                if !length.is_nan() && !(0.0..=length).contains(distance) {
                     let allowed = format!("0 to {length} m: the path from the light to its end");
                     self.faults.add(of, show(place), allowed);
                 }

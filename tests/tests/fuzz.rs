@@ -1,0 +1,152 @@
+//! Mutated scene files: whatever is in the file, the answer is a scene or a fault, never a panic.
+
+use etendue_compare::{Prediction, compare, sidak};
+use etendue_field::random::{self, Stream};
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::measure;
+use etendue_trace::Tracer;
+
+const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
+
+/// Numbers and words that break things.
+const TOKENS: [&str; 24] = [
+    "0",
+    "-0.0",
+    "-1",
+    "1e-9",
+    "1e9",
+    "1e308",
+    "-1e308",
+    "5e-324",
+    "NaN",
+    "inf",
+    "-inf",
+    "4294967296",
+    "18446744073709551616",
+    "1000000",
+    "0.5",
+    "2",
+    "33",
+    "\"\"",
+    "\"floor\"",
+    "()",
+    "[]",
+    "Emission",
+    "Box(0.1)",
+    "After(\"blockers\")",
+];
+
+/// Random numbers for one mutation.
+struct Dice {
+    index: u64,
+    block: u32,
+}
+
+impl Dice {
+    fn below(&mut self, n: usize) -> usize {
+        self.block += 1;
+        let word = random::words(11, Stream::Photon, self.index, self.block)[0];
+        (word as usize) % n.max(1)
+    }
+}
+
+/// The scene file with one to three tokens replaced, removed or doubled, or cut short.
+fn mutated(index: u64) -> String {
+    let mut dice = Dice { index, block: 0 };
+    let body: String = FIG9B
+        .lines()
+        .map(|line| line.split("//").next().unwrap_or_default())
+        .collect();
+    let mut tokens = split(&body);
+    for _ in 0..=dice.below(3) {
+        let at = dice.below(tokens.len());
+        match dice.below(8) {
+            0 => drop(tokens.remove(at)),
+            1 => tokens.insert(at, tokens[at].clone()),
+            2 => tokens.truncate(at.max(1)),
+            // Most mutations replace a number, so that many get past the syntax.
+            _ => {
+                let numbers: Vec<usize> = (0..tokens.len())
+                    .filter(|i| tokens[*i].starts_with(|c: char| c.is_ascii_digit()))
+                    .collect();
+                let at = if numbers.is_empty() {
+                    at
+                } else {
+                    numbers[dice.below(numbers.len())]
+                };
+                tokens[at] = TOKENS[dice.below(TOKENS.len())].to_owned();
+            }
+        }
+    }
+    tokens.concat()
+}
+
+/// Words, numbers and single characters.
+fn split(text: &str) -> Vec<String> {
+    let mut tokens: Vec<String> = Vec::new();
+    let word = |c: char| c.is_alphanumeric() || c == '_' || c == '.';
+    for c in text.chars() {
+        match tokens.last_mut() {
+            Some(last) if word(c) && last.ends_with(word) => last.push(c),
+            _ => tokens.push(c.to_string()),
+        }
+    }
+    tokens
+}
+
+#[test]
+fn no_mutated_scene_file_panics() {
+    let (mut sound, mut run) = (0, 0);
+    for index in 0..20_000 {
+        let text = mutated(index);
+        let Ok(file) = SceneFile::parse(&text) else {
+            continue;
+        };
+        let Ok(mut scene) = resolve("fuzz", file, 1_000_000_000) else {
+            continue;
+        };
+        sound += 1;
+        if sound % 16 == 0 {
+            make_small(&mut scene);
+            whole_run(&scene);
+            run += 1;
+        }
+    }
+    // The mutations are worth something: neither all refused nor all harmless.
+    assert!(sound > 1_000 && run > 60, "{sound} sound scenes, {run} run");
+}
+
+/// Few photons, frequencies and blockers: it is the values that may break something, not their number.
+fn make_small(scene: &mut Scene) {
+    scene.run.photons = 200;
+    scene.run.batches = 32;
+    for plane in &mut scene.planes {
+        plane.grid.azimuths = plane.grid.azimuths.min(3);
+        plane.grid.rho.half = plane.grid.rho.half.min(3);
+        plane.grid.nu.half = plane.grid.nu.half.min(3);
+    }
+    for layer in &mut scene.blockers {
+        layer.rectangles.truncate(20);
+    }
+}
+
+fn whole_run(scene: &Scene) {
+    let tracer = Tracer::new(scene);
+    let batches = 0..scene.run.batches;
+    let measurement = measure(&tracer, &scene.planes, batches, &|_| (), &|| false);
+    let level = sidak(scene.run.alpha, scene.planes.len());
+    for (i, plane) in scene.planes.iter().enumerate() {
+        let prediction = Prediction::new(scene, plane);
+        assert!(
+            prediction.slices.half.iter().all(|s| s.is_finite()),
+            "{plane:?}"
+        );
+        // Batches without a photon leave too few for errors: an error, not a panic.
+        if let Ok(comparison) = compare(&measurement, i, &prediction, level, 1) {
+            assert!(
+                comparison.radial.power.iter().all(|p| p.is_finite()),
+                "{plane:?}"
+            );
+        }
+    }
+}
