@@ -1,24 +1,236 @@
-//! Temporary.
+//! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
+
 use crate::failure::Failure;
+use crate::files::{radial_z, z};
 use crate::results::Results;
+use crate::table::word;
 use etendue_compare::{PlaneComparison, Prediction};
+use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane};
+use etendue_figures::{
+    Axis, Column, Comparison, Figure, Guide, Picture, PlaneMark, Quantity, Scale, Section, Segment,
+    SegmentKind, Strip, comparison, section, strip,
+};
 use etendue_scene::Scene;
+use std::fs;
 use std::path::Path;
+
+/// Lowest level of a spectrum's colors, in decibels below its peak.
+const FLOOR: f64 = -50.0;
+
+/// `primal` and `spectrum` of a plane.
 pub(crate) fn plane(
-    _r: &mut Results,
-    _p: &Prediction,
-    _c: &PlaneComparison,
+    results: &mut Results,
+    prediction: &Prediction,
+    plane: &PlaneComparison,
 ) -> Result<(), Failure> {
-    Ok(())
+    let name = &plane.report.name;
+    let note = verdict_line(plane);
+    let measured = &plane.projection.mean;
+    let [x, u] = projection_axes(&measured.grid);
+    let difference = z(
+        &measured.values,
+        &prediction.projection.values,
+        &plane.projection.standard_error,
+    );
+    let primal = Comparison {
+        title: &format!("Light field at {}", spaced(name)),
+        note: &note,
+        x,
+        y: u,
+        quantity: light_field_quantity(),
+        scale: Scale::Linear,
+        measured: measured.values.view(),
+        predicted: prediction.projection.values.view(),
+        z: difference.view(),
+    };
+    write(
+        results,
+        &format!("{name}/primal"),
+        &comparison(&primal).map_err(Failure::cannot_run)?,
+    )?;
+
+    let [rho, nu] = frequency_axes(&plane.measured.grid);
+    let difference = radial_z(plane);
+    let spectrum = Comparison {
+        title: &format!("Radial spectrum at {}", spaced(name)),
+        note: &note,
+        x: rho,
+        y: nu,
+        quantity: spectrum_quantity(),
+        scale: Scale::Decibel { floor: FLOOR },
+        measured: plane.radial.power.view(),
+        predicted: plane.predicted_radial.view(),
+        z: difference.view(),
+    };
+    write(
+        results,
+        &format!("{name}/spectrum"),
+        &comparison(&spectrum).map_err(Failure::cannot_run)?,
+    )
 }
+
+/// The strip along the path.
 pub(crate) fn path(
-    _r: &mut Results,
-    _s: &Scene,
-    _p: &[Prediction],
-    _c: &[PlaneComparison],
+    results: &mut Results,
+    scene: &Scene,
+    planes: &[PlaneComparison],
 ) -> Result<(), Failure> {
-    Ok(())
+    let columns = scene.planes.iter().zip(planes).map(|(plane, compared)| {
+        let projection = &compared.projection.mean;
+        let [x, u] = projection_axes(&projection.grid);
+        let [rho, nu] = frequency_axes(&compared.measured.grid);
+        Column {
+            light_field: Picture {
+                x,
+                y: u,
+                values: projection.values.view(),
+            },
+            spectrum: Picture {
+                x: rho,
+                y: nu,
+                values: compared.radial.power.view(),
+            },
+            verdict: verdict_line(compared),
+            guides: guides(plane),
+        }
+    });
+    let figure = strip(&Strip {
+        title: &format!("{}: the light field along the path, and its spectrum", scene.name),
+        note: "Measured. Dashed: where theory puts the light that has travelled this far, *ν* = −*d* *ρ*.",
+        section: &cross_section(scene),
+        columns: columns.collect(),
+        light_field: light_field_quantity(),
+        spectrum: spectrum_quantity(),
+        floor: FLOOR,
+    })
+    .map_err(Failure::cannot_run)?;
+    write(results, "path", &figure)
 }
-pub(crate) fn draw_scene(_s: &Scene, _p: &Path) -> Result<(), Failure> {
-    Ok(())
+
+/// Light that has travelled d lies along ν = −d ρ.
+fn guides(plane: &VirtualPlane) -> Vec<Guide> {
+    vec![Guide {
+        through: [0.0, 0.0],
+        slope: -plane.distance,
+    }]
+}
+
+/// Draws the scene with its central ray and planes into a PNG or SVG file.
+pub(crate) fn draw_scene(scene: &Scene, path: &Path) -> Result<(), Failure> {
+    let figure = section(&cross_section(scene), &scene.name, "").map_err(Failure::cannot_run)?;
+    let bytes = match path.extension().and_then(|e| e.to_str()) {
+        Some("svg") => figure.svg.into_bytes(),
+        Some("png") => figure.png().map_err(Failure::cannot_run)?,
+        _ => {
+            let message = format!(
+                "--draw {}: the file must end in .png or .svg",
+                path.display()
+            );
+            return Err(Failure::bad_input(message));
+        }
+    };
+    fs::write(path, bytes).map_err(|e| Failure::write(path, e))
+}
+
+/// Writes a figure as PNG, SVG and the numbers behind it.
+fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), Failure> {
+    let png = figure.png().map_err(Failure::cannot_run)?;
+    results.write(&format!("{name}.png"), &png)?;
+    results.write(&format!("{name}.svg"), figure.svg.as_bytes())?;
+    results.write(&format!("{name}.csv"), figure.csv.as_bytes())
+}
+
+/// The scene in the plane of the central ray and X: what the plane y = 0 cuts.
+fn cross_section(scene: &Scene) -> Section {
+    let across =
+        |kind, distance: f64, rectangle: &etendue_field::Rectangle, label: Option<&str>| {
+            let [low, high] = rectangle.extent(0);
+            Segment {
+                kind,
+                start: [distance, low],
+                end: [distance, high],
+                label: label.map(spaced),
+            }
+        };
+    let light = &scene.light.rectangle;
+    let mut segments = vec![across(SegmentKind::Light, 0.0, light, Some("light"))];
+    for layer in &scene.blockers {
+        // Jitter moves a row of blockers off y = 0: the row nearest to it is shown.
+        let nearest = layer
+            .rectangles
+            .iter()
+            .map(|r| r.center[1].abs())
+            .fold(f64::INFINITY, f64::min);
+        let row = layer
+            .rectangles
+            .iter()
+            .filter(|r| r.center[1].abs() <= nearest + 0.5 * r.size[1]);
+        let mut label = Some(layer.name.as_str());
+        segments.extend(row.map(|r| across(SegmentKind::Blocker, layer.distance, r, label.take())));
+    }
+    for surface in &scene.surfaces {
+        let (kind, name) = (SegmentKind::Surface, surface.name.as_str());
+        segments.push(across(
+            kind,
+            surface.distance,
+            &surface.rectangle,
+            Some(name),
+        ));
+    }
+    Section {
+        length: scene.path.length,
+        segments,
+        planes: scene
+            .planes
+            .iter()
+            .map(|plane| PlaneMark {
+                name: spaced(&plane.name),
+                distance: plane.distance,
+                side: plane.side,
+            })
+            .collect(),
+        cones: Vec::new(),
+    }
+}
+
+fn projection_axes(grid: &ProjectionGrid) -> [Axis; 2] {
+    [
+        Axis::edges("*x*", "m", [-grid.half_x, grid.half_x]),
+        Axis::edges("*u*", "", [-grid.half_u, grid.half_u]),
+    ]
+}
+
+fn frequency_axes(grid: &SliceGrid) -> [Axis; 2] {
+    let axis = |name, unit, axis: &FrequencyAxis| {
+        Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
+    };
+    [
+        axis("*ρ*", "cycles/m", &grid.rho),
+        axis("*ν*", "cycles per unit slope", &grid.nu),
+    ]
+}
+
+fn light_field_quantity() -> Quantity {
+    Quantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m")
+}
+
+fn spectrum_quantity() -> Quantity {
+    Quantity::new("⟨|*S*_{φ}|^{2}⟩", "")
+}
+
+fn verdict_line(plane: &PlaneComparison) -> String {
+    let p = plane
+        .report
+        .p_value
+        .map_or("no photons".to_owned(), |p| format!("*p* = {p:.3}"));
+    let chi2 = plane
+        .report
+        .chi2_per_dof
+        .map_or(String::new(), |t| format!(", *χ*^{{2}}/dof = {t:.3}"));
+    format!("{p}{chi2}, {}", word(plane.report.verdict))
+}
+
+/// A name as read: underscores are spaces.
+fn spaced(name: &str) -> String {
+    name.replace('_', " ")
 }

@@ -110,7 +110,7 @@ fn written(
         files::write(&mut results, summary, prediction, plane)?;
         pictures::plane(&mut results, prediction, plane)?;
     }
-    pictures::path(&mut results, scene, predictions, planes)?;
+    pictures::path(&mut results, scene, planes)?;
     if args.save.contains(&Save::Photons) {
         photons::save(&mut results, scene, planes)?;
     }

@@ -1,1 +1,55 @@
-//! figures
+//! Pictures of light fields, spectra and the path between them.
+//!
+//! In: plain values (arrays, axes, positions in metres). Out: a [`Figure`], which is an SVG, a PNG of the same
+//! drawing and a CSV of the numbers behind it. The crate computes no physics and touches neither disk nor system
+//! fonts: the same values give the same bytes.
+//!
+//! * [`comparison()`]: one quantity, measured | predicted | difference in σ;
+//! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
+//! * [`section()`]: that cut alone.
+//!
+//! Arrays are [x, y] with both axes ascending; pictures put x to the right and y upwards.
+//!
+//! # Markup
+//!
+//! Where a field says *markup*, `*x*` is italic, `_{in}` a subscript and `^{2}` a superscript. Every other text is
+//! shown as it is.
+//!
+//! ```
+//! use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
+//! let power = ndarray::array![[0.0, 1.0], [0.5, 0.2]];
+//! let figure = comparison(&Comparison {
+//!     title: "Radial spectrum at the receiver",
+//!     note: "p = 0.43, pass",
+//!     x: Axis::centers("*ρ*", "cycles/m", [0.0, 16.0], 2),
+//!     y: Axis::centers("*ν*", "cycles/slope", [0.0, 32.0], 2),
+//!     quantity: Quantity::new("|*S*|^{2}", "W² m⁻⁴ sr⁻² m⁴"),
+//!     scale: Scale::Decibel { floor: -60.0 },
+//!     measured: power.view(),
+//!     predicted: power.view(),
+//!     z: (&power - &power).view(),
+//! })?;
+//! assert!(figure.png()?.starts_with(b"\x89PNG"));
+//! # Ok::<(), etendue_figures::Error>(())
+//! ```
+
+mod axis;
+mod bar;
+mod color;
+mod comparison;
+mod cut;
+mod figure;
+mod image;
+mod panel;
+mod section;
+mod strip;
+mod style;
+mod svg;
+mod text;
+
+pub use axis::{Axis, Quantity};
+pub use color::Scale;
+pub use comparison::{Comparison, comparison};
+pub use figure::{Error, Figure};
+pub use section::{PlaneMark, Section, Segment, SegmentKind, section};
+pub use strip::{Column, Guide, Picture, Strip, strip};

@@ -1,0 +1,347 @@
+//! The command as a user meets it: exit codes, messages, files, threads, and being killed.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output, Stdio};
+use std::time::{Duration, Instant};
+
+fn scene(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenes")
+        .join(name)
+}
+
+fn etendue() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_etendue"))
+}
+
+/// `etendue run fig9b` into `out`, with more arguments.
+fn run(out: &Path, arguments: &[&str]) -> Output {
+    etendue()
+        .arg("run")
+        .arg(scene("fig9b.ron"))
+        .args(["--photons", "20000", "--out"])
+        .arg(out)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// All files of a folder by relative name.
+fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path
+                    .strip_prefix(folder)
+                    .unwrap()
+                    .to_string_lossy()
+                    .into_owned();
+                found.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+/// Whether a folder is a result: its summary lists files that are there with those hashes.
+fn is_result(folder: &Path) -> bool {
+    let Ok(text) = fs::read(folder.join("summary.json")) else {
+        return false;
+    };
+    let summary: serde_json::Value = serde_json::from_slice(&text).unwrap();
+    let listed = summary["files"].as_object().unwrap();
+    listed.iter().all(|(name, hash)| {
+        let bytes = fs::read(folder.join(name)).unwrap_or_default();
+        *hash == blake3::hash(&bytes).to_hex().as_str()
+    })
+}
+
+#[test]
+fn a_run_passes_and_leaves_a_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &[]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let table = String::from_utf8(output.stdout).unwrap();
+    assert!(table.contains("verdict: pass"), "{table}");
+    assert!(is_result(folder.path()));
+    let files = files(folder.path());
+    for name in [
+        "path.png",
+        "path.svg",
+        "path.csv",
+        "timing.json",
+        "receiver/slices.npz",
+        "receiver/radial.npz",
+        "receiver/radial.exr",
+        "receiver/primal.png",
+        "receiver/spectrum.png",
+    ] {
+        assert!(
+            files.contains_key(name),
+            "{name} is missing from {:?}",
+            files.keys()
+        );
+    }
+    // Only the promise of same bytes is listed.
+    let listed = String::from_utf8(files["summary.json"].clone()).unwrap();
+    assert!(!listed.contains("timing.json"));
+}
+
+#[test]
+fn threads_do_not_change_a_byte() {
+    let bytes = |threads: &str| {
+        let folder = tempfile::tempdir().unwrap();
+        let output = run(
+            folder.path(),
+            &["--threads", threads, "--save", "photons", "--quiet"],
+        );
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let mut files = files(folder.path());
+        files.remove("timing.json");
+        files
+    };
+    let one = bytes("1");
+    for threads in ["2", "4"] {
+        let more = bytes(threads);
+        assert!(one.keys().eq(more.keys()));
+        for (name, content) in &one {
+            assert!(
+                more[name] == *content,
+                "{name} differs with {threads} threads"
+            );
+        }
+    }
+}
+
+#[test]
+fn expecting_disagreement_turns_the_exit_code() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["--expect", "disagreement", "--quiet"]);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    assert!(output.stdout.is_empty());
+}
+
+#[test]
+fn saved_photons_are_the_ones_measured() {
+    let folder = tempfile::tempdir().unwrap();
+    run(folder.path(), &["--save", "photons", "--quiet"]);
+    let bytes = fs::read(folder.path().join("light/photons.npy")).unwrap();
+    let header = String::from_utf8_lossy(&bytes[10..128]).into_owned();
+    assert!(header.contains("'shape': (20000, 5)"), "{header}");
+    assert_eq!(bytes.len(), 128 + 20_000 * 5 * 8);
+    let index: serde_json::Value =
+        serde_json::from_slice(&fs::read(folder.path().join("light/photons.json")).unwrap())
+            .unwrap();
+    assert_eq!(index["batch_offsets"].as_array().unwrap().len(), 65);
+    // ∫ L W of the light: (0.1 + sin(0.2π)/2π)² metres² · (1/2)² of slope each way.
+    let row = |i: usize, column: usize| {
+        let at = 128 + (i * 5 + column) * 8;
+        f64::from_le_bytes(bytes[at..at + 8].try_into().unwrap())
+    };
+    let hann = |t: f64| (std::f64::consts::PI * t).cos().powi(2);
+    let integral: f64 = (0..20_000)
+        .map(|i| (0..4).map(|c| hann(row(i, c))).product::<f64>() * row(i, 4))
+        .sum::<f64>()
+        / 20_000.0;
+    let pi = std::f64::consts::PI;
+    let exact = ((0.1 + (0.2 * pi).sin() / (2.0 * pi)) * 0.5).powi(2);
+    assert!(
+        (integral / exact - 1.0).abs() < 0.03,
+        "{integral}, exact {exact}"
+    ); // 20,000 photons: 4 σ is 3 %
+}
+
+/// Bad input: one clear message, the right exit code, nothing written, no panic.
+#[test]
+fn bad_input_is_refused_with_a_message() {
+    let folder = tempfile::tempdir().unwrap();
+    let text = fs::read_to_string(scene("fig9b.ron")).unwrap();
+    let edits: [(&str, String, i32, &[&str]); 14] = [
+        (
+            "unknown field",
+            text.replace("pitch:", "pich:"),
+            2,
+            &["line", "column", "pich", "pitch"],
+        ),
+        (
+            "truncated",
+            text[..text.len() / 2].to_owned(),
+            2,
+            &["line", "column"],
+        ),
+        ("empty", String::new(), 2, &["line 1"]),
+        ("not a scene", "\u{0}\u{1}binary".to_owned(), 2, &["line 1"]),
+        (
+            "NaN",
+            text.replace("pitch: 0.1", "pitch: NaN"),
+            2,
+            &["blockers[0].pitch", "NaN", "allowed"],
+        ),
+        (
+            "infinity",
+            text.replace("size: (6, 6)", "size: (inf, 6)"),
+            2,
+            &["surfaces[0].size[0]", "inf"],
+        ),
+        (
+            "negative size",
+            text.replace("(0.2, 0.2)", "(0.2, -0.2)"),
+            2,
+            &["light.size[1]", "-0.2"],
+        ),
+        (
+            "plane before the light",
+            text.replace("at: Emission", "at: Distance(-1)"),
+            2,
+            &["planes[0].at", "0 to 2"],
+        ),
+        (
+            "plane off the path",
+            text.replace("at: Emission", "at: Distance(3)"),
+            2,
+            &["planes[0].at", "0 to 2"],
+        ),
+        (
+            "overlapping blockers",
+            text.replace("fill: 0.6", "fill: 0.9"),
+            2,
+            &["blockers[0].jitter", "0.3"],
+        ),
+        (
+            "no such surface",
+            text.replace("visits: [\"floor\"]", "visits: [\"roof\"]"),
+            2,
+            &["path.visits", "floor"],
+        ),
+        (
+            "wrong kind",
+            text.replace("pitch: 0.1", "pitch: \"wide\""),
+            2,
+            &["line", "column"],
+        ),
+        (
+            "too few photons",
+            text.replace("photons: 10_000_000", "photons: 5"),
+            2,
+            &["run.photons", "64"],
+        ),
+        (
+            "larger than memory",
+            text.replace("max: 16", "max: 1e7"),
+            3,
+            &["GB", "memory"],
+        ),
+    ];
+    for (name, content, code, parts) in edits {
+        assert_ne!(content, text, "{name} changes nothing");
+        let file = folder.path().join("bad.ron");
+        let out = folder.path().join("out");
+        fs::write(&file, content).unwrap();
+        for command in ["run", "check"] {
+            let mut call = etendue();
+            call.arg(command).arg(&file);
+            if command == "run" {
+                call.arg("--out").arg(&out);
+            }
+            let output = call.output().unwrap();
+            let message = String::from_utf8(output.stderr).unwrap();
+            assert_eq!(output.status.code(), Some(code), "{name}: {message}");
+            assert!(!message.contains("panicked"), "{name}: {message}");
+            for part in parts {
+                assert!(message.contains(part), "{name}: {part} not in: {message}");
+            }
+            assert!(!out.exists(), "{name}: something was written");
+        }
+    }
+}
+
+#[test]
+fn bad_arguments_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("file");
+    fs::write(&file, "not a folder").unwrap();
+    let below_a_file = file.join("out");
+    let below_a_file = below_a_file.to_str().unwrap();
+    for (arguments, code, part) in [
+        (vec!["--out", below_a_file], 3, "cannot write"),
+        (vec!["--photons", "many"], 2, "whole number"),
+        (vec!["--photons", "0"], 2, "run.photons"),
+        (vec!["--threads", "0"], 2, "1..=1024"),
+        (vec!["--set", "blockers.0.fil=1"], 2, "fill"),
+        (vec!["--set", "blockers"], 2, "PATH=VALUE"),
+        (vec!["--save", "everything"], 2, "photons"),
+        (vec!["--expect", "success"], 2, "disagreement"),
+    ] {
+        let output = etendue()
+            .arg("run")
+            .arg(scene("fig9b.ron"))
+            .args(&arguments)
+            .output()
+            .unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(code), "{arguments:?}: {message}");
+        assert!(
+            message.contains(part),
+            "{arguments:?}: {part} not in: {message}"
+        );
+    }
+    let missing = etendue()
+        .args(["run", "no/such/scene.ron"])
+        .output()
+        .unwrap();
+    assert_eq!(missing.status.code(), Some(2));
+}
+
+/// Killed at twenty moments spread over a run and beyond its end: what is left is a whole result or none.
+#[test]
+fn a_killed_run_leaves_no_half_result() {
+    let folder = tempfile::tempdir().unwrap();
+    let start = Instant::now();
+    run(&folder.path().join("whole"), &["--quiet"]);
+    let whole = start.elapsed();
+    let mut complete = 0;
+    for i in 0..20u32 {
+        // One folder for all: an earlier result must not vouch for the files of a later, killed run.
+        let out = folder.path().join("killed");
+        let mut child = etendue()
+            .arg("run")
+            .arg(scene("fig9b.ron"))
+            .args([
+                "--photons",
+                "20000",
+                "--quiet",
+                "--seed",
+                &i.to_string(),
+                "--out",
+            ])
+            .arg(&out)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        // Moments a golden section apart: spread without order.
+        let share = f64::from(i) * 0.618_034 % 1.0 * 1.2;
+        std::thread::sleep(Duration::from_secs_f64(whole.as_secs_f64() * share));
+        child.kill().unwrap();
+        child.wait().unwrap();
+        if out.join("summary.json").exists() {
+            assert!(
+                is_result(&out),
+                "kill {i} left a summary that does not match"
+            );
+            complete += 1;
+        }
+    }
+    assert!(
+        (1..20).contains(&complete),
+        "{complete} of 20 complete: the kills do not try it"
+    );
+}

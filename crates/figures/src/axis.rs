@@ -1,0 +1,242 @@
+use crate::text::width;
+
+/// A named quantity and its unit.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Quantity {
+    /// Name, markup: `|*S*|^{2}`.
+    pub name: String,
+    /// Unit, markup; empty for a pure number.
+    pub unit: String,
+}
+
+impl Quantity {
+    /// The quantity `name`, in `unit`.
+    #[must_use]
+    pub fn new(name: &str, unit: &str) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: unit.to_owned(),
+        }
+    }
+
+    /// "name (unit)", in units of 10 to the `exponent`; markup.
+    pub(crate) fn label(&self, exponent: i32) -> String {
+        let power = match exponent {
+            0 => String::new(),
+            n => format!("10^{{{}}}", minus(&n.to_string())),
+        };
+        let unit = [power, self.unit.clone()]
+            .into_iter()
+            .filter(|part| !part.is_empty())
+            .collect::<Vec<_>>()
+            .join(" ");
+        if unit.is_empty() {
+            self.name.clone()
+        } else {
+            format!("{} ({unit})", self.name)
+        }
+    }
+
+    /// "name [unit]" without markup, for the head of a table.
+    pub(crate) fn heading(&self) -> String {
+        let name = crate::text::plain(&self.name);
+        match crate::text::plain(&self.unit).as_str() {
+            "" => name,
+            unit => format!("{name} [{unit}]"),
+        }
+    }
+}
+
+/// One axis of a picture: what it shows and where its outer edges are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Axis {
+    /// What is along it.
+    pub quantity: Quantity,
+    /// Outer edge of the first cell, in the quantity's unit.
+    pub min: f64,
+    /// Outer edge of the last cell.
+    pub max: f64,
+}
+
+/// A tick: where, in the axis' unit, and its text.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Tick {
+    pub(crate) value: f64,
+    pub(crate) text: String,
+}
+
+impl Axis {
+    /// An axis whose cells fill [`min`, `max`].
+    #[must_use]
+    pub fn edges(name: &str, unit: &str, [min, max]: [f64; 2]) -> Self {
+        Self {
+            quantity: Quantity::new(name, unit),
+            min,
+            max,
+        }
+    }
+
+    /// An axis of `count` samples from `first` to `last`: each fills a cell centred on it.
+    #[must_use]
+    pub fn centers(name: &str, unit: &str, [first, last]: [f64; 2], count: usize) -> Self {
+        let half = 0.5 * (last - first) / (count.max(2) - 1) as f64;
+        Self::edges(name, unit, [first - half, last + half])
+    }
+
+    /// The centre of cell `index` of `count`.
+    pub(crate) fn center(&self, index: usize, count: usize) -> f64 {
+        // Symmetric in the two edges, so that the middle of a symmetric axis is 0 to the bit.
+        let above = index as f64 + 0.5;
+        ((count as f64 - above) * self.min + above * self.max) / count as f64
+    }
+
+    /// The edges, moved apart when they are not an interval.
+    pub(crate) fn range(&self) -> [f64; 2] {
+        if self.max > self.min && (self.max - self.min).is_finite() {
+            [self.min, self.max]
+        } else if self.min.is_finite() {
+            [self.min - 0.5, self.min + 0.5]
+        } else {
+            [-0.5, 0.5]
+        }
+    }
+
+    /// Where `value` falls, 0 at the low edge and 1 at the high one.
+    pub(crate) fn fraction(&self, value: f64) -> f64 {
+        let [min, max] = self.range();
+        (value - min) / (max - min)
+    }
+
+    /// The power of ten taken out of the tick texts.
+    pub(crate) fn exponent(&self) -> i32 {
+        let [min, max] = self.range();
+        let decade = order(min.abs().max(max.abs()));
+        // Up to 9999 and down to 0.01 the plain numbers are the shorter.
+        if (-2..=3).contains(&decade) {
+            0
+        } else {
+            decade
+        }
+    }
+
+    /// Ticks at multiples of 1, 2 or 5 × 10ⁿ, at most `most` steps to the axis.
+    pub(crate) fn ticks(&self, most: f64) -> Vec<Tick> {
+        let [min, max] = self.range();
+        let step = step((max - min) / most.max(1.0));
+        let exponent = self.exponent();
+        let places = usize::try_from(exponent - order(step)).unwrap_or(0);
+        let unit = 10_f64.powi(exponent);
+        // A tick on the edge belongs to the axis whatever the rounding.
+        let slack = 1e-9 * (max - min);
+        let mut multiple = ((min - slack) / step).ceil();
+        let mut ticks = Vec::new();
+        while multiple * step <= max + slack {
+            // Adding zero turns −0 into 0.
+            let value = multiple * step + 0.0;
+            ticks.push(Tick {
+                value,
+                text: minus(&format!("{:.places$}", value / unit)),
+            });
+            multiple += 1.0;
+        }
+        ticks
+    }
+}
+
+/// The most ticks whose texts, side by side at a font `size` along `length`, stay apart.
+pub(crate) fn spaced_ticks(axis: &Axis, length: f64, size: f64) -> Vec<Tick> {
+    let fits = |ticks: &[Tick]| {
+        let widest = ticks
+            .iter()
+            .map(|t| width(&t.text, size))
+            .fold(0.0, f64::max);
+        ticks.windows(2).all(|pair| {
+            let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
+            step * length >= widest + 10.0
+        })
+    };
+    let candidates = (1..=8).rev().map(|most| axis.ticks(f64::from(most)));
+    candidates
+        .into_iter()
+        .find(|ticks| fits(ticks))
+        .unwrap_or_default()
+}
+
+/// The smallest of 1, 2, 5 × 10ⁿ that is not below `least` > 0.
+fn step(least: f64) -> f64 {
+    let decade = 10_f64.powi(order(least));
+    // The slack keeps 0.2 from becoming 0.5 when it is computed as 0.20000000000000004.
+    [1.0, 2.0, 5.0, 10.0]
+        .into_iter()
+        .map(|m| m * decade)
+        .find(|candidate| *candidate >= least * (1.0 - 1e-9))
+        .unwrap_or(10.0 * decade)
+}
+
+/// The power of ten n with 10ⁿ ≤ `value` < 10ⁿ⁺¹, up to rounding; 0 for zero.
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "the logarithm of a finite f64 is within ±324"
+)]
+fn order(value: f64) -> i32 {
+    if value > 0.0 && value.is_finite() {
+        (value.log10() + 1e-9).floor() as i32
+    } else {
+        0
+    }
+}
+
+/// The text with a true minus sign.
+pub(crate) fn minus(text: &str) -> String {
+    text.replace('-', "−")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn texts(range: [f64; 2], most: f64) -> Vec<String> {
+        let ticks = Axis::edges("x", "m", range).ticks(most);
+        ticks.into_iter().map(|tick| tick.text).collect()
+    }
+
+    #[test]
+    fn ticks_are_at_round_numbers_with_true_minus_signs() {
+        assert_eq!(texts([-0.5, 0.5], 3.0), ["−0.5", "0.0", "0.5"]);
+        assert_eq!(texts([-16.5, 16.5], 5.0), ["−10", "0", "10"]);
+        assert_eq!(texts([-60.0, 0.0], 3.0), ["−60", "−40", "−20", "0"]);
+        assert_eq!(texts([0.0, 2.0], 10.0).len(), 11);
+    }
+
+    #[test]
+    fn small_and_large_numbers_share_a_power_of_ten() {
+        let axis = Axis::edges("*L*", "W", [0.0, 3e-5]);
+        assert_eq!(axis.exponent(), -5);
+        assert_eq!(
+            axis.ticks(3.0).last().map(|t| t.text.clone()),
+            Some("3".into())
+        );
+        assert_eq!(axis.quantity.label(axis.exponent()), "*L* (10^{−5} W)");
+    }
+
+    #[test]
+    fn degenerate_axes_still_have_ticks() {
+        for range in [
+            [0.0, 0.0],
+            [3.0, 1.0],
+            [f64::NAN, 1.0],
+            [0.0, f64::INFINITY],
+        ] {
+            let count = texts(range, 4.0).len();
+            assert!((1..10).contains(&count), "{range:?}: {count}");
+        }
+    }
+
+    #[test]
+    fn samples_sit_at_cell_centers() {
+        let axis = Axis::centers("*ρ*", "", [-16.0, 16.0], 33);
+        assert!((axis.center(0, 33) + 16.0).abs() < 1e-12); // rounding
+        assert!((axis.center(16, 33)).abs() < 1e-12);
+        assert!((axis.max - 16.5).abs() < 1e-12);
+    }
+}

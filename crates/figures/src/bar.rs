@@ -1,0 +1,87 @@
+//! Color bars.
+
+use crate::color::{NO_VALUE, Shading, hex};
+use crate::figure::Error;
+use crate::image::color_strip;
+use crate::panel::OVERHANG;
+use crate::style::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
+use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::text::width;
+
+/// Width of the bar itself.
+pub(crate) const WIDTH: f64 = 12.0;
+/// Height of the point that marks an end beyond which values keep the last color.
+const POINT: f64 = 9.0;
+
+/// Draws the bar of `shading` to the right of a panel: its left edge at `x`, as high as `panel`.
+pub(crate) fn draw(svg: &mut Svg, shading: &Shading, x: f64, panel: Area) -> Result<(), Error> {
+    let [low, high] = shading.beyond;
+    let top = panel.y + if high { POINT } else { 0.0 };
+    let bottom = panel.bottom() - if low { POINT } else { 0.0 };
+    let area = Area {
+        x,
+        y: top,
+        width: WIDTH,
+        height: bottom - top,
+    };
+    if let Some(href) = color_strip(shading)? {
+        svg.image(area, &href);
+    }
+    outline(svg, shading, area);
+    scale(svg, shading, area);
+    Ok(())
+}
+
+/// The frame, with a point at each end that values pass.
+fn outline(svg: &mut Svg, shading: &Shading, area: Area) {
+    let [middle, _] = area.middle();
+    let [low, high] = shading.beyond;
+    let mut frame = vec![[area.x, area.bottom()], [area.x, area.y]];
+    if high {
+        let tip = [middle, area.y - POINT];
+        let point = [[area.x, area.y], tip, [area.right(), area.y]];
+        svg.polygon(&point, &hex(shading.colors.at(1.0)));
+        frame.push(tip);
+    }
+    frame.extend([[area.right(), area.y], [area.right(), area.bottom()]]);
+    if low {
+        let tip = [middle, area.bottom() + POINT];
+        let point = [[area.x, area.bottom()], tip, [area.right(), area.bottom()]];
+        svg.polygon(&point, &hex(shading.colors.at(0.0)));
+        frame.push(tip);
+    }
+    frame.push([area.x, area.bottom()]);
+    svg.polyline(&frame, Stroke::FRAME);
+}
+
+/// Ticks and the label, to the right of the bar.
+fn scale(svg: &mut Svg, shading: &Shading, area: Area) {
+    let axis = &shading.axis;
+    let mut widest: f64 = 0.0;
+    for tick in axis.ticks(area.height / 24.0) {
+        let at = area.bottom() - axis.fraction(tick.value) * area.height;
+        svg.line([area.right(), at], [area.right() + TICK, at], Stroke::FRAME);
+        let place = [area.right() + TICK + 3.0, at + 4.0];
+        svg.text(Text::new(place, TICK_TEXT, Anchor::Start), &tick.text);
+        widest = widest.max(width(&tick.text, TICK_TEXT));
+    }
+    let at = [area.right() + TICK + 3.0 + widest + 16.0, area.middle()[1]];
+    let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
+    let label = axis.quantity.label(axis.exponent());
+    svg.fitted(style, &label, area.height + OVERHANG);
+}
+
+/// A key for cells without a value, ending at `right` on the baseline `y`.
+pub(crate) fn gap_key(svg: &mut Svg, right: f64, y: f64) {
+    let text = "no value";
+    let style = Text::new([right, y], TICK_TEXT, Anchor::End).fill(SOFT);
+    svg.text(style, text);
+    let swatch = Area {
+        x: right - width(text, TICK_TEXT) - 18.0,
+        y: y - 9.0,
+        width: 10.0,
+        height: 10.0,
+    };
+    svg.fill(swatch, &hex(NO_VALUE));
+    svg.frame(swatch);
+}

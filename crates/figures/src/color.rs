@@ -1,0 +1,162 @@
+//! From values to colors.
+
+use crate::axis::Axis;
+use ndarray::ArrayView2;
+
+/// How values are laid on the colors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Scale {
+    /// From 0 to the largest value shown; negative values are drawn as 0.
+    Linear,
+    /// 10 log₁₀ of a power relative to the largest reference value, from `floor` to 0 dB; powers ≤ 0 are below it.
+    Decibel {
+        /// Lower end of the colors, in decibels, below 0.
+        floor: f64,
+    },
+}
+
+/// Red, green, blue.
+pub(crate) type Rgb = [u8; 3];
+
+/// Cells without a value (NaN): a grey neither map contains.
+pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
+
+/// A family of colors over 0 ≤ t ≤ 1.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Colors {
+    /// Black, purple, orange, pale yellow; lightness grows evenly.
+    Sequential,
+    /// Blue, white, red.
+    Diverging,
+}
+
+impl Colors {
+    pub(crate) fn at(self, t: f64) -> Rgb {
+        let t = t.clamp(0.0, 1.0);
+        let color = match self {
+            Self::Sequential => colorous::INFERNO.eval_continuous(t),
+            Self::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - t),
+        };
+        color.as_array()
+    }
+}
+
+/// A color for every value, shared by the panels and their color bar.
+#[derive(Clone, Debug)]
+pub(crate) struct Shading {
+    pub(crate) colors: Colors,
+    /// What the color bar shows, from its lower to its upper end.
+    pub(crate) axis: Axis,
+    /// The power at 0 dB; `None` on linear scales.
+    reference: Option<f64>,
+    /// Whether values fall below and above the colors.
+    pub(crate) beyond: [bool; 2],
+}
+
+impl Shading {
+    /// Colors on an axis, one to one.
+    pub(crate) fn linear(colors: Colors, axis: Axis) -> Self {
+        Self {
+            colors,
+            axis,
+            reference: None,
+            beyond: [false; 2],
+        }
+    }
+
+    /// Decibels below `peak` on an axis from `floor` to 0.
+    pub(crate) fn decibel(name: &str, floor: f64, peak: f64) -> Self {
+        let floor = if floor < 0.0 { floor } else { -60.0 };
+        Self {
+            colors: Colors::Sequential,
+            axis: Axis::edges(name, "dB", [floor, 0.0]),
+            reference: Some(if peak > 0.0 { peak } else { 1.0 }),
+            beyond: [false; 2],
+        }
+    }
+
+    /// The same, knowing whether any of `values` saturate.
+    pub(crate) fn showing(mut self, values: ArrayView2<'_, f64>) -> Self {
+        let [low, high] = self.axis.range();
+        for value in values {
+            let level = self.level(*value);
+            self.beyond[0] |= level < low;
+            self.beyond[1] |= level > high;
+        }
+        self
+    }
+
+    pub(crate) fn color(&self, value: f64) -> Rgb {
+        if value.is_nan() {
+            return NO_VALUE;
+        }
+        self.colors.at(self.axis.fraction(self.level(value)))
+    }
+
+    /// The value on the color bar's axis.
+    fn level(&self, value: f64) -> f64 {
+        match self.reference {
+            None => value,
+            // A power after noise removal may be negative: it is below any floor.
+            Some(reference) => 10.0 * (value / reference).max(0.0).log10(),
+        }
+    }
+}
+
+/// The largest finite value; 0 without one above it.
+pub(crate) fn largest(values: ArrayView2<'_, f64>) -> f64 {
+    let finite = values.iter().copied().filter(|v| v.is_finite());
+    finite.fold(0.0, f64::max)
+}
+
+/// Whether some cell has no value.
+pub(crate) fn has_gaps(values: ArrayView2<'_, f64>) -> bool {
+    values.iter().any(|v| v.is_nan())
+}
+
+/// "#rrggbb".
+pub(crate) fn hex([r, g, b]: Rgb) -> String {
+    format!("#{r:02x}{g:02x}{b:02x}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::array;
+
+    #[test]
+    fn powers_below_the_floor_and_negative_ones_share_its_color() {
+        let shading = Shading::decibel("", -60.0, 2.0);
+        let floor = Colors::Sequential.at(0.0);
+        for power in [2e-6, 1e-9, 0.0, -1.0, f64::NEG_INFINITY] {
+            assert_eq!(shading.color(power), floor, "{power}");
+        }
+        assert_eq!(shading.color(2.0), Colors::Sequential.at(1.0));
+        assert_eq!(shading.color(f64::INFINITY), Colors::Sequential.at(1.0));
+        assert_ne!(shading.color(2e-5), floor);
+    }
+
+    #[test]
+    fn the_diverging_map_is_neutral_at_zero_and_warm_above() {
+        let shading = Shading::linear(Colors::Diverging, Axis::edges("", "", [-4.0, 4.0]));
+        let [r, g, b] = shading.color(0.0);
+        assert!(r.min(g).min(b) > 235, "nearly white");
+        let ([hot, _, cold], [r, _, b]) = (shading.color(4.0), shading.color(-4.0));
+        assert!(hot > cold && b > r);
+        assert_eq!(shading.color(9.0), shading.color(4.0));
+    }
+
+    #[test]
+    fn gaps_are_grey_and_not_saturation() {
+        let shading = Shading::linear(Colors::Sequential, Axis::edges("", "", [0.0, 1.0]));
+        assert_eq!(shading.color(f64::NAN), NO_VALUE);
+        let values = array![[f64::NAN, 0.5], [0.0, 1.0]];
+        assert_eq!(
+            shading.clone().showing(values.view()).beyond,
+            [false, false]
+        );
+        let values = array![[f64::NAN, 0.5], [-0.1, 1.1]];
+        assert_eq!(shading.showing(values.view()).beyond, [true, true]);
+        assert!(has_gaps(values.view()));
+    }
+}

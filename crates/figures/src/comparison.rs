@@ -1,0 +1,156 @@
+//! One quantity, measured | predicted | difference in σ.
+
+use crate::axis::{Axis, Quantity};
+use crate::bar;
+use crate::color::{Colors, Scale, Shading, has_gaps, largest};
+use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::panel::Panel;
+use crate::style::{HEAD_TEXT, LABEL_BASELINE};
+use crate::svg::{Anchor, Area, Svg, Text};
+use ndarray::ArrayView2;
+
+/// One quantity measured and predicted on the same cells, [x, y], both axes ascending. NaN: no value.
+#[derive(Clone, Debug)]
+pub struct Comparison<'a> {
+    /// What is shown, and where; markup.
+    pub title: &'a str,
+    /// A line below the title, such as the verdict, markup; may be empty.
+    pub note: &'a str,
+    /// The first axis of the arrays.
+    pub x: Axis,
+    /// The second.
+    pub y: Axis,
+    /// What the cells hold.
+    pub quantity: Quantity,
+    /// The colors of measured and predicted.
+    pub scale: Scale,
+    /// Measured values; may be negative once the shot noise has been taken off.
+    pub measured: ArrayView2<'a, f64>,
+    /// Predicted values.
+    pub predicted: ArrayView2<'a, f64>,
+    /// (measured − predicted) / σ.
+    pub z: ArrayView2<'a, f64>,
+}
+
+/// Differences beyond this many σ keep the last color.
+const Z_LIMIT: f64 = 4.0;
+/// Side of a panel.
+const PANEL: f64 = 240.0;
+/// Left edges of the three panels and of the two color bars; the shared bar belongs to the first two panels.
+const PANELS_X: [f64; 3] = [66.0, 66.0 + PANEL + 18.0, 66.0 + 2.0 * PANEL + 118.0];
+const BARS_X: [f64; 2] = [PANELS_X[1] + PANEL + 10.0, PANELS_X[2] + PANEL + 10.0];
+const WIDTH: f64 = BARS_X[1] + bar::WIDTH + 52.0;
+
+/// Draws a comparison: measured and predicted on one color scale, the difference on ±4 σ.
+///
+/// In decibels the reference is the largest predicted value. The CSV has a row for each cell.
+///
+/// # Errors
+/// When a heat map or the numbers cannot be written.
+///
+/// # Panics
+/// When the three arrays differ in shape.
+pub fn comparison(comparison: &Comparison<'_>) -> Result<Figure, Error> {
+    let shape = comparison.measured.dim();
+    assert_eq!(comparison.predicted.dim(), shape, "shape of predicted");
+    assert_eq!(comparison.z.dim(), shape, "shape of z");
+    let mut svg = Svg::default();
+    let top = svg.title(
+        PANELS_X[0],
+        WIDTH - PANELS_X[0] - 10.0,
+        comparison.title,
+        comparison.note,
+    ) + 24.0;
+    draw_panels(&mut svg, comparison, top)?;
+    let baseline = top + PANEL + LABEL_BASELINE;
+    if [comparison.measured, comparison.predicted, comparison.z].map(has_gaps) != [false; 3] {
+        bar::gap_key(&mut svg, WIDTH - 12.0, baseline);
+    }
+    Ok(Figure {
+        svg: svg.finish(WIDTH, baseline + 13.0),
+        csv: numbers(comparison)?,
+    })
+}
+
+fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(), Error> {
+    let value = value_shading(comparison);
+    let axis = Axis::edges("(measured − predicted) / *σ*", "", [-Z_LIMIT, Z_LIMIT]);
+    let difference = Shading::linear(Colors::Diverging, axis).showing(comparison.z);
+    let panels = [
+        ("measured", comparison.measured, &value),
+        ("predicted", comparison.predicted, &value),
+        ("difference", comparison.z, &difference),
+    ];
+    for (index, (name, values, shading)) in panels.into_iter().enumerate() {
+        let panel = Panel {
+            area: area(index, top),
+            x: &comparison.x,
+            y: &comparison.y,
+            label_y: index == 0,
+        };
+        panel.heat_map(svg, values, shading)?;
+        panel.axes(svg);
+        let at = [panel.area.middle()[0], top - 9.0];
+        svg.text(Text::new(at, HEAD_TEXT, Anchor::Middle).bold(), name);
+    }
+    bar::draw(svg, &value, BARS_X[0], area(1, top))?;
+    bar::draw(svg, &difference, BARS_X[1], area(2, top))
+}
+
+fn area(index: usize, top: f64) -> Area {
+    Area {
+        x: PANELS_X[index],
+        y: top,
+        width: PANEL,
+        height: PANEL,
+    }
+}
+
+/// The colors measured and predicted share.
+fn value_shading(comparison: &Comparison<'_>) -> Shading {
+    let (measured, predicted) = (comparison.measured, comparison.predicted);
+    let shading = match comparison.scale {
+        Scale::Linear => {
+            let top = largest(measured).max(largest(predicted));
+            let axis = Axis {
+                quantity: comparison.quantity.clone(),
+                min: 0.0,
+                max: if top > 0.0 { top } else { 1.0 },
+            };
+            Shading::linear(Colors::Sequential, axis)
+        }
+        Scale::Decibel { floor } => {
+            let name = format!(
+                "{} relative to the predicted peak",
+                comparison.quantity.name
+            );
+            Shading::decibel(&name, floor, largest(predicted))
+        }
+    };
+    shading.showing(measured).showing(predicted)
+}
+
+/// The table: a row for each cell, x slowest.
+fn numbers(comparison: &Comparison<'_>) -> Result<String, Error> {
+    let Comparison { x, y, quantity, .. } = comparison;
+    let of = |kind: &str| format!("{kind} {}", quantity.heading());
+    let header = [
+        x.quantity.heading(),
+        y.quantity.heading(),
+        of("measured"),
+        of("predicted"),
+        "(measured − predicted) / σ".to_owned(),
+    ];
+    let (columns, rows) = comparison.measured.dim();
+    let cells = comparison.measured.indexed_iter();
+    let lines = cells.map(|((i, j), measured)| {
+        let at = [x.center(i, columns), y.center(j, rows)];
+        let values = [
+            *measured,
+            comparison.predicted[[i, j]],
+            comparison.z[[i, j]],
+        ];
+        at.iter().chain(&values).map(decimal).collect()
+    });
+    csv_text(&header, lines)
+}

@@ -1,0 +1,272 @@
+//! Drawing of a [`Section`]: into any area, so that strips can use it too.
+
+mod place;
+
+use crate::axis::Axis;
+use crate::section::{Section, SegmentKind};
+use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
+use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::text::width;
+use place::{Name, names, plane_places, x_range};
+
+const LIGHT: &str = "#f0a000";
+const CONE: &str = "#fdf0cf";
+const PLANE: &str = "#1f5fa8";
+
+/// Space left and right of the central ray's ends.
+const MARGIN: f64 = 36.0;
+/// Radius of a plane's number.
+const BADGE: f64 = 8.0;
+/// Height of a row of segment names.
+const NAME_ROW: f64 = 17.0;
+/// Depth of the hatching behind surfaces.
+const HATCH: f64 = 9.0;
+
+/// A section laid out in an area of the drawing.
+#[derive(Debug)]
+pub(crate) struct Cut<'a> {
+    section: &'a Section,
+    area: Area,
+    /// The part of the area x is drawn in: below the names, above the numbers of the planes.
+    plot: Area,
+    z: Axis,
+    x: Axis,
+    names: Vec<Name>,
+    /// Horizontal place of each plane's line.
+    planes: Vec<f64>,
+}
+
+impl<'a> Cut<'a> {
+    /// Height of ticks and label of the z axis, above the area.
+    pub(crate) const AXIS: f64 = 46.0;
+    /// Height of a plane's heading: number, name, distance.
+    pub(crate) const HEADING: f64 = 56.0;
+
+    pub(crate) fn new(section: &'a Section, area: Area) -> Self {
+        let z = Axis::edges(
+            "distance along the central ray *z*",
+            "m",
+            [0.0, section.length],
+        );
+        let across =
+            |distance: f64| area.x + MARGIN + z.fraction(distance) * (area.width - 2.0 * MARGIN);
+        let names = names(&section.segments, area, across);
+        let rows = names.iter().map(|name| name.row + 1).max().unwrap_or(0);
+        let head = NAME_ROW * rows as f64 + 6.0;
+        let plot = Area {
+            y: area.y + head,
+            height: area.height - head - 2.0 * BADGE - 8.0,
+            ..area
+        };
+        Self {
+            planes: plane_places(section, across),
+            x: Axis::edges("*x*", "m", x_range(section)),
+            section,
+            area,
+            plot,
+            z,
+            names,
+        }
+    }
+
+    /// The whole cut, with its axes and the numbers of its planes.
+    pub(crate) fn draw(&self, svg: &mut Svg) {
+        svg.clipped(self.plot, |svg| {
+            for cone in &self.section.cones {
+                let corners: Vec<_> = cone.iter().map(|corner| self.point(*corner)).collect();
+                svg.polygon(&corners, CONE);
+            }
+            self.segments(svg, SegmentKind::Surface);
+        });
+        for plane in 0..self.planes.len() {
+            self.plane(svg, plane);
+        }
+        self.central_ray(svg);
+        svg.clipped(self.plot, |svg| {
+            self.segments(svg, SegmentKind::Blocker);
+            self.segments(svg, SegmentKind::Light);
+        });
+        for name in &self.names {
+            let y = self.area.y + NAME_ROW * (name.row as f64 + 1.0) - 2.0;
+            svg.text(
+                Text::new([name.middle, y], TICK_TEXT, Anchor::Middle),
+                &name.text,
+            );
+        }
+        self.z_axis(svg);
+        self.x_axis(svg);
+    }
+
+    /// A thin line from a plane's number to the top of its heading.
+    pub(crate) fn leader(&self, svg: &mut Svg, plane: usize, [x, y]: [f64; 2]) {
+        let Some(place) = self.planes.get(plane) else {
+            return;
+        };
+        let start = self.area.bottom() - 2.0;
+        let stroke = Stroke::solid(FAINT, 0.8);
+        let points = [[*place, start], [*place, start + 8.0], [x, y - 8.0], [x, y]];
+        svg.polyline(&points, stroke);
+    }
+
+    /// A plane's number, name and distance, centred below a point.
+    pub(crate) fn heading(&self, svg: &mut Svg, plane: usize, [x, y]: [f64; 2], room: f64) {
+        let Some(mark) = self.section.planes.get(plane) else {
+            return;
+        };
+        badge(svg, [x, y + BADGE], plane);
+        let style = Text::new([x, y + 32.0], HEAD_TEXT, Anchor::Middle).bold();
+        svg.fitted(style, &mark.name, room);
+        // Four significant digits, as short as they can be written.
+        let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
+        let distance = rounded.unwrap_or(mark.distance);
+        let style = Text::new([x, y + 47.0], TICK_TEXT, Anchor::Middle).fill(SOFT);
+        svg.markup(
+            style,
+            &format!("*z* = {} m", crate::axis::minus(&distance.to_string())),
+        );
+    }
+
+    /// The place of a point (z, x).
+    fn point(&self, [z, x]: [f64; 2]) -> [f64; 2] {
+        [
+            self.area.x + MARGIN + self.z.fraction(z) * (self.area.width - 2.0 * MARGIN),
+            self.plot.bottom() - self.x.fraction(x) * self.plot.height,
+        ]
+    }
+
+    fn segments(&self, svg: &mut Svg, kind: SegmentKind) {
+        let (color, thickness) = match kind {
+            SegmentKind::Light => (LIGHT, 6.0),
+            SegmentKind::Blocker => (INK, 4.5),
+            SegmentKind::Surface => (INK, 1.6),
+        };
+        for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
+            let (start, end) = (self.point(segment.start), self.point(segment.end));
+            if kind == SegmentKind::Surface {
+                let [start, end] = self.visible(start, end);
+                hatch(svg, start, end);
+            }
+            let stroke = Stroke::solid(color, thickness);
+            svg.line(start, end, stroke);
+        }
+    }
+
+    /// The part of a line between heights just above and below the plot; all of a level one.
+    fn visible(&self, start: [f64; 2], end: [f64; 2]) -> [[f64; 2]; 2] {
+        let rise = end[1] - start[1];
+        let heights = [self.plot.y - HATCH, self.plot.bottom() + HATCH];
+        let mut part = heights.map(|y| ((y - start[1]) / rise).clamp(0.0, 1.0));
+        part.sort_by(f64::total_cmp);
+        if part.iter().any(|t| t.is_nan()) {
+            return [start, end];
+        }
+        part.map(|t| [0, 1].map(|i| start[i] + t * (end[i] - start[i])))
+    }
+
+    fn plane(&self, svg: &mut Svg, plane: usize) {
+        let x = self.planes[plane];
+        let stroke = Stroke {
+            color: PLANE,
+            width: 1.2,
+            dash: "5 3",
+        };
+        let number = [x, self.area.bottom() - BADGE - 2.0];
+        svg.line([x, self.plot.y], [x, number[1] - BADGE], stroke);
+        badge(svg, number, plane);
+    }
+
+    fn central_ray(&self, svg: &mut Svg) {
+        let (start, tip) = (
+            self.point([0.0, 0.0]),
+            self.point([self.section.length, 0.0]),
+        );
+        let stroke = Stroke::solid(INK, 1.3);
+        svg.line(start, [tip[0] - 6.0, tip[1]], stroke);
+        let wings = [-3.5, 3.5].map(|wing| [tip[0] - 9.0, tip[1] + wing]);
+        svg.polygon(&[tip, wings[0], wings[1]], INK);
+        // The name goes into the widest gap between planes and segments, if it fits.
+        let text = "central ray";
+        let mut stops = self.planes.clone();
+        stops.extend([start[0], tip[0]]);
+        stops.extend(self.section.segments.iter().map(|s| self.point(s.start)[0]));
+        stops.retain(|stop| (start[0]..=tip[0]).contains(stop));
+        stops.sort_by(f64::total_cmp);
+        let gaps = stops.windows(2).map(|pair| (pair[1] - pair[0], pair[0]));
+        let widest = gaps.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
+        if let Some((gap, from)) = widest.filter(|(gap, _)| *gap > width(text, TICK_TEXT) + 16.0) {
+            let at = [from + 0.5 * gap, start[1] - 5.0];
+            svg.text(Text::new(at, TICK_TEXT, Anchor::Middle), text);
+        }
+    }
+
+    /// The z axis, on top: the lower side belongs to the planes.
+    fn z_axis(&self, svg: &mut Svg) {
+        let (left, right) = (
+            self.point([0.0, 0.0])[0],
+            self.point([self.section.length, 0.0])[0],
+        );
+        let y = self.area.y;
+        svg.line([left, y], [right, y], Stroke::FRAME);
+        for tick in self.z.ticks((right - left) / 70.0) {
+            let x = self.point([tick.value, 0.0])[0];
+            svg.line([x, y - TICK], [x, y], Stroke::FRAME);
+            svg.text(
+                Text::new([x, y - TICK - 4.0], TICK_TEXT, Anchor::Middle),
+                &tick.text,
+            );
+        }
+        let style = Text::new([0.5 * (left + right), y - 25.0], LABEL_TEXT, Anchor::Middle);
+        svg.markup(style, &self.z.quantity.label(self.z.exponent()));
+    }
+
+    fn x_axis(&self, svg: &mut Svg) {
+        let left = self.area.x;
+        svg.line(
+            [left, self.plot.y],
+            [left, self.plot.bottom()],
+            Stroke::FRAME,
+        );
+        let mut widest: f64 = 0.0;
+        for tick in self.x.ticks(self.plot.height / 36.0) {
+            let y = self.point([0.0, tick.value])[1];
+            svg.line([left - TICK, y], [left, y], Stroke::FRAME);
+            let style = Text::new([left - TICK - 3.0, y + 4.0], TICK_TEXT, Anchor::End);
+            svg.text(style, &tick.text);
+            widest = widest.max(width(&tick.text, TICK_TEXT));
+        }
+        let at = [left - TICK - 11.0 - widest, self.plot.middle()[1]];
+        let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
+        svg.markup(style, &self.x.quantity.label(self.x.exponent()));
+    }
+}
+
+/// A plane's number, from 1, on a disk.
+fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
+    svg.circle([x, y], BADGE, PLANE);
+    let style = Text::new([x, y + 3.8], 10.5, Anchor::Middle)
+        .bold()
+        .fill("white");
+    svg.text(style, &(plane + 1).to_string());
+}
+
+/// Short slanted strokes behind a surface, on the side away from the light.
+fn hatch(svg: &mut Svg, start: [f64; 2], end: [f64; 2]) {
+    let along = [end[0] - start[0], end[1] - start[1]];
+    let length = along[0].hypot(along[1]);
+    if length == 0.0 {
+        return;
+    }
+    let mut normal = [along[1] / length, -along[0] / length];
+    if normal[0] < 0.0 {
+        normal = normal.map(|n| -n);
+    }
+    let stroke = Stroke::solid(FAINT, 1.0);
+    // The cap bounds the work on absurd lengths.
+    let mut at = HATCH;
+    while at < length.min(20_000.0) {
+        let [x, y] = [0, 1].map(|i| start[i] + along[i] * at / length);
+        let back = [0, 1].map(|i| [x, y][i] + HATCH * normal[i] - HATCH * along[i] / length);
+        svg.line([x, y], back, stroke);
+        at += 6.0;
+    }
+}

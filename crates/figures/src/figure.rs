@@ -1,0 +1,97 @@
+use resvg::{tiny_skia, usvg};
+use std::sync::Arc;
+
+/// Pixels of the PNG per unit of the SVG.
+const PNG_SCALE: f32 = 2.0;
+
+/// A picture and the numbers behind it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Figure {
+    /// The drawing. Texts stay texts, heat maps are embedded PNGs with one pixel per cell.
+    pub svg: String,
+    /// The numbers drawn: a header with names and units, then a row for each cell or line.
+    pub csv: String,
+}
+
+/// Why a figure could not be made; each is a fault of the drawing, not of the values drawn.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The drawing could not be read back.
+    #[error("the figure's SVG cannot be rasterized: {0}")]
+    Svg(#[from] usvg::Error),
+    /// A heat map could not be written.
+    #[error("a heat map cannot be written as PNG: {0}")]
+    Image(#[from] png::EncodingError),
+    /// The raster would have no pixels or too many.
+    #[error("a figure of {0} × {1} pixels cannot be drawn")]
+    Size(u32, u32),
+    /// The raster could not be written.
+    #[error("the figure cannot be written as PNG: {0}")]
+    Raster(String),
+    /// The numbers could not be written.
+    #[error("the figure's numbers cannot be written as CSV: {0}")]
+    Csv(String),
+}
+
+impl Figure {
+    /// The drawing as a PNG, two pixels to an SVG unit, text in DejaVu Sans.
+    ///
+    /// # Errors
+    /// When the SVG cannot be read back or the raster cannot be written.
+    pub fn png(&self) -> Result<Vec<u8>, Error> {
+        let tree = usvg::Tree::from_str(&self.svg, &options())?;
+        let size = tree
+            .size()
+            .to_int_size()
+            .scale_by(PNG_SCALE)
+            .unwrap_or_else(|| tree.size().to_int_size());
+        let (width, height) = (size.width(), size.height());
+        let mut pixels = tiny_skia::Pixmap::new(width, height).ok_or(Error::Size(width, height))?;
+        let scale = tiny_skia::Transform::from_scale(PNG_SCALE, PNG_SCALE);
+        resvg::render(&tree, scale, &mut pixels.as_mut());
+        pixels
+            .encode_png()
+            .map_err(|error| Error::Raster(error.to_string()))
+    }
+}
+
+/// Reading options whose only fonts are the ones built in.
+pub(crate) fn options() -> usvg::Options<'static> {
+    let mut fonts = usvg::fontdb::Database::new();
+    for face in [
+        dejavu::sans::regular(),
+        dejavu::sans::bold(),
+        dejavu::sans::oblique(),
+        dejavu::sans::bold_oblique(),
+    ] {
+        fonts.load_font_source(usvg::fontdb::Source::Binary(Arc::new(face)));
+    }
+    usvg::Options {
+        font_family: "DejaVu Sans".to_owned(),
+        fontdb: Arc::new(fonts),
+        ..usvg::Options::default()
+    }
+}
+
+/// The CSV text of a header and rows of the same length.
+pub(crate) fn csv_text(
+    header: &[String],
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> Result<String, Error> {
+    let fault = |error: csv::Error| Error::Csv(error.to_string());
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    writer.write_record(header).map_err(fault)?;
+    for row in rows {
+        writer.write_record(row).map_err(fault)?;
+    }
+    let bytes = writer
+        .into_inner()
+        .map_err(|error| Error::Csv(error.to_string()))?;
+    String::from_utf8(bytes).map_err(|error| Error::Csv(error.to_string()))
+}
+
+/// A number with as many digits as it takes to read it back exactly.
+pub(crate) fn decimal(value: &f64) -> String {
+    format!("{value:?}")
+}

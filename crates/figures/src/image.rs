@@ -1,0 +1,55 @@
+//! Heat maps as embedded PNGs, one pixel to a cell.
+
+use crate::color::{Rgb, Shading};
+use crate::figure::Error;
+use base64::Engine;
+use ndarray::ArrayView2;
+
+/// The data URI of a picture of `values`, [x, y]: x to the right, y upwards. `None` without cells.
+pub(crate) fn heat_map(
+    values: ArrayView2<'_, f64>,
+    shading: &Shading,
+) -> Result<Option<String>, Error> {
+    let (columns, rows) = values.dim();
+    picture(columns, rows, |i, j| {
+        shading.color(values[[i, rows - 1 - j]])
+    })
+}
+
+/// The data URI of a vertical strip of all colors, low at the bottom.
+pub(crate) fn color_strip(shading: &Shading) -> Result<Option<String>, Error> {
+    const LEVELS: usize = 256;
+    picture(1, LEVELS, |_, j| {
+        let t = 1.0 - (j as f64 + 0.5) / LEVELS as f64;
+        shading.colors.at(t)
+    })
+}
+
+/// A picture of `columns` × `rows` pixels, colored by (column, row), row 0 on top.
+fn picture(
+    columns: usize,
+    rows: usize,
+    color: impl Fn(usize, usize) -> Rgb,
+) -> Result<Option<String>, Error> {
+    let (Ok(width), Ok(height)) = (u32::try_from(columns), u32::try_from(rows)) else {
+        return Err(Error::Size(u32::MAX, u32::MAX));
+    };
+    if width == 0 || height == 0 {
+        return Ok(None);
+    }
+    let mut pixels = Vec::with_capacity(3 * columns * rows);
+    for row in 0..rows {
+        for column in 0..columns {
+            pixels.extend(color(column, row));
+        }
+    }
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(&pixels)?;
+    writer.finish()?;
+    let text = base64::engine::general_purpose::STANDARD.encode(bytes);
+    Ok(Some(format!("data:image/png;base64,{text}")))
+}

@@ -1,0 +1,92 @@
+//! A heat map in its frame, with ticks and axis labels.
+
+use crate::axis::{Axis, spaced_ticks};
+use crate::color::Shading;
+use crate::figure::Error;
+use crate::image::heat_map;
+use crate::style::{LABEL_BASELINE, LABEL_TEXT, TICK, TICK_BASELINE, TICK_TEXT};
+use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::text::width;
+use ndarray::ArrayView2;
+
+/// How much longer than its panel an axis label may be.
+pub(crate) const OVERHANG: f64 = 24.0;
+
+/// Where a heat map goes and what is written around it.
+#[derive(Debug)]
+pub(crate) struct Panel<'a> {
+    pub(crate) area: Area,
+    pub(crate) x: &'a Axis,
+    pub(crate) y: &'a Axis,
+    /// Whether tick texts and label of y are written; ticks are always drawn.
+    pub(crate) label_y: bool,
+}
+
+impl Panel<'_> {
+    /// The picture of `values`, [x, y].
+    pub(crate) fn heat_map(
+        &self,
+        svg: &mut Svg,
+        values: ArrayView2<'_, f64>,
+        shading: &Shading,
+    ) -> Result<(), Error> {
+        if let Some(href) = heat_map(values, shading)? {
+            svg.image(self.area, &href);
+        }
+        Ok(())
+    }
+
+    /// Frame, ticks and labels, over the picture.
+    pub(crate) fn axes(&self, svg: &mut Svg) {
+        svg.frame(self.area);
+        self.x_axis(svg);
+        self.y_axis(svg);
+    }
+
+    /// Where the point (x, y) of the axes falls.
+    pub(crate) fn point(&self, x: f64, y: f64) -> [f64; 2] {
+        [
+            self.area.x + self.x.fraction(x) * self.area.width,
+            self.area.bottom() - self.y.fraction(y) * self.area.height,
+        ]
+    }
+
+    fn x_axis(&self, svg: &mut Svg) {
+        let bottom = self.area.bottom();
+        for tick in spaced_ticks(self.x, self.area.width, TICK_TEXT) {
+            let [at, _] = self.point(tick.value, 0.0);
+            svg.line([at, bottom], [at, bottom + TICK], Stroke::FRAME);
+            let style = Text::new([at, bottom + TICK_BASELINE], TICK_TEXT, Anchor::Middle);
+            svg.text(style, &tick.text);
+        }
+        let [middle, _] = self.area.middle();
+        let style = Text::new(
+            [middle, bottom + LABEL_BASELINE],
+            LABEL_TEXT,
+            Anchor::Middle,
+        );
+        let label = self.x.quantity.label(self.x.exponent());
+        svg.fitted(style, &label, self.area.width + OVERHANG);
+    }
+
+    fn y_axis(&self, svg: &mut Svg) {
+        let left = self.area.x;
+        let mut widest: f64 = 0.0;
+        for tick in self.y.ticks(self.area.height / 36.0) {
+            let [_, at] = self.point(0.0, tick.value);
+            svg.line([left - TICK, at], [left, at], Stroke::FRAME);
+            if self.label_y {
+                let style = Text::new([left - TICK - 3.0, at + 4.0], TICK_TEXT, Anchor::End);
+                svg.text(style, &tick.text);
+                widest = widest.max(width(&tick.text, TICK_TEXT));
+            }
+        }
+        if self.label_y {
+            let [_, middle] = self.area.middle();
+            let at = [left - TICK - 3.0 - widest - 8.0, middle];
+            let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
+            let label = self.y.quantity.label(self.y.exponent());
+            svg.fitted(style, &label, self.area.height + OVERHANG);
+        }
+    }
+}

@@ -1,0 +1,281 @@
+//! A small SVG writer: the few elements the figures are made of.
+
+use crate::style::{HEAD_TEXT, INK, SOFT, STROKE, TITLE_TEXT};
+use crate::text::{escape, fit, plain, spans};
+use std::fmt::Write;
+
+/// An upright rectangle, in SVG units, y downwards.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Area {
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    pub(crate) width: f64,
+    pub(crate) height: f64,
+}
+
+impl Area {
+    pub(crate) fn right(&self) -> f64 {
+        self.x + self.width
+    }
+
+    pub(crate) fn bottom(&self) -> f64 {
+        self.y + self.height
+    }
+
+    pub(crate) fn middle(&self) -> [f64; 2] {
+        [self.x + 0.5 * self.width, self.y + 0.5 * self.height]
+    }
+}
+
+/// Which point of a text its position is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Anchor {
+    Start,
+    Middle,
+    End,
+}
+
+/// Position and style of a text; the position is on the baseline.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Text {
+    at: [f64; 2],
+    size: f64,
+    anchor: Anchor,
+    bold: bool,
+    fill: &'static str,
+    upwards: bool,
+}
+
+impl Text {
+    pub(crate) fn new(at: [f64; 2], size: f64, anchor: Anchor) -> Self {
+        Self {
+            at,
+            size,
+            anchor,
+            bold: false,
+            fill: INK,
+            upwards: false,
+        }
+    }
+
+    pub(crate) fn bold(self) -> Self {
+        Self { bold: true, ..self }
+    }
+
+    pub(crate) fn fill(self, fill: &'static str) -> Self {
+        Self { fill, ..self }
+    }
+
+    /// Turned to run upwards.
+    pub(crate) fn upwards(self) -> Self {
+        Self {
+            upwards: true,
+            ..self
+        }
+    }
+}
+
+/// How a line is drawn.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stroke {
+    pub(crate) color: &'static str,
+    pub(crate) width: f64,
+    /// Dash pattern, or empty.
+    pub(crate) dash: &'static str,
+}
+
+impl Stroke {
+    /// The line of frames and axes.
+    pub(crate) const FRAME: Self = Self::solid(INK, STROKE);
+
+    /// An unbroken line.
+    pub(crate) const fn solid(color: &'static str, width: f64) -> Self {
+        Self {
+            color,
+            width,
+            dash: "",
+        }
+    }
+
+    fn attributes(&self) -> String {
+        let mut text = format!(" stroke=\"{}\" stroke-width=\"{}\"", self.color, self.width);
+        if !self.dash.is_empty() {
+            text += &format!(" stroke-dasharray=\"{}\"", self.dash);
+        }
+        text
+    }
+}
+
+/// A drawing in the making.
+#[derive(Debug, Default)]
+pub(crate) struct Svg {
+    body: String,
+}
+
+impl Svg {
+    /// Adds an element as it is written.
+    pub(crate) fn raw(&mut self, element: &str) {
+        self.body.push_str(element);
+        self.body.push('\n');
+    }
+
+    pub(crate) fn line(&mut self, from: [f64; 2], to: [f64; 2], stroke: Stroke) {
+        self.polyline(&[from, to], stroke);
+    }
+
+    pub(crate) fn polyline(&mut self, points: &[[f64; 2]], stroke: Stroke) {
+        self.raw(&format!(
+            "<path d=\"{}\" fill=\"none\"{}/>",
+            path(points),
+            stroke.attributes()
+        ));
+    }
+
+    /// A filled polygon; `fill` is a color or a paint server.
+    pub(crate) fn polygon(&mut self, points: &[[f64; 2]], fill: &str) {
+        self.raw(&format!("<path d=\"{}Z\" fill=\"{fill}\"/>", path(points)));
+    }
+
+    pub(crate) fn frame(&mut self, area: Area) {
+        self.raw(&format!(
+            "<rect{} fill=\"none\"{}/>",
+            place(area),
+            Stroke::FRAME.attributes()
+        ));
+    }
+
+    pub(crate) fn fill(&mut self, area: Area, fill: &str) {
+        self.raw(&format!("<rect{} fill=\"{fill}\"/>", place(area)));
+    }
+
+    pub(crate) fn circle(&mut self, [x, y]: [f64; 2], radius: f64, fill: &str) {
+        self.raw(&format!(
+            "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{fill}\"/>",
+            number(x),
+            number(y),
+            number(radius)
+        ));
+    }
+
+    /// An image stretched over `area`, its pixels kept as sharp rectangles.
+    pub(crate) fn image(&mut self, area: Area, href: &str) {
+        self.raw(&format!(
+            "<image{} preserveAspectRatio=\"none\" style=\"image-rendering:pixelated\" href=\"{href}\"/>",
+            place(area)
+        ));
+    }
+
+    /// Text shown as it is.
+    pub(crate) fn text(&mut self, style: Text, text: &str) {
+        self.write(style, &escape(text));
+    }
+
+    /// Text with markup.
+    pub(crate) fn markup(&mut self, style: Text, markup: &str) {
+        self.write(style, &spans(markup, style.size));
+    }
+
+    /// Text with markup in at most `room`: smaller if need be, and as a last resort cut short, without its styles.
+    pub(crate) fn fitted(&mut self, style: Text, markup: &str, room: f64) {
+        let plain = plain(markup);
+        // Bold letters are about 12 % wider than the estimate for regular ones.
+        let room = if style.bold { room / 1.12 } else { room };
+        let (text, size) = fit(&plain, style.size, room);
+        let style = Text { size, ..style };
+        if text == plain {
+            self.markup(style, markup);
+        } else {
+            self.text(style, &text);
+        }
+    }
+
+    fn write(&mut self, style: Text, content: &str) {
+        if content.is_empty() {
+            return;
+        }
+        let [x, y] = style.at.map(number);
+        let mut attributes = format!(
+            " x=\"{x}\" y=\"{y}\" font-size=\"{}\" fill=\"{}\"",
+            number(style.size),
+            style.fill
+        );
+        match style.anchor {
+            Anchor::Start => {}
+            Anchor::Middle => attributes += " text-anchor=\"middle\"",
+            Anchor::End => attributes += " text-anchor=\"end\"",
+        }
+        if style.bold {
+            attributes += " font-weight=\"bold\"";
+        }
+        if style.upwards {
+            attributes += &format!(" transform=\"rotate(-90 {x} {y})\"");
+        }
+        self.raw(&format!("<text{attributes}>{content}</text>"));
+    }
+
+    /// Draws with `draw`, showing only what falls into `area`.
+    ///
+    /// An inner `<svg>` clips without an id, so several figures can share a page.
+    pub(crate) fn clipped(&mut self, area: Area, draw: impl FnOnce(&mut Self)) {
+        let [x, y, w, h] = [area.x, area.y, area.width, area.height].map(number);
+        self.raw(&format!("<svg{} viewBox=\"{x} {y} {w} {h}\">", place(area)));
+        draw(self);
+        self.raw("</svg>");
+    }
+
+    /// Title and a softer line below it, both markup, from the left edge `x`; returns the y below them.
+    pub(crate) fn title(&mut self, x: f64, room: f64, title: &str, note: &str) -> f64 {
+        let mut y = 8.0;
+        if !title.is_empty() {
+            y += 18.0;
+            let style = Text::new([x, y], TITLE_TEXT, Anchor::Start).bold();
+            self.fitted(style, title, room);
+        }
+        if !note.is_empty() {
+            y += 19.0;
+            let style = Text::new([x, y], HEAD_TEXT, Anchor::Start).fill(SOFT);
+            self.fitted(style, note, room);
+        }
+        y + 6.0
+    }
+
+    /// The finished document, on white.
+    pub(crate) fn finish(self, width: f64, height: f64) -> String {
+        let (w, h) = (width.ceil(), height.ceil());
+        let mut out = String::with_capacity(self.body.len() + 512);
+        // Writing to a String does not fail.
+        let _ = write!(
+            out,
+            "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{w}\" height=\"{h}\" viewBox=\"0 0 {w} {h}\" \
+             font-family=\"DejaVu Sans, Verdana, sans-serif\">\n\
+             <rect width=\"{w}\" height=\"{h}\" fill=\"white\"/>\n{}</svg>\n",
+            self.body
+        );
+        out
+    }
+}
+
+/// Path data through the points.
+fn path(points: &[[f64; 2]]) -> String {
+    let mut data = String::new();
+    for (i, [x, y]) in points.iter().enumerate() {
+        data += if i == 0 { "M" } else { "L" };
+        data += &format!("{} {}", number(*x), number(*y));
+    }
+    data
+}
+
+fn place(area: Area) -> String {
+    let [x, y, w, h] = [area.x, area.y, area.width, area.height].map(number);
+    format!(" x=\"{x}\" y=\"{y}\" width=\"{w}\" height=\"{h}\"")
+}
+
+/// A coordinate, to a hundredth of a unit.
+fn number(value: f64) -> String {
+    let rounded = (value * 100.0).round() / 100.0 + 0.0;
+    if rounded.is_finite() {
+        rounded.to_string()
+    } else {
+        "0".to_owned()
+    }
+}

@@ -1,0 +1,147 @@
+//! What the tests of the figures share.
+
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    unreachable_pub,
+    reason = "each test program uses a part; a fault here fails the test"
+)]
+
+use base64::Engine;
+use etendue_field::Side;
+use etendue_figures::{
+    Axis, Column, Comparison, Figure, Guide, Picture, PlaneMark, Quantity, Scale, Section, Segment,
+    SegmentKind, Strip, comparison, strip,
+};
+use ndarray::{Array2, ArrayView2};
+
+/// Red, green, blue, row by row from the top.
+pub struct Pixels {
+    pub width: usize,
+    pub height: usize,
+    pub values: Vec<[u8; 3]>,
+}
+
+impl Pixels {
+    pub fn decode(bytes: &[u8]) -> Self {
+        let mut reader = png::Decoder::new(std::io::Cursor::new(bytes))
+            .read_info()
+            .unwrap();
+        let mut buffer = vec![0; reader.output_buffer_size().unwrap()];
+        let info = reader.next_frame(&mut buffer).unwrap();
+        let samples = info.color_type.samples();
+        let used = buffer[..info.buffer_size()].chunks_exact(samples);
+        Self {
+            width: info.width as usize,
+            height: info.height as usize,
+            values: used.map(|p| [p[0], p[1], p[2]]).collect(),
+        }
+    }
+
+    pub fn at(&self, column: usize, row: usize) -> [u8; 3] {
+        self.values[row * self.width + column]
+    }
+
+    pub fn brightness(&self, column: usize, row: usize) -> u32 {
+        self.at(column, row).iter().map(|c| u32::from(*c)).sum()
+    }
+}
+
+/// The embedded images of a figure, in the order drawn.
+pub fn images(figure: &Figure) -> Vec<Pixels> {
+    let parts = figure.svg.split("data:image/png;base64,").skip(1);
+    parts
+        .map(|part| {
+            let text = part.split('"').next().unwrap();
+            let engine = base64::engine::general_purpose::STANDARD;
+            Pixels::decode(&engine.decode(text).unwrap())
+        })
+        .collect()
+}
+
+pub fn compare(
+    measured: ArrayView2<'_, f64>,
+    predicted: ArrayView2<'_, f64>,
+    scale: Scale,
+) -> Figure {
+    let z = &measured - &predicted;
+    comparison(&Comparison {
+        title: "A <title> & more",
+        note: "*p* = 0.43, pass",
+        x: Axis::edges("*x*", "m", [-0.5, 0.5]),
+        y: Axis::edges("*u*", "", [-0.5, 0.5]),
+        quantity: Quantity::new("*L*", "W m⁻² sr⁻¹"),
+        scale,
+        measured,
+        predicted,
+        z: z.view(),
+    })
+    .unwrap()
+}
+
+pub const DECIBEL: Scale = Scale::Decibel { floor: -60.0 };
+
+/// A cross-section with a light, two blockers, a receiver and `count` planes.
+pub fn scene(count: usize) -> Section {
+    let segment = |kind, z: f64, x: [f64; 2], label: &str| Segment {
+        kind,
+        start: [z, x[0]],
+        end: [z, x[1]],
+        label: Some(label.to_owned()),
+    };
+    Section {
+        length: 2.0,
+        segments: vec![
+            segment(SegmentKind::Light, 0.0, [-0.1, 0.1], "light"),
+            segment(SegmentKind::Blocker, 1.0, [0.2, 0.5], "blockers"),
+            segment(SegmentKind::Blocker, 1.0, [-0.5, -0.2], "blockers"),
+            segment(SegmentKind::Surface, 2.0, [-3.0, 3.0], "floor"),
+        ],
+        planes: (0..count)
+            .map(|i| PlaneMark {
+                name: format!("plane_{i}"),
+                distance: 2.0 * i as f64 / count as f64,
+                side: if i % 2 == 0 {
+                    Side::After
+                } else {
+                    Side::Before
+                },
+            })
+            .collect(),
+        cones: vec![vec![[0.0, 0.1], [2.0, 0.5], [2.0, -0.5], [0.0, -0.1]]],
+    }
+}
+
+pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
+    let picture = || Picture {
+        x: Axis::edges("*x*", "m", [-1.0, 1.0]),
+        y: Axis::edges("*u*", "", [-1.0, 1.0]),
+        values,
+    };
+    let column = || Column {
+        light_field: picture(),
+        spectrum: picture(),
+        verdict: "*p* = 0.5, pass".to_owned(),
+        guides: vec![Guide {
+            through: [0.0, 0.0],
+            slope: -1.0,
+        }],
+    };
+    strip(&Strip {
+        title: "The path",
+        note: "",
+        section,
+        columns: section.planes.iter().map(|_| column()).collect(),
+        light_field: Quantity::new("*L*", "W m⁻² sr⁻¹"),
+        spectrum: Quantity::new("|*S*|^{2}", "W²"),
+        floor: -60.0,
+    })
+    .unwrap()
+}
+
+/// One bright cell at high x and high y of a 5 × 3 array.
+pub fn corner() -> Array2<f64> {
+    let mut values = Array2::zeros((5, 3));
+    values[[4, 2]] = 1.0;
+    values
+}

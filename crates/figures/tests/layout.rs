@@ -1,0 +1,133 @@
+//! Nothing in a figure collides or is cut off.
+
+#![expect(clippy::unwrap_used, reason = "a fault here fails the test")]
+
+mod common;
+
+use common::{DECIBEL, compare, corner, path, scene};
+use etendue_field::Side;
+use etendue_figures::{Figure, Scale, section};
+use resvg::usvg;
+
+/// Figures of every kind: few planes and many, short names and long, plain numbers, tiny ones and gaps.
+fn gallery() -> Vec<Figure> {
+    let values = corner();
+    let mut tiny = 3e-7 * &values;
+    tiny[[0, 0]] = f64::NAN;
+    let mut figures = Vec::new();
+    for scale in [Scale::Linear, DECIBEL] {
+        figures.push(compare(values.view(), values.view(), scale));
+        figures.push(compare(tiny.view(), tiny.view(), scale));
+    }
+    for count in 1..=8 {
+        let mut scene = scene(count);
+        figures.push(path(&scene, values.view()));
+        figures.push(section(&scene, "A title", "a note").unwrap());
+        for plane in &mut scene.planes {
+            plane.name += " with far more to its name than there is room for";
+            plane.distance *= 1e-4;
+        }
+        scene.segments[1].label = Some("a second name at the same place".to_owned());
+        scene.length = 2e-4;
+        figures.push(path(&scene, tiny.view()));
+        figures.push(section(&scene, &"A long title ".repeat(20), "").unwrap());
+    }
+    figures
+}
+
+/// The texts of a figure with the boxes of their lines, and the size of the canvas.
+fn written(figure: &Figure) -> (Vec<(String, usvg::Rect)>, usvg::Size) {
+    let tree = usvg::Tree::from_str(&with_font(&figure.svg), &options()).unwrap();
+    (texts(tree.root()), tree.size())
+}
+
+#[test]
+fn no_text_leaves_the_canvas() {
+    for figure in gallery() {
+        let (boxes, size) = written(&figure);
+        assert!(boxes.len() > 10);
+        for (text, b) in boxes {
+            let within = b.right() <= size.width() && b.bottom() <= size.height();
+            let inside = b.left() >= 0.0 && b.top() >= 0.0 && within;
+            assert!(inside, "{text:?} at {b:?} on {size:?}");
+        }
+    }
+}
+
+#[test]
+fn no_texts_overlap() {
+    for figure in gallery() {
+        let (boxes, _) = written(&figure);
+        for (i, (one, a)) in boxes.iter().enumerate() {
+            for (other, b) in &boxes[i + 1..] {
+                let beside = a.right() <= b.left() || b.right() <= a.left();
+                let apart = beside || a.bottom() <= b.top() || b.bottom() <= a.top();
+                assert!(apart, "{one:?} at {a:?} and {other:?} at {b:?}");
+            }
+        }
+    }
+}
+
+fn options() -> usvg::Options<'static> {
+    let mut options = usvg::Options::default();
+    let fonts = options.fontdb_mut();
+    fonts.load_font_data(dejavu::sans::regular().to_vec());
+    fonts.load_font_data(dejavu::sans::bold().to_vec());
+    fonts.load_font_data(dejavu::sans::oblique().to_vec());
+    options
+}
+
+/// The font list shortened to the one loaded, so that no substitute is looked for.
+fn with_font(svg: &str) -> String {
+    svg.replace("DejaVu Sans, Verdana, sans-serif", "DejaVu Sans")
+}
+
+/// All texts of a tree and the boxes of their ink.
+fn texts(group: &usvg::Group) -> Vec<(String, usvg::Rect)> {
+    let mut found = Vec::new();
+    for node in group.children() {
+        match node {
+            usvg::Node::Group(inner) => found.extend(texts(inner)),
+            usvg::Node::Text(text) => {
+                let content = text.chunks().iter().map(|c| c.text()).collect();
+                found.push((content, text.abs_bounding_box()));
+            }
+            _ => {}
+        }
+    }
+    found
+}
+
+#[test]
+fn planes_at_one_place_are_drawn_apart_in_their_order() {
+    let mut scene = scene(4);
+    for (plane, side) in
+        scene
+            .planes
+            .iter_mut()
+            .zip([Side::Before, Side::Before, Side::After, Side::After])
+    {
+        plane.distance = 1.0;
+        plane.side = side;
+    }
+    let figure = section(&scene, "", "").unwrap();
+    let disks = figure.svg.split("<circle cx=\"").skip(1);
+    let places: Vec<f64> = disks
+        .take(4)
+        .map(|rest| rest.split('"').next().unwrap().parse().unwrap())
+        .collect();
+    // The radius of a disk is 8.
+    assert!(places.windows(2).all(|p| p[1] - p[0] >= 16.0), "{places:?}");
+}
+
+/// A plane is drawn aside only where its line would cover something.
+#[test]
+fn planes_in_free_space_stand_where_they_are() {
+    let places = |side| {
+        let mut scene = scene(1);
+        scene.planes[0].distance = 0.5;
+        scene.planes[0].side = side;
+        section(&scene, "", "").unwrap().svg
+    };
+    assert_eq!(places(Side::Before), places(Side::After));
+}
