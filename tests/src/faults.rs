@@ -211,7 +211,7 @@ fn without_jacobian(_: usize, mut crossing: Crossing) -> Option<Crossing> {
 }
 
 fn losing_one_in_a_hundred(number: usize, crossing: Crossing) -> Option<Crossing> {
-    (number % 100 != 0).then_some(crossing)
+    (!number.is_multiple_of(100)).then_some(crossing)
 }
 
 impl<F: Fn(usize, Crossing) -> Option<Crossing> + Sync> PhotonSource for Tampered<'_, F> {

@@ -103,6 +103,8 @@ fn radial_exr(summary: &Summary, plane: &PlaneComparison) -> Result<Vec<u8>, Fai
     let mut bytes = Cursor::new(Vec::new());
     image
         .write()
+        // In parallel, the order of the chunks would be left to chance.
+        .non_parallel()
         .to_buffered(&mut bytes)
         .map_err(Failure::cannot_run)?;
     Ok(bytes.into_inner())

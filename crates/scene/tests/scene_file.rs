@@ -1,5 +1,10 @@
 //! Scene files: what is read, what is refused, and how the refusal reads.
 
+#![allow(
+    clippy::float_cmp,
+    reason = "numbers of the file must arrive as they are written"
+)]
+
 use etendue_scene::{Fault, Scene, SceneError, SceneFile, resolve};
 
 const FIG9B: &str = include_str!("../../../scenes/fig9b.ron");

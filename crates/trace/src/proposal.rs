@@ -141,6 +141,11 @@ mod tests {
 
     /// χ² of samples against the density integrated over 24 × 24 cells, and the density's whole integral.
     #[test]
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "the number of a cell"
+    )]
     fn samples_follow_the_density() {
         const CELLS: usize = 24;
         const SAMPLES: u32 = 400_000;

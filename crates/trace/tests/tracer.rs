@@ -1,5 +1,7 @@
 //! The tracer against closed forms, its two ways of emission against each other, and its ledger.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
 use etendue_field::{Ledger, PhotonSource};
 use etendue_scene::{Emission, Scene, SceneFile, resolve};
 use etendue_trace::Tracer;
