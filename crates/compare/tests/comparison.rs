@@ -1,0 +1,212 @@
+//! The comparison on made-up batches, where the truth is known.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use etendue_compare::{Class, PredictedParameter, Prediction, Residuals, Verdict, compare, sidak};
+use etendue_field::random::{self, Stream};
+use etendue_field::{
+    Complex, Frame, FrequencyAxis, Ledger, PlaneTally, Profile, Projection, ProjectionGrid,
+    Rectangle, Side, SliceGrid, Slices, VirtualPlane, Window,
+};
+use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
+use etendue_theory::{Chain, Source};
+use glam::DVec3;
+
+const BATCHES: u32 = 64;
+
+fn plane() -> VirtualPlane {
+    let hann = Profile::Hann(0.5);
+    let axis = FrequencyAxis {
+        half: 6,
+        spacing: 1.0,
+    };
+    VirtualPlane {
+        name: "plane".into(),
+        distance: 0.0,
+        side: Side::After,
+        frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),
+        window: Window {
+            x: hann,
+            y: hann,
+            u: hann,
+            v: hann,
+        },
+        grid: SliceGrid {
+            azimuths: 2,
+            rho: axis,
+            nu: axis,
+        },
+    }
+}
+
+/// A smooth spectrum and its derivative by its width.
+fn spectrum(width: f64) -> [Slices; 2] {
+    let grid = plane().grid;
+    let mut value = Slices::zeros(grid);
+    let mut derivative = Slices::zeros(grid);
+    for ((k, m, n), f) in value.half.indexed_iter_mut() {
+        let square = (m * m) as f64 + grid.nu.value(n).powi(2);
+        let bell = (-square * width * width / 20.0).exp();
+        *f = Complex::new(bell, 0.1 * m as f64 * bell);
+        derivative.half[[k, m, n]] = *f * (-square * width / 10.0);
+    }
+    [value, derivative]
+}
+
+/// A complex number whose parts have unit variance: sums of twelve uniform numbers.
+fn noise(seed: u64, index: u64) -> Complex {
+    let part = |from: u32| -> f64 {
+        let words = (0..3).flat_map(|b| random::words(seed, Stream::Photon, index, from + b));
+        words.map(random::unit).sum::<f64>() - 6.0
+    };
+    Complex::new(part(0), part(3))
+}
+
+/// Batches around `truth` with noise of the given size on each.
+fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
+    let plane = plane();
+    let mut measurement = Measurement::new(vec![plane.clone()]);
+    for index in 0..BATCHES {
+        let mut slices = truth.clone();
+        for (cell, value) in slices.half.iter_mut().enumerate() {
+            *value += noise(seed, u64::from(index) << 32 | cell as u64) * size;
+        }
+        let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+        let values = ndarray::Array2::zeros((grid.bins, grid.bins));
+        let inside = if size > 0.0 { 100 } else { 0 };
+        let batch = PlaneBatch {
+            tally: PlaneTally {
+                crossed: 100,
+                inside,
+                outside: 100 - inside,
+            },
+            slices,
+            projection: Projection { grid, values },
+        };
+        let (emitted, ledger) = (100, Ledger::default());
+        measurement
+            .insert(Batch {
+                index,
+                emitted,
+                ledger,
+                planes: vec![batch],
+            })
+            .unwrap();
+    }
+    measurement
+}
+
+fn prediction(width: f64) -> Prediction {
+    let [slices, derivative] = spectrum(width);
+    let grid = ProjectionGrid::new(&plane().window, PROJECTION_BINS);
+    let rectangle = Rectangle {
+        center: [0.0; 2],
+        size: [1.0; 2],
+    };
+    Prediction {
+        class: Class::Exact,
+        chain: Chain {
+            source: Source {
+                name: "light".into(),
+                rectangle,
+                radiance: 1.0,
+            },
+            operators: Vec::new(),
+        },
+        projection: Projection {
+            grid,
+            values: ndarray::Array2::zeros((grid.bins, grid.bins)),
+        },
+        unblocked: slices.at_zero(),
+        slices,
+        parameters: vec![PredictedParameter {
+            name: "width".into(),
+            value: width,
+            derivative,
+        }],
+    }
+}
+
+#[test]
+fn truth_passes_with_chi2_of_one_and_no_excess() {
+    let [truth, _] = spectrum(1.0);
+    let measurement = measurement(&truth, 0.02, 1);
+    let report = compare(&measurement, 0, &prediction(1.0), 0.01, 1)
+        .unwrap()
+        .report;
+    assert_eq!(report.verdict, Verdict::Pass);
+    // 176 independent complex numbers: a standard deviation of 1/√176 = 0.075, four of them.
+    assert!(
+        (report.chi2_per_dof.unwrap() - 1.0).abs() < 0.3,
+        "{report:?}"
+    );
+    let excess = report.excess.unwrap();
+    let squared = excess * excess.abs();
+    assert!(
+        squared.abs() < 4.0 * report.excess_squared_error.unwrap(),
+        "{squared}"
+    ); // four errors
+}
+
+/// A spectrum 2 % too wide is rejected, and the score test says by how much it is off.
+#[test]
+fn a_wrong_parameter_is_rejected_and_measured() {
+    let [truth, _] = spectrum(1.02);
+    let measurement = measurement(&truth, 0.02, 2);
+    let report = compare(&measurement, 0, &prediction(1.0), 0.01, 1)
+        .unwrap()
+        .report;
+    assert_eq!(report.verdict, Verdict::Fail, "{report:?}");
+    let width = &report.parameters[0];
+    assert!(width.measured > 1.0 + width.detectable, "{width:?}");
+    // Four errors, and the second order of a step of 2 %.
+    assert!(
+        (width.measured - 1.02).abs() < 4.0 * width.error + 0.002,
+        "{width:?}"
+    );
+}
+
+#[test]
+fn p_is_uniform_where_the_truth_is_predicted() {
+    let [truth, _] = spectrum(1.0);
+    let below = (0..50)
+        .map(|seed| Residuals::new(&measurement(&truth, 0.02, seed + 10), 0, &truth))
+        .filter(|residuals| residuals.p_value(1).unwrap() < 0.3)
+        .count();
+    // 15 ± 3.2 of 50: four standard deviations.
+    assert!((3..=27).contains(&below), "{below} of 50 below 0.3");
+}
+
+#[test]
+fn darkness_is_judged_by_an_exact_zero() {
+    let dark = Slices::zeros(plane().grid);
+    let mut predicted = prediction(1.0);
+    predicted.slices = dark.clone();
+    let silent = compare(&measurement(&dark, 0.0, 1), 0, &predicted, 0.01, 1)
+        .unwrap()
+        .report;
+    assert_eq!(silent.verdict, Verdict::Pass);
+    assert_eq!(
+        (silent.p_value, silent.relative_error, silent.chi2_per_dof),
+        (None, None, None)
+    );
+    let lit = compare(&measurement(&dark, 0.02, 1), 0, &predicted, 0.01, 1)
+        .unwrap()
+        .report;
+    assert_eq!(lit.verdict, Verdict::Fail, "light where none is predicted");
+    let unlit = compare(&measurement(&dark, 0.0, 1), 0, &prediction(1.0), 0.01, 1)
+        .unwrap()
+        .report;
+    assert_eq!(
+        unlit.verdict,
+        Verdict::Fail,
+        "no light where some is predicted"
+    );
+}
+
+#[test]
+fn sidak_keeps_the_level_of_the_run() {
+    let level = sidak(0.01, 4);
+    assert!((1.0 - (1.0 - level).powi(4) - 0.01).abs() < 1e-15); // rounding
+    assert!((sidak(0.01, 1) - 0.01).abs() < 1e-15); // rounding
+}
