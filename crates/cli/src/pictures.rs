@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::files::{radial_z, z};
 use crate::results::Results;
 use crate::table::word;
-use etendue_compare::{PlaneComparison, Prediction};
+use etendue_compare::{PlaneComparison, Prediction, stands_before};
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_figures::{
     Axis, Column, Comparison, Figure, Guide, Picture, PlaneMark, Quantity, Scale, Section, Segment,
@@ -91,12 +91,13 @@ pub(crate) fn path(
                 values: compared.radial.power.view(),
             },
             verdict: verdict_line(compared),
-            guides: guides(plane),
+            guides: guides(scene, plane),
         }
     });
     let figure = strip(&Strip {
         title: &format!("{}: the light field along the path, and its spectrum", scene.name),
-        note: "Measured. Dashed: where theory puts the light that has travelled this far, *ν* = −*d* *ρ*.",
+        note: "Measured. Dashed: where theory puts light that has travelled this far, *ν* = −*d* *ρ*, and its replicas at \
+               the blockers' frequency.",
         section: &cross_section(scene),
         columns: columns.collect(),
         light_field: light_field_quantity(),
@@ -107,12 +108,25 @@ pub(crate) fn path(
     write(results, "path", &figure)
 }
 
-/// Light that has travelled d lies along ν = −d ρ.
-fn guides(plane: &VirtualPlane) -> Vec<Guide> {
-    vec![Guide {
-        through: [0.0, 0.0],
+/// Where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind blockers of
+/// frequency f, the same line through (± f, ∓ h f).
+fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
+    let through = |through| Guide {
+        through,
         slope: -plane.distance,
-    }]
+    };
+    let behind = scene
+        .blockers
+        .iter()
+        .filter(|layer| stands_before(layer, plane));
+    let replicas = behind.flat_map(|layer| {
+        let (f, h) = (1.0 / layer.pitch, plane.distance - layer.distance);
+        [[f, -h * f], [-f, h * f]]
+    });
+    std::iter::once([0.0, 0.0])
+        .chain(replicas)
+        .map(through)
+        .collect()
 }
 
 /// Draws the scene with its central ray and planes into a PNG or SVG file.

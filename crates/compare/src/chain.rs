@@ -36,7 +36,8 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
 }
 
 /// Whether light meets the layer before it reaches the plane.
-fn stands_before(layer: &BlockerLayer, plane: &VirtualPlane) -> bool {
+#[must_use]
+pub fn stands_before(layer: &BlockerLayer, plane: &VirtualPlane) -> bool {
     match plane.side {
         Side::Before => layer.distance < plane.distance,
         Side::After => layer.distance <= plane.distance,

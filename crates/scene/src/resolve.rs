@@ -245,6 +245,7 @@ impl Resolver<'_> {
         BlockerLayer {
             name: name.clone(),
             distance: center.z,
+            pitch: *pitch,
             rectangles: if sound {
                 jittered_squares([center.x, center.y], *count, *pitch, *fill, *jitter, *seed)
             } else {

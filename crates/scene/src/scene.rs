@@ -47,6 +47,8 @@ pub struct BlockerLayer {
     pub name: String,
     /// Distance of their plane.
     pub distance: f64,
+    /// Distance between grid points: they replicate spectra at multiples of 1/pitch.
+    pub pitch: f64,
     /// The rectangles.
     pub rectangles: Vec<Rectangle>,
 }
