@@ -44,11 +44,12 @@ pub fn compare(
 ) -> Result<PlaneComparison, TooFewBatches> {
     let plane = &measurement.planes()[index];
     let tally = measurement.tally(index);
-    let residuals = Residuals::new(measurement, index, &prediction.slices);
+    let predicted = without_rounding(prediction);
+    let residuals = Residuals::new(measurement, index, &predicted);
     let estimate = estimate::slices(measurement, index)?;
     let power = CrossPower::new(measurement, index)?;
-    let predicted_radial = prediction.slices.radial_power();
-    let agreement = Agreement::new(&residuals, &estimate.variance, &prediction.slices);
+    let predicted_radial = predicted.radial_power();
+    let agreement = Agreement::new(&residuals, &estimate.variance, &predicted);
     let p_value = residuals.p_value(seed);
     let grid = &plane.grid;
     let pair =
@@ -80,7 +81,7 @@ pub fn compare(
             rho: pair(&|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
             nu: pair(&|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
         },
-        verdict: verdict(prediction, &tally, p_value, level),
+        verdict: verdict(&predicted, &tally, p_value, level),
         warnings: warnings(&agreement, &predicted_radial, grid),
     };
     Ok(PlaneComparison {
@@ -107,18 +108,24 @@ fn pair(
     }
 }
 
+/// The predicted slices; those of a dark field, which are differences that rounding has left, are zero.
+fn without_rounding(prediction: &Prediction) -> Slices {
+    let least = prediction.unblocked * DARK;
+    let dark = prediction.slices.half.iter().all(|f| f.norm() <= least);
+    if dark {
+        Slices::zeros(prediction.slices.grid)
+    } else {
+        prediction.slices.clone()
+    }
+}
+
 /// An exact prediction passes when p reaches the level; a dark one when not a single photon came.
-fn verdict(
-    prediction: &Prediction,
-    tally: &PlaneTally,
-    p_value: Option<f64>,
-    level: f64,
-) -> Verdict {
-    let lit = prediction.unblocked * DARK;
-    let dark = prediction.slices.half.iter().all(|f| f.norm() <= lit);
-    let pass = match p_value {
-        Some(p) => p >= level && !dark,
-        None => dark && tally.inside == 0,
+fn verdict(predicted: &Slices, tally: &PlaneTally, p_value: Option<f64>, level: f64) -> Verdict {
+    let dark = predicted.half.iter().all(|f| f.norm_sqr() <= 0.0);
+    let pass = if dark {
+        tally.inside == 0
+    } else {
+        p_value.is_some_and(|p| p >= level)
     };
     if pass { Verdict::Pass } else { Verdict::Fail }
 }
