@@ -45,7 +45,7 @@ fn planes(summary: &Summary) -> Vec<Vec<String>> {
         "χ²/dof",
         "p",
         "rel. error",
-        "of it noise",
+        "noise alone",
         "shear slope [m]",
         "predicted",
         "verdict",
