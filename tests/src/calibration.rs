@@ -25,7 +25,8 @@ pub(crate) fn calibration(seeds: u64, photons: u64) -> Vec<Section> {
     for scale in [0.9, 1.1] {
         let mut section = judged(scale);
         section.title = format!("The same with σ scaled by {scale}");
-        section.text = "A planted fault. Required: the calibration, with the bounds above, fails.".to_owned();
+        section.text =
+            "A planted fault. Required: the calibration, with the bounds above, fails.".to_owned();
         // What must fail is a success when it does.
         section.passed = !section.passed;
         sections.push(section);
