@@ -118,7 +118,7 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let behind = scene
         .blockers
         .iter()
-        .filter(|layer| stands_before(layer, plane));
+        .filter(|layer| stands_before(layer.distance, plane));
     let replicas = behind.flat_map(|layer| {
         let (f, h) = (1.0 / layer.pitch, plane.distance - layer.distance);
         [[f, -h * f], [-f, h * f]]

@@ -1,7 +1,7 @@
 //! The chain read off the scene: the only code that sees both the scene and theory.
 
-use etendue_field::{Side, VirtualPlane};
-use etendue_scene::{BlockerLayer, Scene};
+use etendue_field::{Rectangle, Side, VirtualPlane};
+use etendue_scene::Scene;
 use etendue_theory::{Chain, Operator, Source};
 
 /// The chain that leads from the light to a virtual plane: travels and visibilities as the central ray
@@ -13,16 +13,14 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
         distance: 0.0,
         operators: Vec::new(),
     };
-    for layer in scene
-        .blockers
-        .iter()
-        .filter(|layer| stands_before(layer, plane))
-    {
-        walk.travel(&layer.name, layer.distance);
-        walk.operators.push(Operator::Visibility {
-            name: layer.name.clone(),
-            blockers: layer.rectangles.clone(),
-        });
+    for obstacle in obstacles(scene) {
+        if stands_before(obstacle.distance, plane) {
+            walk.travel(obstacle.name, obstacle.distance);
+            walk.operators.push(Operator::Visibility {
+                name: obstacle.name.to_owned(),
+                blockers: obstacle.rectangles.to_vec(),
+            });
+        }
     }
     walk.travel(&plane.name, plane.distance);
     Chain {
@@ -35,12 +33,36 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// Whether light meets the layer before it reaches the plane.
+/// Rectangles in a plane that stop light.
+struct Obstacle<'a> {
+    name: &'a str,
+    distance: f64,
+    rectangles: &'a [Rectangle],
+}
+
+/// Blockers, and surfaces: those beside the central ray stop light too. By distance.
+fn obstacles(scene: &Scene) -> Vec<Obstacle<'_>> {
+    let blockers = scene.blockers.iter().map(|layer| Obstacle {
+        name: &layer.name,
+        distance: layer.distance,
+        rectangles: &layer.rectangles,
+    });
+    let surfaces = scene.surfaces.iter().map(|surface| Obstacle {
+        name: &surface.name,
+        distance: surface.distance,
+        rectangles: std::slice::from_ref(&surface.rectangle),
+    });
+    let mut obstacles: Vec<Obstacle<'_>> = blockers.chain(surfaces).collect();
+    obstacles.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    obstacles
+}
+
+/// Whether light meets what stands at `distance` before it reaches the plane.
 #[must_use]
-pub fn stands_before(layer: &BlockerLayer, plane: &VirtualPlane) -> bool {
+pub fn stands_before(distance: f64, plane: &VirtualPlane) -> bool {
     match plane.side {
-        Side::Before => layer.distance < plane.distance,
-        Side::After => layer.distance <= plane.distance,
+        Side::Before => distance < plane.distance,
+        Side::After => distance <= plane.distance,
     }
 }
 

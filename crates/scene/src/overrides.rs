@@ -52,16 +52,54 @@ fn names(node: &Value) -> String {
     }
 }
 
-/// JSON if it is, whole numbers such as 1e6 as integers, text otherwise.
+/// A value as it is written in a scene file or in JSON; whole numbers such as 1e6 are integers, and what is
+/// nothing else is text.
 fn parsed(text: &str) -> Value {
-    match serde_json::from_str(text) {
-        Ok(Value::Number(n)) => n
-            .as_f64()
-            .and_then(whole)
-            .map_or(Value::Number(n), Value::from),
-        Ok(value) => value,
-        Err(_) => Value::String(text.to_owned()),
+    let text = text.trim();
+    if let Ok(value) = serde_json::from_str(text) {
+        return match value {
+            Value::Number(n) => n
+                .as_f64()
+                .and_then(whole)
+                .map_or(Value::Number(n), Value::from),
+            value => value,
+        };
     }
+    let Some((name, inside)) = text.strip_suffix(')').and_then(|t| t.split_once('(')) else {
+        return Value::String(text.to_owned());
+    };
+    match name.trim() {
+        "" => fields(inside),
+        variant => Value::Object(std::iter::once((variant.to_owned(), fields(inside))).collect()),
+    }
+}
+
+/// What stands between parentheses: named fields, several values, or one.
+fn fields(text: &str) -> Value {
+    let parts = separated(text);
+    let named: Option<serde_json::Map<String, Value>> = parts
+        .iter()
+        .map(|part| {
+            part.split_once(':')
+                .map(|(k, v)| (k.trim().to_owned(), parsed(v)))
+        })
+        .collect();
+    match (named, parts.as_slice()) {
+        (Some(map), [_, ..]) => Value::Object(map),
+        (_, [one]) => parsed(one),
+        _ => parts.into_iter().map(parsed).collect(),
+    }
+}
+
+/// The parts of a list, at the commas outside of parentheses.
+fn separated(text: &str) -> Vec<&str> {
+    let mut depth = 0_i32;
+    text.split(|c: char| {
+        depth += i32::from(c == '(') - i32::from(c == ')');
+        c == ',' && depth == 0
+    })
+    .filter(|part| !part.trim().is_empty())
+    .collect()
 }
 
 #[expect(

@@ -5,6 +5,7 @@
     reason = "numbers of the file must arrive as they are written"
 )]
 
+use etendue_field::Profile;
 use etendue_scene::{Fault, Scene, SceneError, SceneFile, resolve};
 
 const FIG9B: &str = include_str!("../../../scenes/fig9b.ron");
@@ -192,6 +193,28 @@ fn overrides_reach_every_kind_of_field() {
             .rho
             .half,
         32
+    );
+    assert_eq!(
+        scene("planes.3.at", "Distance(1.5)").planes[3].distance,
+        1.5
+    );
+    assert_eq!(
+        scene("planes.3.at", "After(blockers)").planes[3].distance,
+        1.0
+    );
+    assert_eq!(
+        scene("light.size", "(0.3, 0.1)").light.rectangle.size,
+        [0.3, 0.1]
+    );
+    let gaussian = Profile::Gaussian {
+        width: 0.2,
+        cut: 0.4,
+    };
+    assert_eq!(
+        scene("window.x", "Gaussian(width: 0.2, cut: 0.4)").planes[0]
+            .window
+            .x,
+        gaussian
     );
     for (path, value, part) in [
         ("run.photon", "3", "photons"),

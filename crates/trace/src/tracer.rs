@@ -13,8 +13,8 @@ use std::ops::Range;
 pub struct Tracer {
     emitter: Emitter,
     targets: Targets<Meeting>,
-    /// For each plane, its distance and how far a photon must come to have crossed it.
-    planes: Vec<PlaneLimit>,
+    /// Distance and side of each plane.
+    planes: Vec<(f64, Side)>,
     photons: u64,
     batches: u32,
     seed: u64,
@@ -38,19 +38,8 @@ enum Meeting {
     Surface { albedo: f64 },
 }
 
-#[derive(Clone, Copy, Debug)]
-struct PlaneLimit {
-    distance: f64,
-    /// A photon has crossed when what it meets is further than this.
-    beyond: f64,
-}
-
 /// Photons traced between two reports.
 const BLOCK: usize = 4096;
-
-/// Share of the path by which a plane just before or after something is held off it: far above the
-/// rounding of a distance, far below any distance between things.
-const HELD_OFF: f64 = 1e-10;
 
 impl Tracer {
     /// The tracer of a scene.
@@ -71,16 +60,10 @@ impl Tracer {
             },
         });
         let targets: Vec<_> = blockers.chain(surfaces).collect();
-        let planes = scene.planes.iter().map(|plane| {
-            let held_off = HELD_OFF * scene.path.length;
-            PlaneLimit {
-                distance: plane.distance,
-                beyond: match plane.side {
-                    Side::Before => plane.distance - held_off,
-                    Side::After => plane.distance + held_off,
-                },
-            }
-        });
+        let planes = scene
+            .planes
+            .iter()
+            .map(|plane| (plane.distance, plane.side));
         Self {
             emitter: Emitter::new(scene),
             targets: Targets::new(&targets),
@@ -111,10 +94,15 @@ impl Tracer {
         let met = self.targets.first(&ray);
 
         let end = met.map_or(f64::INFINITY, |target| target.distance);
-        for (plane, crossings) in self.planes.iter().zip(crossings) {
-            if plane.beyond < end {
+        for (&(distance, side), crossings) in self.planes.iter().zip(crossings) {
+            // A plane beside something is at the very same distance: no rounding can come between.
+            let crossed = match side {
+                Side::Before => distance <= end,
+                Side::After => distance < end,
+            };
+            if crossed {
                 crossings.push(Crossing {
-                    ray: ray.travelled(plane.distance),
+                    ray: ray.travelled(distance),
                     weight,
                 });
             }
