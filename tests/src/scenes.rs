@@ -28,13 +28,7 @@ pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
 
 /// Measures a scene with photons from `source`.
 pub(crate) fn measured(scene: &Scene, source: &impl PhotonSource) -> Measurement {
-    measure(
-        source,
-        &scene.planes,
-        0..scene.run.batches,
-        &|_| (),
-        &|| false,
-    )
+    measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
 }
 
 /// Measures a scene with its own tracer.

@@ -133,7 +133,7 @@ fn make_small(scene: &mut Scene) {
 fn whole_run(scene: &Scene) {
     let tracer = Tracer::new(scene);
     let batches = 0..scene.run.batches;
-    let measurement = measure(&tracer, &scene.planes, batches, &|_| (), &|| false);
+    let measurement = measure(&tracer, &scene.planes, batches, &|_| ());
     let level = sidak(scene.run.alpha, scene.planes.len());
     for (i, plane) in scene.planes.iter().enumerate() {
         let prediction = Prediction::new(scene, plane);

@@ -12,7 +12,7 @@ use std::path::PathBuf;
   etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05
   etendue check scenes/fig9b.ron                        what the scene says, nothing traced
 
-Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted)"
+Exit codes: 0 pass, 1 disagreement or undecided, 2 bad input, 3 cannot run (directory, memory, interrupted)"
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -23,7 +23,7 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Trace a scene, measure its spectra, predict them, compare and draw.
     Run(RunArgs),
-    /// Validate a scene; print the chain read off it and the class of each plane, and draw it.
+    /// Validate a scene; print the chain read off it and the class of each plane; with --draw, draw it.
     Check(CheckArgs),
 }
 
@@ -43,7 +43,7 @@ pub(crate) struct RunArgs {
     pub(crate) out: Option<PathBuf>,
 
     /// Photons to emit, instead of the scene's
-    #[arg(long, value_name = "N", value_parser = whole_number)]
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
     pub(crate) photons: Option<u64>,
 
     /// Seed of the photons, instead of the scene's
@@ -91,7 +91,7 @@ pub(crate) struct SceneArgs {
 /// What `--save` keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Save {
-    /// Every photon that crossed a plane: photons.npy and photons.json
+    /// Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each
     Photons,
 }
 

@@ -1,20 +1,16 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
-use crate::{load, pictures};
+use crate::{load, pictures, say};
 use etendue_compare::{Class, chain, steps};
 use etendue_scene::Scene;
 
 /// `etendue check`: returns the exit code.
-#[expect(
-    clippy::print_stdout,
-    reason = "the description is what the user asked for"
-)]
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, &[])?;
-    println!("{}", description(&scene));
+    say(&description(&scene));
     if let Some(path) = &args.draw {
         pictures::draw_scene(&scene, path)?;
-        println!("\ndrawn in {}", path.display());
+        say(&format!("\ndrawn in {}", path.display()));
     }
     Ok(0)
 }

@@ -11,7 +11,7 @@ pub(crate) struct Failure {
 /// Exit code of bad input.
 const BAD_INPUT: u8 = 2;
 /// Exit code of a run that cannot be made here: directory, disk, memory, interruption.
-const CANNOT_RUN: u8 = 3;
+pub(crate) const CANNOT_RUN: u8 = 3;
 
 impl Failure {
     pub(crate) fn bad_input(message: impl Display) -> Self {

@@ -42,18 +42,19 @@ fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
         .add("power", &plane.radial.power)?
         .add("predicted_power", &plane.predicted_radial)?
         .add("sigma", &plane.radial.sigma)?
+        .add("sigma_predicted", &plane.radial_sigma)?
         .add("shot_noise", &plane.radial.shot_noise)?
         .add("rho", &Array1::from(grid.rho.values()))?
         .add("nu", &Array1::from(grid.nu.values()))?
         .bytes()
 }
 
-/// Measured minus predicted radial power over its standard error.
+/// Measured minus predicted radial power over its standard deviation if the prediction is true.
 pub(crate) fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     z(
         &plane.radial.power,
         &plane.predicted_radial,
-        &plane.radial.sigma,
+        &plane.radial_sigma,
     )
 }
 

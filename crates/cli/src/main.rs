@@ -18,6 +18,7 @@ mod table;
 
 use args::{Cli, Command};
 use clap::Parser;
+use std::io::Write;
 use std::process::ExitCode;
 
 #[expect(clippy::print_stderr, reason = "this is where a command line speaks")]
@@ -33,4 +34,10 @@ fn main() -> ExitCode {
             ExitCode::from(failure.code)
         }
     }
+}
+
+/// Prints to standard output. A reader that has gone, or a full disk behind it, changes nothing that was
+/// done: the result and the exit code stand.
+pub(crate) fn say(text: &str) {
+    let _ = writeln!(std::io::stdout(), "{text}");
 }

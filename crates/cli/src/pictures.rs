@@ -3,14 +3,16 @@
 use crate::failure::Failure;
 use crate::files::{radial_z, z};
 use crate::results::Results;
+use crate::summary::Summary;
 use crate::table::word;
 use etendue_compare::{PlaneComparison, Prediction, stands_before};
-use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane};
+use etendue_field::{FrequencyAxis, ProjectionGrid, Side, SliceGrid, VirtualPlane};
 use etendue_figures::{
     Axis, Column, Comparison, Figure, Guide, Picture, PlaneMark, Quantity, Scale, Section, Segment,
     SegmentKind, Strip, comparison, section, strip,
 };
 use etendue_scene::Scene;
+use std::cmp::Ordering;
 use std::fs;
 use std::path::Path;
 
@@ -20,11 +22,12 @@ const FLOOR: f64 = -50.0;
 /// `primal` and `spectrum` of a plane.
 pub(crate) fn plane(
     results: &mut Results,
+    summary: &Summary,
     prediction: &Prediction,
     plane: &PlaneComparison,
 ) -> Result<(), Failure> {
     let name = &plane.report.name;
-    let note = verdict_line(plane);
+    let note = format!("{}; {}", made_from(summary), verdict_line(plane));
     let measured = &plane.projection.mean;
     let [x, u] = projection_axes(&measured.grid);
     let difference = z(
@@ -33,7 +36,10 @@ pub(crate) fn plane(
         &plane.projection.standard_error,
     );
     let primal = Comparison {
-        title: &format!("Light field at {}", spaced(name)),
+        title: &format!(
+            "{}: light field in (*x*, *u*), integrated over *y* and *v*",
+            spaced(name)
+        ),
         note: &note,
         x,
         y: u,
@@ -52,7 +58,11 @@ pub(crate) fn plane(
     let [rho, nu] = frequency_axes(&plane.measured.grid);
     let difference = radial_z(plane);
     let spectrum = Comparison {
-        title: &format!("Radial spectrum at {}", spaced(name)),
+        title: &format!(
+            "{}: radial spectrum, mean over {} azimuths",
+            spaced(name),
+            plane.measured.grid.azimuths
+        ),
         note: &note,
         x: rho,
         y: nu,
@@ -69,36 +79,30 @@ pub(crate) fn plane(
     )
 }
 
-/// The strip along the path.
+/// The strip along the path: the planes in the order in which light meets them.
 pub(crate) fn path(
     results: &mut Results,
+    summary: &Summary,
     scene: &Scene,
     planes: &[PlaneComparison],
 ) -> Result<(), Failure> {
-    let columns = scene.planes.iter().zip(planes).map(|(plane, compared)| {
-        let projection = &compared.projection.mean;
-        let [x, u] = projection_axes(&projection.grid);
-        let [rho, nu] = frequency_axes(&compared.measured.grid);
-        Column {
-            light_field: Picture {
-                x,
-                y: u,
-                values: projection.values.view(),
-            },
-            spectrum: Picture {
-                x: rho,
-                y: nu,
-                values: compared.radial.power.view(),
-            },
-            verdict: verdict_line(compared),
-            guides: guides(scene, plane),
-        }
+    let mut along: Vec<(&VirtualPlane, &PlaneComparison)> =
+        scene.planes.iter().zip(planes).collect();
+    along.sort_by(|(a, _), (b, _)| {
+        let place = |plane: &VirtualPlane| (plane.distance, plane.side == Side::After);
+        place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal)
     });
+    let columns = along
+        .iter()
+        .map(|(plane, compared)| column(scene, plane, compared));
     let figure = strip(&Strip {
         title: &format!("{}: the light field along the path, and its spectrum", scene.name),
-        note: "Measured. Dashed: where theory puts light that has travelled this far, *ν* = −*d* *ρ*, and its replicas at \
-               the blockers' frequency.",
-        section: &cross_section(scene),
+        note: &format!(
+            "Measured: {}; spectra are means over azimuths. Dashed: where theory puts light that has travelled \
+             this far, *ν* = −*d* *ρ*, and its replicas at azimuth 0.",
+            made_from(summary)
+        ),
+        section: &cross_section(scene, along.iter().map(|(plane, _)| *plane)),
         columns: columns.collect(),
         light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
@@ -106,6 +110,39 @@ pub(crate) fn path(
     })
     .map_err(Failure::cannot_run)?;
     write(results, "path", &figure)
+}
+
+/// What is shown under a plane.
+fn column<'a>(scene: &Scene, plane: &VirtualPlane, compared: &'a PlaneComparison) -> Column<'a> {
+    let projection = &compared.projection.mean;
+    let [x, u] = projection_axes(&projection.grid);
+    let [rho, nu] = frequency_axes(&compared.measured.grid);
+    Column {
+        light_field: Picture {
+            x,
+            y: u,
+            values: projection.values.view(),
+        },
+        spectrum: Picture {
+            x: rho,
+            y: nu,
+            values: compared.radial.power.view(),
+        },
+        verdict: verdict_line(compared),
+        guides: if compared.report.in_window > 0 {
+            guides(scene, plane)
+        } else {
+            Vec::new()
+        },
+    }
+}
+
+/// What a picture was made from, in a line.
+fn made_from(summary: &Summary) -> String {
+    format!(
+        "{}, {:e} photons, seed {}",
+        summary.scene, summary.photons as f64, summary.seed
+    )
 }
 
 /// Where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind blockers of
@@ -131,7 +168,8 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
 
 /// Draws the scene with its central ray and planes into a PNG or SVG file.
 pub(crate) fn draw_scene(scene: &Scene, path: &Path) -> Result<(), Failure> {
-    let figure = section(&cross_section(scene), &scene.name, "").map_err(Failure::cannot_run)?;
+    let figure = section(&cross_section(scene, scene.planes.iter()), &scene.name, "")
+        .map_err(Failure::cannot_run)?;
     let bytes = match path.extension().and_then(|e| e.to_str()) {
         Some("svg") => figure.svg.into_bytes(),
         Some("png") => figure.png().map_err(Failure::cannot_run)?,
@@ -155,7 +193,7 @@ fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), Failu
 }
 
 /// The scene in the plane of the central ray and X: what the plane y = 0 cuts.
-fn cross_section(scene: &Scene) -> Section {
+fn cross_section<'a>(scene: &Scene, planes: impl Iterator<Item = &'a VirtualPlane>) -> Section {
     let across =
         |kind, distance: f64, rectangle: &etendue_field::Rectangle, label: Option<&str>| {
             let [low, high] = rectangle.extent(0);
@@ -194,9 +232,7 @@ fn cross_section(scene: &Scene) -> Section {
     Section {
         length: scene.path.length,
         segments,
-        planes: scene
-            .planes
-            .iter()
+        planes: planes
             .map(|plane| PlaneMark {
                 name: spaced(&plane.name),
                 distance: plane.distance,
@@ -233,14 +269,13 @@ fn spectrum_quantity() -> Quantity {
 }
 
 fn verdict_line(plane: &PlaneComparison) -> String {
-    let p = plane
-        .report
-        .p_value
-        .map_or("no photons".to_owned(), |p| format!("*p* = {p:.3}"));
-    let chi2 = plane
-        .report
-        .chi2_per_dof
-        .map_or(String::new(), |t| format!(", *χ*^{{2}}/dof = {t:.3}"));
+    let p = match plane.report.p_value {
+        None => "no photons".to_owned(),
+        Some(p) if p < 0.001 => "*p* < 0.001".to_owned(),
+        Some(p) => format!("*p* = {p:.3}"),
+    };
+    let chi2 = plane.report.chi2_per_dof;
+    let chi2 = chi2.map_or(String::new(), |t| format!(", *χ*^{{2}}/dof = {t:.3}"));
     format!("{p}{chi2}, {}", word(plane.report.verdict))
 }
 

@@ -5,7 +5,7 @@ use ndarray_npy::{NpzWriter, WritableElement};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io::{self, BufWriter, Cursor, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// A results folder being written: every file to a temporary name first, then renamed, and hashed.
 ///
@@ -33,13 +33,29 @@ impl Results {
         })
     }
 
-    /// An earlier result in this folder stops being one before the first of its files is replaced.
+    /// Takes away an earlier result in this folder: first its summary, then the files that lists, so that none
+    /// of them stays beside those to come.
     pub(crate) fn begin(&self) -> Result<(), Failure> {
         let summary = self.folder.join(SUMMARY);
-        match fs::remove_file(&summary) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Failure::write(&summary, e)),
-            _ => Ok(()),
+        let Ok(text) = fs::read(&summary) else {
+            return Ok(());
+        };
+        fs::remove_file(&summary).map_err(|e| Failure::write(&summary, e))?;
+        let earlier: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
+        for name in earlier["files"]
+            .as_object()
+            .into_iter()
+            .flat_map(|files| files.keys())
+        {
+            let inside = Path::new(name)
+                .components()
+                .all(|c| matches!(c, Component::Normal(_)));
+            if inside {
+                // One that is gone already is no loss.
+                let _ = fs::remove_file(self.folder.join(name));
+            }
         }
+        Ok(())
     }
 
     /// Writes a file that the summary lists; `name` is relative to the folder, with `/`.

@@ -1,5 +1,5 @@
 use crate::args::{Expect, RunArgs, Save};
-use crate::failure::Failure;
+use crate::failure::{CANNOT_RUN, Failure};
 use crate::results::Results;
 use crate::summary::{Stopwatch, Summary};
 use crate::{files, load, photons, pictures, progress, table};
@@ -8,10 +8,6 @@ use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, measure};
 use etendue_trace::Tracer;
 use std::path::{Path, PathBuf};
-use std::sync::atomic::{AtomicBool, Ordering};
-
-/// Set when the user asks to stop.
-static INTERRUPTED: AtomicBool = AtomicBool::new(false);
 
 /// `etendue run`: returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
@@ -21,13 +17,20 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
         .clone()
         .unwrap_or_else(|| Path::new("out").join(&scene.name));
     let results = Results::create(&folder)?;
-    ctrlc::set_handler(|| INTERRUPTED.store(true, Ordering::Relaxed))
-        .map_err(Failure::cannot_run)?;
+    ctrlc::set_handler(interrupted).map_err(Failure::cannot_run)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(args.threads.unwrap_or(0).into())
         .build()
         .map_err(Failure::cannot_run)?;
     pool.install(|| measured_run(args, &scene, results))
+}
+
+/// Ends the process wherever it is: files are renamed into place whole, and the summary that would make the
+/// folder a result comes last.
+#[expect(clippy::print_stderr, clippy::exit, reason = "the user asked to stop")]
+fn interrupted() {
+    eprintln!("\ninterrupted: no result was written");
+    std::process::exit(i32::from(CANNOT_RUN));
 }
 
 /// The command line's own options as overrides of the scene.
@@ -39,7 +42,7 @@ fn options(args: &RunArgs) -> Vec<(&'static str, String)> {
 
 fn measured_run(args: &RunArgs, scene: &Scene, results: Results) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
-    let measurement = trace(scene, args.quiet)?;
+    let measurement = trace(scene, args.quiet);
     watch.lap("trace");
 
     let stage = progress::stage("predicting and comparing", args.quiet);
@@ -59,25 +62,23 @@ fn measured_run(args: &RunArgs, scene: &Scene, results: Results) -> Result<u8, F
     if !args.quiet {
         table::print(&summary, &folder);
     }
-    let agrees = summary.verdict == Verdict::Pass;
-    let wanted = agrees != (args.expect == Some(Expect::Disagreement));
-    Ok(u8::from(!wanted))
+    let wanted = match args.expect {
+        Some(Expect::Disagreement) => Verdict::Fail,
+        None => Verdict::Pass,
+    };
+    Ok(u8::from(summary.verdict != wanted))
 }
 
-fn trace(scene: &Scene, quiet: bool) -> Result<Measurement, Failure> {
+fn trace(scene: &Scene, quiet: bool) -> Measurement {
     let bar = progress::photons(scene.run.photons, quiet);
     let measurement = measure(
         &Tracer::new(scene),
         &scene.planes,
         0..scene.run.batches,
         &|photons| bar.inc(photons),
-        &|| INTERRUPTED.load(Ordering::Relaxed),
     );
     bar.finish_and_clear();
-    if INTERRUPTED.load(Ordering::Relaxed) {
-        return Err(Failure::cannot_run("interrupted; nothing was written"));
-    }
-    Ok(measurement)
+    measurement
 }
 
 fn compared(
@@ -108,9 +109,9 @@ fn written(
     results.begin()?;
     for (prediction, plane) in predictions.iter().zip(planes) {
         files::write(&mut results, summary, prediction, plane)?;
-        pictures::plane(&mut results, prediction, plane)?;
+        pictures::plane(&mut results, summary, prediction, plane)?;
     }
-    pictures::path(&mut results, scene, planes)?;
+    pictures::path(&mut results, summary, scene, planes)?;
     if args.save.contains(&Save::Photons) {
         photons::save(&mut results, scene, planes)?;
     }

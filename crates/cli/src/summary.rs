@@ -36,7 +36,10 @@ impl Summary {
         planes: &[PlaneComparison],
     ) -> Self {
         let reports: Vec<PlaneReport> = planes.iter().map(|p| p.report.clone()).collect();
-        let pass = reports.iter().all(|plane| plane.verdict == Verdict::Pass);
+        let any = |verdict| reports.iter().any(|plane| plane.verdict == verdict);
+        let worst = [Verdict::Fail, Verdict::Undecided]
+            .into_iter()
+            .find(|v| any(*v));
         let sums = measurement.ledger();
         let photons = measurement.emitted();
         // Cannot fail: a scene file is plain data with finite numbers.
@@ -52,7 +55,7 @@ impl Summary {
             batches: scene.run.batches,
             ledger: sums.scaled(1.0 / photons as f64),
             ledger_imbalance: sums.imbalance(),
-            verdict: if pass { Verdict::Pass } else { Verdict::Fail },
+            verdict: worst.unwrap_or(Verdict::Pass),
             alpha: scene.run.alpha,
             planes: reports,
         }

@@ -1,13 +1,13 @@
 //! What the run came to, at a glance.
 
+use crate::say;
 use crate::summary::Summary;
 use etendue_compare::{PlaneReport, Verdict};
 use std::path::Path;
 
-#[expect(clippy::print_stdout, reason = "the table is what the user asked for")]
 pub(crate) fn print(summary: &Summary, folder: &Path) {
-    println!("{}", text(summary));
-    println!("results in {}", folder.display());
+    say(&text(summary));
+    say(&format!("results in {}", folder.display()));
 }
 
 fn text(summary: &Summary) -> String {
@@ -55,14 +55,14 @@ fn planes(summary: &Summary) -> Vec<Vec<String>> {
             plane.name.clone(),
             grouped(plane.in_window),
             number(plane.chi2_per_dof, 3),
-            number(plane.p_value, 4),
+            number(plane.p_value, 5),
             percent(plane.relative_error),
             percent(plane.noise_limit),
             match (plane.slope.measured, plane.slope.error) {
                 (Some(value), Some(error)) => uncertain(value, error),
                 _ => number(None, 0),
             },
-            number(plane.slope.predicted, 4),
+            predicted(plane),
             word(plane.verdict).to_owned(),
         ]
     };
@@ -127,27 +127,62 @@ fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
 }
 
 fn verdict_text(summary: &Summary) -> String {
-    let failed: Vec<&str> = summary
-        .planes
-        .iter()
-        .filter(|p| p.verdict == Verdict::Fail)
-        .map(|p| p.name.as_str())
-        .collect();
+    let at = |verdict: Verdict| -> String {
+        let planes = summary.planes.iter().filter(|p| p.verdict == verdict);
+        let names: Vec<&str> = planes.map(|p| p.name.as_str()).collect();
+        names.join(", ")
+    };
     let alpha = 100.0 * summary.alpha;
-    if failed.is_empty() {
-        format!("pass: no plane disagrees with its prediction (α = {alpha} % over all planes)")
-    } else {
-        format!(
+    match summary.verdict {
+        Verdict::Pass => {
+            format!("pass: no plane disagrees with its prediction (α = {alpha} % over all planes)")
+        }
+        Verdict::Fail => format!(
             "fail: measured and predicted disagree at {}",
-            failed.join(", ")
-        )
+            at(Verdict::Fail)
+        ),
+        Verdict::Undecided => {
+            let needed = summary
+                .planes
+                .iter()
+                .filter_map(|p| p.photons_needed)
+                .fold(0.0, f64::max);
+            format!(
+                "undecided: too much noise at {}; needs {needed:.0e} photons",
+                at(Verdict::Undecided)
+            )
+        }
     }
+}
+
+/// The predicted slope to as many digits as the measured one has.
+fn predicted(plane: &PlaneReport) -> String {
+    match (plane.slope.predicted, plane.slope.error) {
+        (Some(value), Some(error)) if error > 0.0 => {
+            let digits = decimals(error);
+            // Adding 0 turns a rounded −0 into 0.
+            let unit = 10f64.powi(i32::try_from(digits).unwrap_or(0));
+            format!("{:.digits$}", (value * unit).round() / unit + 0.0)
+        }
+        (value, _) => number(value, 4),
+    }
+}
+
+/// Decimals that show two digits of an error.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "between 0 and 17"
+)]
+fn decimals(error: f64) -> usize {
+    (1.0 - error.log10().floor()).clamp(0.0, 17.0) as usize
 }
 
 pub(crate) fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "pass",
         Verdict::Fail => "fail",
+        Verdict::Undecided => "undecided",
     }
 }
 
@@ -164,12 +199,7 @@ fn uncertain(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
         return format!("{value}");
     }
-    #[expect(
-        clippy::cast_possible_truncation,
-        clippy::cast_sign_loss,
-        reason = "between 0 and 17"
-    )]
-    let digits = (1.0 - error.log10().floor()).clamp(0.0, 17.0) as usize;
+    let digits = decimals(error);
     format!("{value:.digits$} ± {error:.digits$}")
 }
 

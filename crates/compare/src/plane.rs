@@ -21,6 +21,8 @@ pub struct PlaneComparison {
     pub radial: RadialPower,
     /// The predicted radial spectrum, [ρ, ν].
     pub predicted_radial: Array2<f64>,
+    /// Standard deviation of measured minus predicted radial power if the prediction is true, [ρ, ν].
+    pub radial_sigma: Array2<f64>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
 }
@@ -51,6 +53,7 @@ pub fn compare(
     let predicted_radial = predicted.radial_power();
     let agreement = Agreement::new(&residuals, &estimate.variance, &predicted);
     let p_value = residuals.p_value(seed);
+    let verdict = verdict(&predicted, &tally, p_value, level, agreement.noise_limit());
     let grid = &plane.grid;
     let pair =
         |of: &dyn Fn(ArrayView2<'_, f64>) -> Option<f64>| pair(&power, &predicted_radial, of);
@@ -81,14 +84,21 @@ pub fn compare(
             rho: pair(&|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
             nu: pair(&|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
         },
-        verdict: verdict(&predicted, &tally, p_value, level),
-        warnings: warnings(&agreement, &predicted_radial, grid),
+        verdict,
+        photons_needed: (verdict == Verdict::Undecided).then(|| {
+            photons_needed(
+                measurement.emitted(),
+                agreement.noise_limit().unwrap_or_default(),
+            )
+        }),
+        warnings: warnings(&predicted_radial, grid),
     };
     Ok(PlaneComparison {
         report,
         measured: estimate.mean,
         sigma: estimate.variance.mapv(f64::sqrt),
         radial: power.radial(),
+        radial_sigma: residuals.radial_sigma(&predicted, &estimate.variance),
         predicted_radial,
         projection: estimate::projection(measurement, index)?,
     })
@@ -119,15 +129,34 @@ fn without_rounding(prediction: &Prediction) -> Slices {
     }
 }
 
-/// An exact prediction passes when p reaches the level; a dark one when not a single photon came.
-fn verdict(predicted: &Slices, tally: &PlaneTally, p_value: Option<f64>, level: f64) -> Verdict {
+/// The largest noise, as a share of the spectrum, with which agreement means something.
+const RESOLVED: f64 = 0.5;
+
+/// An exact prediction passes when p reaches the level and noise does not drown it; a dark one when not a
+/// single photon came.
+fn verdict(
+    predicted: &Slices,
+    tally: &PlaneTally,
+    p_value: Option<f64>,
+    level: f64,
+    noise: Option<f64>,
+) -> Verdict {
     let dark = predicted.half.iter().all(|f| f.norm_sqr() <= 0.0);
-    let pass = if dark {
+    let agrees = if dark {
         tally.inside == 0
     } else {
         p_value.is_some_and(|p| p >= level)
     };
-    if pass { Verdict::Pass } else { Verdict::Fail }
+    match (agrees, noise.is_some_and(|noise| noise > RESOLVED)) {
+        (false, _) => Verdict::Fail,
+        (true, true) => Verdict::Undecided,
+        (true, false) => Verdict::Pass,
+    }
+}
+
+/// Photons that bring the noise to where agreement means something.
+fn photons_needed(emitted: u64, noise: f64) -> f64 {
+    (emitted as f64 * (noise / RESOLVED).powi(2)).ceil()
 }
 
 /// How far measured and predicted are apart, over the independent frequencies.
@@ -197,15 +226,12 @@ fn cross_power_error(products: &Array2<f64>) -> f64 {
 const BORDER: f64 = 1e-2;
 
 /// Limits of the measurement, in words.
-fn warnings(agreement: &Agreement, predicted: &Array2<f64>, grid: &SliceGrid) -> Vec<String> {
+fn warnings(predicted: &Array2<f64>, grid: &SliceGrid) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let Some(limit) = agreement.noise_limit().filter(|limit| *limit > 0.5) {
-        warnings.push(format!(
-            "noise is {:.0} % of the spectrum: too few photons to tell much",
-            100.0 * limit
-        ));
-    }
     let peak = predicted.iter().copied().fold(0.0, f64::max);
+    if peak <= 0.0 {
+        warnings.push("no light is predicted in this window".to_owned());
+    }
     let at = |axis: ndarray::Axis| {
         let first = predicted.index_axis(axis, 0);
         first.iter().copied().fold(0.0, f64::max)

@@ -11,6 +11,8 @@ pub enum Verdict {
     Pass,
     /// They do not.
     Fail,
+    /// No disagreement was seen, but noise would have hidden one: the plane needs more photons.
+    Undecided,
 }
 
 /// Measured and predicted values of one number.
@@ -74,6 +76,8 @@ pub struct PlaneReport {
     pub bandwidth_95: Bandwidth,
     /// What it comes to.
     pub verdict: Verdict,
+    /// Photons that would decide an undecided plane.
+    pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,
 }

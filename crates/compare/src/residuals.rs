@@ -1,7 +1,7 @@
 use etendue_field::random::{self, Stream};
 use etendue_field::{Complex, SliceGrid, Slices};
 use etendue_spectrum::{Measurement, PlaneBatch};
-use ndarray::{Array2, Array3};
+use ndarray::{Array2, Array3, Axis};
 
 /// Measured minus predicted slices, batch by batch.
 ///
@@ -115,6 +115,40 @@ impl Residuals {
         Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
     }
 
+    /// Standard deviation of the measured radial power around the predicted one, if F is true; [ρ, ν].
+    ///
+    /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first term is a
+    /// mean over batches, its variance their spread; the second has the variance σ⁴ at each azimuth.
+    /// Unlike the jackknife error of the power itself this does not follow the power's own fluctuation.
+    pub(crate) fn radial_sigma(&self, prediction: &Slices, variance: &Array3<f64>) -> Array2<f64> {
+        let azimuths = self.grid.azimuths as f64;
+        let half = self.grid.half_shape();
+        let r = self.count() as f64;
+        let (mut sum, mut squares) = (
+            Array2::<f64>::zeros((half[1], half[2])),
+            Array2::<f64>::zeros((half[1], half[2])),
+        );
+        for residual in &self.batches {
+            let mut cross = Array3::<f64>::zeros(half);
+            ndarray::Zip::from(&mut cross)
+                .and(residual)
+                .and(&prediction.half)
+                .for_each(|c, r, f| *c = 2.0 * (f.re * r.re + f.im * r.im));
+            let mean = cross.sum_axis(Axis(0)) / azimuths;
+            squares += &mean.mapv(|c| c * c);
+            sum += &mean;
+        }
+        let spread = (squares - sum.mapv(|s| s * s) / r) / (r * (r - 1.0));
+        let noise = variance.mapv(|v| v * v).sum_axis(Axis(0)) / (azimuths * azimuths);
+        let sigma = (spread + noise).mapv(|v| v.max(0.0).sqrt());
+        let one = SliceGrid {
+            azimuths: 1,
+            ..self.grid
+        };
+        one.unfold_even(sigma.view().insert_axis(Axis(0)))
+            .index_axis_move(Axis(0), 0)
+    }
+
     /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with s = 1
     /// or s = Σ_b |r_b|² at each frequency.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
@@ -143,8 +177,8 @@ impl Residuals {
 
     /// Real and imaginary parts of the independent cells of azimuth `k`, over the root of `scale`.
     fn row(&self, residual: &Array3<Complex>, scale: &Array3<f64>, k: usize) -> Vec<f64> {
-        let plane = residual.index_axis(ndarray::Axis(0), k);
-        let scale = scale.index_axis(ndarray::Axis(0), k);
+        let plane = residual.index_axis(Axis(0), k);
+        let scale = scale.index_axis(Axis(0), k);
         let mut row = Vec::with_capacity(2 * plane.len());
         for (((m, n), value), scale) in plane.indexed_iter().zip(scale) {
             if self.grid.is_independent(m, n) {

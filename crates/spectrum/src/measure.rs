@@ -12,8 +12,7 @@ pub const PROJECTION_BINS: usize = 64;
 /// Measures `batches` of photons from `source` at `planes`, on the threads of the current rayon pool.
 ///
 /// A batch is the sequential work of one thread, so the result is the same to the bit on any number of
-/// threads. `progress` is told the photons as they are traced. Once `cancelled` returns true no further
-/// batch is begun; those under way are finished and the result is the partial one of the batches done.
+/// threads. `progress` is told the photons as they are traced.
 ///
 /// A batch that emits nothing measures nothing and is left out: with fewer photons than batches the result
 /// holds as many batches as photons.
@@ -23,7 +22,6 @@ pub fn measure(
     planes: &[VirtualPlane],
     batches: Range<u32>,
     progress: &(dyn Fn(u64) + Sync),
-    cancelled: &(dyn Fn() -> bool + Sync),
 ) -> Measurement {
     let plans: Vec<_> = planes
         .iter()
@@ -39,7 +37,7 @@ pub fn measure(
         .into_par_iter()
         .with_max_len(1)
         .map_init(recorders, |recorders, index| {
-            let wanted = source.emitted(index) > 0 && !cancelled();
+            let wanted = source.emitted(index) > 0;
             wanted.then(|| measure_batch(source, index, recorders, progress))
         })
         .collect();

@@ -25,7 +25,7 @@ fn shower() -> Shower {
 }
 
 fn run(source: &Shower, batches: std::ops::Range<u32>) -> Measurement {
-    measure(source, &source.planes, batches, &|_| (), &|| false)
+    measure(source, &source.planes, batches, &|_| ())
 }
 
 #[test]
@@ -107,44 +107,27 @@ fn what_does_not_belong_together_is_refused() {
 
     let mut moved = planes();
     moved[1].distance += 1e-9;
-    let other = measure(&source, &moved, 5..6, &|_| (), &|| false);
+    let other = measure(&source, &moved, 5..6, &|_| ());
     let refused = run(&source, 0..1).merge(other).unwrap_err();
     assert!(matches!(refused, MergeError::Planes(..)));
 
     let mut finer = planes();
     finer[0].grid.rho.half += 1;
-    let batch = measure(&source, &finer, 5..6, &|_| (), &|| false);
+    let batch = measure(&source, &finer, 5..6, &|_| ());
     let batch = batch.batches().next().unwrap().clone();
     let refused = run(&source, 0..1).insert(batch).unwrap_err();
     assert!(matches!(refused, MergeError::Shape { batch: 5, .. }));
 }
 
 #[test]
-fn cancelling_leaves_whole_batches() {
+fn progress_tells_every_photon() {
     let source = shower();
     let traced = AtomicU64::new(0);
-    let pool = rayon::ThreadPoolBuilder::new()
-        .num_threads(1)
-        .build()
-        .unwrap();
-    let partial = pool.install(|| {
-        measure(
-            &source,
-            &source.planes,
-            0..10,
-            &|photons| {
-                traced.fetch_add(photons, Ordering::Relaxed);
-            },
-            &|| traced.load(Ordering::Relaxed) >= 1_200,
-        )
-    });
-    // 501 + 501 are not yet 1200; with the third batch they are.
-    assert_eq!(partial.batches().len(), 3);
-    assert_eq!(partial.emitted(), traced.into_inner());
-    let whole = run(&source, 0..10);
-    for batch in partial.batches() {
-        assert!(whole.batches().any(|b| b == batch));
-    }
+    let count = |photons| {
+        traced.fetch_add(photons, Ordering::Relaxed);
+    };
+    let measurement = measure(&source, &source.planes, 0..10, &count);
+    assert_eq!(measurement.emitted(), traced.into_inner());
 }
 
 #[test]

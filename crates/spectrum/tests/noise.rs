@@ -18,7 +18,7 @@ fn white(seed: u64, photons: u64, batches: u32, fineness: f64) -> Measurement {
         planes: vec![plane],
     });
     let planes: &[VirtualPlane] = &source.0.planes;
-    measure(&source, planes, 0..batches, &|_| (), &|| false)
+    measure(&source, planes, 0..batches, &|_| ())
 }
 
 /// A shower with every photon inside the window.
