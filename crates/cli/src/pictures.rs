@@ -98,9 +98,8 @@ pub(crate) fn path(
     let figure = strip(&Strip {
         title: &format!("{}: the light field along the path, and its spectrum", scene.name),
         note: &format!(
-            "Measured: {}; spectra are means over azimuths. Dashed: where theory puts light that has travelled \
-             this far, *ν* = −*d* *ρ*, and its replicas at azimuth 0.",
-            made_from(summary)
+            "{:e} photons, seed {}; spectra are means over azimuths. Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
+            summary.photons as f64, summary.seed
         ),
         section: &cross_section(scene, along.iter().map(|(plane, _)| *plane)),
         columns: columns.collect(),

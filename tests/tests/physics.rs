@@ -1,0 +1,134 @@
+//! Scenes that must pass and scenes that must not, end to end: from scene text to verdict.
+
+use etendue_compare::{Prediction, Verdict, compare, sidak};
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::measure;
+use etendue_trace::Tracer;
+
+const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
+
+/// Photons of each run: noise is 2 to 4 % of each spectrum.
+const PHOTONS: u64 = 400_000;
+
+/// fig9b with parts of its text replaced.
+fn scene(edits: &[(&str, &str)]) -> Scene {
+    let mut text = FIG9B.to_owned();
+    for (from, to) in edits {
+        assert!(text.contains(from), "{from} is not in the scene");
+        text = text.replace(from, to);
+    }
+    let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
+    file.run.photons = PHOTONS;
+    resolve("test", file, u64::MAX).expect("the edited scene is sound")
+}
+
+/// The verdicts of all planes of `traced`, held against the predictions of `predicted`.
+fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
+    let measurement = measure(
+        &Tracer::new(traced),
+        &traced.planes,
+        0..traced.run.batches,
+        &|_| (),
+    );
+    let level = sidak(traced.run.alpha, traced.planes.len());
+    predicted
+        .planes
+        .iter()
+        .enumerate()
+        .map(|(i, plane)| {
+            let prediction = Prediction::new(predicted, plane);
+            compare(&measurement, i, &prediction, level, 1)
+                .expect("a resolved scene has enough batches")
+                .report
+                .verdict
+        })
+        .collect()
+}
+
+/// What is beside, behind, large, small, far, turned or dark must agree as fig9b does.
+#[test]
+fn other_scenes_agree() {
+    let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
+                 (name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
+    let two_layers = r#"JitteredSquares(name: "more", center: (0.02, 0, 1.4), count: (6, 6), pitch: 0.2, fill: 0.4),
+        JitteredSquares("#;
+    let floor = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),"#;
+    let scenes: [(&str, &[(&str, &str)]); 8] = [
+        ("a surface beside the central ray", &[(floor, fin)]),
+        (
+            "two layers",
+            &[
+                ("JitteredSquares(", two_layers),
+                ("count: (20, 20)", "count: (8, 8)"),
+            ],
+        ),
+        (
+            "closed blockers",
+            &[("fill: 0.6", "fill: 1"), ("jitter: 0.3", "jitter: 0")],
+        ),
+        (
+            "light wider than the window",
+            &[("size: (0.2, 0.2)", "size: (3, 0.1)")],
+        ),
+        ("plain emission", &[("Aimed", "Plain")]),
+        (
+            "box and cut Gaussian",
+            &[
+                (
+                    "(x: Hann(0.5), u: Hann(0.5))",
+                    "(x: Box(0.4), y: Gaussian(width: 0.3, cut: 0.4), u: Hann(0.5))",
+                ),
+                ("count: (20, 20)", "count: (4, 4)"),
+                (
+                    "azimuths: 8, rho: (max: 16), nu: (max: 32)",
+                    "azimuths: 3, rho: (max: 6), nu: (max: 8)",
+                ),
+            ],
+        ),
+        (
+            "millimetres",
+            &[
+                ("size: (0.2, 0.2)", "size: (2e-4, 2e-4)"),
+                ("pitch: 0.1", "pitch: 1e-4"),
+                (
+                    "(0, 0, 1),\n            count",
+                    "(0, 0, 1e-3),\n            count",
+                ),
+                ("center: (0, 0, 2)", "center: (0, 0, 2e-3)"),
+                ("x: Hann(0.5)", "x: Hann(5e-4)"),
+                ("rho: (max: 16)", "rho: (max: 16e3)"),
+                ("nu: (max: 32)", "nu: (max: 32)"),
+            ],
+        ),
+        (
+            "a turned world",
+            &[
+                ("center: (0, 0, 1)", "center: (1, 0, 0)"),
+                ("center: (0, 0, 2)", "center: (2, 0, 0)"),
+                (
+                    "direction: (0, 0, 1), x_axis: (1, 0, 0)",
+                    "direction: (1, 0, 0), x_axis: (0, 1, 1)",
+                ),
+            ],
+        ),
+    ];
+    for (name, edits) in scenes {
+        let scene = scene(edits);
+        let verdicts = verdicts(&scene, &scene);
+        assert!(
+            verdicts.iter().all(|v| *v == Verdict::Pass),
+            "{name}: {verdicts:?}"
+        );
+    }
+}
+
+/// A prediction that forgets the surface beside the ray is rejected behind it, and only there.
+#[test]
+fn a_forgotten_surface_is_noticed() {
+    let fin = r#"surfaces: [(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
+    let verdicts = verdicts(&scene(&[("surfaces: [", fin)]), &scene(&[]));
+    assert_eq!(
+        verdicts,
+        [Verdict::Pass, Verdict::Pass, Verdict::Pass, Verdict::Fail]
+    );
+}
