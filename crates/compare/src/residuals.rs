@@ -55,7 +55,7 @@ impl Residuals {
         sum / Complex::from(self.count() as f64)
     }
 
-    /// Variance of S − F from the spread of the batches: Σ|r_b − r̄|² / (R (R − 1)), [azimuth, ρ ≥ 0, ν].
+    /// Variance of S − F from the spread of the batches (docs/theory.md, Eq. 12): Σ|r_b − r̄|² / (R (R − 1)), [azimuth, ρ ≥ 0, ν].
     #[must_use]
     pub fn variance(&self) -> Array3<f64> {
         let mean = self.mean();

@@ -22,7 +22,7 @@ pub struct ParameterReport {
 /// the normal quantiles 2.576 + 1.282.
 const DETECTABLE: f64 = 3.858;
 
-/// The score test of one parameter: projects S − F on ∂F/∂parameter, weighted by 1/σ².
+/// The score test of one parameter (docs/theory.md, section 6): projects S − F on ∂F/∂parameter, weighted by 1/σ².
 ///
 /// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; its error
 /// is the spread of δ over the batches, so correlations between frequencies are in it. To first order in δ.

@@ -14,7 +14,7 @@ pub struct Source {
 /// What happens to the light field on its way.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operator {
-    /// Free travel: ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3).
+    /// Free travel (docs/theory.md, Eq. 2): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3).
     Travel {
         /// Where the light comes from.
         from: String,

@@ -1,7 +1,7 @@
 //! The transforms of many polygons along a row of frequencies, without an exponential per polygon and
-//! frequency.
+//! frequency (docs/theory.md, section 3).
 //!
-//! An edge form with the field k exp(−2πi k·p) telescopes to the corners p, between edges of directions d
+//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, between edges of directions d
 //! and e:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)

@@ -30,7 +30,7 @@ pub(crate) struct Term {
     pub(crate) polygons: [usize; 2],
 }
 
-/// The light field of a chain inside a window, multiplied out: radiance · Σ terms.
+/// The light field of a chain inside a window, multiplied out: radiance · Σ terms (docs/theory.md, Eq. 4).
 ///
 /// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times one in (y, v), so the product
 /// source · Π_layers (1 − Σ blockers) is a signed sum of products of convex polygons.

@@ -55,7 +55,7 @@ impl Grating {
 
 /// The field |x − D v| < w/2 of an area light of width w at distance D under the window:
 /// q^(−1/2) exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² + 1/b²,
-/// P = 1/(a²b²q), Q = Ωx − Dω/(a²q).
+/// P = 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md, Eq. 9).
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
@@ -116,7 +116,8 @@ pub fn blocked_by_strip(
 }
 
 /// A field times g(v) = (1 + v²)^(−3/2), from the same field under other Gaussian windows:
-/// g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds adds s²/π to 1/b².
+/// g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds adds s²/π to 1/b²
+/// (docs/theory.md, Eq. 8).
 ///
 /// The integrand is even and analytic in s: the trapezoid rule converges exponentially.
 #[must_use]
