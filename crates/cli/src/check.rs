@@ -6,7 +6,7 @@ use etendue_scene::Scene;
 
 /// `etendue check`: returns the exit code.
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, &[])?;
+    let scene = load::scene(&args.scene, |_| ())?;
     say(&description(&scene));
     if let Some(path) = &args.draw {
         pictures::draw_scene(&scene, path)?;

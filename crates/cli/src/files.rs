@@ -124,6 +124,14 @@ fn provenance(summary: &Summary, plane: &PlaneComparison) -> (Text, AttributeVal
         "rho_max": grid.rho.max(),
         "nu_max": grid.nu.max(),
     });
-    let text = Text::new_or_panic(text.to_string());
+    // EXR holds Latin-1: what is not ASCII is written as JSON escapes.
+    let mut ascii = String::new();
+    for unit in text.to_string().encode_utf16() {
+        match u8::try_from(unit).ok().filter(u8::is_ascii) {
+            Some(byte) => ascii.push(char::from(byte)),
+            None => ascii.push_str(&format!("\\u{unit:04x}")),
+        }
+    }
+    let text = Text::new_or_panic(ascii);
     (Text::new_or_panic("provenance"), AttributeValue::Text(text))
 }

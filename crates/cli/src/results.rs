@@ -40,19 +40,24 @@ impl Results {
         let Ok(text) = fs::read(&summary) else {
             return Ok(());
         };
-        fs::remove_file(&summary).map_err(|e| Failure::write(&summary, e))?;
         let earlier: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
-        for name in earlier["files"]
-            .as_object()
-            .into_iter()
-            .flat_map(|files| files.keys())
-        {
+        if earlier.get("scene_hash").is_none() {
+            return Err(Failure::write(
+                &summary,
+                "the file there is not of this program",
+            ));
+        }
+        fs::remove_file(&summary).map_err(|e| Failure::write(&summary, e))?;
+        for (name, hash) in earlier["files"].as_object().into_iter().flatten() {
+            let path = self.folder.join(name);
             let inside = Path::new(name)
                 .components()
                 .all(|c| matches!(c, Component::Normal(_)));
-            if inside {
-                // One that is gone already is no loss.
-                let _ = fs::remove_file(self.folder.join(name));
+            // What someone has changed since is theirs.
+            let unchanged =
+                || fs::read(&path).is_ok_and(|b| *hash == blake3::hash(&b).to_hex().as_str());
+            if inside && unchanged() {
+                fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
             }
         }
         Ok(())

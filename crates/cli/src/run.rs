@@ -11,7 +11,10 @@ use std::path::{Path, PathBuf};
 
 /// `etendue run`: returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, &options(args))?;
+    let scene = load::scene(&args.scene, |run| {
+        run.photons = args.photons.unwrap_or(run.photons);
+        run.seed = args.seed.unwrap_or(run.seed);
+    })?;
     let folder = args
         .out
         .clone()
@@ -31,13 +34,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 fn interrupted() {
     eprintln!("\ninterrupted: no result was written");
     std::process::exit(i32::from(CANNOT_RUN));
-}
-
-/// The command line's own options as overrides of the scene.
-fn options(args: &RunArgs) -> Vec<(&'static str, String)> {
-    let photons = args.photons.map(|n| ("run.photons", n.to_string()));
-    let seed = args.seed.map(|n| ("run.seed", n.to_string()));
-    photons.into_iter().chain(seed).collect()
 }
 
 fn measured_run(args: &RunArgs, scene: &Scene, results: Results) -> Result<u8, Failure> {

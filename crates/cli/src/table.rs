@@ -148,11 +148,18 @@ fn verdict_text(summary: &Summary) -> String {
                 .filter_map(|p| p.photons_needed)
                 .fold(0.0, f64::max);
             format!(
-                "undecided: too much noise at {}; needs {needed:.0e} photons",
-                at(Verdict::Undecided)
+                "undecided: too much noise at {}; needs {:.0e} photons",
+                at(Verdict::Undecided),
+                rounded_up(needed)
             )
         }
     }
+}
+
+/// The next number of one digit.
+fn rounded_up(x: f64) -> f64 {
+    let unit = 10f64.powf(x.max(1.0).log10().floor());
+    (x / unit).ceil() * unit
 }
 
 /// The predicted slope to as many digits as the measured one has.

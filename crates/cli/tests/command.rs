@@ -229,10 +229,10 @@ fn bad_input_is_refused_with_a_message() {
             &["line", "column"],
         ),
         (
-            "too few photons",
-            text.replace("photons: 10_000_000", "photons: 5"),
+            "too few batches",
+            text.replace("batches: 64", "batches: 3"),
             2,
-            &["run.photons", "64"],
+            &["run.batches", "32"],
         ),
         (
             "larger than memory",
@@ -250,7 +250,7 @@ fn bad_input_is_refused_with_a_message() {
             let mut call = etendue();
             call.arg(command).arg(&file);
             if command == "run" {
-                call.arg("--out").arg(&out);
+                call.args(["--photons", "1e5", "--out"]).arg(&out);
             }
             let output = call.output().unwrap();
             let message = String::from_utf8(output.stderr).unwrap();

@@ -60,7 +60,7 @@ pub struct PlaneReport {
     pub noise_limit: Option<f64>,
     /// Signed root of relative error² − noise limit²: the disagreement beyond noise.
     pub excess: Option<f64>,
-    /// Standard error of the square of `excess`, from a jackknife over batches.
+    /// Standard error of the square of `excess` if the prediction is true.
     pub excess_squared_error: Option<f64>,
     /// 10 log₁₀ of the mean σ² over the largest |F|².
     pub noise_floor_db: Option<f64>,

@@ -55,21 +55,6 @@ impl Residuals {
         sum / Complex::from(self.count() as f64)
     }
 
-    /// Variance of S − F from the spread of the batches (docs/theory.md, Eq. 12): Σ|r_b − r̄|² / (R (R − 1)), [azimuth, ρ ≥ 0, ν].
-    #[must_use]
-    pub fn variance(&self) -> Array3<f64> {
-        let mean = self.mean();
-        let mut sum = Array3::zeros(self.grid.half_shape());
-        for residual in &self.batches {
-            ndarray::Zip::from(&mut sum)
-                .and(residual)
-                .and(&mean)
-                .for_each(|sum: &mut f64, r, m| *sum += (r - m).norm_sqr());
-        }
-        let r = self.count() as f64;
-        sum / (r * (r - 1.0))
-    }
-
     /// The independent cells of an array on the half-plane, in one order for all arrays.
     fn cells<'a, T>(&self, array: &'a Array3<T>) -> impl Iterator<Item = &'a T> {
         let grid = self.grid;
@@ -200,7 +185,7 @@ impl Residuals {
     /// correlations between neighbouring frequencies included. p is the share of rounds, the observed one
     /// counted in, that reach the observed value.
     ///
-    /// `None` when no photon came.
+    /// `None` when all residuals are zero: nothing measured and nothing predicted.
     #[must_use]
     pub fn p_value(&self, seed: u64) -> Option<f64> {
         let products = self.products(true);

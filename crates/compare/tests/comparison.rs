@@ -135,7 +135,7 @@ fn truth_passes_with_chi2_of_one_and_no_excess() {
         .unwrap()
         .report;
     assert_eq!(report.verdict, Verdict::Pass);
-    // 176 independent complex numbers: a standard deviation of 1/√176 = 0.075, four of them.
+    // 170 independent complex numbers: a standard deviation of 1/√170 = 0.077, four of them.
     assert!(
         (report.chi2_per_dof.unwrap() - 1.0).abs() < 0.3,
         "{report:?}"
@@ -164,6 +164,21 @@ fn a_wrong_parameter_is_rejected_and_measured() {
         (width.measured - 1.02).abs() < 4.0 * width.error + 0.002,
         "{width:?}"
     );
+}
+
+/// Where noise drowns the spectrum nothing is decided, however p falls.
+#[test]
+fn noise_decides_nothing() {
+    let [truth, _] = spectrum(1.0);
+    for seed in 0..5 {
+        let noisy = measurement(&truth, 3.0, seed);
+        let report = compare(&noisy, 0, &prediction(1.0), 0.01, 1)
+            .unwrap()
+            .report;
+        assert!(report.noise_limit.unwrap() > 0.5, "{report:?}");
+        assert_eq!(report.verdict, Verdict::Undecided);
+        assert!(report.photons_needed.unwrap() > 6400.0);
+    }
 }
 
 #[test]

@@ -58,11 +58,18 @@ pub struct Frame {
 impl Frame {
     /// The frame at `origin` with D along `d` and X as near to `x` as orthogonality allows.
     ///
-    /// `None` when `d` or the part of `x` orthogonal to it has no length.
+    /// `None` when `d` or `x` has no length, or they are parallel to a millionth.
     #[must_use]
     pub fn new(origin: DVec3, d: DVec3, x: DVec3) -> Option<Self> {
         let d = d.try_normalize()?;
-        let x = (x - d * d.dot(x)).try_normalize()?;
+        let x = x.try_normalize()?;
+        let across = x - d * d.dot(x);
+        if across.length() < 1e-6 {
+            return None;
+        }
+        // What rounding has left along d of a short vector is taken off once more.
+        let across = across.normalize();
+        let x = (across - d * d.dot(across)).normalize();
         Some(Self {
             origin,
             x,
@@ -124,5 +131,9 @@ mod tests {
     fn frame_needs_two_directions() {
         assert!(Frame::new(DVec3::ZERO, DVec3::Z, DVec3::Z).is_none());
         assert!(Frame::new(DVec3::ZERO, DVec3::ZERO, DVec3::X).is_none());
+        let d = DVec3::new(0.1, 0.2, 0.3);
+        assert!(Frame::new(DVec3::ZERO, d, DVec3::new(0.3, 0.6, 0.9)).is_none());
+        let near = Frame::new(DVec3::ZERO, d, d + DVec3::new(1e-5, 0.0, 0.0)).unwrap();
+        assert!(near.x.dot(near.d).abs() < 1e-15); // rounding of unit vectors
     }
 }

@@ -26,6 +26,15 @@ impl Rectangle {
             && 2.0 * (y - self.center[1]).abs() <= self.size[1]
     }
 
+    /// The largest coordinate of a point of it, without its sign.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        let ends = [self.extent(0), self.extent(1)];
+        ends.as_flattened()
+            .iter()
+            .fold(0.0, |m: f64, v| m.max(v.abs()))
+    }
+
     /// Area, in square metres.
     #[must_use]
     pub fn area(&self) -> f64 {

@@ -28,6 +28,10 @@ pub fn resolve(name: &str, file: SceneFile, memory: u64) -> Result<Scene, SceneE
 
 /// Blockers a layer may hold: the prediction of more that are seen takes many minutes.
 const MOST_BLOCKERS: u64 = 100_000;
+/// Products of blockers of several layers a prediction may have to go through.
+const MOST_PAIRS: f64 = 1e6;
+/// Ten times the smallest p-value there is.
+const LEAST_LEVEL: f64 = 5e-4;
 /// Relative distance below which two planes across the path are one.
 const SAME_PLANE: f64 = 1e-9;
 
@@ -40,6 +44,8 @@ impl Resolver<'_> {
         let frame = self.frame(&file);
         let light = self.light(&file.light);
         self.run(&file.run);
+        self.level(file.run.alpha, file.planes.len());
+        self.layers(&file);
         // Without a frame no distance is known: check on with one that leaves the values as they are.
         let checked = frame.unwrap_or(Frame {
             origin: DVec3::ZERO,
@@ -310,6 +316,32 @@ impl Resolver<'_> {
             self.faults.add("run.photons", show(run.photons), allowed);
         }
         self.faults.within("run.alpha", run.alpha, 1e-6..=0.5);
+    }
+
+    /// The level of each plane must be one that a p-value can fall below.
+    fn level(&mut self, alpha: f64, planes: usize) {
+        let level = 1.0 - (1.0 - alpha).powf(1.0 / planes.max(1) as f64);
+        if level < LEAST_LEVEL {
+            let least = 1.0 - (1.0 - LEAST_LEVEL).powf(planes as f64);
+            let allowed =
+                format!("at least {least:.4} with {planes} planes: p is known to 1/20000");
+            self.faults.add("run.alpha", show(alpha), allowed);
+        }
+    }
+
+    /// A prediction multiplies the layers out.
+    fn layers(&mut self, file: &SceneFile) {
+        let squares = |b: &BlockersFile| {
+            let BlockersFile::JitteredSquares { count, .. } = b;
+            f64::from(count[0]) * f64::from(count[1])
+        };
+        let product: f64 = file.blockers.iter().map(squares).product();
+        if product > MOST_PAIRS {
+            let allowed =
+                format!("at most {MOST_PAIRS:.0e} in all when the layers' squares are multiplied");
+            self.faults
+                .add("blockers: count", format!("{product:.1e}"), allowed);
+        }
     }
 }
 

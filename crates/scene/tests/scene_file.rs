@@ -136,6 +136,7 @@ fn each_bad_value_is_named() {
         ("name: \"light\"", "name: \"../light\"", "planes[0].name"),
         ("name: \"light\"", "name: \"receiver\"", "planes: name"),
         ("alpha: 0.01", "alpha: 0", "run.alpha"),
+        ("alpha: 0.01", "alpha: 1e-4", "run.alpha"),
         ("batches: 64", "batches: 8", "run.batches"),
     ] {
         let found = faults(&edited(from, to));

@@ -34,8 +34,9 @@ pub(crate) struct Targets<T> {
 const PADDING: f64 = 1e-5;
 
 impl<T: Copy> Targets<T> {
-    pub(crate) fn new(targets: &[Target<T>]) -> Self {
-        let extent = targets.iter().map(extent).fold(0.0, f64::max);
+    /// `origins` is the largest coordinate a ray starts from.
+    pub(crate) fn new(targets: &[Target<T>], origins: f64) -> Self {
+        let extent = targets.iter().map(extent).fold(origins, f64::max);
         let boxes: Vec<Aabb> = targets
             .iter()
             .map(|t| padded(t, PADDING * extent))
@@ -85,10 +86,7 @@ impl<T: Copy> Targets<T> {
 }
 
 fn extent<T>(target: &Target<T>) -> f64 {
-    let [x, y] = [0, 1].map(|axis| target.rectangle.extent(axis));
-    [x[0], x[1], y[0], y[1], target.distance]
-        .iter()
-        .fold(0.0, |m, v| m.max(v.abs()))
+    target.rectangle.reach().max(target.distance.abs())
 }
 
 fn padded<T>(target: &Target<T>, by: f64) -> Aabb {
@@ -147,7 +145,7 @@ mod tests {
                     tag: t.tag,
                 })
                 .collect();
-            let found = Targets::new(&scaled);
+            let found = Targets::new(&scaled, 0.5 * scale);
             let mut hits = 0;
             for index in 0..20_000 {
                 let w = random::words(3, Stream::Photon, index, 0).map(|w| random::unit(w) - 0.5);

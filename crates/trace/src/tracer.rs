@@ -66,7 +66,7 @@ impl Tracer {
             .map(|plane| (plane.distance, plane.side));
         Self {
             emitter: Emitter::new(scene),
-            targets: Targets::new(&targets),
+            targets: Targets::new(&targets, scene.light.rectangle.reach()),
             planes: planes.collect(),
             photons: scene.run.photons,
             batches: scene.run.batches,

@@ -197,8 +197,9 @@ impl Resolver<'_> {
     pub(super) fn memory(&mut self, planes: &[VirtualPlane], batches: u32, memory: u64) {
         let cells =
             |grid: &SliceGrid| -> f64 { grid.half_shape().iter().map(|n| *n as f64).product() };
-        // Beside the batches: prediction, one derivative per parameter, errors; 16 of each is ample.
-        let copies = f64::from(batches) + 16.0;
+        // Batches and their residuals; beside them prediction, derivatives and errors, and the transform's
+        // fine grids, seven for each thread: 100 cover a dozen threads.
+        let copies = 2.0 * f64::from(batches) + 100.0;
         let bytes: f64 = planes
             .iter()
             .map(|p| cells(&p.grid) * COMPLEX * copies)
