@@ -126,6 +126,28 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
             chained(|c| (0..2).for_each(|n| scale_travel(c, n, -1.0))),
         ),
         (
+            "second travel missing",
+            chained(|c| scale_travel(c, 1, 1e-9)),
+        ),
+        (
+            "x and y of the blockers swapped",
+            chained(|c| {
+                for operator in &mut c.operators {
+                    if let Operator::Visibility { blockers, .. } = operator {
+                        blockers.iter_mut().for_each(|r| r.center.swap(0, 1));
+                    }
+                }
+            }),
+        ),
+        (
+            "sign of the Fourier transform",
+            Box::new(|scene, plane| {
+                let mut slices = unchanged(scene, plane)?;
+                slices.half.mapv_inplace(|s| s.conj());
+                Some(slices)
+            }),
+        ),
+        (
             "all blockers missing",
             chained(|c| retain_blockers(c, |_| false)),
         ),
