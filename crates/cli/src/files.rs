@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::results::{Npz, Results};
 use crate::summary::Summary;
-use etendue_compare::{PlaneComparison, Prediction};
+use etendue_compare::PlaneComparison;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
     IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
@@ -14,22 +14,21 @@ use std::io::Cursor;
 pub(crate) fn write(
     results: &mut Results,
     summary: &Summary,
-    prediction: &Prediction,
     plane: &PlaneComparison,
 ) -> Result<(), Failure> {
     let name = &plane.report.name;
-    results.write(&format!("{name}/slices.npz"), &slices(prediction, plane)?)?;
+    results.write(&format!("{name}/slices.npz"), &slices(plane)?)?;
     results.write(&format!("{name}/radial.npz"), &radial(plane)?)?;
     results.write(&format!("{name}/radial.exr"), &radial_exr(summary, plane)?)
 }
 
-fn slices(prediction: &Prediction, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
+fn slices(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let grid = plane.measured.grid;
     let azimuth: Array1<f64> = (0..grid.azimuths).map(|k| grid.azimuth(k)).collect();
     Npz::new()
         .add("azimuth", &azimuth)?
         .add("measured", &plane.measured.full())?
-        .add("predicted", &prediction.slices.full())?
+        .add("predicted", &plane.predicted.full())?
         .add("sigma", &grid.unfold_even(plane.sigma.view()))?
         .add("rho", &Array1::from(grid.rho.values()))?
         .add("nu", &Array1::from(grid.nu.values()))?

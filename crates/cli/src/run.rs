@@ -104,7 +104,7 @@ fn written(
 ) -> Result<PathBuf, Failure> {
     results.begin()?;
     for (prediction, plane) in predictions.iter().zip(planes) {
-        files::write(&mut results, summary, prediction, plane)?;
+        files::write(&mut results, summary, plane)?;
         pictures::plane(&mut results, summary, prediction, plane)?;
     }
     pictures::path(&mut results, summary, scene, planes)?;

@@ -15,6 +15,8 @@ pub struct PlaneComparison {
     pub report: PlaneReport,
     /// The measured slices: the mean over batches.
     pub measured: Slices,
+    /// The predicted slices, without what rounding leaves of a dark field.
+    pub predicted: Slices,
     /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
     pub sigma: Array3<f64>,
     /// The measured radial spectrum.
@@ -100,6 +102,7 @@ pub fn compare(
         radial: power.radial(),
         radial_sigma: residuals.radial_sigma(&predicted, &estimate.variance),
         predicted_radial,
+        predicted,
         projection: estimate::projection(measurement, index)?,
     })
 }

@@ -126,12 +126,7 @@ impl Residuals {
         let spread = (squares - sum.mapv(|s| s * s) / r) / (r * (r - 1.0));
         let noise = variance.mapv(|v| v * v).sum_axis(Axis(0)) / (azimuths * azimuths);
         let sigma = (spread + noise).mapv(|v| v.max(0.0).sqrt());
-        let one = SliceGrid {
-            azimuths: 1,
-            ..self.grid
-        };
-        one.unfold_even(sigma.view().insert_axis(Axis(0)))
-            .index_axis_move(Axis(0), 0)
+        self.grid.unfold_radial(sigma.view())
     }
 
     /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with s = 1

@@ -1,5 +1,5 @@
 use crate::{Complex, SliceGrid};
-use ndarray::{Array2, Array3, ArrayView3};
+use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
 
 /// The slices S_φ(ρ, ν) = ℓ̂(ρ cos φ, ρ sin φ, ν cos φ, ν sin φ) of the spectrum of a windowed light field.
 ///
@@ -34,7 +34,7 @@ impl Slices {
     /// All frequencies, [azimuth, ρ, ν], ρ and ν ascending.
     #[must_use]
     pub fn full(&self) -> Array3<Complex> {
-        self.unfold(self.half.view(), |s| s.conj())
+        unfold(&self.grid, self.half.view(), |s| s.conj())
     }
 
     /// |S|² averaged over the azimuths, [ρ, ν], ρ and ν ascending.
@@ -46,16 +46,11 @@ impl Slices {
         }
         power / self.grid.azimuths as f64
     }
-
-    /// Fills ρ < 0 of an array on the half-plane from S(−ρ, −ν) = `mirrored`(S(ρ, ν)).
-    #[must_use]
-    fn unfold<T: Copy>(&self, half: ArrayView3<'_, T>, mirrored: impl Fn(T) -> T) -> Array3<T> {
-        unfold(&self.grid, half, mirrored)
-    }
 }
 
-/// Spreads values on the half-plane ρ ≥ 0, [azimuth, ρ ≥ 0, ν], over all frequencies [azimuth, ρ, ν].
-pub(crate) fn unfold<T: Copy>(
+/// Spreads values on the half-plane ρ ≥ 0, [azimuth, ρ ≥ 0, ν], over all frequencies [azimuth, ρ, ν], by
+/// S(−ρ, −ν) = `mirrored`(S(ρ, ν)).
+fn unfold<T: Copy>(
     grid: &SliceGrid,
     half: ArrayView3<'_, T>,
     mirrored: impl Fn(T) -> T,
@@ -77,5 +72,16 @@ impl SliceGrid {
     #[must_use]
     pub fn unfold_even(&self, half: ArrayView3<'_, f64>) -> Array3<f64> {
         unfold(self, half, |value| value)
+    }
+
+    /// The same for what has been averaged over the azimuths: from [ρ ≥ 0, ν] to [ρ, ν].
+    #[must_use]
+    pub fn unfold_radial(&self, half: ArrayView2<'_, f64>) -> Array2<f64> {
+        let one = Self {
+            azimuths: 1,
+            ..*self
+        };
+        let full = one.unfold_even(half.insert_axis(Axis(0)));
+        full.index_axis_move(Axis(0), 0)
     }
 }

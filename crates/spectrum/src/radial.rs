@@ -64,7 +64,8 @@ impl<'m> CrossPower<'m> {
     #[must_use]
     pub fn power(&self) -> Array2<f64> {
         let r = self.batches.len() as f64;
-        self.unfold(&(&self.pairs / (r * (r - 1.0))))
+        self.grid
+            .unfold_radial((&self.pairs / (r * (r - 1.0))).view())
     }
 
     /// The power without batch number `left_out` of those there are, [ρ, ν].
@@ -81,7 +82,7 @@ impl<'m> CrossPower<'m> {
             .and(&self.sum)
             .for_each(|row: &mut f64, s, sum| *row = (s.conj() * (sum - s)).re);
         let power = (&self.pairs - mean(&row) * 2.0) / ((r - 1.0) * (r - 2.0));
-        self.unfold(&power)
+        self.grid.unfold_radial(power.view())
     }
 
     /// Power, shot noise and standard error.
@@ -95,7 +96,7 @@ impl<'m> CrossPower<'m> {
             jackknife.add(&self.without(left_out));
         }
         RadialPower {
-            shot_noise: self.unfold(&of_mean) - &power,
+            shot_noise: self.grid.unfold_radial(of_mean.view()) - &power,
             sigma: jackknife.variance().mapv(f64::sqrt),
             power,
         }
@@ -114,16 +115,6 @@ impl<'m> CrossPower<'m> {
             value,
             error: jackknife.variance().into_scalar().sqrt(),
         })
-    }
-
-    /// From ρ ≥ 0 to all ρ: a power is even.
-    fn unfold(&self, half: &Array2<f64>) -> Array2<f64> {
-        let one = SliceGrid {
-            azimuths: 1,
-            ..self.grid
-        };
-        let full = one.unfold_even(half.view().insert_axis(Axis(0)));
-        full.index_axis_move(Axis(0), 0)
     }
 }
 

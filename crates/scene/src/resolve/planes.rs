@@ -44,7 +44,6 @@ impl Resolver<'_> {
             });
         }
         // Planes share the scene's window and frequencies: say a fault of theirs once.
-        self.faults.0.dedup();
         let mut seen: Vec<Fault> = Vec::new();
         self.faults.0.retain(|fault| {
             let new = !seen.contains(fault);
