@@ -6,7 +6,7 @@ use etendue_compare::{Class, PredictedParameter, Prediction, Residuals, Verdict,
 use etendue_field::random::{self, Stream};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Ledger, PlaneTally, Profile, Projection, ProjectionGrid,
-    Rectangle, Side, SliceGrid, Slices, VirtualPlane, Window,
+    Quantity, Rectangle, Side, SliceGrid, Slices, VirtualPlane, Window,
 };
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
 use etendue_theory::{Chain, Source};
@@ -23,7 +23,9 @@ fn plane() -> VirtualPlane {
     VirtualPlane {
         name: "plane".into(),
         distance: 0.0,
+        reflections: 0,
         side: Side::After,
+        quantity: Quantity::default(),
         frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),
         window: Window {
             x: hann,

@@ -17,15 +17,17 @@ mod plane;
 mod projection;
 pub mod random;
 mod rectangle;
+mod shape;
 mod slices;
 mod window;
 
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
 pub use frame::{Frame, TwoPlane};
 pub use frequency::{FrequencyAxis, SliceGrid};
-pub use plane::{Side, VirtualPlane};
+pub use plane::{Quantity, Side, VirtualPlane};
 pub use projection::{Projection, ProjectionGrid};
 pub use rectangle::Rectangle;
+pub use shape::{Disc, Grating, HalfPlane, Light, Mask, Shape};
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};
 

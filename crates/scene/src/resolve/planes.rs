@@ -4,7 +4,9 @@ use super::faults::show;
 use super::{Resolver, SAME_PLANE, Stop};
 use crate::fault::Fault;
 use crate::file::{AxisFile, FrequenciesFile, Place, SceneFile, WindowFile};
-use etendue_field::{Frame, FrequencyAxis, Profile, Side, SliceGrid, VirtualPlane, Window};
+use etendue_field::{
+    Frame, FrequencyAxis, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
+};
 
 /// Bytes of one complex number.
 const COMPLEX: f64 = 16.0;
@@ -37,7 +39,9 @@ impl Resolver<'_> {
             planes.push(VirtualPlane {
                 name: plane.name.clone(),
                 distance,
+                reflections: 0,
                 side,
+                quantity: Quantity::Radiance,
                 frame: frame.travelled(distance),
                 window,
                 grid,

@@ -7,8 +7,8 @@
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
 use etendue_field::{
-    Crossing, Frame, FrequencyAxis, Ledger, PhotonSource, Profile, Side, SliceGrid, TwoPlane,
-    VirtualPlane, Window,
+    Crossing, Frame, FrequencyAxis, Ledger, PhotonSource, Profile, Quantity, Side, SliceGrid,
+    TwoPlane, VirtualPlane, Window,
 };
 use glam::DVec3;
 
@@ -81,7 +81,9 @@ pub fn plane(name: &str, window: Window, grid: SliceGrid) -> VirtualPlane {
     VirtualPlane {
         name: name.into(),
         distance: 1.0,
+        reflections: 0,
         side: Side::Before,
+        quantity: Quantity::default(),
         frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),
         window,
         grid,

@@ -1,0 +1,145 @@
+use crate::Rectangle;
+use serde::Serialize;
+
+/// A disc in a plane orthogonal to the central ray, coordinates relative to the ray.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Disc {
+    /// Centre (x, y), in metres.
+    pub center: [f64; 2],
+    /// Radius, in metres.
+    pub radius: f64,
+}
+
+impl Disc {
+    /// Whether the point (x, y) lies in it, its edge included.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, x: f64, y: f64) -> bool {
+        let [dx, dy] = [x - self.center[0], y - self.center[1]];
+        dx * dx + dy * dy <= self.radius * self.radius
+    }
+}
+
+/// A bounded flat shape in a plane orthogonal to the central ray.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Shape {
+    /// A rectangle, edges along X and Y.
+    Rectangle(Rectangle),
+    /// A disc.
+    Disc(Disc),
+}
+
+impl Shape {
+    /// Whether the point (x, y) lies in it, edges included.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, x: f64, y: f64) -> bool {
+        match self {
+            Self::Rectangle(rectangle) => rectangle.contains(x, y),
+            Self::Disc(disc) => disc.contains(x, y),
+        }
+    }
+
+    /// The smallest rectangle that holds it.
+    #[must_use]
+    pub fn bounds(&self) -> Rectangle {
+        match *self {
+            Self::Rectangle(rectangle) => rectangle,
+            Self::Disc(Disc { center, radius }) => Rectangle {
+                center,
+                size: [2.0 * radius; 2],
+            },
+        }
+    }
+
+    /// Area, in square metres.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        match self {
+            Self::Rectangle(rectangle) => rectangle.area(),
+            Self::Disc(disc) => std::f64::consts::PI * disc.radius * disc.radius,
+        }
+    }
+}
+
+/// The points of a plane on one side of a line along X or Y.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HalfPlane {
+    /// The axis along which the coordinate is compared: 0 for x, 1 for y.
+    pub axis: usize,
+    /// The coordinate of its edge, in metres.
+    pub edge: f64,
+    /// Whether it holds the coordinates above the edge; else those below.
+    pub above: bool,
+}
+
+impl HalfPlane {
+    /// Whether the point (x, y) lies in it, its edge included.
+    #[inline]
+    #[must_use]
+    pub fn contains(&self, x: f64, y: f64) -> bool {
+        let coordinate = if self.axis == 0 { x } else { y };
+        if self.above {
+            coordinate >= self.edge
+        } else {
+            coordinate <= self.edge
+        }
+    }
+}
+
+/// A semi-transparent cosine grating, ½ (1 + m cos(2π f t + p)), t being x or y.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Grating {
+    /// The axis along which it varies: 0 for x, 1 for y.
+    pub axis: usize,
+    /// f, in cycles per metre.
+    pub frequency: f64,
+    /// m, 0 to 1.
+    pub modulation: f64,
+    /// p, in radians.
+    pub phase: f64,
+}
+
+impl Grating {
+    /// The share of radiance that passes at (x, y).
+    #[inline]
+    #[must_use]
+    pub fn transmittance(&self, x: f64, y: f64) -> f64 {
+        let t = if self.axis == 0 { x } else { y };
+        let angle = std::f64::consts::TAU * self.frequency * t + self.phase;
+        0.5 * (1.0 + self.modulation * angle.cos())
+    }
+}
+
+/// What stands in one plane across the central ray and multiplies radiance.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum Mask {
+    /// Opaque, black shapes; they do not overlap.
+    Opaque {
+        /// Those that end.
+        shapes: Vec<Shape>,
+        /// Those that do not.
+        half_planes: Vec<HalfPlane>,
+    },
+    /// A grating over the whole plane.
+    Grating(Grating),
+}
+
+/// A light in a plane across the central ray, shining along it.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub enum Light {
+    /// A flat shape.
+    Area {
+        /// The shape.
+        shape: Shape,
+        /// Radiance L₀ along the central ray, W m⁻² sr⁻¹.
+        radiance: f64,
+        /// n in the radiance L₀ cosⁿθ; 0 is Lambertian, more is a spot.
+        exponent: f64,
+    },
+    /// A point on the central ray, the same intensity in all directions.
+    Point {
+        /// Intensity, W sr⁻¹.
+        intensity: f64,
+    },
+}
