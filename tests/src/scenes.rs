@@ -16,7 +16,7 @@ pub(crate) fn fig9b(photons: u64, seed: u64) -> Scene {
     let mut file = SceneFile::parse(FIG9B).expect("scenes/fig9b.ron is a scene file");
     file.run.photons = photons;
     file.run.seed = seed;
-    resolve("fig9b", file, u64::MAX).expect("scenes/fig9b.ron is sound")
+    resolve("fig9b", file, ".".as_ref(), u64::MAX).expect("scenes/fig9b.ron is sound")
 }
 
 /// `fig9b` with the receiver plane alone: all photons are aimed at its window.

@@ -102,7 +102,7 @@ fn no_mutated_scene_file_panics() {
         let Ok(file) = SceneFile::parse(&text) else {
             continue;
         };
-        let Ok(mut scene) = resolve("fuzz", file, 1_000_000_000) else {
+        let Ok(mut scene) = resolve("fuzz", file, ".".as_ref(), 1_000_000_000) else {
             continue;
         };
         sound += 1;

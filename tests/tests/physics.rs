@@ -19,7 +19,7 @@ fn scene(edits: &[(&str, &str)]) -> Scene {
     }
     let mut file = SceneFile::parse(&text).expect("the edited scene is a scene file");
     file.run.photons = PHOTONS;
-    resolve("test", file, u64::MAX).expect("the edited scene is sound")
+    resolve("test", file, ".".as_ref(), u64::MAX).expect("the edited scene is sound")
 }
 
 /// The verdicts of all planes of `traced`, held against the predictions of `predicted`.

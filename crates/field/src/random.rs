@@ -11,6 +11,8 @@ pub enum Stream {
     Jitter,
     /// Sign flips of round `index`.
     Flip,
+    /// Backward ray `index`.
+    Backward,
 }
 
 /// Four random words for `block` of item `index` in a stream of `seed`.
@@ -32,6 +34,18 @@ pub fn words(seed: u64, stream: Stream, index: u64, block: u32) -> [u32; 4] {
 #[must_use]
 pub fn unit(word: u32) -> f64 {
     (f64::from(word) + 0.5) * (1.0 / 4_294_967_296.0)
+}
+
+/// A random word as one of 0..`count`, `count` > 0.
+#[inline]
+#[must_use]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a number in 0..count"
+)]
+pub fn index(word: u32, count: usize) -> usize {
+    ((unit(word) * count as f64) as usize).min(count - 1)
 }
 
 #[inline]

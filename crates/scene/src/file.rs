@@ -1,5 +1,5 @@
 use crate::SceneError;
-use etendue_field::Profile;
+use etendue_field::{Profile, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// A scene file as written, in RON. Lengths in metres; slopes are tangents of angles.
@@ -44,9 +44,48 @@ pub enum LightFile {
         #[serde(default = "one")]
         radiance: f64,
     },
+    /// A Lambertian disc orthogonal to the central ray, dark on its back.
+    Disc {
+        /// Centre, world coordinates.
+        center: [f64; 3],
+        /// Radius.
+        radius: f64,
+        /// Radiance, W m⁻² sr⁻¹.
+        #[serde(default = "one")]
+        radiance: f64,
+    },
+    /// A point that shines alike in all directions.
+    Point {
+        /// Where it is, world coordinates.
+        center: [f64; 3],
+        /// Intensity, W sr⁻¹.
+        #[serde(default = "one")]
+        intensity: f64,
+    },
+    /// A flat bulb whose radiance falls off as cosⁿθ from the central ray.
+    Spot {
+        /// Centre, world coordinates.
+        center: [f64; 3],
+        /// Its shape.
+        bulb: BulbFile,
+        /// Radiance along the central ray, W m⁻² sr⁻¹.
+        #[serde(default = "one")]
+        radiance: f64,
+        /// The exponent n.
+        exponent: f64,
+    },
 }
 
-/// Opaque, black blockers in one plane orthogonal to the central ray.
+/// The bulb of a spot, orthogonal to the central ray.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum BulbFile {
+    /// A square with this side, edges along X and Y.
+    Square(f64),
+    /// A disc with this radius.
+    Disc(f64),
+}
+
+/// Black blockers, most of them in one plane orthogonal to the central ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum BlockersFile {
@@ -69,24 +108,157 @@ pub enum BlockersFile {
         #[serde(default)]
         seed: u64,
     },
+    /// Opaque shapes one by one; they must not overlap.
+    Shapes {
+        /// Name.
+        name: String,
+        /// Point from which their coordinates along X and Y are counted, world coordinates.
+        center: [f64; 3],
+        /// The shapes.
+        shapes: Vec<ShapeFile>,
+    },
+    /// A semi-transparent cosine grating over the whole plane: ½ (1 + m cos(2π f t + p)), t being x or y.
+    Grating {
+        /// Name.
+        name: String,
+        /// Point from which t is counted, world coordinates.
+        center: [f64; 3],
+        /// The axis along which it varies.
+        axis: AxisName,
+        /// f, cycles per metre.
+        frequency: f64,
+        /// m.
+        #[serde(default = "one")]
+        modulation: f64,
+        /// p, radians.
+        #[serde(default)]
+        phase: f64,
+    },
+    /// An opaque triangle mesh, anywhere between the light and the end of the path.
+    Mesh {
+        /// Name.
+        name: String,
+        /// Where the mesh's origin is put, world coordinates.
+        center: [f64; 3],
+        /// The triangles.
+        mesh: MeshSource,
+        /// Factor on the mesh's coordinates.
+        #[serde(default = "one")]
+        scale: f64,
+    },
 }
 
-/// A Lambertian rectangle orthogonal to the central ray, edges along X and Y.
+/// A shape in the plane of its blockers.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ShapeFile {
+    /// A rectangle, edges along X and Y.
+    Rectangle {
+        /// Centre along X and Y.
+        center: [f64; 2],
+        /// Side lengths along X and Y.
+        size: [f64; 2],
+    },
+    /// A disc.
+    Disc {
+        /// Centre along X and Y.
+        center: [f64; 2],
+        /// Radius.
+        radius: f64,
+    },
+    /// Everything on one side of a line.
+    HalfPlane {
+        /// The axis along which the coordinate is compared with the edge.
+        axis: AxisName,
+        /// Coordinate of the edge.
+        edge: f64,
+        /// The side that is opaque.
+        opaque: HalfName,
+    },
+}
+
+/// An axis across the central ray.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum AxisName {
+    /// Along X.
+    X,
+    /// Along Y.
+    Y,
+}
+
+impl AxisName {
+    /// 0 for X, 1 for Y.
+    #[must_use]
+    pub fn index(self) -> usize {
+        match self {
+            Self::X => 0,
+            Self::Y => 1,
+        }
+    }
+}
+
+/// A side of a line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum HalfName {
+    /// Coordinates below the edge.
+    Below,
+    /// Coordinates above the edge.
+    Above,
+}
+
+/// Where a mesh comes from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct SurfaceFile {
-    /// Name, for the path and the planes to refer to.
-    pub name: String,
-    /// Centre, world coordinates.
-    pub center: [f64; 3],
-    /// Side lengths along X and Y.
-    pub size: [f64; 2],
-    /// Reflected over incident flux.
-    #[serde(default = "half")]
-    pub albedo: f64,
+pub enum MeshSource {
+    /// An OBJ or PLY file; the path is relative to the scene file.
+    File(String),
+    /// A generated closed surface around the origin: see [`Mesh::star`](crate::Mesh::star).
+    Star {
+        /// Mean radius.
+        radius: f64,
+        /// Height of the lobes as a share of the radius.
+        relief: f64,
+        /// Number of lobes around the axis.
+        lobes: u32,
+        /// Rings from pole to pole.
+        rings: u32,
+    },
 }
 
-/// The central ray: it leaves the light's centre and ends on the surface it visits.
+/// A Lambertian surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum SurfaceFile {
+    /// A rectangle orthogonal to the central ray, edges along X and Y.
+    Rectangle {
+        /// Name, for the path and the planes to refer to.
+        name: String,
+        /// Centre, world coordinates.
+        center: [f64; 3],
+        /// Side lengths along X and Y.
+        size: [f64; 2],
+        /// Reflected over incident flux.
+        #[serde(default = "half")]
+        albedo: f64,
+    },
+    /// A triangle mesh, Lambertian on both sides.
+    Mesh {
+        /// Name.
+        name: String,
+        /// Where the mesh's origin is put, world coordinates.
+        center: [f64; 3],
+        /// The triangles.
+        mesh: MeshSource,
+        /// Factor on the mesh's coordinates.
+        #[serde(default = "one")]
+        scale: f64,
+        /// Reflected over incident flux.
+        #[serde(default = "half")]
+        albedo: f64,
+    },
+}
+
+/// The central ray: it leaves the light's centre, and the surface it visits sends it straight back.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PathFile {
@@ -94,7 +266,7 @@ pub struct PathFile {
     pub direction: [f64; 3],
     /// The X axis: its part orthogonal to the direction is used.
     pub x_axis: [f64; 3],
-    /// Names of the surfaces it visits, in order.
+    /// Name of the surface it visits.
     pub visits: Vec<String>,
 }
 
@@ -106,6 +278,9 @@ pub struct PlaneFile {
     pub name: String,
     /// Where on the path.
     pub at: Place,
+    /// What it records.
+    #[serde(default)]
+    pub quantity: Quantity,
     /// Its own window.
     #[serde(default)]
     pub window: Option<WindowFile>,
@@ -121,9 +296,9 @@ pub enum Place {
     Emission,
     /// In the plane of these blockers or this surface, before light meets them.
     Before(String),
-    /// In the plane of these blockers, after them.
+    /// In the plane of these blockers, after them; or of this surface, as light leaves it.
     After(String),
-    /// At this distance from the light.
+    /// At this distance from the light, along the path.
     Distance(f64),
 }
 

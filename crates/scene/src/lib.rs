@@ -6,27 +6,29 @@
 //! ```
 //! let text = r#"(
 //!     light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2), radiance: 1.0),
-//!     surfaces: [(name: "receiver", center: (0, 0, 2), size: (4, 4), albedo: 0.5)],
+//!     surfaces: [Rectangle(name: "receiver", center: (0, 0, 2), size: (4, 4), albedo: 0.5)],
 //!     path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["receiver"]),
 //!     planes: [(name: "arrival", at: Before("receiver"))],
 //!     window: (x: Hann(0.5), u: Hann(0.5)),
 //!     frequencies: (rho: (max: 8.0), nu: (max: 16.0)),
 //! )"#;
 //! let file = etendue_scene::SceneFile::parse(text).unwrap();
-//! let scene = etendue_scene::resolve("example", file, u64::MAX).unwrap();
+//! let scene = etendue_scene::resolve("example", file, ".".as_ref(), u64::MAX).unwrap();
 //! assert_eq!(scene.planes[0].distance, 2.0);
 //! ```
 
 mod fault;
 mod file;
+mod mesh;
 mod overrides;
 mod resolve;
 mod scene;
 
 pub use fault::{Fault, SceneError};
 pub use file::{
-    AxisFile, BlockersFile, Emission, FrequenciesFile, LightFile, PathFile, Place, PlaneFile,
-    RunFile, SceneFile, SurfaceFile, WindowFile,
+    AxisFile, AxisName, BlockersFile, BulbFile, Emission, FrequenciesFile, HalfName, LightFile,
+    MeshSource, PathFile, Place, PlaneFile, RunFile, SceneFile, ShapeFile, SurfaceFile, WindowFile,
 };
+pub use mesh::Mesh;
 pub use resolve::resolve;
-pub use scene::{BlockerLayer, CentralRay, Light, Run, Scene, Surface};
+pub use scene::{BlockerLayer, CentralRay, MeshObject, Run, Scene, Surface};

@@ -1,23 +1,34 @@
+mod blockers;
 mod faults;
 mod jitter;
+mod light;
+mod meshes;
 mod planes;
+mod surfaces;
 
 use crate::fault::SceneError;
-use crate::file::{BlockersFile, LightFile, RunFile, SceneFile, SurfaceFile};
-use crate::scene::{BlockerLayer, CentralRay, Light, Run, Scene, Surface};
-use etendue_field::{Frame, Rectangle};
+use crate::file::{RunFile, SceneFile};
+use crate::scene::{BlockerLayer, CentralRay, MeshObject, Run, Scene, Surface};
+use etendue_field::Frame;
 use faults::{Faults, show};
 use glam::DVec3;
-use jitter::jittered_squares;
+use std::path::Path;
 
-/// Checks a scene file and resolves it to a scene; `memory` is what this machine can hold, in bytes.
+/// Checks a scene file and resolves it to a scene; paths of meshes are relative to `folder`, `memory` is what
+/// this machine can hold, in bytes.
 ///
 /// # Errors
 /// [`SceneError::Values`] with every fault found.
-pub fn resolve(name: &str, file: SceneFile, memory: u64) -> Result<Scene, SceneError> {
+pub fn resolve(
+    name: &str,
+    file: SceneFile,
+    folder: &Path,
+    memory: u64,
+) -> Result<Scene, SceneError> {
     let mut faults = Faults::default();
     let scene = Resolver {
         faults: &mut faults,
+        folder,
     }
     .scene(name, file, memory);
     match scene {
@@ -26,10 +37,6 @@ pub fn resolve(name: &str, file: SceneFile, memory: u64) -> Result<Scene, SceneE
     }
 }
 
-/// Blockers a layer may hold: the prediction of more that are seen takes many minutes.
-const MOST_BLOCKERS: u64 = 100_000;
-/// Products of blockers of several layers a prediction may have to go through.
-const MOST_PAIRS: f64 = 1e6;
 /// Ten times the smallest p-value there is.
 const LEAST_LEVEL: f64 = 5e-4;
 /// Relative distance below which two planes across the path are one.
@@ -37,6 +44,7 @@ const SAME_PLANE: f64 = 1e-9;
 
 struct Resolver<'a> {
     faults: &'a mut Faults,
+    folder: &'a Path,
 }
 
 impl Resolver<'_> {
@@ -53,36 +61,32 @@ impl Resolver<'_> {
             y: DVec3::Y,
             d: DVec3::Z,
         });
-        let surfaces: Vec<Surface> = file
-            .surfaces
-            .iter()
-            .enumerate()
-            .map(|(i, s)| self.surface(i, s, &checked))
-            .collect();
-        let length = self.length(&file, &surfaces);
-        let blockers: Vec<BlockerLayer> = file
-            .blockers
-            .iter()
-            .enumerate()
-            .map(|(i, b)| self.blockers(i, b, &checked, length))
-            .collect();
-        self.names(&file, &blockers, &surfaces);
-        let stops: Vec<Stop<'_>> = stops(&blockers, &surfaces);
+        let surfaces = self.surfaces(&file, &checked);
+        let meshes = self.meshes(&file, &checked);
+        let length = self.length(&file, &surfaces, &meshes);
+        let mut blockers = self.blockers(&file, &checked, length);
+        let stops = stops(&blockers, &surfaces, &meshes);
+        self.names(&file, &stops);
         self.distinct(&stops);
-        let planes = self.planes(&file, &checked, length, &stops);
+        let nearest = |stop: &Stop<'_>| length - stop.extent[1];
+        let back = stops.iter().map(nearest).filter(|gap| *gap > 0.0);
+        let path = CentralRay {
+            frame: checked,
+            length,
+            back: back.fold(length, f64::min),
+        };
+        let planes = self.planes(&file, &path, &stops);
         self.memory(&planes, file.run.batches, memory);
 
-        let mut blockers = blockers;
         blockers.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+        frame?;
         Some(Scene {
             name: name.to_owned(),
-            path: CentralRay {
-                frame: frame?,
-                length,
-            },
+            path,
             light,
             blockers,
             surfaces,
+            meshes,
             planes,
             run: Run {
                 photons: file.run.photons,
@@ -96,12 +100,11 @@ impl Resolver<'_> {
     }
 
     fn frame(&mut self, file: &SceneFile) -> Option<Frame> {
-        let LightFile::Rectangle { center, .. } = &file.light;
         let path = &file.path;
         self.faults.coordinates("path.direction", &path.direction);
         self.faults.coordinates("path.x_axis", &path.x_axis);
         let (d, x) = (DVec3::from(path.direction), DVec3::from(path.x_axis));
-        let frame = Frame::new(DVec3::from(*center), d, x);
+        let frame = Frame::new(DVec3::from(file.light.center()), d, x);
         if frame.is_none() && d.is_finite() && x.is_finite() {
             let allowed = "two directions that are not parallel, neither of length 0";
             self.faults.add(
@@ -113,161 +116,8 @@ impl Resolver<'_> {
         frame
     }
 
-    fn light(&mut self, light: &LightFile) -> Light {
-        let LightFile::Rectangle {
-            center,
-            size,
-            radiance,
-        } = light;
-        self.faults.coordinates("light.center", center);
-        self.size("light", size);
-        self.faults.positive("light.radiance", *radiance);
-        Light {
-            rectangle: Rectangle {
-                center: [0.0; 2],
-                size: *size,
-            },
-            radiance: *radiance,
-        }
-    }
-
-    fn size(&mut self, of: &str, size: &[f64; 2]) {
-        for (i, side) in size.iter().enumerate() {
-            self.faults.positive(format!("{of}.size[{i}]"), *side);
-        }
-    }
-
-    fn surface(&mut self, i: usize, surface: &SurfaceFile, frame: &Frame) -> Surface {
-        let of = format!("surfaces[{i}]");
-        self.faults
-            .coordinates(&format!("{of}.center"), &surface.center);
-        self.size(&of, &surface.size);
-        self.faults
-            .within(format!("{of}.albedo"), surface.albedo, 0.0..=1.0);
-        let center = frame.to_local(DVec3::from(surface.center));
-        self.ahead(&of, center.z);
-        Surface {
-            name: surface.name.clone(),
-            distance: center.z,
-            rectangle: Rectangle {
-                center: [center.x, center.y],
-                size: surface.size,
-            },
-            albedo: surface.albedo,
-        }
-    }
-
-    /// A finite distance must be in front of the light; an infinite one is a fault of its center.
-    fn ahead(&mut self, of: &str, distance: f64) {
-        if distance <= 0.0 {
-            let allowed = "a place in front of the light, along path.direction";
-            self.faults.add(
-                format!("{of}.center"),
-                format!("at distance {distance} m from the light"),
-                allowed,
-            );
-        }
-    }
-
-    /// The distance at which the central ray ends: that of the surface it visits.
-    fn length(&mut self, file: &SceneFile, surfaces: &[Surface]) -> f64 {
-        let [visit] = file.path.visits.as_slice() else {
-            let allowed = "the name of one surface, on which the central ray ends";
-            self.faults
-                .add("path.visits", show(&file.path.visits), allowed);
-            return f64::NAN;
-        };
-        let Some(surface) = surfaces.iter().find(|s| s.name == *visit) else {
-            let known: Vec<&str> = surfaces.iter().map(|s| s.name.as_str()).collect();
-            self.faults.add(
-                "path.visits[0]",
-                show(visit),
-                format!("one of the surfaces: {}", known.join(", ")),
-            );
-            return f64::NAN;
-        };
-        if !surface.rectangle.contains(0.0, 0.0) && surface.distance.is_finite() {
-            self.faults.add(
-                "path.visits[0]",
-                show(visit),
-                "a surface that the central ray hits",
-            );
-        }
-        for other in surfaces.iter().filter(|s| s.distance < surface.distance) {
-            if other.rectangle.contains(0.0, 0.0) {
-                let allowed = format!("{}, which the central ray hits first", show(&other.name));
-                self.faults.add("path.visits[0]", show(visit), allowed);
-            }
-        }
-        surface.distance
-    }
-
-    fn blockers(
-        &mut self,
-        i: usize,
-        blockers: &BlockersFile,
-        frame: &Frame,
-        length: f64,
-    ) -> BlockerLayer {
-        let BlockersFile::JitteredSquares {
-            name,
-            center,
-            count,
-            pitch,
-            fill,
-            jitter,
-            seed,
-        } = blockers;
-        let of = format!("blockers[{i}]");
-        self.faults.coordinates(&format!("{of}.center"), center);
-        let total = u64::from(count[0]) * u64::from(count[1]);
-        if !(1..=MOST_BLOCKERS).contains(&total) {
-            self.faults.add(
-                format!("{of}.count"),
-                format!("{} x {}", count[0], count[1]),
-                format!("1 to {MOST_BLOCKERS} squares in all"),
-            );
-        }
-        self.faults.positive(format!("{of}.pitch"), *pitch);
-        self.faults
-            .within(format!("{of}.fill"), *fill, f64::MIN_POSITIVE..=1.0);
-        // Squares that may overlap would be counted twice by the prediction. Rounding must not refuse a
-        // fill of 0.7 with a jitter of 0.3.
-        if !(*jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
-            self.faults.add(
-                format!("{of}.jitter"),
-                show(jitter),
-                format!("0 to 1 − fill, which is {:.6}", 1.0 - fill),
-            );
-        }
-        let center = frame.to_local(DVec3::from(*center));
-        self.ahead(&of, center.z);
-        if center.z >= length {
-            self.faults.add(
-                format!("{of}.center"),
-                format!("at distance {} m from the light", center.z),
-                format!("a place before the path ends, at {length} m"),
-            );
-        }
-        let sound = self.faults.0.is_empty();
-        BlockerLayer {
-            name: name.clone(),
-            distance: center.z,
-            pitch: *pitch,
-            rectangles: if sound {
-                jittered_squares([center.x, center.y], *count, *pitch, *fill, *jitter, *seed)
-            } else {
-                Vec::new()
-            },
-        }
-    }
-
-    fn names(&mut self, file: &SceneFile, blockers: &[BlockerLayer], surfaces: &[Surface]) {
-        let things = blockers
-            .iter()
-            .map(|b| &b.name)
-            .chain(surfaces.iter().map(|s| &s.name));
-        for repeated in repeated(things) {
+    fn names(&mut self, file: &SceneFile, stops: &[Stop<'_>]) {
+        for repeated in repeated(stops.iter().map(|stop| stop.name)) {
             self.faults.add(
                 "name",
                 show(repeated),
@@ -276,7 +126,7 @@ impl Resolver<'_> {
         }
         // Some disks hold `Light` and `light` for one folder.
         let folders: Vec<String> = file.planes.iter().map(|p| p.name.to_lowercase()).collect();
-        for repeated in repeated(folders.iter()) {
+        for repeated in repeated(folders.iter().map(String::as_str)) {
             self.faults
                 .add("planes: name", show(repeated), "a name no other plane has");
         }
@@ -291,13 +141,16 @@ impl Resolver<'_> {
         }
     }
 
-    /// Two things in one plane: which one light meets first would be left to rounding.
+    /// Two flat things in one plane: which one light meets first would be left to rounding.
     fn distinct(&mut self, stops: &[Stop<'_>]) {
-        for pair in stops.windows(2) {
-            if (pair[1].distance - pair[0].distance).abs() <= SAME_PLANE * pair[1].distance.abs() {
+        let mut flat: Vec<&Stop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();
+        flat.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
+        for pair in flat.windows(2) {
+            let distance = pair[1].extent[0];
+            if (distance - pair[0].extent[0]).abs() <= SAME_PLANE * distance.abs() {
                 self.faults.add(
                     format!("{} and {}", pair[0].name, pair[1].name),
-                    format!("both at distance {} m", pair[1].distance),
+                    format!("both at distance {distance} m"),
                     "planes at different distances",
                 );
             }
@@ -328,51 +181,52 @@ impl Resolver<'_> {
             self.faults.add("run.alpha", show(alpha), allowed);
         }
     }
-
-    /// A prediction multiplies the layers out.
-    fn layers(&mut self, file: &SceneFile) {
-        let squares = |b: &BlockersFile| {
-            let BlockersFile::JitteredSquares { count, .. } = b;
-            f64::from(count[0]) * f64::from(count[1])
-        };
-        let product: f64 = file.blockers.iter().map(squares).product();
-        if product > MOST_PAIRS {
-            let allowed =
-                format!("at most {MOST_PAIRS:.0e} in all when the layers' squares are multiplied");
-            self.faults
-                .add("blockers: count", format!("{product:.1e}"), allowed);
-        }
-    }
 }
 
-/// Something that stands across the path.
+/// Something on the path.
 struct Stop<'a> {
     name: &'a str,
-    distance: f64,
+    /// Nearest and farthest distance; one and the same for what is flat.
+    extent: [f64; 2],
     surface: bool,
 }
 
-/// Everything across the path, by distance.
-fn stops<'a>(blockers: &'a [BlockerLayer], surfaces: &'a [Surface]) -> Vec<Stop<'a>> {
+impl Stop<'_> {
+    fn is_flat(&self) -> bool {
+        self.extent[0].total_cmp(&self.extent[1]).is_eq()
+    }
+}
+
+/// Everything on the path, by distance.
+fn stops<'a>(
+    blockers: &'a [BlockerLayer],
+    surfaces: &'a [Surface],
+    meshes: &'a [MeshObject],
+) -> Vec<Stop<'a>> {
     let blockers = blockers.iter().map(|b| Stop {
         name: &b.name,
-        distance: b.distance,
+        extent: [b.distance; 2],
         surface: false,
     });
     let surfaces = surfaces.iter().map(|s| Stop {
         name: &s.name,
-        distance: s.distance,
+        extent: [s.distance; 2],
         surface: true,
     });
-    let mut stops: Vec<Stop<'a>> = blockers.chain(surfaces).collect();
-    stops.sort_by(|a, b| a.distance.total_cmp(&b.distance));
+    let meshes = meshes.iter().map(|m| Stop {
+        name: &m.name,
+        extent: m.extent,
+        surface: m.albedo.is_some(),
+    });
+    let mut stops: Vec<Stop<'a>> = blockers.chain(surfaces).chain(meshes).collect();
+    stops.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
     stops
 }
 
-fn repeated<'a>(names: impl Iterator<Item = &'a String>) -> Vec<&'a String> {
-    let mut names: Vec<&String> = names.collect();
-    names.sort();
-    let mut twice: Vec<&String> = names
+fn repeated<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut names: Vec<&str> = names.collect();
+    names.sort_unstable();
+    let mut twice: Vec<&str> = names
         .windows(2)
         .filter(|w| w[0] == w[1])
         .map(|w| w[0])

@@ -3,31 +3,87 @@
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
 
-use etendue_field::{Rectangle, TwoPlane};
-use glam::Vec3A;
+use etendue_field::{Shape, TwoPlane};
+use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::ray::{Ray, RayHit};
+use std::fmt;
 use std::time::Duration;
 
-/// A rectangle across the central ray.
+/// Something that ends a ray, and what it is.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Target<T> {
-    pub(crate) distance: f64,
-    pub(crate) rectangle: Rectangle,
-    /// What it is.
+    pub(crate) form: Form,
     pub(crate) tag: T,
 }
 
-/// Rectangles across the central ray, and the hierarchy that finds the first one hit.
+/// Its form, in the frame at the light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Form {
+    /// A flat shape across the central ray.
+    Flat { distance: f64, shape: Shape },
+    /// A triangle.
+    Triangle([DVec3; 3]),
+}
+
+impl Form {
+    /// The distance, along the central ray, at which a ray from the light's plane meets it.
+    #[inline]
+    fn meets(&self, ray: &TwoPlane) -> Option<f64> {
+        match self {
+            Self::Flat { distance, shape } => {
+                let at = ray.travelled(*distance);
+                shape.contains(at.x, at.y).then_some(*distance)
+            }
+            Self::Triangle(corners) => triangle(corners, ray),
+        }
+    }
+
+    /// Lowest and highest corner of a box around it.
+    fn bounds(&self) -> [DVec3; 2] {
+        match self {
+            Self::Flat { distance, shape } => {
+                let bounds = shape.bounds();
+                let [x, y] = [bounds.extent(0), bounds.extent(1)];
+                [0, 1].map(|i| DVec3::new(x[i], y[i], *distance))
+            }
+            Self::Triangle([a, b, c]) => [a.min(*b).min(*c), a.max(*b).max(*c)],
+        }
+    }
+}
+
+/// Where a ray meets a triangle: seen along the ray it is a flat triangle around the origin or not.
+///
+/// Two triangles see a common edge with the same two products, so nothing passes between them
+/// (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*, whose shear this is).
+fn triangle(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
+    let [a, b, c] = corners.map(|p| [p.x - ray.x - ray.u * p.z, p.y - ray.y - ray.v * p.z]);
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let weights = [cross(b, c), cross(c, a), cross(a, b)];
+    let inside = weights.iter().all(|w| *w >= 0.0) || weights.iter().all(|w| *w <= 0.0);
+    let sum: f64 = weights.iter().sum();
+    let depth: f64 = weights.iter().zip(corners).map(|(w, p)| w * p.z).sum();
+    (inside && sum != 0.0).then(|| depth / sum)
+}
+
+/// Targets, and the hierarchy that finds the first one hit.
 pub(crate) struct Targets<T> {
     bvh: Bvh2,
     /// In the order of the hierarchy's leaves.
     targets: Vec<Target<T>>,
     /// Beyond everything.
     far: f32,
+}
+
+impl<T: fmt::Debug> fmt::Debug for Targets<T> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Targets")
+            .field("targets", &self.targets.len())
+            .finish_non_exhaustive()
+    }
 }
 
 /// Boxes grow by this share of the scene's extent: f32 rounding is 6e-8 of it, a ray adds a few of those.
@@ -59,46 +115,66 @@ impl<T: Copy> Targets<T> {
         }
     }
 
-    /// The first target hit by a ray that leaves the light's plane.
+    /// The first target hit by a ray that leaves the light's plane, and at what distance.
     #[inline]
-    pub(crate) fn first(&self, ray: &TwoPlane) -> Option<&Target<T>> {
+    pub(crate) fn first(&self, ray: &TwoPlane) -> Option<(f64, T)> {
         let origin = Vec3A::new(single(ray.x), single(ray.y), 0.0);
         let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
-        let mut first: Option<&Target<T>> = None;
+        let mut first: Option<T> = None;
         let mut nearest = f64::INFINITY;
         self.bvh.ray_traverse(
             Ray::new(origin, direction, 0.0, self.far),
             &mut RayHit::none(),
             |_, i| {
                 let target = &self.targets[i];
-                let at = ray.travelled(target.distance);
-                if target.distance < nearest && target.rectangle.contains(at.x, at.y) {
-                    nearest = target.distance;
-                    first = Some(target);
-                    // Boxes this far are still opened: the first hit is decided in f64.
-                    return single(target.distance * (1.0 + PADDING));
+                match target.form.meets(ray) {
+                    Some(distance) if distance < nearest && distance > 0.0 => {
+                        nearest = distance;
+                        first = Some(target.tag);
+                        // Boxes this far are still opened: the first hit is decided in f64.
+                        single(distance * (1.0 + PADDING))
+                    }
+                    _ => f32::INFINITY,
+                }
+            },
+        );
+        first.map(|tag| (nearest, tag))
+    }
+
+    /// Whether light on a ray, given by where it leaves the light's plane, meets a target before it has come
+    /// as far as `distance`; at that very distance when `inclusive`. Looked for backwards, from there.
+    pub(crate) fn blocks(&self, ray: &TwoPlane, distance: f64, inclusive: bool) -> bool {
+        let from = ray.travelled(distance);
+        let origin = Vec3A::new(single(from.x), single(from.y), single(distance));
+        let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
+        let mut blocked = false;
+        self.bvh.ray_traverse(
+            Ray::new(origin, direction, 0.0, self.far),
+            &mut RayHit::none(),
+            |_, i| {
+                let met = self.targets[i].form.meets(ray);
+                let before = |at: f64| at > 0.0 && (at < distance || inclusive && at <= distance);
+                if met.is_some_and(before) {
+                    blocked = true;
+                    // Nothing beyond matters any more.
+                    return 0.0;
                 }
                 f32::INFINITY
             },
         );
-        first
+        blocked
     }
 }
 
 fn extent<T>(target: &Target<T>) -> f64 {
-    target.rectangle.reach().max(target.distance.abs())
+    let [low, high] = target.form.bounds();
+    low.abs().max(high.abs()).max_element()
 }
 
 fn padded<T>(target: &Target<T>, by: f64) -> Aabb {
-    let [x, y] = [0, 1].map(|axis| target.rectangle.extent(axis));
-    let corner = |i: usize, by: f64| {
-        Vec3A::new(
-            single(x[i] + by),
-            single(y[i] + by),
-            single(target.distance + by),
-        )
-    };
-    Aabb::new(corner(0, -by), corner(1, by))
+    let [low, high] = target.form.bounds();
+    let corner = |p: DVec3| Vec3A::new(single(p.x), single(p.y), single(p.z));
+    Aabb::new(corner(low - by), corner(high + by))
 }
 
 #[inline]
@@ -114,39 +190,63 @@ fn single(x: f64) -> f32 {
 mod tests {
     use super::*;
     use etendue_field::random::{self, Stream};
+    use etendue_field::{Disc, Rectangle};
 
-    /// Squares that share edges and a wall behind them: the case in which rounding would leak.
-    #[test]
-    fn agrees_with_every_target_tried_in_turn() {
+    /// Squares that share edges, discs and triangles: the cases in which rounding would leak.
+    fn targets() -> Vec<Target<u32>> {
         let mut targets = Vec::new();
         for layer in 1..4u32 {
             for i in 0..20u32 {
                 for j in (layer % 2..20).step_by(2) {
-                    targets.push(Target {
-                        distance: f64::from(layer),
-                        rectangle: Rectangle {
-                            center: [0.1 * f64::from(i) - 1.0, 0.1 * f64::from(j) - 1.0],
-                            size: [0.1, 0.1],
-                        },
-                        tag: (layer, i, j),
-                    });
+                    let center = [0.1 * f64::from(i) - 1.0, 0.1 * f64::from(j) - 1.0];
+                    let shape = if layer == 2 {
+                        let radius = 0.05;
+                        Shape::Disc(Disc { center, radius })
+                    } else {
+                        let size = [0.1, 0.1];
+                        Shape::Rectangle(Rectangle { center, size })
+                    };
+                    let distance = f64::from(layer);
+                    targets.push(Form::Flat { distance, shape });
                 }
             }
         }
+        let corner = |i: u32| {
+            let t = 0.7 * f64::from(i);
+            DVec3::new(t.sin(), (1.3 * t).cos(), 1.5 + 0.4 * (2.9 * t).sin())
+        };
+        targets.extend((0..60).map(|i| Form::Triangle([corner(i), corner(i + 1), corner(i + 2)])));
+        let tags = 0u32..;
+        let tagged = targets.into_iter().zip(tags);
+        tagged.map(|(form, tag)| Target { form, tag }).collect()
+    }
+
+    fn scaled(form: &Form, scale: f64) -> Form {
+        match form {
+            Form::Flat { distance, shape } => Form::Flat {
+                distance: distance * scale,
+                shape: match shape {
+                    Shape::Rectangle(r) => Shape::Rectangle(Rectangle {
+                        center: r.center.map(|c| c * scale),
+                        size: r.size.map(|s| s * scale),
+                    }),
+                    Shape::Disc(d) => Shape::Disc(Disc {
+                        center: d.center.map(|c| c * scale),
+                        radius: d.radius * scale,
+                    }),
+                },
+            },
+            Form::Triangle(corners) => Form::Triangle(corners.map(|p| p * scale)),
+        }
+    }
+
+    #[test]
+    fn agrees_with_every_target_tried_in_turn() {
         for scale in [1e-3, 1.0, 1e3] {
-            let scaled: Vec<_> = targets
-                .iter()
-                .map(|t| Target {
-                    distance: t.distance * scale,
-                    rectangle: Rectangle {
-                        center: t.rectangle.center.map(|c| c * scale),
-                        size: t.rectangle.size.map(|s| s * scale),
-                    },
-                    tag: t.tag,
-                })
-                .collect();
-            let found = Targets::new(&scaled, 0.5 * scale);
-            let mut hits = 0;
+            let mut all = targets();
+            all.iter_mut().for_each(|t| t.form = scaled(&t.form, scale));
+            let found = Targets::new(&all, 0.5 * scale);
+            let (mut hits, mut blocked) = (0, 0);
             for index in 0..20_000 {
                 let w = random::words(3, Stream::Photon, index, 0).map(|w| random::unit(w) - 0.5);
                 let ray = TwoPlane {
@@ -155,22 +255,59 @@ mod tests {
                     u: w[2],
                     v: w[3],
                 };
-                let expected = scaled
-                    .iter()
-                    .filter(|t| {
-                        let at = ray.travelled(t.distance);
-                        t.rectangle.contains(at.x, at.y)
-                    })
-                    .map(|t| t.distance)
-                    .fold(f64::INFINITY, f64::min);
-                let first = found.first(&ray).map_or(f64::INFINITY, |t| t.distance);
+                let met = all.iter().filter_map(|t| t.form.meets(&ray));
+                let expected = met.fold(f64::INFINITY, f64::min);
+                let first = found.first(&ray).map_or(f64::INFINITY, |(at, _)| at);
                 assert!(
                     first.total_cmp(&expected).is_eq(),
                     "{ray:?} at scale {scale}"
                 );
                 hits += u32::from(first.is_finite());
+                for (distance, inclusive) in [(1.0, false), (1.0, true), (1.6, true), (2.0, false)]
+                {
+                    let distance = distance * scale;
+                    let expected = expected < distance || inclusive && expected <= distance;
+                    let blocks = found.blocks(&ray, distance, inclusive);
+                    assert_eq!(blocks, expected, "{ray:?} to {distance}");
+                    blocked += u32::from(blocks);
+                }
             }
             assert!(hits > 10_000, "{hits} rays hit: too few to tell");
+            assert!((10_000..70_000).contains(&blocked), "{blocked} of 80,000");
+        }
+    }
+
+    /// Rays at the common edges and corners of a closed sheet of triangles: none passes.
+    #[test]
+    fn triangles_that_share_edges_leak_nothing() {
+        const N: u32 = 16;
+        let corner = |i: u32, j: u32| {
+            let [x, y] = [i, j].map(|k| f64::from(k) / f64::from(N) * 2.0 - 1.0);
+            DVec3::new(x, y, 1.0 + 0.1 * (7.0 * x).sin() * (5.0 * y).cos())
+        };
+        let mut sheet = Vec::new();
+        for i in 0..N {
+            for j in 0..N {
+                let [a, b, c, d] =
+                    [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
+                sheet.extend([[a, b, c], [a, c, d]].map(|corners| Target {
+                    form: Form::Triangle(corners),
+                    tag: (),
+                }));
+            }
+        }
+        let found = Targets::new(&sheet, 0.5);
+        for i in 1..N {
+            for j in 1..N {
+                for t in [0.0, 0.3, 0.5] {
+                    // A point of an edge, seen from a point of the light.
+                    let p = corner(i, j).lerp(corner(i - 1, j - 1), t);
+                    let (x, y) = (0.013 * f64::from(i), -0.017 * f64::from(j));
+                    let [u, v] = [(p.x - x) / p.z, (p.y - y) / p.z];
+                    let ray = TwoPlane { x, y, u, v };
+                    assert!(found.first(&ray).is_some(), "{ray:?}");
+                }
+            }
         }
     }
 }

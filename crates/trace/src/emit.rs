@@ -1,9 +1,10 @@
 use crate::proposal::Proposal;
-use etendue_field::{TwoPlane, random};
-use etendue_scene::{Emission, Light, Scene};
+use etendue_field::{Light, Profile, Shape, TwoPlane, VirtualPlane, random};
+use etendue_scene::{Emission, Scene};
 use std::f64::consts::{PI, TAU};
 
-/// How rays leave the light: a density over (x, y, u, v) at the light, and a way to sample it.
+/// How rays leave the light: a density over (x, y, u, v) at the light, and a way to sample it. That of a point
+/// is over (u, v) alone.
 #[derive(Clone, Debug)]
 pub struct Emitter {
     light: Light,
@@ -15,17 +16,34 @@ impl Emitter {
     /// The emitter of a scene.
     ///
     /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose window
-    /// the light reaches. Where it reaches none, emission is plain: every window stays empty all the same.
+    /// the light reaches; for a plane after the reflection, of rays to the part of the surface that its window sees.
+    /// Where it reaches none, emission is plain: every window stays empty all the same.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
         let light = scene.light;
-        let proposal = |plane: &etendue_field::VirtualPlane| {
-            let (w, d) = (&plane.window, plane.distance);
-            let extent = |axis| light.rectangle.extent(axis);
-            Some([
-                Proposal::new(d, extent(0), &w.x, &w.u)?,
-                Proposal::new(d, extent(1), &w.y, &w.v)?,
-            ])
+        let extent = match light {
+            Light::Area { shape, .. } => [0, 1].map(|axis| shape.bounds().extent(axis)),
+            Light::Point { .. } => [[0.0; 2]; 2],
+        };
+        let proposal = |plane: &VirtualPlane| {
+            let w = &plane.window;
+            let pair = |axis: usize, space: &Profile, slope: &Profile| {
+                if plane.reflections == 0 {
+                    return Proposal::new(plane.distance, extent[axis], space, slope);
+                }
+                let length = scene.path.length;
+                let seen = space.half_width() + (plane.distance - length) * slope.half_width();
+                // The slopes of all rays from the light to there.
+                let [low, high] = extent[axis].map(f64::abs);
+                let steepest = (seen + low.max(high)) / length;
+                Proposal::new(
+                    length,
+                    extent[axis],
+                    &Profile::Box(seen),
+                    &Profile::Box(steepest),
+                )
+            };
+            Some([pair(0, &w.x, &w.u)?, pair(1, &w.y, &w.v)?])
         };
         let proposals = match scene.run.emission {
             Emission::Aimed => scene.planes.iter().filter_map(proposal).collect(),
@@ -42,44 +60,56 @@ impl Emitter {
         if self.proposals.is_empty() {
             return self.plain(r);
         }
-        let last = self.proposals.len() - 1;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a number in 0..count"
-        )]
-        let which = (random::unit(words[1][0]) * self.proposals.len() as f64) as usize;
-        let [along_x, along_y] = &self.proposals[which.min(last)];
+        let which = random::index(words[1][0], self.proposals.len());
+        let [along_x, along_y] = &self.proposals[which];
         let [x, u] = along_x.sample([r[0], r[1]]);
         let [y, v] = along_y.sample([r[2], r[3]]);
         TwoPlane { x, y, u, v }
     }
 
-    /// Uniform over the light's area, by the cosine over direction.
+    /// Uniform over the light's area, by radiance and cosine over direction; a point's by solid angle, forwards.
     fn plain(&self, r: [f64; 4]) -> TwoPlane {
-        let [x, y] = [0, 1].map(|axis| {
-            let [low, high] = self.light.rectangle.extent(axis);
-            low + r[axis] * (high - low)
-        });
-        // A uniform point of the unit disc lies below a direction that follows the cosine.
         let (sin, cos) = (TAU * r[3]).sin_cos();
-        let slope = (r[2] / (1.0 - r[2])).sqrt();
+        let (position, slope) = match self.light {
+            Light::Area {
+                shape, exponent, ..
+            } => {
+                // cos θ of a density in proportion to cosⁿ⁺¹θ.
+                let squared = (1.0 - r[2]).powf(2.0 / (exponent + 2.0));
+                (
+                    point(&shape, [r[0], r[1]]),
+                    ((1.0 - squared) / squared).sqrt(),
+                )
+            }
+            Light::Point { .. } => {
+                let cos = 1.0 - r[2];
+                ([0.0; 2], (1.0 - cos * cos).sqrt() / cos)
+            }
+        };
         TwoPlane {
-            x,
-            y,
+            x: position[0],
+            y: position[1],
             u: slope * cos,
             v: slope * sin,
         }
     }
 
-    /// The density of [`Self::sample`] with respect to dx dy du dv.
+    /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point.
     #[inline]
     #[must_use]
     pub fn density(&self, ray: &TwoPlane) -> f64 {
         if self.proposals.is_empty() {
-            // cos θ dω / π = du dv / (π (1 + u² + v²)²)
             let secant_squared = ray.secant_squared();
-            return 1.0 / (self.light.rectangle.area() * PI * secant_squared * secant_squared);
+            return match self.light {
+                // cos θ dω = du dv / (1 + u² + v²)², and ∫ cosⁿθ cos θ dω = 2π/(n + 2).
+                Light::Area {
+                    shape, exponent, ..
+                } => {
+                    let lobe = (exponent + 2.0) / TAU * secant_squared.powf(-2.0 - 0.5 * exponent);
+                    lobe / shape.area()
+                }
+                Light::Point { .. } => secant_squared.powf(-1.5) / TAU,
+            };
         }
         let sum: f64 = self
             .proposals
@@ -98,9 +128,49 @@ impl Emitter {
         let density = self.density(ray);
         // Rounding can put a ray on the very edge, where the density is zero: it carries nothing.
         if density > 0.0 {
-            self.light.radiance / density
+            radiance(&self.light, ray) / density
         } else {
             0.0
         }
     }
 }
+
+/// Radiance on a ray given at the light; for a point, with respect to du dv alone: dω is
+/// du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
+#[inline]
+pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
+    match light {
+        Light::Area {
+            shape,
+            radiance,
+            exponent,
+        } => {
+            if !shape.contains(ray.x, ray.y) {
+                0.0
+            } else if *exponent == 0.0 {
+                *radiance
+            } else {
+                radiance * ray.secant_squared().powf(-0.5 * exponent)
+            }
+        }
+        Light::Point { intensity } => intensity * ray.secant_squared().sqrt(),
+    }
+}
+
+/// A uniform point of a shape, from two numbers in (0, 1).
+pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {
+    match shape {
+        Shape::Rectangle(rectangle) => [0, 1].map(|axis| {
+            let [low, high] = rectangle.extent(axis);
+            low + r[axis] * (high - low)
+        }),
+        Shape::Disc(disc) => {
+            let (sin, cos) = (TAU * r[1]).sin_cos();
+            let radius = disc.radius * r[0].sqrt();
+            [disc.center[0] + radius * cos, disc.center[1] + radius * sin]
+        }
+    }
+}
+
+/// π: the flux a Lambertian surface sends out per radiance and area.
+pub(crate) const LAMBERTIAN: f64 = PI;

@@ -7,10 +7,15 @@
 //! distance along the ray is a coordinate. Random numbers are functions of (seed, photon), so a photon's
 //! life does not depend on who traces it.
 
+mod backward;
 mod bvh;
 mod emit;
+mod obstacles;
 mod proposal;
+mod scatter;
+mod shares;
 mod tracer;
 
+pub use backward::{Backward, PointLight};
 pub use emit::Emitter;
 pub use tracer::Tracer;

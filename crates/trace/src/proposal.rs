@@ -5,13 +5,13 @@ use etendue_field::Profile;
 /// Hann is followed by a tent, 1 − |t|/half: their ratio stays in 0..1.14 and falls to zero at the edge,
 /// so the weights are bounded. Other profiles do not vanish at their edge: they get a constant.
 #[derive(Clone, Copy, Debug)]
-struct Shape {
+pub(crate) struct Follower {
     half: f64,
     tent: bool,
 }
 
-impl Shape {
-    fn new(profile: &Profile) -> Self {
+impl Follower {
+    pub(crate) fn new(profile: &Profile) -> Self {
         Self {
             half: profile.half_width(),
             tent: matches!(profile, Profile::Hann(_)),
@@ -31,7 +31,7 @@ impl Shape {
 
     /// Inverse of [`Self::cumulative`].
     #[inline]
-    fn quantile(&self, p: f64) -> f64 {
+    pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match (self.tent, p < 0.5) {
             (false, _) => 2.0 * p - 1.0,
             (true, true) => (2.0 * p).max(0.0).sqrt() - 1.0,
@@ -42,7 +42,7 @@ impl Shape {
 
     /// The density, with respect to dt.
     #[inline]
-    fn density(&self, t: f64) -> f64 {
+    pub(crate) fn density(&self, t: f64) -> f64 {
         let s = (t / self.half).abs();
         if s >= 1.0 {
             0.0
@@ -54,18 +54,68 @@ impl Shape {
     }
 }
 
+/// Slopes along one axis, at a point of a surface, of rays that cross a window some way from it: by the window's profile
+/// over the slopes that do.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Aim {
+    distance: f64,
+    half: f64,
+    slope: Follower,
+}
+
+impl Aim {
+    pub(crate) fn new(distance: f64, space: &Profile, slope: &Profile) -> Self {
+        Self {
+            distance,
+            half: space.half_width(),
+            slope: Follower::new(slope),
+        }
+    }
+
+    /// Cumulative of the slope at the ends of the range that crosses the window from `x`; `None` if empty.
+    #[inline]
+    fn range(&self, x: f64) -> Option<[f64; 2]> {
+        let range = if self.distance > 0.0 {
+            [-self.half, self.half].map(|end| self.slope.cumulative((end - x) / self.distance))
+        } else if x.abs() < self.half {
+            [0.0, 1.0]
+        } else {
+            return None;
+        };
+        (range[0] < range[1]).then_some(range)
+    }
+
+    /// A slope at `x`, from a number in (0, 1).
+    #[inline]
+    pub(crate) fn sample(&self, x: f64, random: f64) -> Option<f64> {
+        let [low, high] = self.range(x)?;
+        Some(self.slope.quantile(low + random * (high - low)))
+    }
+
+    /// The density of [`Self::sample`] with respect to du.
+    #[inline]
+    pub(crate) fn density(&self, x: f64, u: f64) -> f64 {
+        let crosses = (x + self.distance * u).abs() < self.half;
+        match self.range(x) {
+            Some([low, high]) if crosses => self.slope.density(u) / (high - low),
+            _ => 0.0,
+        }
+    }
+}
+
 /// Rays of one plane of coordinates, (x, u) or (y, v), that leave the light and cross a window.
 ///
 /// First u by the window's profile over the slopes that can do both, then x by the profile over the light's
-/// image at that slope. No sample misses the light or the window.
+/// image at that slope. No sample misses the light or the window. From a point light there is no choice of x,
+/// and the density is that of u alone.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Proposal {
     /// Distance of the window from the light.
     distance: f64,
     /// Extent of the light.
     light: [f64; 2],
-    space: Shape,
-    slope: Shape,
+    space: Follower,
+    slope: Follower,
     /// Cumulative of the slope at the ends of its range.
     range: [f64; 2],
 }
@@ -80,7 +130,7 @@ impl Proposal {
         space: &Profile,
         slope: &Profile,
     ) -> Option<Self> {
-        let (space, slope) = (Shape::new(space), Shape::new(slope));
+        let (space, slope) = (Follower::new(space), Follower::new(slope));
         // A ray from x in the light is in the window when |x + distance·u| < half-width.
         let reachable = [
             (-space.half - extent[1]) / distance,
@@ -102,6 +152,11 @@ impl Proposal {
         })
     }
 
+    #[inline]
+    fn is_point(&self) -> bool {
+        self.light[1] <= self.light[0]
+    }
+
     /// Cumulative of the position in the window at the ends of the light's image at slope `u`.
     #[inline]
     fn image(&self, u: f64) -> [f64; 2] {
@@ -114,6 +169,9 @@ impl Proposal {
     pub(crate) fn sample(&self, random: [f64; 2]) -> [f64; 2] {
         let between = |[low, high]: [f64; 2], r: f64| low + r * (high - low);
         let u = self.slope.quantile(between(self.range, random[0]));
+        if self.is_point() {
+            return [self.light[0], u];
+        }
         let x = self.space.quantile(between(self.image(u), random[1]));
         [x - self.distance * u, u]
     }
@@ -124,13 +182,16 @@ impl Proposal {
         if x < self.light[0] || x > self.light[1] {
             return 0.0;
         }
+        let along_slope = self.slope.density(u) / (self.range[1] - self.range[0]);
+        if self.is_point() {
+            let seen = (x + self.distance * u).abs() < self.space.half;
+            return if seen { along_slope } else { 0.0 };
+        }
         let [low, high] = self.image(u);
         if high <= low {
             return 0.0;
         }
-        self.slope.density(u) / (self.range[1] - self.range[0])
-            * self.space.density(x + self.distance * u)
-            / (high - low)
+        along_slope * self.space.density(x + self.distance * u) / (high - low)
     }
 }
 

@@ -1,41 +1,35 @@
-use crate::bvh::{Target, Targets};
-use crate::emit::Emitter;
+use crate::emit::{Emitter, LAMBERTIAN};
+use crate::obstacles::{Meeting, Obstacles};
+use crate::scatter::Scatterer;
+use crate::shares::Shares;
 use etendue_field::random::{self, Stream};
-use etendue_field::{Crossing, Ledger, PhotonSource, Side};
+use etendue_field::{Crossing, Ledger, PhotonSource, Side, TwoPlane};
 use etendue_scene::Scene;
-use std::fmt;
-use std::ops::Range;
 
 /// The forward tracer of a scene.
 ///
-/// A photon leaves the light, crosses the planes in front of what it meets first, and ends there: blockers
-/// absorb it, a surface absorbs 1 − albedo of it and the rest is stopped, since the path ends.
+/// A photon leaves the light and crosses the planes in front of what it meets first; gratings on the way take
+/// their share of it. Blockers absorb it, a surface absorbs 1 − albedo of it. What the surface on the central ray reflects
+/// crosses the planes after it, and is stopped: the path ends.
+#[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
-    targets: Targets<Meeting>,
-    /// Distance and side of each plane.
-    planes: Vec<(f64, Side)>,
-    photons: u64,
-    batches: u32,
+    obstacles: Obstacles,
+    /// `None` when no plane looks at reflected light.
+    scatterer: Option<Scatterer>,
+    planes: Vec<Station>,
+    /// Distance of the surface that the central ray visits.
+    length: f64,
+    shares: Shares,
     seed: u64,
 }
 
-impl fmt::Debug for Tracer {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Tracer")
-            .field("emitter", &self.emitter)
-            .field("photons", &self.photons)
-            .field("batches", &self.batches)
-            .field("seed", &self.seed)
-            .finish_non_exhaustive()
-    }
-}
-
-/// What a photon meets.
+/// Where a plane stands.
 #[derive(Clone, Copy, Debug)]
-enum Meeting {
-    Blocker,
-    Surface { albedo: f64 },
+struct Station {
+    distance: f64,
+    side: Side,
+    reflected: bool,
 }
 
 /// Photons traced between two reports.
@@ -45,85 +39,91 @@ impl Tracer {
     /// The tracer of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let blockers = scene.blockers.iter().flat_map(|layer| {
-            layer.rectangles.iter().map(|&rectangle| Target {
-                distance: layer.distance,
-                rectangle,
-                tag: Meeting::Blocker,
-            })
+        let planes = scene.planes.iter().map(|plane| Station {
+            distance: plane.distance,
+            side: plane.side,
+            reflected: plane.reflections > 0,
         });
-        let surfaces = scene.surfaces.iter().map(|surface| Target {
-            distance: surface.distance,
-            rectangle: surface.rectangle,
-            tag: Meeting::Surface {
-                albedo: surface.albedo,
-            },
-        });
-        let targets: Vec<_> = blockers.chain(surfaces).collect();
-        let planes = scene
-            .planes
-            .iter()
-            .map(|plane| (plane.distance, plane.side));
         Self {
             emitter: Emitter::new(scene),
-            targets: Targets::new(&targets, scene.light.rectangle.reach()),
+            obstacles: Obstacles::new(scene),
+            scatterer: Scatterer::new(scene),
             planes: planes.collect(),
-            photons: scene.run.photons,
-            batches: scene.run.batches,
+            length: scene.path.length,
+            shares: Shares::new(&scene.run),
             seed: scene.run.seed,
         }
-    }
-
-    /// The photons of a batch: batches share them out evenly, in order.
-    fn range(&self, batch: u32) -> Range<u64> {
-        let start = |b: u32| {
-            let share = u128::from(self.photons) * u128::from(b) / u128::from(self.batches);
-            u64::try_from(share).unwrap_or(u64::MAX)
-        };
-        start(batch)..start(batch + 1)
     }
 
     /// The life of one photon.
     #[inline]
     fn photon(&self, index: u64, crossings: &mut [Vec<Crossing>], ledger: &mut Ledger) {
-        let words = [0, 1].map(|block| random::words(self.seed, Stream::Photon, index, block));
-        let ray = self.emitter.sample(words);
+        let words = |block| random::words(self.seed, Stream::Photon, index, block);
+        let ray = self.emitter.sample([words(0), words(1)]);
         let weight = self.emitter.weight(&ray);
         let secant_squared = ray.secant_squared();
         let flux = weight / (secant_squared * secant_squared);
-        let met = self.targets.first(&ray);
+        let met = self.obstacles.first(&ray);
 
-        let end = met.map_or(f64::INFINITY, |target| target.distance);
-        for (&(distance, side), crossings) in self.planes.iter().zip(crossings) {
+        let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
+        for (plane, crossings) in self.planes.iter().zip(crossings.iter_mut()) {
+            let &Station { distance, side, .. } = plane;
             // A plane beside something is at the very same distance: no rounding can come between.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,
             };
-            if crossed {
+            if crossed && !plane.reflected {
                 crossings.push(Crossing {
                     ray: ray.travelled(distance),
-                    weight,
+                    weight: weight * self.obstacles.transmittance(&ray, distance, side),
                 });
             }
         }
 
         ledger.emitted += flux;
-        match met.map(|target| target.tag) {
-            None => ledger.escaped += flux,
-            Some(Meeting::Blocker) => ledger.absorbed += flux,
-            Some(Meeting::Surface { albedo }) => {
-                ledger.stopped += albedo * flux;
-                ledger.absorbed += (1.0 - albedo) * flux;
+        let arrives = flux * self.obstacles.transmittance(&ray, end, Side::Before);
+        ledger.absorbed += flux - arrives;
+        match met {
+            None => ledger.escaped += arrives,
+            Some((_, Meeting::Blocker)) => ledger.absorbed += arrives,
+            Some((_, Meeting::Surface { albedo, visited })) => {
+                ledger.stopped += albedo * arrives;
+                ledger.absorbed += (1.0 - albedo) * arrives;
+                if let (Some(scatterer), true) = (&self.scatterer, visited) {
+                    let at = ray.travelled(self.length);
+                    let sampled = scatterer.sample(turned(&at), words(2));
+                    if let Some((ray, density)) = sampled {
+                        // Radiance albedo/π · E, and a photon's flux is E at its point.
+                        let weight = albedo * arrives / (LAMBERTIAN * density);
+                        self.reflected(&ray, weight, crossings);
+                    }
+                }
+            }
+        }
+    }
+
+    /// Crossings of light that leaves the surface on the central ray; nothing stands in its way there.
+    fn reflected(&self, ray: &TwoPlane, weight: f64, crossings: &mut [Vec<Crossing>]) {
+        for (plane, crossings) in self.planes.iter().zip(crossings) {
+            if plane.reflected {
+                crossings.push(Crossing {
+                    ray: ray.travelled(plane.distance - self.length),
+                    weight,
+                });
             }
         }
     }
 }
 
+/// A point of the surface in the frame in which light leaves it, (−X, Y, −D).
+pub(crate) fn turned(at: &TwoPlane) -> [f64; 2] {
+    [-at.x, at.y]
+}
+
 impl PhotonSource for Tracer {
     fn emitted(&self, batch: u32) -> u64 {
-        let range = self.range(batch);
-        range.end - range.start
+        self.shares.count(batch)
     }
 
     fn emit(
@@ -134,7 +134,7 @@ impl PhotonSource for Tracer {
     ) -> Ledger {
         let mut crossings = vec![Vec::with_capacity(BLOCK); self.planes.len()];
         let mut total = Ledger::default();
-        let range = self.range(batch);
+        let range = self.shares.of(batch);
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();

@@ -13,7 +13,7 @@ fn scene(overrides: &[(&str, &str)]) -> Scene {
     for (path, value) in overrides {
         file = file.with(path, value).unwrap();
     }
-    resolve("test", file, u64::MAX).unwrap()
+    resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
 }
 
 /// Mean of weight · window over emitted photons, its standard error for each plane, and the ledger.

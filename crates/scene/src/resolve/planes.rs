@@ -4,9 +4,15 @@ use super::faults::show;
 use super::{Resolver, SAME_PLANE, Stop};
 use crate::fault::Fault;
 use crate::file::{AxisFile, FrequenciesFile, Place, SceneFile, WindowFile};
-use etendue_field::{
-    Frame, FrequencyAxis, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
-};
+use crate::scene::CentralRay;
+use etendue_field::{FrequencyAxis, Profile, Side, SliceGrid, VirtualPlane, Window};
+
+/// A place on the path.
+struct OnPath {
+    distance: f64,
+    side: Side,
+    reflections: usize,
+}
 
 /// Bytes of one complex number.
 const COMPLEX: f64 = 16.0;
@@ -14,8 +20,7 @@ impl Resolver<'_> {
     pub(super) fn planes(
         &mut self,
         file: &SceneFile,
-        frame: &Frame,
-        length: f64,
+        path: &CentralRay,
         stops: &[Stop<'_>],
     ) -> Vec<VirtualPlane> {
         if file.planes.is_empty() {
@@ -24,7 +29,7 @@ impl Resolver<'_> {
         let mut planes = Vec::new();
         for (i, plane) in file.planes.iter().enumerate() {
             let of = format!("planes[{i}]");
-            let place = self.place(&format!("{of}.at"), &plane.at, length, stops);
+            let place = self.place(&format!("{of}.at"), &plane.at, path, stops);
             let window = match &plane.window {
                 Some(window) => self.window(&format!("{of}.window"), window),
                 None => self.window("window", &file.window),
@@ -33,16 +38,16 @@ impl Resolver<'_> {
                 Some(f) => self.frequencies(&format!("{of}.frequencies"), f, &window),
                 None => self.frequencies("frequencies", &file.frequencies, &window),
             };
-            let (Some((distance, side)), Some(grid)) = (place, grid) else {
+            let (Some(place), Some(grid)) = (place, grid) else {
                 continue;
             };
             planes.push(VirtualPlane {
                 name: plane.name.clone(),
-                distance,
-                reflections: 0,
-                side,
-                quantity: Quantity::Radiance,
-                frame: frame.travelled(distance),
+                distance: place.distance,
+                reflections: place.reflections,
+                side: place.side,
+                quantity: plane.quantity,
+                frame: path.frame_at(place.distance, place.reflections),
                 window,
                 grid,
             });
@@ -61,46 +66,93 @@ impl Resolver<'_> {
         &mut self,
         of: &str,
         place: &Place,
-        length: f64,
+        path: &CentralRay,
         stops: &[Stop<'_>],
-    ) -> Option<(f64, Side)> {
-        let known = || -> String {
-            let names: Vec<&str> = stops.iter().map(|s| s.name).collect();
-            format!("one of {}", names.join(", "))
-        };
+    ) -> Option<OnPath> {
         match place {
-            Place::Emission => Some((0.0, Side::After)),
-            Place::Before(name) | Place::After(name) => {
-                let Some(stop) = stops.iter().find(|s| s.name == name) else {
-                    self.faults.add(of, show(place), known());
-                    return None;
-                };
-                let before = matches!(place, Place::Before(_));
-                if stop.surface && !before {
-                    let allowed = "Before(…): light leaving a surface is not measured yet";
-                    self.faults.add(of, show(place), allowed);
-                } else if stop.distance > length {
-                    let allowed = format!("a place on the path, which ends at {length} m");
-                    self.faults.add(of, show(place), allowed);
-                }
-                Some((
-                    stop.distance,
-                    if before { Side::Before } else { Side::After },
-                ))
+            Place::Emission => Some(OnPath {
+                distance: 0.0,
+                side: Side::After,
+                reflections: 0,
+            }),
+            Place::Before(name) => {
+                let stop = self.stop(of, place, name, path, stops)?;
+                Some(OnPath {
+                    distance: stop.extent[0],
+                    side: Side::Before,
+                    reflections: 0,
+                })
             }
-            Place::Distance(distance) => {
-                if !length.is_nan() && !(0.0..=length).contains(distance) {
-                    let allowed = format!("0 to {length} m: the path from the light to its end");
+            Place::After(name) => {
+                let stop = self.stop(of, place, name, path, stops)?;
+                if stop.surface && !stop.is_flat() {
+                    let allowed = "Before(…): light leaving a mesh is not measured";
                     self.faults.add(of, show(place), allowed);
                 }
-                if let Some(stop) = stops.iter().find(|s| near(s.distance, *distance)) {
-                    let name = stop.name;
-                    let allowed =
-                        format!("Before(\"{name}\") or After(\"{name}\") at that distance");
+                if stop.surface && stop.extent[0] < path.length {
+                    let allowed = "After(…) of the surface that the path visits";
                     self.faults.add(of, show(place), allowed);
                 }
-                Some((*distance, Side::After))
+                Some(OnPath {
+                    distance: stop.extent[1],
+                    side: Side::After,
+                    reflections: usize::from(stop.surface),
+                })
             }
+            Place::Distance(distance) => Some(self.at_distance(of, *distance, path, stops)),
+        }
+    }
+
+    /// What a plane's place names.
+    fn stop<'a>(
+        &mut self,
+        of: &str,
+        place: &Place,
+        name: &str,
+        path: &CentralRay,
+        stops: &'a [Stop<'a>],
+    ) -> Option<&'a Stop<'a>> {
+        let Some(stop) = stops.iter().find(|s| s.name == name) else {
+            let names: Vec<&str> = stops.iter().map(|s| s.name).collect();
+            self.faults
+                .add(of, show(place), format!("one of {}", names.join(", ")));
+            return None;
+        };
+        if stop.extent[0] > path.length {
+            let length = path.length;
+            let allowed = format!("a place on the path, which reaches its surface at {length} m");
+            self.faults.add(of, show(place), allowed);
+        }
+        Some(stop)
+    }
+
+    /// On the way to the surface, or on the way back.
+    fn at_distance(
+        &mut self,
+        of: &str,
+        distance: f64,
+        path: &CentralRay,
+        stops: &[Stop<'_>],
+    ) -> OnPath {
+        let CentralRay { length, back, .. } = *path;
+        let value = || format!("Distance({distance:?})");
+        if !length.is_nan() && !(0.0..length + back).contains(&distance) {
+            let end = length + back;
+            let allowed = format!(
+                "0 to {length} m on the way to the surface, up to {end} m on the way back, where something stands"
+            );
+            self.faults.add(of, value(), allowed);
+        }
+        let beside = |s: &&Stop<'_>| s.extent.iter().any(|end| near(*end, distance));
+        if let Some(stop) = stops.iter().find(beside) {
+            let name = stop.name;
+            let allowed = format!("Before(\"{name}\") or After(\"{name}\") at that distance");
+            self.faults.add(of, value(), allowed);
+        }
+        OnPath {
+            distance,
+            side: Side::After,
+            reflections: usize::from(distance > length),
         }
     }
 

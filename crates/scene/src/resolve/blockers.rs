@@ -1,0 +1,293 @@
+use super::Resolver;
+use super::faults::show;
+use super::jitter::jittered_squares;
+use crate::file::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
+use crate::scene::BlockerLayer;
+use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape};
+use glam::DVec3;
+
+/// Shapes a layer may hold: the prediction of more that are seen takes many minutes.
+const MOST_BLOCKERS: u64 = 100_000;
+/// Products of shapes of several layers a prediction may have to go through.
+const MOST_PAIRS: f64 = 1e6;
+/// Rectangles a prediction makes of a disc, about.
+const STRIPS: f64 = 64.0;
+
+impl Resolver<'_> {
+    /// The blockers that lie across the central ray.
+    pub(super) fn blockers(
+        &mut self,
+        file: &SceneFile,
+        frame: &Frame,
+        length: f64,
+    ) -> Vec<BlockerLayer> {
+        let blockers = file.blockers.iter().enumerate();
+        blockers
+            .filter_map(|(i, blockers)| {
+                self.layer(&format!("blockers[{i}]"), blockers, frame, length)
+            })
+            .collect()
+    }
+
+    /// `None` for a mesh.
+    fn layer(
+        &mut self,
+        of: &str,
+        blockers: &BlockersFile,
+        frame: &Frame,
+        length: f64,
+    ) -> Option<BlockerLayer> {
+        let (BlockersFile::JitteredSquares { name, center, .. }
+        | BlockersFile::Shapes { name, center, .. }
+        | BlockersFile::Grating { name, center, .. }) = blockers
+        else {
+            return None;
+        };
+        self.faults.coordinates(&format!("{of}.center"), center);
+        let center = frame.to_local(DVec3::from(*center));
+        self.ahead(of, center.z);
+        if center.z >= length {
+            self.faults.add(
+                format!("{of}.center"),
+                format!("at distance {} m from the light", center.z),
+                format!("a place before the path ends, at {length} m"),
+            );
+        }
+        let (mask, pitch) = self.mask(of, blockers, [center.x, center.y])?;
+        Some(BlockerLayer {
+            name: name.clone(),
+            distance: center.z,
+            pitch,
+            mask,
+        })
+    }
+
+    /// What the blockers do to radiance, and the distance between their repetitions.
+    fn mask(
+        &mut self,
+        of: &str,
+        blockers: &BlockersFile,
+        center: [f64; 2],
+    ) -> Option<(Mask, Option<f64>)> {
+        match blockers {
+            BlockersFile::JitteredSquares { pitch, .. } => {
+                let shapes = self.squares(of, blockers, center);
+                Some((opaque(shapes, Vec::new()), Some(*pitch)))
+            }
+            BlockersFile::Shapes { shapes, .. } => Some((self.shapes(of, shapes, center), None)),
+            BlockersFile::Grating {
+                axis,
+                frequency,
+                modulation,
+                phase,
+                ..
+            } => {
+                self.faults.positive(format!("{of}.frequency"), *frequency);
+                self.faults
+                    .within(format!("{of}.modulation"), *modulation, 0.0..=1.0);
+                self.faults
+                    .within(format!("{of}.phase"), *phase, -1e3..=1e3);
+                let axis = axis.index();
+                let grating = Grating {
+                    axis,
+                    frequency: *frequency,
+                    modulation: *modulation,
+                    phase: phase - std::f64::consts::TAU * frequency * center[axis],
+                };
+                Some((Mask::Grating(grating), Some(1.0 / frequency)))
+            }
+            BlockersFile::Mesh { .. } => None,
+        }
+    }
+
+    fn squares(&mut self, of: &str, blockers: &BlockersFile, center: [f64; 2]) -> Vec<Shape> {
+        let &BlockersFile::JitteredSquares {
+            count,
+            pitch,
+            fill,
+            jitter,
+            seed,
+            ..
+        } = blockers
+        else {
+            return Vec::new();
+        };
+        let total = u64::from(count[0]) * u64::from(count[1]);
+        if !(1..=MOST_BLOCKERS).contains(&total) {
+            self.faults.add(
+                format!("{of}.count"),
+                format!("{} x {}", count[0], count[1]),
+                format!("1 to {MOST_BLOCKERS} squares in all"),
+            );
+        }
+        self.faults.positive(format!("{of}.pitch"), pitch);
+        self.faults
+            .within(format!("{of}.fill"), fill, f64::MIN_POSITIVE..=1.0);
+        // Squares that may overlap would be counted twice by the prediction. Rounding must not refuse a
+        // fill of 0.7 with a jitter of 0.3.
+        if !(jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
+            self.faults.add(
+                format!("{of}.jitter"),
+                show(jitter),
+                format!("0 to 1 − fill, which is {:.6}", 1.0 - fill),
+            );
+        }
+        if !self.faults.0.is_empty() {
+            return Vec::new();
+        }
+        let squares = jittered_squares(center, count, pitch, fill, jitter, seed);
+        squares.into_iter().map(Shape::Rectangle).collect()
+    }
+
+    /// The shapes, moved to `center`.
+    fn shapes(&mut self, of: &str, files: &[ShapeFile], center: [f64; 2]) -> Mask {
+        if !(1..=MOST_BLOCKERS).contains(&(files.len() as u64)) {
+            let allowed = format!("1 to {MOST_BLOCKERS} shapes");
+            self.faults.add(
+                format!("{of}.shapes"),
+                format!("{} shapes", files.len()),
+                allowed,
+            );
+        }
+        let moved = |c: [f64; 2]| [center[0] + c[0], center[1] + c[1]];
+        let (mut shapes, mut half_planes) = (Vec::new(), Vec::new());
+        for (i, file) in files.iter().enumerate() {
+            let of = format!("{of}.shapes[{i}]");
+            match *file {
+                ShapeFile::Rectangle { center, size } => {
+                    self.faults.coordinates(&format!("{of}.center"), &center);
+                    self.size(&of, &size);
+                    let center = moved(center);
+                    shapes.push(Shape::Rectangle(Rectangle { center, size }));
+                }
+                ShapeFile::Disc { center, radius } => {
+                    self.faults.coordinates(&format!("{of}.center"), &center);
+                    self.faults.positive(format!("{of}.radius"), radius);
+                    let center = moved(center);
+                    shapes.push(Shape::Disc(Disc { center, radius }));
+                }
+                ShapeFile::HalfPlane { axis, edge, opaque } => {
+                    self.faults.coordinates(&format!("{of}.edge"), &[edge]);
+                    half_planes.push(HalfPlane {
+                        axis: axis.index(),
+                        edge: edge + center[axis.index()],
+                        above: opaque == HalfName::Above,
+                    });
+                }
+            }
+        }
+        if self.faults.0.is_empty() {
+            self.apart(of, &shapes, &half_planes);
+        }
+        opaque(shapes, half_planes)
+    }
+
+    /// What overlaps would be counted twice by the prediction.
+    fn apart(&mut self, of: &str, shapes: &[Shape], half_planes: &[HalfPlane]) {
+        let mut overlaps = Vec::new();
+        for (i, a) in shapes.iter().enumerate() {
+            overlaps.extend(
+                shapes[..i]
+                    .iter()
+                    .filter(|b| overlap(a, b))
+                    .map(|b| (show(a), show(b))),
+            );
+            let crossed = half_planes.iter().filter(|h| reaches(a, h));
+            overlaps.extend(crossed.map(|h| (show(a), show(h))));
+        }
+        for (i, a) in half_planes.iter().enumerate() {
+            let both = half_planes[..i].iter().filter(|b| !facing_away(a, b));
+            overlaps.extend(both.map(|b| (show(a), show(b))));
+        }
+        if let Some((a, b)) = overlaps.first() {
+            self.faults.add(
+                format!("{of}.shapes"),
+                format!("{} that overlap, first {a} and {b}", overlaps.len()),
+                "shapes that do not overlap; put them in two layers",
+            );
+        }
+    }
+
+    /// A prediction multiplies the layers out.
+    pub(super) fn layers(&mut self, file: &SceneFile) {
+        let terms = |b: &BlockersFile| match b {
+            BlockersFile::JitteredSquares { count, .. } => {
+                f64::from(count[0]) * f64::from(count[1])
+            }
+            BlockersFile::Shapes { shapes, .. } => shapes
+                .iter()
+                .map(|s| match s {
+                    ShapeFile::Disc { .. } => STRIPS,
+                    _ => 1.0,
+                })
+                .sum(),
+            BlockersFile::Grating { .. } => 3.0,
+            BlockersFile::Mesh { .. } => 1.0,
+        };
+        let light = match file.light {
+            LightFile::Disc { .. } => STRIPS,
+            _ => 1.0,
+        };
+        let product: f64 = light * file.blockers.iter().map(terms).product::<f64>();
+        if product > MOST_PAIRS {
+            let allowed = format!(
+                "at most {MOST_PAIRS:.0e} in all when the shapes of light and layers are multiplied"
+            );
+            self.faults
+                .add("blockers: count", format!("{product:.1e}"), allowed);
+        }
+    }
+}
+
+fn opaque(shapes: Vec<Shape>, half_planes: Vec<HalfPlane>) -> Mask {
+    Mask::Opaque {
+        shapes,
+        half_planes,
+    }
+}
+
+/// Overlaps by less than this share of the sizes are rounding: shapes may touch.
+const TOUCH: f64 = 1e-9;
+
+fn overlap(a: &Shape, b: &Shape) -> bool {
+    let (p, q) = (a.bounds(), b.bounds());
+    let gap = |axis: usize| {
+        let between = (p.center[axis] - q.center[axis]).abs();
+        let reach = 0.5 * (p.size[axis] + q.size[axis]);
+        between - reach * (1.0 - TOUCH)
+    };
+    let bounds_meet = gap(0) < 0.0 && gap(1) < 0.0;
+    bounds_meet
+        && match (a, b) {
+            (Shape::Rectangle(_), Shape::Rectangle(_)) => true,
+            (Shape::Disc(a), Shape::Disc(b)) => {
+                let between = (a.center[0] - b.center[0]).hypot(a.center[1] - b.center[1]);
+                between < (a.radius + b.radius) * (1.0 - TOUCH)
+            }
+            (Shape::Disc(disc), Shape::Rectangle(rectangle))
+            | (Shape::Rectangle(rectangle), Shape::Disc(disc)) => {
+                // The nearest point of the rectangle.
+                let beyond = |axis: usize| {
+                    let [low, high] = rectangle.extent(axis);
+                    disc.center[axis] - disc.center[axis].clamp(low, high)
+                };
+                beyond(0).hypot(beyond(1)) < disc.radius * (1.0 - TOUCH)
+            }
+        }
+}
+
+fn reaches(shape: &Shape, half_plane: &HalfPlane) -> bool {
+    let [low, high] = shape.bounds().extent(half_plane.axis);
+    let slack = TOUCH * (high - low);
+    if half_plane.above {
+        high > half_plane.edge + slack
+    } else {
+        low < half_plane.edge - slack
+    }
+}
+
+/// Two half-planes share nothing when they face away from each other.
+fn facing_away(a: &HalfPlane, b: &HalfPlane) -> bool {
+    let (above, below) = if a.above { (a, b) } else { (b, a) };
+    a.axis == b.axis && a.above != b.above && below.edge <= above.edge
+}

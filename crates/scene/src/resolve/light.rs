@@ -1,0 +1,78 @@
+use super::Resolver;
+use crate::file::{BulbFile, LightFile};
+use etendue_field::{Disc, Light, Rectangle, Shape};
+
+impl LightFile {
+    /// Where the central ray leaves it, world coordinates.
+    pub(super) fn center(&self) -> [f64; 3] {
+        match self {
+            Self::Rectangle { center, .. }
+            | Self::Disc { center, .. }
+            | Self::Point { center, .. }
+            | Self::Spot { center, .. } => *center,
+        }
+    }
+}
+
+/// Highest exponent of a spot: it is 0.01 rad wide.
+const SHARPEST: f64 = 1e4;
+
+impl Resolver<'_> {
+    /// The light, around the origin of the central ray.
+    pub(super) fn light(&mut self, light: &LightFile) -> Light {
+        self.faults.coordinates("light.center", &light.center());
+        let area = |shape: Shape, radiance: f64, exponent: f64| Light::Area {
+            shape,
+            radiance,
+            exponent,
+        };
+        match *light {
+            LightFile::Rectangle { size, radiance, .. } => {
+                self.size("light", &size);
+                self.faults.positive("light.radiance", radiance);
+                area(square(size), radiance, 0.0)
+            }
+            LightFile::Disc {
+                radius, radiance, ..
+            } => {
+                self.faults.positive("light.radius", radius);
+                self.faults.positive("light.radiance", radiance);
+                area(disc(radius), radiance, 0.0)
+            }
+            LightFile::Point { intensity, .. } => {
+                self.faults.positive("light.intensity", intensity);
+                Light::Point { intensity }
+            }
+            LightFile::Spot {
+                bulb,
+                radiance,
+                exponent,
+                ..
+            } => {
+                self.faults.positive("light.radiance", radiance);
+                self.faults
+                    .within("light.exponent", exponent, 0.0..=SHARPEST);
+                let (BulbFile::Square(size) | BulbFile::Disc(size)) = bulb;
+                self.faults.positive("light.bulb", size);
+                match bulb {
+                    BulbFile::Square(side) => area(square([side; 2]), radiance, exponent),
+                    BulbFile::Disc(radius) => area(disc(radius), radiance, exponent),
+                }
+            }
+        }
+    }
+}
+
+fn square(size: [f64; 2]) -> Shape {
+    Shape::Rectangle(Rectangle {
+        center: [0.0; 2],
+        size,
+    })
+}
+
+fn disc(radius: f64) -> Shape {
+    Shape::Disc(Disc {
+        center: [0.0; 2],
+        radius,
+    })
+}

@@ -1,0 +1,128 @@
+use super::Resolver;
+use super::faults::show;
+use crate::Mesh;
+use crate::file::{BlockersFile, MeshSource, SceneFile, SurfaceFile};
+use crate::scene::MeshObject;
+use etendue_field::Frame;
+use glam::DVec3;
+
+/// A mesh as the file has it.
+struct Placed<'a> {
+    of: String,
+    name: &'a String,
+    center: &'a [f64; 3],
+    mesh: &'a MeshSource,
+    scale: f64,
+    albedo: Option<f64>,
+}
+
+impl Resolver<'_> {
+    /// The meshes: blockers, then surfaces.
+    pub(super) fn meshes(&mut self, file: &SceneFile, frame: &Frame) -> Vec<MeshObject> {
+        let blockers = file
+            .blockers
+            .iter()
+            .enumerate()
+            .filter_map(|(i, b)| match b {
+                BlockersFile::Mesh {
+                    name,
+                    center,
+                    mesh,
+                    scale,
+                } => Some(Placed {
+                    of: format!("blockers[{i}]"),
+                    name,
+                    center,
+                    mesh,
+                    scale: *scale,
+                    albedo: None,
+                }),
+                _ => None,
+            });
+        let surfaces = file
+            .surfaces
+            .iter()
+            .enumerate()
+            .filter_map(|(i, s)| match s {
+                SurfaceFile::Mesh {
+                    name,
+                    center,
+                    mesh,
+                    scale,
+                    albedo,
+                } => Some(Placed {
+                    of: format!("surfaces[{i}]"),
+                    name,
+                    center,
+                    mesh,
+                    scale: *scale,
+                    albedo: Some(*albedo),
+                }),
+                SurfaceFile::Rectangle { .. } => None,
+            });
+        let placed: Vec<_> = blockers.chain(surfaces).collect();
+        let objects = placed.into_iter().filter_map(|p| self.mesh(&p, frame));
+        objects.collect()
+    }
+
+    fn mesh(&mut self, placed: &Placed<'_>, frame: &Frame) -> Option<MeshObject> {
+        let of = &placed.of;
+        self.faults
+            .coordinates(&format!("{of}.center"), placed.center);
+        self.faults.positive(format!("{of}.scale"), placed.scale);
+        if let Some(albedo) = placed.albedo {
+            self.faults
+                .within(format!("{of}.albedo"), albedo, 0.0..=1.0);
+        }
+        let mesh = self.source(of, placed.mesh)?;
+        let center = DVec3::from(*placed.center);
+        let local = |i: &u32| frame.to_local(center + mesh.vertices()[*i as usize] * placed.scale);
+        let triangles: Vec<[DVec3; 3]> = mesh
+            .triangles()
+            .iter()
+            .map(|corners| corners.each_ref().map(local))
+            .collect();
+        let depths = || triangles.as_flattened().iter().map(|p| p.z);
+        let extent = [
+            depths().fold(f64::INFINITY, f64::min),
+            depths().fold(f64::NEG_INFINITY, f64::max),
+        ];
+        self.ahead(of, extent[0]);
+        Some(MeshObject {
+            name: placed.name.clone(),
+            triangles,
+            extent,
+            albedo: placed.albedo,
+        })
+    }
+
+    fn source(&mut self, of: &str, source: &MeshSource) -> Option<Mesh> {
+        match source {
+            MeshSource::File(path) => match Mesh::load(&self.folder.join(path)) {
+                Ok(mesh) => Some(mesh),
+                Err(error) => {
+                    self.faults
+                        .add(format!("{of}.mesh"), show(path), error.to_string());
+                    None
+                }
+            },
+            &MeshSource::Star {
+                radius,
+                relief,
+                lobes,
+                rings,
+            } => {
+                let before = self.faults.0.len();
+                self.faults.positive(format!("{of}.mesh.radius"), radius);
+                self.faults
+                    .within(format!("{of}.mesh.relief"), relief, 0.0..=0.9);
+                self.faults
+                    .within(format!("{of}.mesh.lobes"), lobes.into(), 0.0..=64.0);
+                self.faults
+                    .within(format!("{of}.mesh.rings"), rings.into(), 3.0..=2000.0);
+                let sound = self.faults.0.len() == before;
+                sound.then(|| Mesh::star(radius, relief, lobes, rings))
+            }
+        }
+    }
+}
