@@ -13,7 +13,7 @@ mod report;
 mod residuals;
 mod score;
 
-pub use chain::{chain, stands_before};
+pub use chain::{chain, meshes, stands_before};
 pub use plane::{PlaneComparison, compare};
 pub use prediction::{Class, PredictedParameter, Prediction, steps};
 pub use report::{Bandwidth, Pair, PlaneReport, Verdict, sidak};

@@ -1,4 +1,4 @@
-use crate::prediction::{Prediction, steps};
+use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
 use crate::score::score;
@@ -49,21 +49,34 @@ pub fn compare(
     let plane = &measurement.planes()[index];
     let tally = measurement.tally(index);
     let predicted = without_rounding(prediction);
-    let residuals = Residuals::new(measurement, index, &predicted);
     let estimate = estimate::slices(measurement, index)?;
+    let is_reference = !prediction.replicates.is_empty();
+    let residuals = if is_reference {
+        Residuals::between(measurement, index, &prediction.replicates)
+    } else {
+        Residuals::new(measurement, index, &predicted)
+    };
+    // Theory is without noise, a reference adds its own.
+    let variance = if is_reference {
+        residuals.variance()
+    } else {
+        estimate.variance
+    };
     let power = CrossPower::new(measurement, index)?;
     let predicted_radial = predicted.radial_power();
-    let agreement = Agreement::new(&residuals, &estimate.variance, &predicted);
+    let agreement = Agreement::new(&residuals, &variance, &predicted);
     let p_value = residuals.p_value(seed);
     let verdict = verdict(&predicted, &tally, p_value, level, agreement.noise_limit());
     let grid = &plane.grid;
+    let quadrature = prediction.quadrature_error.zip(agreement.noise_limit());
     let pair =
         |of: &dyn Fn(ArrayView2<'_, f64>) -> Option<f64>| pair(&power, &predicted_radial, of);
 
     let report = PlaneReport {
         name: plane.name.clone(),
         class: prediction.class,
-        chain: steps(&prediction.chain, &plane.window),
+        chain: prediction.steps.clone(),
+        quadrature_error: prediction.quadrature_error,
         frame: plane.frame,
         distance: plane.distance,
         crossed: tally.crossed,
@@ -74,12 +87,12 @@ pub fn compare(
         excess: agreement.excess(),
         excess_squared_error: agreement.excess_squared_error,
         noise_floor_db: agreement.noise_floor_db,
-        chi2_per_dof: residuals.chi2_per_dof(&estimate.variance),
+        chi2_per_dof: residuals.chi2_per_dof(&variance),
         p_value,
         parameters: prediction
             .parameters
             .iter()
-            .filter_map(|p| score(&residuals, &estimate.variance, p))
+            .filter_map(|p| score(&residuals, &variance, p))
             .collect(),
         slope: pair(&|p| shear_slope(p, grid)),
         bandwidth_95: Bandwidth {
@@ -93,14 +106,14 @@ pub fn compare(
                 agreement.noise_limit().unwrap_or_default(),
             )
         }),
-        warnings: warnings(&predicted_radial, grid),
+        warnings: warnings(&predicted_radial, grid, quadrature),
     };
     Ok(PlaneComparison {
         report,
         measured: estimate.mean,
-        sigma: estimate.variance.mapv(f64::sqrt),
         radial: power.radial(),
-        radial_sigma: residuals.radial_sigma(&predicted, &estimate.variance),
+        radial_sigma: residuals.radial_sigma(&predicted, &variance),
+        sigma: variance.mapv(f64::sqrt),
         predicted_radial,
         predicted,
         projection: estimate::projection(measurement, index)?,
@@ -220,12 +233,26 @@ fn cross_power_error(products: &Array2<f64>) -> f64 {
     (2.0 * (all - diagonal)).max(0.0).sqrt() / (r * (r - 1.0))
 }
 
+/// The largest error of a quadrature that goes without a warning, as a share of the noise.
+const QUADRATURE: f64 = 1.0 / 30.0;
+
 /// The highest predicted power on the border of the grid that goes without a warning, below the peak.
 const BORDER: f64 = 1e-2;
 
 /// Limits of the measurement, in words.
-fn warnings(predicted: &Array2<f64>, grid: &SliceGrid) -> Vec<String> {
+fn warnings(
+    predicted: &Array2<f64>,
+    grid: &SliceGrid,
+    quadrature: Option<(f64, f64)>,
+) -> Vec<String> {
     let mut warnings = Vec::new();
+    if let Some((error, noise)) = quadrature.filter(|(error, noise)| *error > QUADRATURE * noise) {
+        warnings.push(format!(
+            "the prediction's quadrature is off by {:.4} % of the spectrum, noise is {:.4} %: not small beside it",
+            100.0 * error,
+            100.0 * noise
+        ));
+    }
     let peak = predicted.iter().copied().fold(0.0, f64::max);
     if peak <= 0.0 {
         warnings.push("no light is predicted in this window".to_owned());

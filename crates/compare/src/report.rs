@@ -44,6 +44,8 @@ pub struct PlaneReport {
     pub class: Class,
     /// The chain, a line for each step.
     pub chain: Vec<String>,
+    /// Estimated ‖error‖/‖F‖ of a prediction by quadrature; none for a closed form.
+    pub quadrature_error: Option<f64>,
     /// The plane's frame, world coordinates.
     pub frame: Frame,
     /// Distance from the light along the central ray, metres.

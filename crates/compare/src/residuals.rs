@@ -23,14 +23,34 @@ impl Residuals {
     /// When the plane was measured on other frequencies than the prediction's.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
-        let residual = |batch: &PlaneBatch| {
+        Self::from_each(measurement, plane, std::iter::repeat(prediction))
+    }
+
+    /// The differences of the batches of two independent measurements, pair by pair.
+    ///
+    /// # Panics
+    /// When they are of different frequencies.
+    pub(crate) fn between(measurement: &Measurement, plane: usize, replicates: &[Slices]) -> Self {
+        Self::from_each(measurement, plane, replicates.iter())
+    }
+
+    fn from_each<'a>(
+        measurement: &Measurement,
+        plane: usize,
+        predictions: impl Iterator<Item = &'a Slices>,
+    ) -> Self {
+        let residual = |(batch, prediction): (&PlaneBatch, &Slices)| {
             let (measured, predicted) = (batch.slices.grid, prediction.grid);
             assert_eq!(measured, predicted, "frequencies measured and predicted");
             &batch.slices.half - &prediction.half
         };
         Self {
-            grid: prediction.grid,
-            batches: measurement.at_plane(plane).map(residual).collect(),
+            grid: measurement.planes()[plane].grid,
+            batches: measurement
+                .at_plane(plane)
+                .zip(predictions)
+                .map(residual)
+                .collect(),
         }
     }
 
@@ -53,6 +73,19 @@ impl Residuals {
             sum += residual;
         }
         sum / Complex::from(self.count() as f64)
+    }
+
+    /// The variance of [`Self::mean`] from the spread of the batches (docs/theory.md, Eq. 12).
+    pub(crate) fn variance(&self) -> Array3<f64> {
+        let mean = self.mean();
+        let mut variance = Array3::zeros(self.grid.half_shape());
+        for residual in &self.batches {
+            ndarray::Zip::from(&mut variance)
+                .and(residual)
+                .and(&mean)
+                .for_each(|sum: &mut f64, r, m| *sum += (r - m).norm_sqr());
+        }
+        variance / (self.count() * (self.count() - 1)) as f64
     }
 
     /// The independent cells of an array on the half-plane, in one order for all arrays.

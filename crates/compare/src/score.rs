@@ -8,6 +8,8 @@ use serde::Serialize;
 pub struct ParameterReport {
     /// What it is, such as "travel light to blockers".
     pub name: String,
+    /// Unit of its values; none for a pure number.
+    pub unit: String,
     /// Its value in the scene.
     pub scene: f64,
     /// Its value as measured, all others held at the scene's.
@@ -54,6 +56,7 @@ pub(crate) fn score(
     let error = (spread / (count * (count - 1.0))).sqrt();
     Some(ParameterReport {
         name: parameter.name.clone(),
+        unit: parameter.unit.clone(),
         scene: parameter.value,
         measured: parameter.value + step,
         error,
