@@ -16,6 +16,6 @@ mod score;
 pub use chain::{chain, meshes, stands_before};
 pub use plane::{PlaneComparison, compare};
 pub use prediction::{Class, PredictedParameter, Prediction, steps};
-pub use report::{Bandwidth, Pair, PlaneReport, Verdict, sidak};
+pub use report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
 pub use residuals::Residuals;
 pub use score::ParameterReport;

@@ -1,10 +1,12 @@
 use crate::prediction::Prediction;
-use crate::report::{Bandwidth, Pair, PlaneReport, Verdict};
+use crate::report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
 use crate::score::score;
-use etendue_field::{PlaneTally, SliceGrid, Slices};
+use etendue_field::{PlaneTally, Side, SliceGrid, Slices, VirtualPlane};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
-use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, shear_slope};
+use etendue_spectrum::moments::{
+    BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, shear_slope,
+};
 use etendue_spectrum::{CrossPower, Measurement, RadialPower};
 use ndarray::{Array2, Array3, ArrayView2};
 
@@ -99,6 +101,13 @@ pub fn compare(
             rho: pair(&|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
             nu: pair(&|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
         },
+        high_frequency_share: cuts(plane)
+            .into_iter()
+            .map(|cut| HighFrequencyShare {
+                cut,
+                share: pair(&|p| high_frequency_share(p, grid, cut)),
+            })
+            .collect(),
         verdict,
         photons_needed: (verdict == Verdict::Undecided).then(|| {
             photons_needed(
@@ -118,6 +127,18 @@ pub fn compare(
         predicted,
         projection: estimate::projection(measurement, index)?,
     })
+}
+
+/// Where energy begins to count as high: two main lobes of the transform of a Hann window, which end at 1/half-width
+/// each, and 1.5 times that, to see whether the number hangs on the cut.
+fn cuts(plane: &VirtualPlane) -> Vec<f64> {
+    let leaves = plane.reflections > 0 && plane.side == Side::After;
+    let cut = 2.0 / plane.window.x.half_width();
+    if leaves {
+        vec![cut, 1.5 * cut]
+    } else {
+        Vec::new()
+    }
 }
 
 /// A number read off both powers by the same estimator.

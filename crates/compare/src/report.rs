@@ -35,6 +35,15 @@ pub struct Bandwidth {
     pub nu: Pair,
 }
 
+/// The share of energy above a cut in the spectrum of the windowed irradiance.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct HighFrequencyShare {
+    /// The cut, cycles per metre.
+    pub cut: f64,
+    /// H.
+    pub share: Pair,
+}
+
 /// Everything one plane comes to, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlaneReport {
@@ -76,6 +85,8 @@ pub struct PlaneReport {
     pub slope: Pair,
     /// 95 % bandwidth of the radial spectrum.
     pub bandwidth_95: Bandwidth,
+    /// H at two cuts, on a plane that light leaves diffusely; empty elsewhere.
+    pub high_frequency_share: Vec<HighFrequencyShare>,
     /// What it comes to.
     pub verdict: Verdict,
     /// Photons that would decide an undecided plane.

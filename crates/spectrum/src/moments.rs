@@ -64,6 +64,22 @@ pub fn bandwidth(
     Some(axis.max())
 }
 
+/// H, the share of energy above a cut in the spectrum at ν = 0: Σ_{|ρ| > cut} P(ρ, 0) / Σ P(ρ, 0).
+///
+/// On a plane that light leaves diffusely, the field is constant in slope and this is the spectrum of the windowed
+/// irradiance: H tells a sharp shadow from a smooth one (Durand et al. 2005, Fig. 9). `None` when the sum is not positive.
+#[must_use]
+pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f64) -> Option<f64> {
+    let (mut high, mut all) = (0.0, 0.0);
+    for (i, p) in power.index_axis(Axis(1), grid.nu.half).iter().enumerate() {
+        all += p;
+        if grid.rho.value(i).abs() > cut {
+            high += p;
+        }
+    }
+    (all > 0.0).then(|| high / all)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -117,6 +133,17 @@ mod tests {
             bandwidth(arr1(&[1.0, 0.0, 1.0]).view(), &three, 1.0),
             Some(2.0)
         );
+    }
+
+    #[test]
+    fn share_above_a_cut_counts_the_row_without_slope() {
+        // Eleven of the 21 frequencies i · 0.3 have |i| ≤ 5; only the column at ν = 0 counts.
+        let mut power = Array2::zeros((21, 81));
+        power.index_axis_mut(Axis(1), 40).fill(2.0);
+        power.index_axis_mut(Axis(1), 41).fill(100.0);
+        let share = high_frequency_share(power.view(), &grid(), 1.6).unwrap();
+        assert!((share - 10.0 / 21.0).abs() < 1e-15); // rounding
+        assert!(high_frequency_share(Array2::zeros((21, 81)).view(), &grid(), 1.0).is_none());
     }
 
     #[test]

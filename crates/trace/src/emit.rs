@@ -1,4 +1,4 @@
-use crate::proposal::Proposal;
+use crate::proposal::{Follower, Proposal};
 use etendue_field::{Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
 use std::f64::consts::{PI, TAU};
@@ -27,23 +27,20 @@ impl Emitter {
         };
         let proposal = |plane: &VirtualPlane| {
             let w = &plane.window;
-            let pair = |axis: usize, space: &Profile, slope: &Profile| {
+            let along = |axis: usize, space: &Profile, slope: &Profile| {
                 if plane.reflections == 0 {
+                    let (space, slope) = (Follower::new(space), Follower::new(slope));
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let length = scene.path.length;
                 let seen = space.half_width() + (plane.distance - length) * slope.half_width();
                 // The slopes of all rays from the light to there.
                 let [low, high] = extent[axis].map(f64::abs);
-                let steepest = (seen + low.max(high)) / length;
-                Proposal::new(
-                    length,
-                    extent[axis],
-                    &Profile::Box(seen),
-                    &Profile::Box(steepest),
-                )
+                let slope = Follower::cosine((seen + low.max(high)) / length);
+                let space = Follower::new(&Profile::Box(seen));
+                Proposal::new(length, extent[axis], space, slope)
             };
-            Some([pair(0, &w.x, &w.u)?, pair(1, &w.y, &w.v)?])
+            Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };
         let proposals = match scene.run.emission {
             Emission::Aimed => scene.planes.iter().filter_map(proposal).collect(),

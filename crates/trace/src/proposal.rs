@@ -4,38 +4,70 @@ use etendue_field::Profile;
 ///
 /// Hann is followed by a tent, 1 − |t|/half: their ratio stays in 0..1.14 and falls to zero at the edge,
 /// so the weights are bounded. Other profiles do not vanish at their edge: they get a constant.
+/// The light that a surface receives is followed by its cosine.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Follower {
     half: f64,
-    tent: bool,
+    kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Constant,
+    Tent,
+    /// In proportion to g(t) = (1 + t²)^(−3/2).
+    Cosine,
 }
 
 impl Follower {
     pub(crate) fn new(profile: &Profile) -> Self {
         Self {
             half: profile.half_width(),
-            tent: matches!(profile, Profile::Hann(_)),
+            kind: match profile {
+                Profile::Hann(_) => Kind::Tent,
+                Profile::Box(_) | Profile::Gaussian { .. } => Kind::Constant,
+            },
         }
+    }
+
+    /// For slopes of light that a surface receives, up to `half`: as the cosine weighs them in 2D (docs/theory.md, Eq. 6).
+    pub(crate) fn cosine(half: f64) -> Self {
+        let kind = Kind::Cosine;
+        Self { half, kind }
+    }
+
+    /// Sine of the angle with the largest slope.
+    #[inline]
+    fn sine(&self) -> f64 {
+        self.half / self.half.hypot(1.0)
     }
 
     /// Share of the density below `t`.
     #[inline]
     fn cumulative(&self, t: f64) -> f64 {
         let s = (t / self.half).clamp(-1.0, 1.0);
-        match (self.tent, s < 0.0) {
-            (false, _) => 0.5 * (1.0 + s),
-            (true, true) => 0.5 * (1.0 + s) * (1.0 + s),
-            (true, false) => 1.0 - 0.5 * (1.0 - s) * (1.0 - s),
+        match self.kind {
+            Kind::Constant => 0.5 * (1.0 + s),
+            Kind::Tent if s < 0.0 => 0.5 * (1.0 + s) * (1.0 + s),
+            Kind::Tent => 1.0 - 0.5 * (1.0 - s) * (1.0 - s),
+            Kind::Cosine => {
+                let t = s * self.half;
+                0.5 * (1.0 + t / (t.hypot(1.0) * self.sine()))
+            }
         }
     }
 
     /// Inverse of [`Self::cumulative`].
     #[inline]
     pub(crate) fn quantile(&self, p: f64) -> f64 {
-        let s = match (self.tent, p < 0.5) {
-            (false, _) => 2.0 * p - 1.0,
-            (true, true) => (2.0 * p).max(0.0).sqrt() - 1.0,
-            (true, false) => 1.0 - (2.0 * (1.0 - p)).max(0.0).sqrt(),
+        let s = match self.kind {
+            Kind::Constant => 2.0 * p - 1.0,
+            Kind::Tent if p < 0.5 => (2.0 * p).max(0.0).sqrt() - 1.0,
+            Kind::Tent => 1.0 - (2.0 * (1.0 - p)).max(0.0).sqrt(),
+            Kind::Cosine => {
+                let sine = (2.0 * p - 1.0) * self.sine();
+                return sine / (1.0 - sine * sine).sqrt();
+            }
         };
         s * self.half
     }
@@ -45,11 +77,12 @@ impl Follower {
     pub(crate) fn density(&self, t: f64) -> f64 {
         let s = (t / self.half).abs();
         if s >= 1.0 {
-            0.0
-        } else if self.tent {
-            (1.0 - s) / self.half
-        } else {
-            0.5 / self.half
+            return 0.0;
+        }
+        match self.kind {
+            Kind::Constant => 0.5 / self.half,
+            Kind::Tent => (1.0 - s) / self.half,
+            Kind::Cosine => 0.5 * (1.0 + t * t).powf(-1.5) / self.sine(),
         }
     }
 }
@@ -121,16 +154,15 @@ pub(crate) struct Proposal {
 }
 
 impl Proposal {
-    /// For light at `extent`, seen through the profiles `space` and `slope` at `distance`.
+    /// For light at `extent`, seen at `distance` through a window that `space` and `slope` follow.
     ///
     /// `None` when no ray does both.
     pub(crate) fn new(
         distance: f64,
         extent: [f64; 2],
-        space: &Profile,
-        slope: &Profile,
+        space: Follower,
+        slope: Follower,
     ) -> Option<Self> {
-        let (space, slope) = (Follower::new(space), Follower::new(slope));
         // A ray from x in the light is in the window when |x + distance·u| < half-width.
         let reachable = [
             (-space.half - extent[1]) / distance,
@@ -212,16 +244,24 @@ mod tests {
         const SAMPLES: u32 = 400_000;
         const SUB: usize = 64;
         let hann = Profile::Hann;
+        let tent = |half| Follower::new(&Profile::Hann(half));
         for (distance, light, space, slope) in [
-            (0.0, [-0.1, 0.1], hann(0.5), hann(0.5)),
-            (0.0, [-0.7, 0.2], hann(0.5), hann(0.3)),
-            (1.0, [-0.1, 0.1], hann(0.5), hann(0.5)),
-            (2.0, [-0.5, 0.5], hann(0.25), Profile::Box(0.5)),
-            (2.0, [0.3, 0.4], Profile::Box(0.25), hann(0.5)),
+            (0.0, [-0.1, 0.1], hann(0.5), tent(0.5)),
+            (0.0, [-0.7, 0.2], hann(0.5), tent(0.3)),
+            (1.0, [-0.1, 0.1], hann(0.5), tent(0.5)),
+            (
+                2.0,
+                [-0.5, 0.5],
+                hann(0.25),
+                Follower::new(&Profile::Box(0.5)),
+            ),
+            (2.0, [0.3, 0.4], Profile::Box(0.25), tent(0.5)),
+            (0.5, [-1.0, 1.0], Profile::Box(0.5), Follower::cosine(3.0)),
         ] {
-            let proposal = Proposal::new(distance, light, &space, &slope).unwrap();
+            let proposal = Proposal::new(distance, light, Follower::new(&space), slope).unwrap();
+
             // Cells over the light and over the slopes; cells cut by the window's edge are integrated finely.
-            let half = slope.half_width();
+            let half = slope.half;
             let mut counts = vec![0.0; CELLS * CELLS];
             for index in 0..u64::from(SAMPLES) {
                 let r = random::words(9, Stream::Photon, index, 0).map(random::unit);
@@ -264,9 +304,9 @@ mod tests {
 
     #[test]
     fn out_of_reach_is_none() {
-        let hann = Profile::Hann(0.1);
-        assert!(Proposal::new(0.0, [0.2, 0.3], &hann, &hann).is_none());
-        assert!(Proposal::new(1.0, [0.3, 0.4], &hann, &hann).is_none());
-        assert!(Proposal::new(1.0, [0.15, 0.4], &hann, &hann).is_some());
+        let hann = Follower::new(&Profile::Hann(0.1));
+        assert!(Proposal::new(0.0, [0.2, 0.3], hann, hann).is_none());
+        assert!(Proposal::new(1.0, [0.3, 0.4], hann, hann).is_none());
+        assert!(Proposal::new(1.0, [0.15, 0.4], hann, hann).is_some());
     }
 }

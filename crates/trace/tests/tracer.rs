@@ -136,7 +136,7 @@ fn blockers_block() {
     ]);
     assert_eq!(closed[0], 200_000);
     assert_eq!(closed[1], 200_000);
-    assert_eq!(closed[2..], [0, 0]);
+    assert!(closed[2..].iter().all(|n| *n == 0), "{closed:?}");
     let open = count(&[("run.photons", "2e5"), ("blockers.0.fill", "1e-9")]);
     assert_eq!(open[1], open[2]);
 }
