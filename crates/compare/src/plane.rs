@@ -2,7 +2,7 @@ use crate::prediction::Prediction;
 use crate::report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
 use crate::score::score;
-use etendue_field::{PlaneTally, Side, SliceGrid, Slices, VirtualPlane};
+use etendue_field::{PlaneTally, SliceGrid, Slices};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
     BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, shear_slope,
@@ -101,9 +101,10 @@ pub fn compare(
             rho: pair(&|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
             nu: pair(&|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
         },
-        high_frequency_share: cuts(plane)
-            .into_iter()
-            .map(|cut| HighFrequencyShare {
+        high_frequency_share: prediction
+            .cuts
+            .iter()
+            .map(|&cut| HighFrequencyShare {
                 cut,
                 share: pair(&|p| high_frequency_share(p, grid, cut)),
             })
@@ -127,18 +128,6 @@ pub fn compare(
         predicted,
         projection: estimate::projection(measurement, index)?,
     })
-}
-
-/// Where energy begins to count as high: two main lobes of the transform of a Hann window, which end at 1/half-width
-/// each, and 1.5 times that, to see whether the number hangs on the cut.
-fn cuts(plane: &VirtualPlane) -> Vec<f64> {
-    let leaves = plane.reflections > 0 && plane.side == Side::After;
-    let cut = 2.0 / plane.window.x.half_width();
-    if leaves {
-        vec![cut, 1.5 * cut]
-    } else {
-        Vec::new()
-    }
 }
 
 /// A number read off both powers by the same estimator.

@@ -47,6 +47,8 @@ pub struct Prediction {
     pub projection: Projection,
     /// For each parameter of the chain: name, value and derivative of the slices.
     pub parameters: Vec<PredictedParameter>,
+    /// Where energy begins to count as high, cycles per metre, on a plane that light leaves diffusely.
+    pub cuts: Vec<f64>,
 }
 
 /// A parameter of the chain and how the slices depend on it.
@@ -104,6 +106,7 @@ impl Prediction {
             projection: etendue_theory::projection(&chain, window, &cells),
             slices,
             parameters,
+            cuts: cuts(scene, plane),
         }
     }
 
@@ -130,8 +133,19 @@ impl Prediction {
             unblocked: unblocked(chain(scene, plane), &plane.window),
             projection: estimate::projection(measurement, at)?.mean,
             parameters: Vec::new(),
+            cuts: cuts(scene, plane),
         })
     }
+}
+
+/// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times that, to see whether
+/// H hangs on the cut; none where light does not leave a surface.
+fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
+    if plane.reflections == 0 || plane.distance > scene.path.length {
+        return Vec::new();
+    }
+    let cut = 2.0 / plane.window.x.half_width();
+    vec![cut, 1.5 * cut]
 }
 
 /// ∫ L W without what stands in the way.
