@@ -19,6 +19,7 @@
 
 mod fault;
 mod file;
+mod mesh;
 mod overrides;
 mod resolve;
 mod scene;
@@ -28,5 +29,6 @@ pub use file::{
     AxisFile, BlockersFile, Emission, FrequenciesFile, LightFile, PathFile, Place, PlaneFile,
     RunFile, SceneFile, SurfaceFile, WindowFile,
 };
+pub use mesh::{Mesh, MeshError};
 pub use resolve::resolve;
 pub use scene::{BlockerLayer, CentralRay, Light, Run, Scene, Surface};
