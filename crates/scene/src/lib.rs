@@ -29,6 +29,6 @@ pub use file::{
     AxisFile, AxisName, BlockersFile, BulbFile, Emission, FrequenciesFile, HalfName, LightFile,
     MeshSource, PathFile, Place, PlaneFile, RunFile, SceneFile, ShapeFile, SurfaceFile, WindowFile,
 };
-pub use mesh::Mesh;
+pub use mesh::{Mesh, MeshError};
 pub use resolve::resolve;
 pub use scene::{BlockerLayer, CentralRay, MeshObject, Run, Scene, Surface};

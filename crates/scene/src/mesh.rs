@@ -1,45 +1,177 @@
-//! stub
-use glam::DVec3;
-/// x
-#[derive(Debug)]
+//! Triangle meshes: read from OBJ and PLY files, made, and written.
+//!
+//! The readers are our own. tobj 4.0.5 reads an `l` line of three points as a triangle, doubles the vertices that
+//! two groups share (a closed surface comes back open), refuses continued lines, Latin-1 comments and colors on
+//! some vertices only, and its faults name no line; ply-rs-bw 4.0.1 refuses `.5`, `1.` and blank lines, shifts
+//! binary data when a property is declared twice, and fills memory for an element without properties. The tests
+//! keep both as independent readers of sound files.
+
+mod error;
+mod obj;
+mod ply;
+mod star;
+mod text;
+
+pub use error::MeshError;
+
+use crate::fault::Fault;
+use error::fault;
+use glam::{DAffine3, DVec3};
+use std::fs;
+use std::path::Path;
+
+/// The largest coordinate, as everywhere in a scene.
+const LARGEST: f64 = 1e9;
+
+/// Triangles with shared vertices, in the file's units and frame.
+///
+/// Valid by construction: at least one triangle, each with an area and with corners among the vertices;
+/// coordinates within ±10⁹. Corners run counterclockwise seen from outside, where the file says so; nothing
+/// here asks for a closed surface. Vertices that no triangle uses may be there.
+#[derive(Clone, Debug, PartialEq)]
 pub struct Mesh {
-    v: Vec<DVec3>,
-    t: Vec<[u32; 3]>,
+    vertices: Vec<DVec3>,
+    triangles: Vec<[u32; 3]>,
 }
-#[allow(missing_docs)]
+
 impl Mesh {
+    /// The mesh of these triangles, less those of zero area (in f64), of which real files hold a few.
+    ///
+    /// # Errors
+    /// A coordinate or an index out of range, or no triangle with an area.
+    pub fn new(vertices: Vec<DVec3>, mut triangles: Vec<[u32; 3]>) -> Result<Self, Fault> {
+        // One index is kept free, so that the number of vertices is a u32 too.
+        let count = u32::try_from(vertices.len())
+            .map_err(|_| fault("vertices", vertices.len(), format!("at most {}", u32::MAX)))?;
+        for (i, vertex) in vertices.iter().enumerate() {
+            for (axis, value) in ["x", "y", "z"].into_iter().zip(vertex.to_array()) {
+                check_coordinate(value, || format!("vertex {i}, {axis}"))?;
+            }
+        }
+        for (i, corners) in triangles.iter().enumerate() {
+            if let Some(corner) = corners.iter().find(|corner| **corner >= count) {
+                let allowed = format!("indices of the {count} vertices, from 0");
+                return Err(fault(format!("triangle {i}, a corner"), corner, allowed));
+            }
+        }
+        triangles.retain(|corners| has_area(&vertices, *corners));
+        if triangles.is_empty() {
+            return Err(fault("triangles with an area", 0, "at least 1"));
+        }
+        Ok(Self {
+            vertices,
+            triangles,
+        })
+    }
+
+    /// Reads an OBJ or a PLY file, told apart by the extension in any case.
+    ///
+    /// OBJ: `v` and `f` make the mesh, all objects and groups together; normals, texture coordinates, colors,
+    /// weights, materials, points and lines are passed over, free-form surfaces are refused. PLY: ASCII and
+    /// binary of either byte order, coordinates and lists of any type; other elements and properties are
+    /// passed over. Faces of more than three corners become fans about their first corner, which is right
+    /// for convex ones. Triangles of zero area are dropped where others remain.
+    ///
+    /// # Errors
+    /// The first fault found: the file, the place in it, the value and what is allowed. Elements are counted
+    /// as the format counts them, OBJ from 1 and PLY from 0; lines and corners from 1.
+    pub fn load(file: &Path) -> Result<Self, MeshError> {
+        let unreadable = |source| MeshError::Unreadable {
+            file: file.into(),
+            source,
+        };
+        // A pipe or a device might never end.
+        if !fs::metadata(file).map_err(unreadable)?.is_file() {
+            let fault = fault("this path", "not a file", "a file");
+            return Err(MeshError::value(file, fault));
+        }
+        Self::parse(file, &fs::read(file).map_err(unreadable)?)
+    }
+
+    /// As [`Mesh::load`], of bytes already read; `file` gives the format, and its name to the messages.
+    ///
+    /// # Errors
+    /// As [`Mesh::load`].
+    pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, MeshError> {
+        let extension = file.extension().unwrap_or_default().to_string_lossy();
+        let mesh = match extension.to_ascii_lowercase().as_str() {
+            "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
+            "obj" => obj::read(bytes),
+            "ply" => ply::read(bytes),
+            _ => Err(fault(
+                "the extension",
+                text::quoted(extension.as_bytes()),
+                "obj, ply",
+            )),
+        };
+        mesh.map_err(|fault| MeshError::value(file, fault))
+    }
+
+    /// The mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices as `uint`.
+    #[must_use]
+    pub fn ply(&self) -> Vec<u8> {
+        ply::write(&self.vertices, &self.triangles)
+    }
+
+    /// The mesh under an affine map; a map that mirrors also turns the corners' order, so that outside stays
+    /// outside.
+    ///
+    /// # Errors
+    /// Coordinates beyond ±10⁹, or a map that leaves no triangle an area.
+    pub fn transformed(&self, map: DAffine3) -> Result<Self, Fault> {
+        let vertices = self.vertices.iter().map(|v| map.transform_point3(*v));
+        let mirrored = map.matrix3.determinant() < 0.0;
+        let turn = |[a, b, c]: [u32; 3]| if mirrored { [a, c, b] } else { [a, b, c] };
+        let triangles = self.triangles.iter().copied().map(turn);
+        Self::new(vertices.collect(), triangles.collect())
+    }
+
+    /// Vertices; triangles name them by index.
+    #[must_use]
     pub fn vertices(&self) -> &[DVec3] {
-        &self.v
+        &self.vertices
     }
+
+    /// Corners of each triangle, as indices of [`Mesh::vertices`].
+    #[must_use]
     pub fn triangles(&self) -> &[[u32; 3]] {
-        &self.t
+        &self.triangles
     }
-    pub fn load(_: &std::path::Path) -> Result<Self, String> {
-        Err("x".into())
+
+    /// Corner points of one triangle after the other.
+    pub fn corners(&self) -> impl ExactSizeIterator<Item = [DVec3; 3]> {
+        let point = |i: u32| self.vertices[i as usize];
+        self.triangles.iter().map(move |corners| corners.map(point))
     }
-    pub fn star(r: f64, a: f64, l: u32, n: u32) -> Self {
-        let mut v = vec![];
-        let mut t = vec![];
-        let m = 2 * n;
-        for i in 0..=n {
-            for j in 0..m {
-                let th = std::f64::consts::PI * i as f64 / n as f64;
-                let ph = std::f64::consts::TAU * j as f64 / m as f64;
-                let rr = r * (1.0 + a * (l as f64 * ph).cos() * th.sin().powi(l as i32));
-                v.push(DVec3::new(
-                    rr * th.sin() * ph.cos(),
-                    rr * th.sin() * ph.sin(),
-                    rr * th.cos(),
-                ));
-            }
-        }
-        for i in 0..n {
-            for j in 0..m {
-                let k = (j + 1) % m;
-                t.push([i * m + j, (i + 1) * m + j, (i + 1) * m + k]);
-                t.push([i * m + j, (i + 1) * m + k, i * m + k]);
-            }
-        }
-        Self { v, t }
+
+    /// Lowest and highest coordinates of the triangles.
+    #[must_use]
+    pub fn bounds(&self) -> [DVec3; 2] {
+        let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+        self.corners()
+            .flatten()
+            .fold(nothing, |[low, high], p| [low.min(p), high.max(p)])
     }
+}
+
+/// Whether the triangle's area, in f64, is more than zero.
+fn has_area(vertices: &[DVec3], corners: [u32; 3]) -> bool {
+    let [a, b, c] = corners.map(|i| vertices[i as usize]);
+    (b - a).cross(c - a) != DVec3::ZERO
+}
+
+/// Requires a coordinate that a scene may hold.
+fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
+    if value.abs() <= LARGEST {
+        Ok(value)
+    } else {
+        let allowed = format!("{:?} to {LARGEST:?}", -LARGEST);
+        Err(fault(place(), format!("{value:?}"), allowed))
+    }
+}
+
+/// Triangles of a face: the fan about its first corner.
+fn fan(corners: &[u32]) -> impl Iterator<Item = [u32; 3]> {
+    let pairs = corners.get(1..).unwrap_or_default().windows(2);
+    pairs.map(|pair| [corners[0], pair[0], pair[1]])
 }

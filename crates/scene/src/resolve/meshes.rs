@@ -111,18 +111,17 @@ impl Resolver<'_> {
                 relief,
                 lobes,
                 rings,
-            } => {
-                let before = self.faults.0.len();
-                self.faults.positive(format!("{of}.mesh.radius"), radius);
-                self.faults
-                    .within(format!("{of}.mesh.relief"), relief, 0.0..=0.9);
-                self.faults
-                    .within(format!("{of}.mesh.lobes"), lobes.into(), 0.0..=64.0);
-                self.faults
-                    .within(format!("{of}.mesh.rings"), rings.into(), 3.0..=2000.0);
-                let sound = self.faults.0.len() == before;
-                sound.then(|| Mesh::star(radius, relief, lobes, rings))
-            }
+            } => match Mesh::star(radius, relief, lobes, rings) {
+                Ok(mesh) => Some(mesh),
+                Err(fault) => {
+                    self.faults.add(
+                        format!("{of}.mesh.{}", fault.field),
+                        fault.value,
+                        fault.allowed,
+                    );
+                    None
+                }
+            },
         }
     }
 }

@@ -1,0 +1,163 @@
+//! OBJ files (Wavefront, Advanced Visualizer manual, appendix B1): vertices and faces.
+
+use super::error::fault;
+use super::text::{Lines, Words, number, quoted};
+use super::{Mesh, check_coordinate, fan};
+use crate::fault::Fault;
+use glam::DVec3;
+use std::borrow::Cow;
+
+/// Statements that change nothing about the triangles.
+const PASSED_OVER: [&[u8]; 19] = [
+    b"vt",
+    b"vn",
+    b"vp",
+    b"o",
+    b"g",
+    b"s",
+    b"mg",
+    b"p",
+    b"l",
+    b"usemtl",
+    b"mtllib",
+    b"usemap",
+    b"maplib",
+    b"lod",
+    b"bevel",
+    b"c_interp",
+    b"d_interp",
+    b"shadow_obj",
+    b"trace_obj",
+];
+
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
+    // Windows editors begin UTF-8 files with a mark.
+    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let vertices = vertices(bytes)?;
+    if vertices.is_empty() {
+        return Err(fault("vertices (`v` lines)", 0, "at least 3"));
+    }
+    // Faces may name vertices that follow them, so they wait for all vertices.
+    let triangles = triangles(bytes, vertices.len())?;
+    if triangles.is_empty() {
+        return Err(fault("faces (`f` lines)", 0, "at least 1"));
+    }
+    Mesh::new(vertices, triangles)
+}
+
+/// Statements with the number of their first line: comments cut, continued lines joined.
+fn statements(bytes: &[u8]) -> impl Iterator<Item = (usize, Cow<'_, [u8]>)> {
+    let mut lines = Lines::new(bytes).map(|(number, line)| {
+        let end = line.iter().position(|b| *b == b'#');
+        (number, &line[..end.unwrap_or(line.len())])
+    });
+    std::iter::from_fn(move || {
+        let (number, first) = lines.next()?;
+        let Some(start) = first.strip_suffix(b"\\") else {
+            return Some((number, first.into()));
+        };
+        let mut joined = start.to_vec();
+        for (_, line) in lines.by_ref() {
+            joined.push(b' ');
+            joined.extend(line.strip_suffix(b"\\").unwrap_or(line));
+            if !line.ends_with(b"\\") {
+                break;
+            }
+        }
+        Some((number, joined.into()))
+    })
+}
+
+/// Points of the `v` lines; what follows the three coordinates (weight, color) is passed over.
+fn vertices(bytes: &[u8]) -> Result<Vec<DVec3>, Fault> {
+    let mut vertices = Vec::new();
+    for (line, statement) in statements(bytes) {
+        let mut words = Words(&statement);
+        match words.next() {
+            Some(b"v") => vertices.push(vertex(line, vertices.len() + 1, words)?),
+            None | Some(b"f") => {}
+            Some(word) if PASSED_OVER.contains(&word) => {}
+            Some(word) => {
+                let allowed = "v, f and the other words of polygonal OBJ files";
+                return Err(fault(place(line, "the word"), quoted(word), allowed));
+            }
+        }
+    }
+    Ok(vertices)
+}
+
+fn vertex(line: usize, index: usize, mut words: Words<'_>) -> Result<DVec3, Fault> {
+    let mut point = DVec3::ZERO;
+    for axis in 0..3 {
+        let place = || place(line, &format!("vertex {index}, {}", ["x", "y", "z"][axis]));
+        let Some(word) = words.next() else {
+            return Err(fault(place(), "missing", "a number"));
+        };
+        let value = number(word).ok_or_else(|| fault(place(), quoted(word), "a number"))?;
+        point[axis] = check_coordinate(value, place)?;
+    }
+    Ok(point)
+}
+
+/// Triangles of the `f` lines, among `count` vertices.
+fn triangles(bytes: &[u8], count: usize) -> Result<Vec<[u32; 3]>, Fault> {
+    let mut triangles = Vec::new();
+    let (mut before, mut face) = (0, 0);
+    let mut corners = Vec::new();
+    for (line, statement) in statements(bytes) {
+        let mut words = Words(&statement);
+        match words.next() {
+            Some(b"v") => before += 1,
+            Some(b"f") => {
+                face += 1;
+                corners.clear();
+                for word in words {
+                    let index = corner(word, before, count).map_err(|(value, allowed)| {
+                        let what = format!("face {face}, corner {}", corners.len() + 1);
+                        fault(place(line, &what), value, allowed)
+                    })?;
+                    corners.push(index);
+                }
+                if corners.len() < 3 {
+                    let what = format!("face {face}, number of corners");
+                    return Err(fault(place(line, &what), corners.len(), "at least 3"));
+                }
+                triangles.extend(fan(&corners));
+            }
+            _ => {}
+        }
+    }
+    Ok(triangles)
+}
+
+/// Index of a corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`: from 1 on, or back from the last vertex of the
+/// `before` above this line. A fault is a value and what is allowed.
+fn corner(word: &[u8], before: usize, count: usize) -> Result<u32, (String, String)> {
+    let mut parts = word.split(|b| *b == b'/');
+    let vertex: Option<i64> = parts.next().and_then(number);
+    let others_sound = parts.clone().count() <= 2
+        && parts.all(|part| part.is_empty() || number::<i64>(part).is_some());
+    let Some(vertex) = vertex.filter(|_| others_sound) else {
+        let allowed = "an index, perhaps with those of texture and normal: 7, 7/3, 7//5, 7/3/5";
+        return Err((quoted(word), allowed.into()));
+    };
+    let named = usize::try_from(vertex.unsigned_abs()).unwrap_or(usize::MAX);
+    let index = if vertex < 0 {
+        before.checked_sub(named)
+    } else {
+        named.checked_sub(1).filter(|index| *index < count)
+    };
+    index
+        .and_then(|index| u32::try_from(index).ok())
+        .ok_or_else(|| {
+            let back = match before {
+                0 => String::new(),
+                _ => format!(", or -{before} to -1"),
+            };
+            (vertex.to_string(), format!("1 to {count}{back}"))
+        })
+}
+
+fn place(line: usize, what: &str) -> String {
+    format!("line {line}, {what}")
+}

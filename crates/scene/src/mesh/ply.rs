@@ -1,0 +1,117 @@
+//! PLY files (Turk, The PLY Polygon File Format, 1994): vertices and faces.
+
+mod body;
+mod header;
+
+use super::error::fault;
+use super::{Mesh, check_coordinate, fan};
+use crate::fault::Fault;
+use body::{Body, Row};
+use glam::DVec3;
+use header::{Element, Header};
+
+pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
+    let (header, data) = Header::read(bytes)?;
+    let axes = axes(header.element("vertex")?)?;
+    let list = list(header.element("face")?)?;
+    let count = header.element("vertex")?.count;
+    let (mut vertices, mut triangles) = (Vec::new(), Vec::new());
+    let mut corners = Vec::new();
+    let mut body = Body::new(data, header.encoding);
+    for element in &header.elements {
+        body.rows(element, |row, values| match element.name.as_str() {
+            "vertex" => {
+                vertices.push(vertex(row, axes.map(|axis| values[axis][0]))?);
+                Ok(())
+            }
+            "face" => {
+                face(row, &values[list], count, &mut corners)?;
+                triangles.extend(fan(&corners));
+                Ok(())
+            }
+            _ => Ok(()),
+        })?;
+    }
+    body.end()?;
+    Mesh::new(vertices, triangles)
+}
+
+/// Where among a vertex's properties x, y and z are.
+fn axes(element: &Element) -> Result<[usize; 3], Fault> {
+    let mut axes = [0; 3];
+    for (axis, name) in axes.iter_mut().zip(["x", "y", "z"]) {
+        *axis = element
+            .properties
+            .iter()
+            .position(|p| p.name == name && p.length.is_none())
+            .ok_or_else(|| {
+                let place = format!("property {name} of element vertex");
+                fault(place, "missing", "property float x, y and z")
+            })?;
+    }
+    if element.count == 0 {
+        return Err(fault("vertices", 0, "at least 3"));
+    }
+    Ok(axes)
+}
+
+/// Where among a face's properties its corners are.
+fn list(element: &Element) -> Result<usize, Fault> {
+    let names = ["vertex_indices", "vertex_index"];
+    let mut properties = element.properties.iter();
+    let position = properties.position(|p| {
+        names.contains(&p.name.as_str()) && p.length.is_some() && !p.scalar.is_float()
+    });
+    let found = position.ok_or_else(|| {
+        let place = "property vertex_indices of element face";
+        fault(place, "missing", "property list uchar int vertex_indices")
+    })?;
+    if element.count == 0 {
+        return Err(fault("faces", 0, "at least 1"));
+    }
+    Ok(found)
+}
+
+fn vertex(row: Row<'_>, values: [f64; 3]) -> Result<DVec3, Fault> {
+    for (axis, value) in ["x", "y", "z"].into_iter().zip(values) {
+        check_coordinate(value, || row.place(axis))?;
+    }
+    Ok(DVec3::from_array(values))
+}
+
+/// Writes a face's corners, among `count` vertices.
+fn face(row: Row<'_>, values: &[f64], count: usize, corners: &mut Vec<u32>) -> Result<(), Fault> {
+    if values.len() < 3 {
+        let place = row.place("number of corners");
+        return Err(fault(place, values.len(), "at least 3"));
+    }
+    corners.clear();
+    for (i, value) in values.iter().enumerate() {
+        let index = body::whole(*value).filter(|index| (*index as usize) < count);
+        corners.push(index.ok_or_else(|| {
+            let place = row.place(&format!("corner {}", i + 1));
+            fault(place, value, format!("0 to {}", count - 1))
+        })?);
+    }
+    Ok(())
+}
+
+pub(super) fn write(vertices: &[DVec3], triangles: &[[u32; 3]]) -> Vec<u8> {
+    let mut file = format!(
+        "ply\nformat binary_little_endian 1.0\n\
+         element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+        vertices.len(),
+        triangles.len()
+    )
+    .into_bytes();
+    file.reserve(24 * vertices.len() + 13 * triangles.len());
+    for value in vertices.iter().flat_map(DVec3::to_array) {
+        file.extend(value.to_le_bytes());
+    }
+    for corners in triangles {
+        file.push(3);
+        file.extend(corners.iter().flat_map(|corner| corner.to_le_bytes()));
+    }
+    file
+}

@@ -1,0 +1,200 @@
+use super::super::error::fault;
+use super::super::text::{Lines, Words, number, quoted};
+use super::header::{Element, Encoding, Property, Scalar};
+use crate::fault::Fault;
+
+/// The data behind the header, read from the front. ASCII files hold a row a line; blank lines are passed over.
+pub(super) struct Body<'a> {
+    data: Data<'a>,
+}
+
+enum Data<'a> {
+    Text {
+        lines: Lines<'a>,
+        line: usize,
+        words: Words<'a>,
+    },
+    Binary {
+        bytes: &'a [u8],
+        big_endian: bool,
+    },
+}
+
+/// Where a row is, for messages.
+#[derive(Clone, Copy)]
+pub(super) struct Row<'a> {
+    element: &'a Element,
+    index: usize,
+    line: Option<usize>,
+}
+
+/// What is found in place of a value, and what is allowed.
+type Trouble = (String, String);
+
+impl<'a> Body<'a> {
+    pub(super) fn new(lines: Lines<'a>, encoding: Encoding) -> Self {
+        let data = match encoding {
+            Encoding::Ascii => Data::Text {
+                lines,
+                line: 0,
+                words: Words::default(),
+            },
+            _ => Data::Binary {
+                bytes: lines.rest,
+                big_endian: encoding == Encoding::BigEndian,
+            },
+        };
+        Self { data }
+    }
+
+    /// Gives each row of an element: for every property its value, or the values of its list.
+    pub(super) fn rows(
+        &mut self,
+        element: &Element,
+        mut each: impl FnMut(Row<'_>, &[Vec<f64>]) -> Result<(), Fault>,
+    ) -> Result<(), Fault> {
+        let mut values = vec![Vec::new(); element.properties.len()];
+        for index in 0..element.count {
+            let row = self.begin(element, index);
+            for (property, values) in element.properties.iter().zip(&mut values) {
+                self.property(row, property, values)
+                    .map_err(|(value, allowed)| fault(row.place(&property.name), value, allowed))?;
+            }
+            self.finish(row)?;
+            each(row, &values)?;
+        }
+        Ok(())
+    }
+
+    fn begin<'e>(&mut self, element: &'e Element, index: usize) -> Row<'e> {
+        let line = match &mut self.data {
+            Data::Binary { .. } => None,
+            Data::Text { lines, line, words } => {
+                let next = lines.find(|(_, text)| !text.is_empty());
+                let (number, text) = next.unwrap_or((*line + 1, &[]));
+                (*line, *words) = (number, Words(text));
+                Some(number)
+            }
+        };
+        Row {
+            element,
+            index,
+            line,
+        }
+    }
+
+    fn property(
+        &mut self,
+        row: Row<'_>,
+        property: &Property,
+        values: &mut Vec<f64>,
+    ) -> Result<(), Trouble> {
+        values.clear();
+        let count = match property.length {
+            None => 1,
+            Some(scalar) => {
+                let length = self.scalar(row, scalar)?;
+                whole(length).ok_or_else(|| {
+                    let allowed = "a list that begins with its length";
+                    (format!("{length} long"), allowed.to_string())
+                })?
+            }
+        };
+        // The list grows as it is read: its length is not to be trusted.
+        for _ in 0..count {
+            values.push(self.scalar(row, property.scalar)?);
+        }
+        Ok(())
+    }
+
+    fn scalar(&mut self, row: Row<'_>, scalar: Scalar) -> Result<f64, Trouble> {
+        let file_ends = || {
+            let Element { name, count, .. } = row.element;
+            let allowed = format!("{count} rows of element {name}, as the header announces");
+            ("missing, as the file ends".to_string(), allowed)
+        };
+        let line_ends = || {
+            let allowed = "a value for each property that the header announces";
+            ("missing, as the line ends".to_string(), allowed.to_string())
+        };
+        match &mut self.data {
+            Data::Text { lines, words, .. } => match words.next() {
+                Some(word) => number(word).ok_or_else(|| (quoted(word), "a number".into())),
+                None if lines.rest.trim_ascii().is_empty() => Err(file_ends()),
+                None => Err(line_ends()),
+            },
+            Data::Binary { bytes, big_endian } => {
+                let (raw, rest) = bytes
+                    .split_at_checked(scalar.size())
+                    .ok_or_else(file_ends)?;
+                *bytes = rest;
+                Ok(decode(scalar, raw, *big_endian))
+            }
+        }
+    }
+
+    fn finish(&mut self, row: Row<'_>) -> Result<(), Fault> {
+        match &mut self.data {
+            Data::Text { words, .. } => words.next().map_or(Ok(()), |word| {
+                let allowed = "the end of the line, after the properties announced";
+                Err(fault(row.place("the next word"), quoted(word), allowed))
+            }),
+            Data::Binary { .. } => Ok(()),
+        }
+    }
+
+    /// Requires the end of the file: what follows would be a mesh that the header does not announce.
+    pub(super) fn end(self) -> Result<(), Fault> {
+        let rest = match self.data {
+            Data::Text { lines, .. } => lines.rest,
+            Data::Binary { bytes, .. } => bytes,
+        };
+        let rest = rest.trim_ascii();
+        if rest.is_empty() {
+            return Ok(());
+        }
+        let value = format!("{} bytes long", rest.len());
+        let allowed = "empty, after as many elements as the header announces";
+        Err(fault("the rest of the file", value, allowed))
+    }
+}
+
+impl Row<'_> {
+    pub(super) fn place(self, what: &str) -> String {
+        let line = self.line.map(|line| format!("line {line}, "));
+        let line = line.unwrap_or_default();
+        format!("{line}{} {}, {what}", self.element.name, self.index)
+    }
+}
+
+/// A number's value; f64 holds all eight types exactly.
+fn decode(scalar: Scalar, raw: &[u8], big_endian: bool) -> f64 {
+    let mut little = [0; 8];
+    little[..raw.len()].copy_from_slice(raw);
+    if big_endian {
+        little[..raw.len()].reverse();
+    }
+    let [a, b, c, d, ..] = little;
+    match scalar {
+        Scalar::I8 => i8::from_le_bytes([a]).into(),
+        Scalar::U8 => a.into(),
+        Scalar::I16 => i16::from_le_bytes([a, b]).into(),
+        Scalar::U16 => u16::from_le_bytes([a, b]).into(),
+        Scalar::I32 => i32::from_le_bytes([a, b, c, d]).into(),
+        Scalar::U32 => u32::from_le_bytes([a, b, c, d]).into(),
+        Scalar::F32 => f32::from_le_bytes([a, b, c, d]).into(),
+        Scalar::F64 => f64::from_le_bytes(little),
+    }
+}
+
+/// The number as a count or an index, if it is one.
+pub(super) fn whole(value: f64) -> Option<u32> {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "in range and whole, as just asked"
+    )]
+    let cast = |value| value as u32;
+    let fits = (0.0..=f64::from(u32::MAX)).contains(&value) && value.fract() == 0.0;
+    fits.then(|| cast(value))
+}

@@ -1,0 +1,207 @@
+use super::super::error::fault;
+use super::super::text::{Lines, Words, number, quoted};
+use crate::fault::Fault;
+
+/// What a PLY file says of its data.
+pub(super) struct Header {
+    pub(super) encoding: Encoding,
+    /// In the order of the data.
+    pub(super) elements: Vec<Element>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Encoding {
+    Ascii,
+    LittleEndian,
+    BigEndian,
+}
+
+/// A table of the file, such as that of the vertices.
+pub(super) struct Element {
+    pub(super) name: String,
+    pub(super) count: usize,
+    pub(super) properties: Vec<Property>,
+}
+
+/// A column of an element.
+pub(super) struct Property {
+    pub(super) name: String,
+    pub(super) scalar: Scalar,
+    /// For lists, the type of their length.
+    pub(super) length: Option<Scalar>,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Scalar {
+    I8,
+    U8,
+    I16,
+    U16,
+    I32,
+    U32,
+    F32,
+    F64,
+}
+
+const FORMATS: &str =
+    "format ascii 1.0, format binary_little_endian 1.0, format binary_big_endian 1.0";
+const PROPERTIES: &str = "property TYPE NAME, property list TYPE TYPE NAME; char, uchar, short, ushort, int, uint, float, double";
+
+impl Header {
+    /// The header, and the lines behind it.
+    pub(super) fn read(bytes: &[u8]) -> Result<(Self, Lines<'_>), Fault> {
+        let mut lines = Lines::new(bytes);
+        let first = lines.next().map_or(&[][..], |(_, line)| line);
+        if first != b"ply" {
+            return Err(fault("line 1", quoted(first), "ply"));
+        }
+        let mut encoding = None;
+        let mut elements: Vec<Element> = Vec::new();
+        for (at, line) in lines.by_ref() {
+            let refused = |allowed: &str| fault(format!("line {at}"), quoted(line), allowed);
+            let words: Vec<&[u8]> = Words(line).collect();
+            match words.as_slice() {
+                [] | [b"comment" | b"obj_info", ..] => {}
+                [b"format", ..] if encoding.is_some() => {
+                    return Err(refused("one format line"));
+                }
+                [b"format", rest @ ..] => {
+                    encoding = Some(format(rest).ok_or_else(|| refused(FORMATS))?);
+                }
+                [b"element", rest @ ..] => {
+                    let new = element(rest).ok_or_else(|| refused("element NAME COUNT"))?;
+                    if elements.iter().any(|e| e.name == new.name) {
+                        return Err(refused("each element once"));
+                    }
+                    elements.push(new);
+                }
+                [b"property", rest @ ..] => {
+                    let new = property(rest).ok_or_else(|| refused(PROPERTIES))?;
+                    let Some(element) = elements.last_mut() else {
+                        return Err(refused("an element before its properties"));
+                    };
+                    if element.properties.iter().any(|p| p.name == new.name) {
+                        return Err(refused("each property once"));
+                    }
+                    element.properties.push(new);
+                }
+                [b"end_header"] => {
+                    let encoding = encoding.ok_or_else(|| fault("format", "missing", FORMATS))?;
+                    let header = Self { encoding, elements };
+                    header.check_length(lines.rest.len())?;
+                    return Ok((header, lines));
+                }
+                _ => {
+                    let allowed = "format, comment, obj_info, element, property, end_header";
+                    return Err(refused(allowed));
+                }
+            }
+        }
+        Err(fault(
+            "end_header",
+            "missing, as the file ends",
+            "a complete header",
+        ))
+    }
+
+    pub(super) fn element(&self, name: &str) -> Result<&Element, Fault> {
+        let found = self.elements.iter().find(|e| e.name == name);
+        let place = || format!("element {name} of the header");
+        found.ok_or_else(|| fault(place(), "missing", "elements vertex and face"))
+    }
+
+    /// Requires data long enough for the counts announced. As each row takes bytes, no count, however large, then
+    /// takes more time or memory than the file is long.
+    fn check_length(&self, length: usize) -> Result<(), Fault> {
+        let mut least: u128 = 0;
+        for element in self.elements.iter().filter(|e| e.count > 0) {
+            if element.properties.is_empty() {
+                let place = format!("number of properties of element {}", element.name);
+                return Err(fault(place, 0, "at least 1"));
+            }
+            let row = element.properties.iter().map(|p| p.least(self.encoding));
+            least = least.saturating_add(element.count as u128 * row.sum::<usize>() as u128);
+        }
+        if self.encoding == Encoding::Ascii {
+            least = least.saturating_sub(1); // the last line may lack its end
+        }
+        if (length as u128) < least {
+            let rows = self.elements.iter();
+            let rows: Vec<String> = rows.map(|e| format!("{} {}", e.count, e.name)).collect();
+            let allowed = format!("at least {least}, for {} as announced", rows.join(", "));
+            return Err(fault("number of bytes after the header", length, allowed));
+        }
+        Ok(())
+    }
+}
+
+impl Property {
+    /// The fewest bytes it can take in a row.
+    fn least(&self, encoding: Encoding) -> usize {
+        match encoding {
+            Encoding::Ascii => 2, // a digit and what parts it from the next
+            _ => self.length.unwrap_or(self.scalar).size(),
+        }
+    }
+}
+
+impl Scalar {
+    fn named(name: &[u8]) -> Option<Self> {
+        Some(match name {
+            b"char" | b"int8" => Self::I8,
+            b"uchar" | b"uint8" => Self::U8,
+            b"short" | b"int16" => Self::I16,
+            b"ushort" | b"uint16" => Self::U16,
+            b"int" | b"int32" => Self::I32,
+            b"uint" | b"uint32" => Self::U32,
+            b"float" | b"float32" => Self::F32,
+            b"double" | b"float64" => Self::F64,
+            _ => return None,
+        })
+    }
+
+    pub(super) fn size(self) -> usize {
+        match self {
+            Self::I8 | Self::U8 => 1,
+            Self::I16 | Self::U16 => 2,
+            Self::I32 | Self::U32 | Self::F32 => 4,
+            Self::F64 => 8,
+        }
+    }
+
+    pub(super) fn is_float(self) -> bool {
+        matches!(self, Self::F32 | Self::F64)
+    }
+}
+
+fn format(words: &[&[u8]]) -> Option<Encoding> {
+    match words {
+        [b"ascii", b"1.0"] => Some(Encoding::Ascii),
+        [b"binary_little_endian", b"1.0"] => Some(Encoding::LittleEndian),
+        [b"binary_big_endian", b"1.0"] => Some(Encoding::BigEndian),
+        _ => None,
+    }
+}
+
+fn element(words: &[&[u8]]) -> Option<Element> {
+    let [name, count] = words else { return None };
+    Some(Element {
+        name: String::from_utf8_lossy(name).into(),
+        count: number(count)?,
+        properties: Vec::new(),
+    })
+}
+
+fn property(words: &[&[u8]]) -> Option<Property> {
+    let (name, scalar, length) = match words {
+        [b"list", length, scalar, name] => (name, scalar, Some(Scalar::named(length)?)),
+        [scalar, name] => (name, scalar, None),
+        _ => return None,
+    };
+    Some(Property {
+        name: String::from_utf8_lossy(name).into(),
+        scalar: Scalar::named(scalar)?,
+        length,
+    })
+    .filter(|p| !p.length.is_some_and(Scalar::is_float))
+}

@@ -1,0 +1,74 @@
+//! Lines, words and numbers of mesh files, of any bytes.
+
+/// Lines with their number from 1, without the white space around them.
+///
+/// Lines end as the first one does: at a line feed, with or without a carriage return before it, or at a
+/// carriage return alone (old Macintosh files).
+pub(super) struct Lines<'a> {
+    /// What follows the last line given.
+    pub(super) rest: &'a [u8],
+    end: u8,
+    number: usize,
+}
+
+impl<'a> Lines<'a> {
+    pub(super) fn new(bytes: &'a [u8]) -> Self {
+        let first_end = bytes.iter().position(|b| matches!(b, b'\n' | b'\r'));
+        let end = match first_end.map(|i| &bytes[i..]) {
+            Some([b'\r', b'\n', ..]) | None => b'\n',
+            Some(rest) => rest[0],
+        };
+        Self {
+            rest: bytes,
+            end,
+            number: 0,
+        }
+    }
+}
+
+impl<'a> Iterator for Lines<'a> {
+    type Item = (usize, &'a [u8]);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let end = self.rest.iter().position(|b| *b == self.end);
+        let (line, rest) = match end {
+            Some(end) => (&self.rest[..end], &self.rest[end + 1..]),
+            None => (self.rest, &self.rest[self.rest.len()..]),
+        };
+        self.rest = rest;
+        self.number += 1;
+        Some((self.number, line.trim_ascii()))
+    }
+}
+
+/// Words of a line.
+#[derive(Clone, Default)]
+pub(super) struct Words<'a>(pub(super) &'a [u8]);
+
+impl<'a> Iterator for Words<'a> {
+    type Item = &'a [u8];
+
+    fn next(&mut self) -> Option<Self::Item> {
+        let text = self.0.trim_ascii_start();
+        let end = text.iter().position(u8::is_ascii_whitespace);
+        let (word, rest) = text.split_at(end.unwrap_or(text.len()));
+        self.0 = rest;
+        (!word.is_empty()).then_some(word)
+    }
+}
+
+/// The number a word stands for: decimal, perhaps with an exponent, infinite or NaN.
+pub(super) fn number<T: std::str::FromStr>(word: &[u8]) -> Option<T> {
+    str::from_utf8(word).ok()?.parse().ok()
+}
+
+/// A few bytes of the file for a message.
+pub(super) fn quoted(bytes: &[u8]) -> String {
+    const LONGEST: usize = 40;
+    let shown = String::from_utf8_lossy(&bytes[..bytes.len().min(LONGEST)]);
+    let more = if bytes.len() > LONGEST { "..." } else { "" };
+    format!("`{}{more}`", shown.escape_debug())
+}
