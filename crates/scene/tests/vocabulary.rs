@@ -1,0 +1,222 @@
+//! Lights, blockers, surfaces and planes of every kind: what they resolve to, and what is refused.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use etendue_field::{Mask, Quantity, Side};
+use etendue_scene::{Scene, SceneError, SceneFile, resolve};
+
+const LIGHT: &str = "Spot(center: (0, 0, 0), bulb: Disc(0.1), radiance: 2, exponent: 8)";
+const BLOCKERS: &str = r#"
+    Shapes(name: "shapes", center: (0.5, 0, 1), shapes: [
+        Rectangle(center: (0, 0), size: (0.2, 0.1)),
+        Disc(center: (0.3, 0), radius: 0.1),
+        HalfPlane(axis: Y, edge: -0.5, opaque: Below),
+    ]),
+    Grating(name: "grating", center: (0.25, 0, 1.2), axis: X, frequency: 2, modulation: 0.5, phase: 0.1),
+    Mesh(name: "star", center: (0, 0, 0.5), mesh: Star(radius: 0.2, relief: 0.1, lobes: 3, rings: 10), scale: 0.5)"#;
+const SURFACES: &str = r#"Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5)"#;
+const PLANES: &str = r#"
+    (name: "star", at: Before("star")),
+    (name: "behind", at: After("star")),
+    (name: "irradiance", at: Before("floor"), quantity: DifferentialIrradiance),
+    (name: "leaving", at: After("floor")),
+    (name: "back", at: Distance(2.5))"#;
+
+fn text() -> String {
+    format!(
+        r#"(
+            light: {LIGHT},
+            blockers: [{BLOCKERS}],
+            surfaces: [{SURFACES}],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"]),
+            planes: [{PLANES}],
+            window: (x: Hann(0.5), u: Hann(0.5)),
+            frequencies: (rho: (max: 4), nu: (max: 4)),
+        )"#
+    )
+}
+
+fn resolved(text: &str) -> Result<Scene, SceneError> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/meshes");
+    resolve("test", SceneFile::parse(text)?, folder.as_ref(), u64::MAX)
+}
+
+#[test]
+fn everything_resolves_to_what_it_says() {
+    let scene = resolved(&text()).unwrap();
+    let [shapes, grating] = scene.blockers.as_slice() else {
+        panic!("two layers: {:?}", scene.blockers);
+    };
+    let Mask::Opaque {
+        shapes: each,
+        half_planes,
+    } = &shapes.mask
+    else {
+        panic!("opaque: {shapes:?}");
+    };
+    assert_eq!(each.len(), 2);
+    assert!((each[1].bounds().center[0] - 0.8).abs() < 1e-15); // rounding
+    assert!(half_planes[0].contains(9.0, -0.6) && !half_planes[0].contains(9.0, -0.4));
+    let Mask::Grating(grating) = grating.mask else {
+        panic!("a grating: {grating:?}");
+    };
+    // ½ (1 + m cos(2πf (x − 0.25) + p)) at its own origin.
+    assert!((grating.transmittance(0.25, 7.0) - 0.5 * (1.0 + 0.5 * 0.1_f64.cos())).abs() < 1e-14); // rounding
+    let star = &scene.meshes[0];
+    assert_eq!(star.triangles.len(), 4 * 10 * 9);
+    assert!((star.extent[0] - 0.4).abs() < 1e-12 && (star.extent[1] - 0.6).abs() < 1e-12); // rounding of the poles
+    let places: Vec<_> = scene
+        .planes
+        .iter()
+        .map(|p| (p.side, p.reflections, p.quantity))
+        .collect();
+    assert_eq!(
+        places[2],
+        (Side::Before, 0, Quantity::DifferentialIrradiance)
+    );
+    assert_eq!(places[3], (Side::After, 1, Quantity::Radiance));
+    // Light goes back as far as the grating.
+    assert!((scene.path.back - 0.8).abs() < 1e-15); // rounding
+    let back = &scene.planes[4].frame;
+    assert!((back.origin.z - 1.5).abs() < 1e-15 && back.d.z < 0.0 && back.x.x < 0.0); // rounding
+    assert!((back.x.cross(back.y) - back.d).length() < 1e-15); // rounding
+}
+
+/// Each case: what is replaced, by what, and the field that is named.
+const BAD: &[(&str, &str, &str)] = &[
+    ("bulb: Disc(0.1)", "bulb: Disc(0)", "light.bulb"),
+    ("bulb: Disc(0.1)", "bulb: Square(-1)", "light.bulb"),
+    ("exponent: 8", "exponent: -1", "light.exponent"),
+    ("exponent: 8", "exponent: NaN", "light.exponent"),
+    ("radiance: 2", "radiance: inf", "light.radiance"),
+    (LIGHT, "Disc(center: (0, 0, 0), radius: 0)", "light.radius"),
+    (
+        LIGHT,
+        "Disc(center: (0, NaN, 0), radius: 1)",
+        "light.center[1]",
+    ),
+    (
+        LIGHT,
+        "Point(center: (0, 0, 0), intensity: 0)",
+        "light.intensity",
+    ),
+    (
+        LIGHT,
+        "Point(center: (0, 0, 0), intensity: NaN)",
+        "light.intensity",
+    ),
+    (
+        "radius: 0.1)",
+        "radius: -0.1)",
+        "blockers[0].shapes[1].radius",
+    ),
+    (
+        "size: (0.2, 0.1)",
+        "size: (0.2, 0)",
+        "blockers[0].shapes[0].size[1]",
+    ),
+    (
+        "center: (0.3, 0)",
+        "center: (0.3, NaN)",
+        "blockers[0].shapes[1].center[1]",
+    ),
+    ("center: (0.3, 0)", "center: (0.1, 0)", "blockers[0].shapes"),
+    ("edge: -0.5", "edge: 0", "blockers[0].shapes"),
+    ("edge: -0.5", "edge: NaN", "blockers[0].shapes[2].edge[0]"),
+    (
+        "center: (0.5, 0, 1)",
+        "center: (0.5, 0, 2)",
+        "blockers[0].center",
+    ),
+    (
+        "center: (0.5, 0, 1)",
+        "center: (0.5, 0, 1.2)",
+        "shapes and grating",
+    ),
+    ("name: \"grating\"", "name: \"shapes\"", "name"),
+    ("frequency: 2", "frequency: 0", "blockers[1].frequency"),
+    (
+        "modulation: 0.5",
+        "modulation: 1.5",
+        "blockers[1].modulation",
+    ),
+    (
+        "modulation: 0.5",
+        "modulation: -0.5",
+        "blockers[1].modulation",
+    ),
+    ("phase: 0.1", "phase: inf", "blockers[1].phase"),
+    ("scale: 0.5", "scale: 0", "blockers[2].scale"),
+    ("rings: 10", "rings: 1", "blockers[2].mesh.rings"),
+    ("relief: 0.1", "relief: 1", "blockers[2].mesh.relief"),
+    ("lobes: 3", "lobes: 30", "blockers[2].mesh.lobes"),
+    (
+        "center: (0, 0, 0.5)",
+        "center: (0, 0, 0.05)",
+        "blockers[2].center",
+    ),
+    (
+        "center: (0, 0, 0.5)",
+        "center: (0, inf, 0.5)",
+        "blockers[2].center[1]",
+    ),
+    ("Distance(2.5)", "Distance(2.9)", "planes[4].at"),
+    ("Distance(2.5)", "Distance(2)", "planes[4].at"),
+    ("After(\"star\")", "After(\"moon\")", "planes[1].at"),
+    ("albedo: 0.5", "albedo: 1.1", "surfaces[0].albedo"),
+];
+
+#[test]
+fn each_bad_value_is_named() {
+    for (from, to, field) in BAD {
+        let text = text();
+        assert!(text.contains(from), "{from} is not in the scene");
+        match resolved(&text.replacen(from, to, 1)) {
+            Err(SceneError::Values(faults)) => {
+                let named = faults.iter().any(|f| f.field == *field);
+                assert!(named, "{to}: {faults:?} instead of {field}");
+            }
+            Err(other) => panic!("{to}: {other}"),
+            Ok(_) => panic!("{to} was accepted"),
+        }
+    }
+}
+
+#[test]
+fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
+    let text = text().replacen(
+        "Star(radius: 0.2, relief: 0.1, lobes: 3, rings: 10)",
+        "File(\"nowhere.ply\")",
+        1,
+    );
+    match resolved(&text) {
+        Err(SceneError::Values(faults)) => {
+            assert_eq!(faults[0].field, "blockers[2].mesh");
+            assert!(faults[0].allowed.contains("nowhere.ply"), "{faults:?}");
+        }
+        other => panic!("{:?}", other.map(|_| ())),
+    }
+}
+
+#[test]
+fn unknown_words_are_named_with_the_known_ones() {
+    for (from, to, part) in [
+        ("exponent: 8", "exponnt: 8", "exponent"),
+        ("axis: X", "axis: Z", "`X`"),
+        ("opaque: Below", "opaque: Left", "Above"),
+        (
+            "quantity: DifferentialIrradiance",
+            "quantity: Irradiance",
+            "Radiance",
+        ),
+        ("Disc(center", "Circle(center", "HalfPlane"),
+    ] {
+        let error = resolved(&text().replacen(from, to, 1))
+            .unwrap_err()
+            .to_string();
+        assert!(
+            error.contains(part) && error.starts_with("line "),
+            "{to}: {error}"
+        );
+    }
+}
