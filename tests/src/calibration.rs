@@ -36,7 +36,7 @@ pub(crate) fn calibration(seeds: u64, photons: u64) -> Vec<Section> {
 }
 
 fn sample(seeds: u64, photons: u64) -> Vec<Plane> {
-    let predictions = predicted(&fig9b(photons, 1));
+    let predictions = predicted(&fig9b(photons, 1), None);
     let reports: Vec<Vec<PlaneReport>> = (1..=seeds)
         .into_par_iter()
         .map(|seed| reports(photons, seed, &predictions))

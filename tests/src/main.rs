@@ -8,6 +8,7 @@ mod noise;
 mod report;
 mod scenes;
 mod statistics;
+mod suite;
 
 use clap::{Parser, Subcommand};
 use report::Section;
@@ -49,6 +50,12 @@ enum Command {
         #[arg(long, default_value_t = 1_000_000_000)]
         most: u64,
     },
+    /// Every scene of the repository, predicted and traced both ways.
+    Suite {
+        /// Photons for each scene, instead of those in the files.
+        #[arg(long)]
+        photons: Option<u64>,
+    },
     /// Everything, into docs/validation.md.
     All,
 }
@@ -87,15 +94,22 @@ fn sections(command: &Command) -> Vec<Section> {
             let mut sections = calibration::calibration(100, 20_000);
             sections.push(faults::planted(3_000_000, SEED));
             sections.push(noise::floor(&[100_000, 1_000_000], SEED));
+            sections.extend(suite::suite(Some(500_000)));
             sections
         }
         Command::Calibration { seeds, photons } => calibration::calibration(seeds, photons),
-        Command::Faults { photons } => vec![faults::planted(photons, SEED)],
+        Command::Faults { photons } => vec![
+            faults::planted(photons, SEED),
+            faults::planted_elsewhere(photons, SEED),
+        ],
+        Command::Suite { photons } => suite::suite(photons),
         Command::Noise { most } => noise(most),
         Command::All => {
-            let mut sections = noise(1_000_000_000);
+            let mut sections = suite::suite(None);
+            sections.extend(noise(1_000_000_000));
             sections.extend(calibration::calibration(1000, 100_000));
             sections.push(faults::planted(10_000_000, SEED));
+            sections.push(faults::planted_elsewhere(4_000_000, SEED));
             sections
         }
     }

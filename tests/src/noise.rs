@@ -127,7 +127,7 @@ fn passes(report: &PlaneReport) -> bool {
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
     let level = sidak(scene.run.alpha, scene.planes.len());
-    predicted(scene)
+    predicted(scene, None)
         .iter()
         .enumerate()
         .map(|(i, prediction)| {

@@ -1,22 +1,53 @@
-//! The scene all validation is made on, and the measurement of it.
+//! The scenes validation is made on, and the measurement of them.
 
-use etendue_compare::Prediction;
+use etendue_compare::{Class, PlaneComparison, Prediction, compare};
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_trace::Tracer;
+use etendue_trace::{Backward, Tracer};
 
-const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
+macro_rules! scene {
+    ($name:literal) => {
+        ($name, include_str!(concat!("../../scenes/", $name, ".ron")))
+    };
+}
 
-/// `fig9b` with a number of photons and a seed.
+/// Every scene of the repository with a verdict of its own, and its text.
+pub(crate) const SUITE: &[(&str, &str)] = &[
+    scene!("travel"),
+    scene!("fig1"),
+    scene!("fig9a"),
+    scene!("fig9b"),
+    scene!("fig9c"),
+    scene!("fig4_point"),
+    scene!("fig4_spot"),
+    scene!("fig7_one"),
+    scene!("fig7_other"),
+    scene!("fig7_two"),
+    scene!("grating"),
+    scene!("two_layers"),
+    scene!("disc_light"),
+    scene!("mesh_blocker"),
+    scene!("furnace"),
+    scene!("diffuse"),
+];
+
+/// A scene of the suite, with the photons and the seed of its file unless others are given.
 ///
 /// # Panics
-/// When the scene in the repository is not sound.
+/// When there is no such scene, or it is not sound.
+pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scene {
+    let text = SUITE.iter().find(|(known, _)| *known == name);
+    let (_, text) = text.expect("a scene of the suite");
+    let mut file = SceneFile::parse(text).expect("a scene of the suite is a scene file");
+    file.run.photons = photons.unwrap_or(file.run.photons);
+    file.run.seed = seed.unwrap_or(file.run.seed);
+    resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of the suite is sound")
+}
+
+/// `fig9b` with a number of photons and a seed.
 pub(crate) fn fig9b(photons: u64, seed: u64) -> Scene {
-    let mut file = SceneFile::parse(FIG9B).expect("scenes/fig9b.ron is a scene file");
-    file.run.photons = photons;
-    file.run.seed = seed;
-    resolve("fig9b", file, ".".as_ref(), u64::MAX).expect("scenes/fig9b.ron is sound")
+    named("fig9b", Some(photons), Some(seed))
 }
 
 /// `fig9b` with the receiver plane alone: all photons are aimed at its window.
@@ -27,7 +58,7 @@ pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
 }
 
 /// Measures a scene with photons from `source`.
-pub(crate) fn measured(scene: &Scene, source: &impl PhotonSource) -> Measurement {
+pub(crate) fn measured(scene: &Scene, source: &dyn PhotonSource) -> Measurement {
     measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
 }
 
@@ -36,11 +67,44 @@ pub(crate) fn traced(scene: &Scene) -> Measurement {
     measured(scene, &Tracer::new(scene))
 }
 
-/// The predictions of all planes of a scene.
-pub(crate) fn predicted(scene: &Scene) -> Vec<Prediction> {
-    scene
-        .planes
-        .iter()
-        .map(|plane| Prediction::new(scene, plane))
+/// Measures a scene backwards; `None` where there is no backward tracer.
+pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
+    let backward = Backward::new(scene).ok()?;
+    Some(measured(scene, &backward))
+}
+
+/// The predictions of all planes of a scene; where theory has no word, `reference` speaks.
+///
+/// # Panics
+/// When a plane needs a reference and there is none.
+pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<Prediction> {
+    let planes = scene.planes.iter().enumerate();
+    planes
+        .map(|(i, plane)| match Class::of(scene, plane) {
+            Class::Exact => Prediction::new(scene, plane),
+            Class::Reference => referred(scene, i, reference.expect("a reference")),
+        })
         .collect()
+}
+
+/// What a reference measurement says of plane `index`.
+///
+/// # Panics
+/// When it has too few batches.
+pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> Prediction {
+    Prediction::reference(scene, index, reference, index).expect("a scene has 32 batches")
+}
+
+/// A plane held against a prediction.
+///
+/// # Panics
+/// When the measurement has too few batches.
+pub(crate) fn compared(
+    scene: &Scene,
+    measurement: &Measurement,
+    index: usize,
+    prediction: &Prediction,
+    level: f64,
+) -> PlaneComparison {
+    compare(measurement, index, prediction, level, scene.run.seed).expect("a scene has 32 batches")
 }

@@ -1,0 +1,320 @@
+//! Every scene of the repository: its prediction, and the two tracers against each other.
+
+use crate::report::Section;
+use crate::scenes::{SUITE, compared, named, predicted, referred, traced, traced_backwards};
+use etendue_compare::{Class, PlaneComparison, PlaneReport, Verdict, sidak};
+use etendue_scene::Scene;
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// A scene of the suite, run.
+struct Outcome {
+    scene: Scene,
+    planes: Vec<PlaneComparison>,
+    /// p of photons against backward rays; `None` where there are none.
+    backward: Vec<Option<f64>>,
+}
+
+/// Share of true suites that may be rejected, over all planes of the suite.
+const ALPHA: f64 = 0.01;
+
+/// The whole suite, with the photons of the files or with `photons` for each scene.
+pub(crate) fn suite(photons: Option<u64>) -> Vec<Section> {
+    let scenes: Vec<Scene> = SUITE
+        .iter()
+        .map(|(name, _)| named(name, photons, None))
+        .collect();
+    let planes = scenes.iter().map(|scene| scene.planes.len()).sum();
+    let level = sidak(ALPHA, planes);
+    let outcomes: Vec<Outcome> = scenes.into_iter().map(|scene| run(scene, level)).collect();
+    vec![
+        table(&outcomes, planes, level),
+        occluders(&outcomes),
+        high_frequencies(&outcomes),
+        furnace(&outcomes),
+    ]
+}
+
+fn run(scene: Scene, level: f64) -> Outcome {
+    let measurement = traced(&scene);
+    let reference = traced_backwards(&scene);
+    let predictions = predicted(&scene, reference.as_ref());
+    let at = |i: usize| compared(&scene, &measurement, i, &predictions[i], level);
+    let against = |i: usize| {
+        let reference = referred(&scene, i, reference.as_ref()?);
+        compared(&scene, &measurement, i, &reference, level)
+            .report
+            .p_value
+    };
+    let planes = 0..scene.planes.len();
+    Outcome {
+        planes: planes.clone().map(at).collect(),
+        backward: planes.map(against).collect(),
+        scene,
+    }
+}
+
+fn table(outcomes: &[Outcome], planes: usize, level: f64) -> Section {
+    let mut rows = Vec::new();
+    let mut passed = true;
+    for outcome in outcomes {
+        for (plane, backward) in outcome.planes.iter().zip(&outcome.backward) {
+            let report = &plane.report;
+            let disagrees = backward.is_some_and(|p| p < level);
+            passed &= report.verdict == Verdict::Pass && !disagrees;
+            rows.push(cells(&outcome.scene, report, *backward));
+        }
+    }
+    Section {
+        title: format!("The suite: {} scenes, {planes} planes", outcomes.len()),
+        text: format!(
+            "Photons and seeds as in the files. Required: every plane passes in its class, and photons agree with backward \
+             rays wherever both exist, each at α = {ALPHA} over all planes: p ≥ {level:.6}."
+        ),
+        header: vec![
+            "scene",
+            "plane",
+            "class",
+            "photons",
+            "in window",
+            "rel. error",
+            "noise",
+            "quadrature",
+            "χ²/dof",
+            "p",
+            "p backward",
+            "verdict",
+        ],
+        rows,
+        passed,
+    }
+}
+
+fn cells(scene: &Scene, report: &PlaneReport, backward: Option<f64>) -> Vec<String> {
+    let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));
+    let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.4}"));
+    let class = match report.class {
+        Class::Exact => "exact",
+        Class::Reference => "reference",
+    };
+    vec![
+        scene.name.clone(),
+        report.name.clone(),
+        class.to_owned(),
+        format!("{:.0e}", scene.run.photons as f64),
+        report.in_window.to_string(),
+        percent(report.relative_error),
+        percent(report.noise_limit),
+        percent(report.quadrature_error),
+        number(report.chi2_per_dof),
+        number(report.p_value),
+        number(backward),
+        format!("{:?}", report.verdict).to_lowercase(),
+    ]
+}
+
+fn outcome<'a>(outcomes: &'a [Outcome], name: &str) -> Option<&'a Outcome> {
+    outcomes.iter().find(|o| o.scene.name == name)
+}
+
+/// Two occluders that block everything together, and a lot of light alone (Durand et al. 2005, Fig. 7).
+fn occluders(outcomes: &[Outcome]) -> Section {
+    let mut rows = Vec::new();
+    let mut passed = true;
+    let at = |name: &str| {
+        outcome(outcomes, name)?
+            .planes
+            .iter()
+            .find(|p| p.report.name == "receiver")
+    };
+    for (name, least, most) in [
+        ("fig7_one", 1_000_000, u64::MAX),
+        ("fig7_other", 1_000_000, u64::MAX),
+        ("fig7_two", 0, 0),
+    ] {
+        let through = at(name).map_or(0, |plane| plane.report.crossed);
+        // A short suite has fewer photons than the million asked for.
+        let wanted = outcome(outcomes, name)
+            .map_or(0, |o| o.scene.run.photons / 4)
+            .min(least);
+        passed &= (wanted..=most).contains(&through);
+        rows.push(vec![
+            format!("{name}: photons through"),
+            through.to_string(),
+        ]);
+    }
+    let norm =
+        |of: &dyn Fn(usize) -> f64, n: usize| (0..n).map(|i| of(i).powi(2)).sum::<f64>().sqrt();
+    let (sum, blind) = match (
+        at("fig7_one"),
+        at("fig7_other"),
+        outcome(outcomes, "fig7_two"),
+    ) {
+        (Some(one), Some(other), Some(both)) => {
+            // Open minus what each takes away: F − (F − F₁) − (F − F₂) = F₁ + F₂ − F.
+            let open = etendue_compare::chain(&both.scene, &both.scene.planes[2]);
+            let open = etendue_theory::Chain {
+                operators: open.operators.into_iter().filter(travels).collect(),
+                ..open
+            };
+            let plane = &both.scene.planes[2];
+            let open = etendue_theory::slices(&open, &plane.window, &plane.grid);
+            let cells: Vec<_> = open
+                .half
+                .iter()
+                .zip(&one.predicted.half)
+                .zip(&other.predicted.half)
+                .collect();
+            let n = cells.len();
+            let whole = norm(&|i| cells[i].0.0.norm(), n);
+            let sum = norm(
+                &|i| {
+                    let ((f, a), b) = cells[i];
+                    (a + b - f).norm()
+                },
+                n,
+            );
+            let blind = norm(
+                &|i| {
+                    let ((f, a), b) = cells[i];
+                    a.norm() + b.norm() - f.norm()
+                },
+                n,
+            );
+            (sum / whole, blind / whole)
+        }
+        _ => (f64::NAN, f64::NAN),
+    };
+    passed &= sum < 1e-12 && blind > 1e-2;
+    rows.push(vec![
+        "both, predicted with phases, of the open spectrum".to_owned(),
+        format!("{sum:.1e}"),
+    ]);
+    rows.push(vec![
+        "the same without phases".to_owned(),
+        format!("{blind:.3}"),
+    ]);
+    Section {
+        title: "Two occluders (Fig. 7)".to_owned(),
+        text: "Required: a million photons past each, none past both; the sum of spectra F₁ + F₂ − F below 10⁻¹² of F, \
+               that of their moduli not."
+            .to_owned(),
+        header: vec!["", ""],
+        rows,
+        passed,
+    }
+}
+
+fn travels(operator: &etendue_theory::Operator) -> bool {
+    matches!(operator, etendue_theory::Operator::Travel { .. })
+}
+
+/// H of the light that leaves the receiver under blockers of three sizes (Durand et al. 2005, Fig. 9).
+fn high_frequencies(outcomes: &[Outcome]) -> Section {
+    let shares = |name: &str| {
+        let leaving = outcome(outcomes, name)?
+            .planes
+            .iter()
+            .find(|p| p.report.name == "leaving")?;
+        Some(leaving.report.high_frequency_share.clone())
+    };
+    let mut rows = Vec::new();
+    let mut passed = true;
+    let [a, b, c] = ["fig9a", "fig9b", "fig9c"].map(|name| shares(name).unwrap_or_default());
+    for ((a, b), c) in a.iter().zip(&b).zip(&c) {
+        let cells = [a, b, c].map(|h| {
+            let [m, p, e] =
+                [h.share.measured, h.share.predicted, h.share.error].map(Option::unwrap_or_default);
+            format!("{m:.3e} ± {e:.0e}; {p:.3e}")
+        });
+        let ratio = |of: fn(&etendue_compare::Pair) -> Option<f64>| {
+            let [a, b, c] = [a, b, c].map(|h| of(&h.share).unwrap_or(f64::NAN));
+            [b / a, b / c]
+        };
+        let (measured, predicted) = (ratio(|p| p.measured), ratio(|p| p.predicted));
+        for [to_a, to_c] in [measured, predicted] {
+            passed &= to_a >= 5.0 && to_c.abs() >= 10.0;
+        }
+        let mut row = vec![format!("{:.2}", a.cut)];
+        row.extend(cells);
+        row.push(format!("{:.0}, {:.0}", measured[0], measured[1]));
+        rows.push(row);
+    }
+    passed &= rows.len() == 2;
+    Section {
+        title: "High frequencies of a shadow (Fig. 9)".to_owned(),
+        text: "H: share of energy above the cut in the spectrum of the windowed irradiance on the light leaving the receiver, \
+               measured ± error; predicted. The window's main lobe ends at 1/half-width; the first cut is twice that, the second \
+               1.5 times the first. Required: b at least 5 × a and 10 × c at both."
+            .to_owned(),
+        header: vec!["cut [cycles/m]", "fig9a", "fig9b", "fig9c", "b/a, b/c measured"],
+        rows,
+        passed,
+    }
+}
+
+/// The white furnace: radiance times the configuration factor of the light, in closed form.
+fn furnace(outcomes: &[Outcome]) -> Section {
+    let mut rows = Vec::new();
+    let mut passed = false;
+    if let Some(outcome) = outcome(outcomes, "furnace") {
+        let (plane, compared) = (&outcome.scene.planes[0], &outcome.planes[0]);
+        let half = plane.window.x.half_width();
+        let nodes = 400;
+        let at = |i: i32| half * ((f64::from(i) + 0.5) / f64::from(nodes) * 2.0 - 1.0);
+        let hann = |t: f64| (FRAC_PI_2 * t / half).cos().powi(2);
+        let mut known = 0.0;
+        for i in 0..nodes {
+            for j in 0..nodes {
+                let (x, y) = (at(i), at(j));
+                let factor: f64 = [
+                    (4.0 - x, 4.0 - y),
+                    (4.0 + x, 4.0 - y),
+                    (4.0 - x, 4.0 + y),
+                    (4.0 + x, 4.0 + y),
+                ]
+                .map(|(a, b)| corner(a / 0.5, b / 0.5))
+                .iter()
+                .sum();
+                known += factor * hann(x) * hann(y);
+            }
+        }
+        // Cells, and the window over slopes: (half-width)².
+        known *= (2.0 * half / f64::from(nodes)).powi(2) * plane.window.u.half_width().powi(2);
+        let zero = [0, 0, plane.grid.nu.half];
+        let (measured, error) = (compared.measured.half[zero].re, compared.sigma[zero]);
+        let predicted = compared.predicted.half[zero].re;
+        // Four standard errors; the prediction by quadrature of the same closed form, to its tolerance of 1e-4.
+        passed = (measured - known).abs() < 4.0 * error && (predicted / known - 1.0).abs() < 1e-4;
+        rows.push(vec![
+            format!("{known:.6}"),
+            format!("{measured:.6} ± {error:.6}"),
+            format!("{predicted:.6}"),
+        ]);
+    }
+    Section {
+        title: "White furnace".to_owned(),
+        text: "∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m: radiance times configuration factor, by the closed form for \
+               a rectangle and a parallel element (Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-3)."
+            .to_owned(),
+        header: vec!["known", "measured", "predicted"],
+        rows,
+        passed,
+    }
+}
+
+/// Configuration factor of a rectangle x × y (in units of its distance) over a parallel element below its corner.
+fn corner(x: f64, y: f64) -> f64 {
+    let (p, q) = (x.hypot(1.0), y.hypot(1.0));
+    (x / p * (y / p).atan() + y / q * (x / q).atan()) / TAU
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_light_all_around_fills_the_hemisphere() {
+        assert!((4.0 * corner(1e9, 1e9) - 1.0).abs() < 1e-8); // 1 − O(1/x)
+        assert!((corner(1e-4, 1e-4) - 1e-8 / PI).abs() < 1e-15); // area/π to O(x⁴)
+    }
+}
