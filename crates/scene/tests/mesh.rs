@@ -339,6 +339,41 @@ fn faults_of_binary_ply_files_are_told() {
     }
 }
 
+/// A header of another system's line ends before binary data, which begins right behind the last of them.
+#[test]
+fn binary_ply_behind_all_line_ends() {
+    let mesh = Mesh::star(1.0, 0.0, 0, 2).unwrap();
+    let file = mesh.ply();
+    let (header, data) = file.split_at(file.len() - 6 * 24 - 8 * 13);
+    let header = std::str::from_utf8(header).unwrap();
+    for end in ["\r\n", "\r"] {
+        let header = header.replace('\n', end);
+        let whole = [header.as_bytes(), data].concat();
+        assert_eq!(read("a.ply", whole).unwrap(), mesh);
+        let faulty = header.replace("double y", "half y");
+        let told = read("a.ply", faulty).unwrap_err().to_string();
+        assert!(
+            told.starts_with("a.ply: line 5 is `property half y`"),
+            "{told}"
+        );
+    }
+}
+
+/// A list that says it is four thousand million long is read as far as the file goes, with no memory made ready.
+#[test]
+fn a_list_longer_than_the_file_is_told() {
+    let ascii = edited("uchar int", "uint int").replace("ascii", "binary_little_endian");
+    let mut file = ascii.as_bytes()[..ascii.find("0 0 0").unwrap()].to_vec();
+    file.extend([0; 36]);
+    file.extend([0xff; 4]);
+    file.extend([0; 40]);
+    let told = read("a.ply", file).unwrap_err().to_string();
+    assert!(
+        told.contains("face 0, vertex_indices is missing, as the file ends"),
+        "{told}"
+    );
+}
+
 /// Files that no one wrote: sound ones with bytes changed, removed, doubled or cut. Whatever they hold, the answer
 /// is a sound mesh or a fault in one line.
 #[test]
