@@ -1,5 +1,6 @@
 //! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
 
+use crate::drawing;
 use crate::failure::Failure;
 use crate::files::{radial_z, z};
 use crate::results::Results;
@@ -8,8 +9,8 @@ use crate::table::word;
 use etendue_compare::{PlaneComparison, Prediction, stands_before};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Side, SliceGrid, VirtualPlane};
 use etendue_figures::{
-    Axis, Column, Comparison, Figure, Guide, Picture, PlaneMark, Quantity, Scale, Section, Segment,
-    SegmentKind, Strip, comparison, section, strip,
+    Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
+    strip,
 };
 use etendue_scene::Scene;
 use std::cmp::Ordering;
@@ -101,7 +102,7 @@ pub(crate) fn path(
             "{:e} photons, seed {}; spectra are means over azimuths. Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
             summary.photons as f64, summary.seed
         ),
-        section: &cross_section(scene, along.iter().map(|(plane, _)| *plane)),
+        section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),
         columns: columns.collect(),
         light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
@@ -145,19 +146,22 @@ fn made_from(summary: &Summary) -> String {
 }
 
 /// Where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind blockers of
-/// frequency f, the same line through (± f, ∓ h f).
+/// frequency f, the same line through (± f, ∓ h f). A diffuse surface leaves what lies at ν = 0, and travel begins anew.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
+    let reflected = plane.reflections > 0;
+    let since = if reflected { scene.path.length } else { 0.0 };
     let through = |through| Guide {
         through,
-        slope: -plane.distance,
+        slope: since - plane.distance,
     };
     let behind = scene
         .blockers
         .iter()
-        .filter(|layer| stands_before(layer.distance, plane));
+        .filter(|layer| !reflected && stands_before(layer.distance, scene, plane));
     let replicas = behind.flat_map(|layer| {
-        let (f, h) = (1.0 / layer.pitch, plane.distance - layer.distance);
-        [[f, -h * f], [-f, h * f]]
+        let h = plane.distance - layer.distance;
+        let frequency = layer.pitch.map(|pitch| 1.0 / pitch);
+        frequency.map_or(Vec::new(), |f| vec![[f, -h * f], [-f, h * f]])
     });
     std::iter::once([0.0, 0.0])
         .chain(replicas)
@@ -167,7 +171,7 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
 
 /// Draws the scene with its central ray and planes into a PNG or SVG file.
 pub(crate) fn draw_scene(scene: &Scene, path: &Path) -> Result<(), Failure> {
-    let figure = section(&cross_section(scene, scene.planes.iter()), &scene.name, "")
+    let figure = section(&drawing::cross_section(scene, scene.planes.iter()), &scene.name, "")
         .map_err(Failure::cannot_run)?;
     let bytes = match path.extension().and_then(|e| e.to_str()) {
         Some("svg") => figure.svg.into_bytes(),
@@ -189,57 +193,6 @@ fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), Failu
     results.write(&format!("{name}.png"), &png)?;
     results.write(&format!("{name}.svg"), figure.svg.as_bytes())?;
     results.write(&format!("{name}.csv"), figure.csv.as_bytes())
-}
-
-/// The scene in the plane of the central ray and X: what the plane y = 0 cuts.
-fn cross_section<'a>(scene: &Scene, planes: impl Iterator<Item = &'a VirtualPlane>) -> Section {
-    let across =
-        |kind, distance: f64, rectangle: &etendue_field::Rectangle, label: Option<&str>| {
-            let [low, high] = rectangle.extent(0);
-            Segment {
-                kind,
-                start: [distance, low],
-                end: [distance, high],
-                label: label.map(spaced),
-            }
-        };
-    let light = &scene.light.rectangle;
-    let mut segments = vec![across(SegmentKind::Light, 0.0, light, Some("light"))];
-    for layer in &scene.blockers {
-        // Jitter moves a row of blockers off y = 0: the row nearest to it is shown.
-        let nearest = layer
-            .rectangles
-            .iter()
-            .map(|r| r.center[1].abs())
-            .fold(f64::INFINITY, f64::min);
-        let row = layer
-            .rectangles
-            .iter()
-            .filter(|r| r.center[1].abs() <= nearest + 0.5 * r.size[1]);
-        let mut label = Some(layer.name.as_str());
-        segments.extend(row.map(|r| across(SegmentKind::Blocker, layer.distance, r, label.take())));
-    }
-    for surface in &scene.surfaces {
-        let (kind, name) = (SegmentKind::Surface, surface.name.as_str());
-        segments.push(across(
-            kind,
-            surface.distance,
-            &surface.rectangle,
-            Some(name),
-        ));
-    }
-    Section {
-        length: scene.path.length,
-        segments,
-        planes: planes
-            .map(|plane| PlaneMark {
-                name: spaced(&plane.name),
-                distance: plane.distance,
-                side: plane.side,
-            })
-            .collect(),
-        cones: Vec::new(),
-    }
 }
 
 fn projection_axes(grid: &ProjectionGrid) -> [Axis; 2] {
@@ -279,6 +232,6 @@ fn verdict_line(plane: &PlaneComparison) -> String {
 }
 
 /// A name as read: underscores are spaces.
-fn spaced(name: &str) -> String {
+pub(crate) fn spaced(name: &str) -> String {
     name.replace('_', " ")
 }
