@@ -1,4 +1,7 @@
+use crate::method::Method;
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use etendue_scene::RunFile;
+use std::ops::Range;
 use std::path::PathBuf;
 
 /// Measures the space-angle frequency content of light and compares it with theory.
@@ -11,6 +14,7 @@ use std::path::PathBuf;
   etendue run scenes/fig9b.ron --photons 1e8 --out d    more photons, results in d
   etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05
   etendue check scenes/fig9b.ron                        what the scene says, nothing traced
+  etendue measure | predict | compare                   the stages of run, over files
 
 Exit codes: 0 pass, 1 disagreement or undecided, 2 bad input, 3 cannot run (directory, memory, interrupted)"
 )]
@@ -23,6 +27,12 @@ pub(crate) struct Cli {
 pub(crate) enum Command {
     /// Trace a scene, measure its spectra, predict them, compare and draw.
     Run(RunArgs),
+    /// Measure a scene, whole or some of its batches, for `compare`.
+    Measure(MeasureArgs),
+    /// Predict a scene, for `compare`.
+    Predict(PredictArgs),
+    /// Compare what was measured with what was predicted; writes what `run` writes.
+    Compare(CompareArgs),
     /// Validate a scene; print the chain read off it and the class of each plane; with --draw, draw it.
     Check(CheckArgs),
 }
@@ -42,17 +52,11 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
 
-    /// Photons to emit, instead of the scene's
-    #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
-    pub(crate) photons: Option<u64>,
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
 
-    /// Seed of the photons, instead of the scene's
-    #[arg(long, value_name = "N")]
-    pub(crate) seed: Option<u64>,
-
-    /// Threads [default: one for each core]; the results do not depend on it
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
-    pub(crate) threads: Option<u16>,
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
 
     /// What else to keep
     #[arg(long, value_name = "WHAT", value_delimiter = ',')]
@@ -65,6 +69,120 @@ pub(crate) struct RunArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue measure scenes/fig9b.ron --out out/all
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a     on one machine,
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b    on another
+
+Batches of one scene, seed and photon count fit together, wherever they were measured.")]
+pub(crate) struct MeasureArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Folder for the measurement
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    /// Batches to measure, A up to but without B [default: all]; --photons counts those of all
+    #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
+    pub(crate) batches: Option<Range<u32>>,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue predict scenes/fig9b.ron --out out/predicted
+  etendue predict scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/narrow
+
+A prediction serves measurements of its scene with any seed and number of photons.")]
+pub(crate) struct PredictArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Folder for the prediction
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue compare --measured out/all --predicted out/predicted --out out/fig9b
+  etendue compare --measured out/a out/b --predicted out/predicted --out out/fig9b
+
+Parts of a measurement may come in any order. 32 batches are enough; what is reported is of those there are.")]
+pub(crate) struct CompareArgs {
+    /// Folders of `etendue measure`: a measurement, whole or in parts
+    #[arg(long, value_name = "DIR", num_args = 1.., required = true)]
+    pub(crate) measured: Vec<PathBuf>,
+
+    /// Folder of `etendue predict`
+    #[arg(long, value_name = "DIR")]
+    pub(crate) predicted: PathBuf,
+
+    /// Folder for the results
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Succeed when measured and predicted disagree, fail when they agree
+    #[arg(long, value_name = "OUTCOME")]
+    pub(crate) expect: Option<Expect>,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// How a scene is measured, where it is not as the scene says.
+#[derive(Debug, Args)]
+pub(crate) struct PhotonArgs {
+    /// Photons to emit, instead of the scene's
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
+    pub(crate) photons: Option<u64>,
+
+    /// Seed of the photons, instead of the scene's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// How light is measured
+    #[arg(long, value_name = "METHOD", default_value = "photons")]
+    pub(crate) method: Method,
+}
+
+impl PhotonArgs {
+    /// Overrides what a scene says.
+    pub(crate) fn set(&self, run: &mut RunFile) {
+        run.photons = self.photons.unwrap_or(run.photons);
+        run.seed = self.seed.unwrap_or(run.seed);
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ThreadArgs {
+    /// Threads [default: one for each core]; the results do not depend on it
+    #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) count: Option<u16>,
 }
 
 #[derive(Debug, Args)]
@@ -105,6 +223,15 @@ pub(crate) enum Expect {
 fn assignment(text: &str) -> Result<(String, String), String> {
     let (path, value) = text.split_once('=').ok_or("must be PATH=VALUE")?;
     Ok((path.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// Batches A..B, at least one.
+fn range(text: &str) -> Result<Range<u32>, String> {
+    let ends = text.split_once("..").map(|(a, b)| (a.parse(), b.parse()));
+    match ends {
+        Some((Ok(start), Ok(end))) if start < end => Ok(start..end),
+        _ => Err("must be A..B, whole numbers with A < B".to_owned()),
+    }
 }
 
 /// A whole number, also as 10_000_000 or 1e7.

@@ -1,9 +1,11 @@
 //! The array files of one plane: `slices.npz`, `radial.npz`, `radial.exr`.
 
 use crate::failure::Failure;
-use crate::results::{Npz, Results};
+use crate::npz::Npz;
+use crate::results::Results;
 use crate::summary::Summary;
 use etendue_compare::PlaneComparison;
+use etendue_field::SliceGrid;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
     IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
@@ -24,15 +26,19 @@ pub(crate) fn write(
 
 fn slices(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let grid = plane.measured.grid;
-    let azimuth: Array1<f64> = (0..grid.azimuths).map(|k| grid.azimuth(k)).collect();
     Npz::new()
-        .add("azimuth", &azimuth)?
+        .add("azimuth", &azimuths(&grid))?
         .add("measured", &plane.measured.full())?
         .add("predicted", &plane.predicted.full())?
         .add("sigma", &grid.unfold_even(plane.sigma.view()))?
         .add("rho", &Array1::from(grid.rho.values()))?
         .add("nu", &Array1::from(grid.nu.values()))?
         .bytes()
+}
+
+/// The azimuths of slices.
+pub(crate) fn azimuths(grid: &SliceGrid) -> Array1<f64> {
+    (0..grid.azimuths).map(|k| grid.azimuth(k)).collect()
 }
 
 fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {

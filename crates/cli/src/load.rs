@@ -21,7 +21,12 @@ pub(crate) fn scene(
     }
     options(&mut file.run);
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    resolve(&name, file, machine::available_memory()).map_err(|error| {
+    resolved(&name, file, &shown.to_string())
+}
+
+/// Resolves a scene file for this machine; `shown` is where it comes from, for messages.
+pub(crate) fn resolved(name: &str, file: SceneFile, shown: &str) -> Result<Scene, Failure> {
+    resolve(name, file, machine::available_memory()).map_err(|error| {
         let message = format!("{shown}:\n{error}");
         match &error {
             // The scene is sound; it is this machine that is too small.

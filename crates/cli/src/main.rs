@@ -1,20 +1,31 @@
 //! The `etendue` command: parses, calls the stages, writes what they give.
 //!
-//! `run` measures a scene, predicts it, compares and draws; `check` says what a scene says.
+//! `run` measures a scene, predicts it, compares and draws; `measure`, `predict` and `compare` are its stages
+//! over files; `check` says what a scene says.
 
 mod args;
+mod batches;
 mod check;
+mod compare;
+mod conclude;
 mod failure;
 mod files;
 mod load;
 mod machine;
+mod measure;
+mod method;
+mod npz;
 mod photons;
 mod pictures;
+mod predict;
+mod predictions;
 mod progress;
 mod results;
 mod run;
+mod stored;
 mod summary;
 mod table;
+mod threads;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -25,6 +36,9 @@ use std::process::ExitCode;
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(args) => run::run(&args),
+        Command::Measure(args) => measure::measure(&args),
+        Command::Predict(args) => predict::predict(&args),
+        Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
     };
     match outcome {

@@ -1,12 +1,11 @@
 //! `--save photons`: every photon that crossed a plane, in batch order.
 
+use crate::conclude::Case;
 use crate::failure::Failure;
+use crate::method::source;
 use crate::results::Results;
 use crate::summary::json;
-use etendue_compare::PlaneComparison;
 use etendue_field::{Crossing, PhotonSource};
-use etendue_scene::Scene;
-use etendue_trace::Tracer;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -22,22 +21,18 @@ struct Index {
 
 /// Traces the photons again, one plane after the other, and streams them to disk: they are the same ones,
 /// and memory holds a block of them.
-pub(crate) fn save(
-    results: &mut Results,
-    scene: &Scene,
-    planes: &[PlaneComparison],
-) -> Result<(), Failure> {
-    let tracer = Tracer::new(scene);
-    for (index, plane) in planes.iter().enumerate() {
+pub(crate) fn save(results: &mut Results, case: &Case) -> Result<(), Failure> {
+    let source = source(&case.scene, case.method);
+    for (index, plane) in case.scene.planes.iter().enumerate() {
         let mut offsets = vec![0];
         let mut emitted = Vec::new();
-        let rows = plane.report.crossed;
-        results.stream(&format!("{}/photons.npy", plane.report.name), &mut |file| {
+        let rows = case.measurement.tally(index).crossed;
+        results.stream(&format!("{}/photons.npy", plane.name), &mut |file| {
             file.write_all(&npy_header(rows))?;
-            for batch in 0..scene.run.batches {
-                let written = write_batch(file, &tracer, batch, index)?;
+            for batch in case.measurement.batches() {
+                let written = write_batch(file, &*source, batch.index, index)?;
                 offsets.push(offsets.last().copied().unwrap_or(0) + written);
-                emitted.push(tracer.emitted(batch));
+                emitted.push(batch.emitted);
             }
             Ok(())
         })?;
@@ -46,15 +41,17 @@ pub(crate) fn save(
             batch_offsets: offsets,
             emitted,
         };
-        results.write(
-            &format!("{}/photons.json", plane.report.name),
-            &json(&index),
-        )?;
+        results.write(&format!("{}/photons.json", plane.name), &json(&index))?;
     }
     Ok(())
 }
 
-fn write_batch(file: &mut dyn Write, tracer: &Tracer, batch: u32, plane: usize) -> io::Result<u64> {
+fn write_batch(
+    file: &mut dyn Write,
+    source: &dyn PhotonSource,
+    batch: u32,
+    plane: usize,
+) -> io::Result<u64> {
     let mut written = 0;
     let mut outcome = Ok(());
     let mut record = |at: usize, crossings: &[Crossing]| {
@@ -63,7 +60,7 @@ fn write_batch(file: &mut dyn Write, tracer: &Tracer, batch: u32, plane: usize) 
             outcome = file.write_all(&rows(crossings));
         }
     };
-    tracer.emit(batch, &mut record, &|_| ());
+    source.emit(batch, &mut record, &|_| ());
     outcome.map(|()| written)
 }
 

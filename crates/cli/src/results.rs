@@ -1,53 +1,54 @@
 use crate::failure::Failure;
 use atomic_write_file::AtomicWriteFile;
-use ndarray::{ArrayBase, Data, Dimension};
-use ndarray_npy::{NpzWriter, WritableElement};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{self, BufWriter, Cursor, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
 
 /// A results folder being written: every file to a temporary name first, then renamed, and hashed.
 ///
-/// `summary.json` comes last and lists the hashes: a folder without a matching summary is no result.
+/// Its index, such as `summary.json`, comes last and lists the hashes: a folder without a matching index is no
+/// result.
 #[derive(Debug)]
 pub(crate) struct Results {
     folder: PathBuf,
+    index: &'static str,
     hashes: BTreeMap<String, String>,
 }
 
-/// The file that makes a folder a result.
-const SUMMARY: &str = "summary.json";
+/// The index of a comparison.
+pub(crate) const SUMMARY: &str = "summary.json";
 
 impl Results {
     /// Makes the folder and proves that files can be written to it, so that a long run does not end in vain.
-    pub(crate) fn create(folder: &Path) -> Result<Self, Failure> {
+    pub(crate) fn create(folder: &Path, index: &'static str) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
         fs::create_dir_all(folder).map_err(failure)?;
-        AtomicWriteFile::open(folder.join(SUMMARY))
+        AtomicWriteFile::open(folder.join(index))
             .and_then(AtomicWriteFile::discard)
             .map_err(failure)?;
         Ok(Self {
             folder: folder.to_owned(),
+            index,
             hashes: BTreeMap::new(),
         })
     }
 
-    /// Takes away an earlier result in this folder: first its summary, then the files that lists, so that none
+    /// Takes away an earlier result in this folder: first its index, then the files that lists, so that none
     /// of them stays beside those to come.
     pub(crate) fn begin(&self) -> Result<(), Failure> {
-        let summary = self.folder.join(SUMMARY);
-        let Ok(text) = fs::read(&summary) else {
+        let index = self.folder.join(self.index);
+        let Ok(text) = fs::read(&index) else {
             return Ok(());
         };
         let earlier: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
         if earlier.get("scene_hash").is_none() {
             return Err(Failure::write(
-                &summary,
+                &index,
                 "the file there is not of this program",
             ));
         }
-        fs::remove_file(&summary).map_err(|e| Failure::write(&summary, e))?;
+        fs::remove_file(&index).map_err(|e| Failure::write(&index, e))?;
         for (name, hash) in earlier["files"].as_object().into_iter().flatten() {
             let path = self.folder.join(name);
             let inside = Path::new(name)
@@ -63,7 +64,7 @@ impl Results {
         Ok(())
     }
 
-    /// Writes a file that the summary lists; `name` is relative to the folder, with `/`.
+    /// Writes a file that the index lists; `name` is relative to the folder, with `/`.
     pub(crate) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         self.stream(name, &mut |file| file.write_all(bytes))
     }
@@ -106,12 +107,12 @@ impl Results {
         write().map_err(|e: io::Error| Failure::write(&path, e))
     }
 
-    /// Writes the summary, which `with_files` makes of the hashes of all files so far.
+    /// Writes the index, which `with_files` makes of the hashes of all files so far.
     pub(crate) fn finish(
         self,
         with_files: impl FnOnce(&BTreeMap<String, String>) -> Vec<u8>,
     ) -> Result<PathBuf, Failure> {
-        self.write_unlisted(SUMMARY, &with_files(&self.hashes))?;
+        self.write_unlisted(self.index, &with_files(&self.hashes))?;
         Ok(self.folder)
     }
 }
@@ -131,35 +132,5 @@ impl Write for Hashed {
 
     fn flush(&mut self) -> io::Result<()> {
         self.file.flush()
-    }
-}
-
-/// Named arrays in the making of an NPZ file.
-pub(crate) struct Npz(NpzWriter<Cursor<Vec<u8>>>);
-
-impl Npz {
-    pub(crate) fn new() -> Self {
-        Self(NpzWriter::new(Cursor::new(Vec::new())))
-    }
-
-    pub(crate) fn add<A, S, D>(
-        mut self,
-        name: &str,
-        array: &ArrayBase<S, D>,
-    ) -> Result<Self, Failure>
-    where
-        A: WritableElement,
-        S: Data<Elem = A>,
-        D: Dimension,
-    {
-        self.0
-            .add_array(name, array)
-            .map_err(|e| Failure::cannot_run(format!("array {name}: {e}")))?;
-        Ok(self)
-    }
-
-    pub(crate) fn bytes(self) -> Result<Vec<u8>, Failure> {
-        let finished = self.0.finish().map_err(Failure::cannot_run)?;
-        Ok(finished.into_inner())
     }
 }

@@ -1,8 +1,10 @@
+use crate::conclude::Case;
 use crate::machine;
+use crate::method::Method;
+use crate::stored::{VERSION, scene_hash};
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
-use etendue_scene::{Emission, Scene};
-use etendue_spectrum::Measurement;
+use etendue_scene::Emission;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -15,46 +17,47 @@ pub(crate) struct Summary {
     pub(crate) scene_hash: String,
     pub(crate) version: &'static str,
     pub(crate) seed: u64,
-    pub(crate) method: &'static str,
+    pub(crate) method: Method,
     pub(crate) emission: Emission,
     /// Photons emitted.
     pub(crate) photons: u64,
-    pub(crate) batches: u32,
-    /// Flux, W.
-    pub(crate) ledger: Ledger,
+    /// Batches they were emitted in.
+    pub(crate) batches: usize,
+    /// Flux, W; nothing when the method does not keep it.
+    pub(crate) ledger: Option<Ledger>,
     /// (emitted − absorbed − escaped − stopped) / emitted.
-    pub(crate) ledger_imbalance: f64,
+    pub(crate) ledger_imbalance: Option<f64>,
     pub(crate) verdict: Verdict,
     pub(crate) alpha: f64,
     pub(crate) planes: Vec<PlaneReport>,
 }
 
 impl Summary {
-    pub(crate) fn new(
-        scene: &Scene,
-        measurement: &Measurement,
-        planes: &[PlaneComparison],
-    ) -> Self {
+    pub(crate) fn new(case: &Case, planes: &[PlaneComparison]) -> Self {
+        let Case {
+            scene,
+            method,
+            measurement,
+            ..
+        } = case;
         let reports: Vec<PlaneReport> = planes.iter().map(|p| p.report.clone()).collect();
         let any = |verdict| reports.iter().any(|plane| plane.verdict == verdict);
         let worst = [Verdict::Fail, Verdict::Undecided]
             .into_iter()
             .find(|v| any(*v));
-        let sums = measurement.ledger();
+        let sums = method.keeps_ledger().then(|| measurement.ledger());
         let photons = measurement.emitted();
-        // Cannot fail: a scene file is plain data with finite numbers.
-        let text = serde_json::to_vec(&scene.file).unwrap_or_default();
         Self {
             scene: scene.name.clone(),
-            scene_hash: blake3::hash(&text).to_hex().to_string(),
-            version: env!("CARGO_PKG_VERSION"),
+            scene_hash: scene_hash(&scene.file),
+            version: VERSION,
             seed: scene.run.seed,
-            method: "photons",
+            method: *method,
             emission: scene.run.emission,
             photons,
-            batches: scene.run.batches,
-            ledger: sums.scaled(1.0 / photons as f64),
-            ledger_imbalance: sums.imbalance(),
+            batches: measurement.batches().len(),
+            ledger: sums.map(|sums| sums.scaled(1.0 / photons as f64)),
+            ledger_imbalance: sums.map(|sums| sums.imbalance()),
             verdict: worst.unwrap_or(Verdict::Pass),
             alpha: scene.run.alpha,
             planes: reports,

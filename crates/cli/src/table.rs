@@ -11,13 +11,17 @@ pub(crate) fn print(summary: &Summary, folder: &Path) {
 }
 
 fn text(summary: &Summary) -> String {
+    let ledger = summary.ledger_imbalance.map(|imbalance| {
+        let imbalance = imbalance.abs();
+        format!(", ledger closes to {imbalance:.0e}")
+    });
     let mut lines = vec![
         format!(
-            "{}: {} photons, seed {}, ledger closes to {:.0e}",
+            "{}: {} photons, seed {}{}",
             summary.scene,
             grouped(summary.photons),
             summary.seed,
-            summary.ledger_imbalance.abs(),
+            ledger.unwrap_or_default(),
         ),
         String::new(),
     ];
@@ -211,7 +215,7 @@ fn uncertain(value: f64, error: f64) -> String {
 }
 
 /// 10000000 as 10 000 000.
-fn grouped(n: u64) -> String {
+pub(crate) fn grouped(n: u64) -> String {
     let digits = n.to_string();
     let groups: Vec<&str> = digits
         .as_bytes()

@@ -1,0 +1,191 @@
+//! The batches of a measurement as files: `ledger.npz`, and `batches.npz` for each plane.
+
+use crate::failure::Failure;
+use crate::method::Method;
+use crate::npz::{Npz, NpzFile};
+use crate::results::Results;
+use crate::stored::Stored;
+use etendue_field::{Ledger, PlaneTally, Projection, ProjectionGrid, Slices, VirtualPlane};
+use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
+use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, RemoveAxis, stack};
+use ndarray_npy::WritableElement;
+use serde::{Deserialize, Serialize};
+use std::ops::Range;
+
+/// What `measurement.json` says beside the scene.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct Held {
+    pub(crate) seed: u64,
+    pub(crate) method: Method,
+    /// Photons emitted in the batches held.
+    pub(crate) photons: u64,
+    /// The batches held.
+    pub(crate) batches: Range<u32>,
+}
+
+const LEDGER: &str = "ledger.npz";
+
+fn file_of(plane: &VirtualPlane) -> String {
+    format!("{}/batches.npz", plane.name)
+}
+
+/// Writes all batches of a measurement.
+pub(crate) fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Failure> {
+    let flux = measurement.batches().map(|batch| {
+        let Ledger {
+            emitted,
+            absorbed,
+            escaped,
+            stopped,
+        } = batch.ledger;
+        [emitted, absorbed, escaped, stopped]
+    });
+    let flux = Array2::from(flux.collect::<Vec<_>>());
+    let ledger = numbered(measurement)?.add("ledger", &flux)?.bytes()?;
+    results.write(LEDGER, &ledger)?;
+    for (index, plane) in measurement.planes().iter().enumerate() {
+        results.write(&file_of(plane), &at_plane(measurement, index)?)?;
+    }
+    Ok(())
+}
+
+/// A file that says which batches its rows are.
+fn numbered(measurement: &Measurement) -> Result<Npz, Failure> {
+    let numbers: Array1<u32> = measurement.batches().map(|b| b.index).collect();
+    let emitted: Array1<u64> = measurement.batches().map(|b| b.emitted).collect();
+    Npz::new().add("batch", &numbers)?.add("emitted", &emitted)
+}
+
+fn at_plane(measurement: &Measurement, index: usize) -> Result<Vec<u8>, Failure> {
+    let each = || measurement.at_plane(index);
+    let tally = each().map(|batch| {
+        let PlaneTally {
+            crossed,
+            inside,
+            outside,
+        } = batch.tally;
+        [crossed, inside, outside]
+    });
+    let tally = Array2::from(tally.collect::<Vec<_>>());
+    let grid = measurement.planes()[index].grid;
+    let npz = numbered(measurement)?.add("tally", &tally)?;
+    let npz = add_stacked(npz, "slices", each().map(|b| b.slices.half.view()))?;
+    let npz = add_stacked(
+        npz,
+        "projection",
+        each().map(|b| b.projection.values.view()),
+    )?;
+    npz.add_half_axes(&grid)?.bytes()
+}
+
+/// Adds arrays of one shape as one, with an axis before theirs.
+fn add_stacked<'a, A, D>(
+    npz: Npz,
+    name: &str,
+    arrays: impl Iterator<Item = ArrayView<'a, A, D>>,
+) -> Result<Npz, Failure>
+where
+    A: Clone + WritableElement + 'a,
+    D: Dimension,
+    D::Larger: RemoveAxis,
+{
+    let arrays: Vec<_> = arrays.collect();
+    let stacked = stack(Axis(0), &arrays).map_err(Failure::cannot_run)?;
+    npz.add(name, &stacked)
+}
+
+/// Reads the batches of a stage of `planes`.
+pub(crate) fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Measurement, Failure> {
+    let held = &stored.index.content;
+    let mut file = stored.npz(LEDGER)?;
+    let rows = Rows::read(&mut file, held)?;
+    let ledger: Array2<f64> = file.array("ledger", [rows.numbers.len(), 4])?;
+    let mut columns = Vec::new();
+    for plane in planes {
+        let batches = plane_batches(&mut stored.npz(&file_of(plane))?, held, &rows, plane)?;
+        columns.push(batches.into_iter());
+    }
+    let mut measurement = Measurement::new(planes.to_vec());
+    for (row, ledger) in ledger.outer_iter().enumerate() {
+        let batch = Batch {
+            index: rows.numbers[row],
+            emitted: rows.emitted[row],
+            ledger: Ledger {
+                emitted: ledger[0],
+                absorbed: ledger[1],
+                escaped: ledger[2],
+                stopped: ledger[3],
+            },
+            planes: columns.iter_mut().filter_map(Iterator::next).collect(),
+        };
+        measurement.insert(batch).map_err(|e| stored.fault(e))?;
+    }
+    Ok(measurement)
+}
+
+/// The batches the rows of a file stand for.
+#[derive(PartialEq)]
+struct Rows {
+    numbers: Array1<u32>,
+    emitted: Array1<u64>,
+}
+
+impl Rows {
+    /// They must be those the index names.
+    fn read(file: &mut NpzFile, held: &Held) -> Result<Self, Failure> {
+        let Range { start, end } = held.batches;
+        let count = end.saturating_sub(start) as usize;
+        let numbers: Array1<u32> = file.array("batch", [count])?;
+        if !numbers.iter().copied().eq(held.batches.clone()) {
+            return Err(file.fault("batch", format!("must be the batches {start}..{end}")));
+        }
+        let emitted: Array1<u64> = file.array("emitted", [count])?;
+        let sum = emitted.iter().try_fold(0_u64, |sum, n| sum.checked_add(*n));
+        if emitted.iter().any(|n| *n == 0) || sum != Some(held.photons) {
+            let must = format!("must be photons of each batch, {} in all", held.photons);
+            return Err(file.fault("emitted", must));
+        }
+        Ok(Self { numbers, emitted })
+    }
+}
+
+fn plane_batches(
+    file: &mut NpzFile,
+    held: &Held,
+    rows: &Rows,
+    plane: &VirtualPlane,
+) -> Result<Vec<PlaneBatch>, Failure> {
+    if Rows::read(file, held)? != *rows {
+        return Err(file.fault("emitted", format!("must be as in {LEDGER}")));
+    }
+    let count = rows.numbers.len();
+    let [azimuths, rho, nu] = plane.grid.half_shape();
+    let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+    let tallies: Array2<u64> = file.array("tally", [count, 3])?;
+    let slices: Array4<_> = file.array("slices", [count, azimuths, rho, nu])?;
+    let projections: Array3<f64> = file.array("projection", [count, cells.bins, cells.bins])?;
+    let rows = tallies.outer_iter().zip(slices.outer_iter());
+    rows.zip(projections.outer_iter())
+        .map(|((tally, half), values)| {
+            let tally = PlaneTally {
+                crossed: tally[0],
+                inside: tally[1],
+                outside: tally[2],
+            };
+            if tally.inside.checked_add(tally.outside) != Some(tally.crossed) {
+                return Err(file.fault("tally", "crossed must be inside + outside"));
+            }
+            Ok(PlaneBatch {
+                tally,
+                slices: Slices {
+                    grid: plane.grid,
+                    half: half.to_owned(),
+                },
+                projection: Projection {
+                    grid: cells,
+                    values: values.to_owned(),
+                },
+            })
+        })
+        .collect()
+}

@@ -1,0 +1,105 @@
+use crate::args::CompareArgs;
+use crate::batches::{self, Held};
+use crate::conclude::{Case, Ending, conclude};
+use crate::failure::Failure;
+use crate::results::{Results, SUMMARY};
+use crate::stored::{MEASUREMENT, PREDICTION, Stored};
+use crate::summary::Stopwatch;
+use crate::threads::on_threads;
+use crate::{predictions, progress, say};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use serde_json::json;
+use std::ops::Range;
+
+/// The fewest batches errors are taken from, as in a scene.
+const LEAST_BATCHES: usize = 32;
+
+/// `etendue compare`: returns the exit code.
+pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
+    let mut watch = Stopwatch::start();
+    let stage = progress::stage("reading", args.quiet);
+    let case = read(args)?;
+    stage.finish_and_clear();
+    watch.lap("read");
+    let results = Results::create(&args.out, SUMMARY)?;
+    let (held, all) = (case.measurement.batches().len(), case.scene.run.batches);
+    if !args.quiet && held < all as usize {
+        say(&format!("{held} of {all} batches were measured"));
+    }
+    let ending = Ending {
+        save: &[],
+        expect: args.expect,
+        quiet: args.quiet,
+    };
+    on_threads(&args.threads, || conclude(&case, &ending, results, watch))
+}
+
+/// All that was measured and predicted, if it fits together.
+fn read(args: &CompareArgs) -> Result<Case, Failure> {
+    let shards = args.measured.iter();
+    let shards: Vec<Stored<Held>> = shards
+        .map(|folder| Stored::read(folder, MEASUREMENT))
+        .collect::<Result<_, _>>()?;
+    let predicted = Stored::read(&args.predicted, PREDICTION)?;
+    let first = &shards[0];
+    for shard in &shards[1..] {
+        same_experiment(first, shard)?;
+    }
+    first.check_scene(&predicted, false)?;
+    let scene = first.scene()?;
+    let measurement = merged(&shards, &scene)?;
+    Ok(Case {
+        method: first.index.content.method,
+        predictions: predictions::read(&predicted, &scene)?,
+        measurement,
+        scene,
+    })
+}
+
+/// Batches of different experiments are no replicates of each other.
+fn same_experiment(first: &Stored<Held>, shard: &Stored<Held>) -> Result<(), Failure> {
+    first.check_scene(shard, true)?;
+    let words = |stored: &Stored<Held>| {
+        let index = &stored.index;
+        json!({"scene": index.scene, "method": index.content.method})
+    };
+    first.check_same(shard, &words(first), &words(shard))
+}
+
+fn merged(shards: &[Stored<Held>], scene: &Scene) -> Result<Measurement, Failure> {
+    let mut all = Measurement::new(scene.planes.clone());
+    for shard in shards {
+        let held = &shard.index.content;
+        let Range { start, end } = held.batches;
+        if start >= end || end > scene.run.batches {
+            let all = scene.run.batches;
+            return Err(shard.fault(format!("batches {start}..{end}; must be some of 0..{all}")));
+        }
+        let part = batches::read(shard, &scene.planes)?;
+        all = all.merge(part).map_err(|e| {
+            Failure::bad_input(format!("cannot add {}: {e}", shard.folder.display()))
+        })?;
+    }
+    let held = all.batches().len();
+    if held < LEAST_BATCHES {
+        let missing = missing(&all, scene.run.batches);
+        return Err(Failure::bad_input(format!(
+            "{held} batches are too few: at least {LEAST_BATCHES} are needed; not measured: {missing}"
+        )));
+    }
+    Ok(all)
+}
+
+/// The batches that are not there, as ranges.
+fn missing(measurement: &Measurement, all: u32) -> String {
+    let mut ranges: Vec<Range<u32>> = Vec::new();
+    for batch in (0..all).filter(|batch| !measurement.contains(*batch)) {
+        match ranges.last_mut() {
+            Some(range) if range.end == batch => range.end += 1,
+            _ => ranges.push(batch..batch + 1),
+        }
+    }
+    let ranges: Vec<String> = ranges.iter().map(|r| format!("{r:?}")).collect();
+    ranges.join(", ")
+}

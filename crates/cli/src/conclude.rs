@@ -1,0 +1,87 @@
+use crate::args::{Expect, Save};
+use crate::failure::Failure;
+use crate::method::Method;
+use crate::results::Results;
+use crate::summary::{Stopwatch, Summary};
+use crate::{files, photons, pictures, progress, table};
+use etendue_compare::{PlaneComparison, Prediction, Verdict, compare, sidak};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use std::path::PathBuf;
+
+/// A scene, and all that was measured and predicted of it.
+#[derive(Debug)]
+pub(crate) struct Case {
+    pub(crate) scene: Scene,
+    pub(crate) method: Method,
+    pub(crate) measurement: Measurement,
+    /// One for each plane, in their order.
+    pub(crate) predictions: Vec<Prediction>,
+}
+
+/// What the user wants beside the result.
+#[derive(Debug)]
+pub(crate) struct Ending<'a> {
+    pub(crate) save: &'a [Save],
+    pub(crate) expect: Option<Expect>,
+    pub(crate) quiet: bool,
+}
+
+/// Compares, draws and writes the result; returns the exit code.
+pub(crate) fn conclude(
+    case: &Case,
+    ending: &Ending<'_>,
+    results: Results,
+    mut watch: Stopwatch,
+) -> Result<u8, Failure> {
+    let stage = progress::stage("comparing", ending.quiet);
+    let planes = compared(case)?;
+    watch.lap("compare");
+    stage.set_message("writing results");
+    let summary = Summary::new(case, &planes);
+    let folder = written(case, ending.save, results, &summary, &planes, watch)?;
+    stage.finish_and_clear();
+    if !ending.quiet {
+        table::print(&summary, &folder);
+    }
+    let wanted = match ending.expect {
+        Some(Expect::Disagreement) => Verdict::Fail,
+        None => Verdict::Pass,
+    };
+    Ok(u8::from(summary.verdict != wanted))
+}
+
+fn compared(case: &Case) -> Result<Vec<PlaneComparison>, Failure> {
+    let run = &case.scene.run;
+    let level = sidak(run.alpha, case.scene.planes.len());
+    case.predictions
+        .iter()
+        .enumerate()
+        .map(|(i, prediction)| {
+            compare(&case.measurement, i, prediction, level, run.seed).map_err(Failure::cannot_run)
+        })
+        .collect()
+}
+
+/// Writes everything; the summary last.
+fn written(
+    case: &Case,
+    save: &[Save],
+    mut results: Results,
+    summary: &Summary,
+    planes: &[PlaneComparison],
+    mut watch: Stopwatch,
+) -> Result<PathBuf, Failure> {
+    results.begin()?;
+    for (prediction, plane) in case.predictions.iter().zip(planes) {
+        files::write(&mut results, summary, plane)?;
+        pictures::plane(&mut results, summary, prediction, plane)?;
+    }
+    pictures::path(&mut results, summary, &case.scene, planes)?;
+    if save.contains(&Save::Photons) {
+        photons::save(&mut results, case)?;
+    }
+    watch.lap("write");
+    results.write_unlisted("timing.json", &watch.json(summary.photons))?;
+    results.finish(|files| summary.json(files))
+}

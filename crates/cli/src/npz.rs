@@ -1,0 +1,160 @@
+//! NPZ files: named arrays, written to memory and read back with every fault named.
+
+use crate::failure::Failure;
+use crate::files::azimuths;
+use etendue_field::{Complex, SliceGrid};
+use ndarray::{Array, Array1, ArrayBase, ArrayView, Data, Dimension, IntoDimension};
+use ndarray_npy::{
+    NpzWriter, ReadNpyExt, ReadableElement, ViewElement, ViewNpyError, ViewNpyExt, WritableElement,
+};
+use std::fmt::Display;
+use std::io::{Cursor, Read};
+use std::path::PathBuf;
+use zip::ZipArchive;
+
+/// Named arrays in the making of a file.
+pub(crate) struct Npz(NpzWriter<Cursor<Vec<u8>>>);
+
+impl Npz {
+    pub(crate) fn new() -> Self {
+        Self(NpzWriter::new(Cursor::new(Vec::new())))
+    }
+
+    pub(crate) fn add<A, S, D>(
+        mut self,
+        name: &str,
+        array: &ArrayBase<S, D>,
+    ) -> Result<Self, Failure>
+    where
+        A: WritableElement,
+        S: Data<Elem = A>,
+        D: Dimension,
+    {
+        self.0
+            .add_array(name, array)
+            .map_err(|e| Failure::cannot_run(format!("array {name}: {e}")))?;
+        Ok(self)
+    }
+
+    /// Adds the frequencies of arrays [azimuth, ρ ≥ 0, ν].
+    pub(crate) fn add_half_axes(self, grid: &SliceGrid) -> Result<Self, Failure> {
+        let rho = (0..=grid.rho.half).map(|i| grid.rho.value(grid.rho.half + i));
+        self.add("azimuth", &azimuths(grid))?
+            .add("rho", &rho.collect::<Array1<f64>>())?
+            .add("nu", &Array1::from(grid.nu.values()))
+    }
+
+    pub(crate) fn bytes(self) -> Result<Vec<u8>, Failure> {
+        let finished = self.0.finish().map_err(Failure::cannot_run)?;
+        Ok(finished.into_inner())
+    }
+}
+
+/// A file to read arrays from.
+pub(crate) struct NpzFile {
+    path: PathBuf,
+    archive: ZipArchive<Cursor<Vec<u8>>>,
+    length: usize,
+}
+
+/// A number an array may hold.
+pub(crate) trait Number: ReadableElement + ViewElement + Copy {
+    /// Whether it is neither infinite nor NaN.
+    fn is_finite(self) -> bool;
+}
+
+impl Number for f64 {
+    fn is_finite(self) -> bool {
+        self.is_finite()
+    }
+}
+
+impl Number for Complex {
+    fn is_finite(self) -> bool {
+        self.re.is_finite() && self.im.is_finite()
+    }
+}
+
+impl Number for u32 {
+    fn is_finite(self) -> bool {
+        true
+    }
+}
+
+impl Number for u64 {
+    fn is_finite(self) -> bool {
+        true
+    }
+}
+
+/// The most an NPY file has before its numbers.
+const HEADER: usize = 1 << 16;
+
+impl NpzFile {
+    /// The file of these bytes; `path` is for messages.
+    pub(crate) fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
+        let length = bytes.len();
+        match ZipArchive::new(Cursor::new(bytes)) {
+            Ok(archive) => Ok(Self {
+                path,
+                archive,
+                length,
+            }),
+            Err(e) => Err(Failure::bad_input(format!("{}: {e}", path.display()))),
+        }
+    }
+
+    /// The array `name`, in C order; it must have this shape and hold finite numbers.
+    pub(crate) fn array<A: Number, I: IntoDimension>(
+        &mut self,
+        name: &str,
+        shape: I,
+    ) -> Result<Array<A, I::Dim>, Failure> {
+        let shape = shape.into_dimension();
+        let bytes = self.entry(name, shape.size().saturating_mul(size_of::<A>()))?;
+        // A view takes no memory, whatever size the file claims the array to have: it sees that it is too short.
+        let found = match ArrayView::<A, I::Dim>::view_npy(&bytes) {
+            Ok(view) => view.to_owned(),
+            Err(ViewNpyError::MisalignedData) => {
+                Array::read_npy(&bytes[..]).map_err(|e| self.fault(name, e))?
+            }
+            Err(e) => return Err(self.fault(name, e)),
+        };
+        if found.raw_dim() != shape {
+            let is = format!(
+                "its shape is {:?}; must be {:?}",
+                found.shape(),
+                shape.slice()
+            );
+            return Err(self.fault(name, is));
+        }
+        if !found.iter().all(|number| number.is_finite()) {
+            return Err(self.fault(name, "it holds numbers that are not finite"));
+        }
+        Ok(found.as_standard_layout().into_owned())
+    }
+
+    /// What is wrong with array `name`, for the user.
+    pub(crate) fn fault(&self, name: &str, what: impl Display) -> Failure {
+        let path = self.path.display();
+        Failure::bad_input(format!("{path}: array {name}: {what}"))
+    }
+
+    /// The NPY file `name` in the archive. What is compressed is not unpacked to more than `numbers` bytes
+    /// need or the whole archive holds.
+    fn entry(&mut self, name: &str, numbers: usize) -> Result<Vec<u8>, Failure> {
+        let limit = numbers.saturating_add(self.length).saturating_add(HEADER);
+        let mut bytes = Vec::new();
+        let read = match self.archive.by_name(&format!("{name}.npy")) {
+            Ok(file) => file
+                .take(u64::try_from(limit).unwrap_or(u64::MAX))
+                .read_to_end(&mut bytes)
+                .map_err(|e| e.to_string()),
+            Err(e) => Err(e.to_string()),
+        };
+        match read {
+            Ok(_) => Ok(bytes),
+            Err(e) => Err(self.fault(name, e)),
+        }
+    }
+}

@@ -1,0 +1,192 @@
+//! What a stage leaves in its folder for a later one: arrays, and last an index that names them.
+
+use crate::failure::Failure;
+use crate::load;
+use crate::npz::NpzFile;
+use crate::results::Results;
+use crate::summary::json;
+use etendue_scene::{Scene, SceneFile};
+use serde::de::DeserializeOwned;
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fmt::Display;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// The index of `etendue measure`.
+pub(crate) const MEASUREMENT: &str = "measurement.json";
+/// The index of `etendue predict`.
+pub(crate) const PREDICTION: &str = "prediction.json";
+
+/// The version of this program: stages of different ones do not mix.
+pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// An index: what was done, of which scene, and the hash of each file.
+#[derive(Debug, Serialize, Deserialize)]
+pub(crate) struct Index<T> {
+    pub(crate) scene: String,
+    scene_hash: String,
+    version: String,
+    /// What the stage says of itself.
+    #[serde(flatten)]
+    pub(crate) content: T,
+    /// The scene file, defaults and overrides included.
+    scene_file: SceneFile,
+    files: BTreeMap<String, String>,
+}
+
+impl<T: Serialize> Index<T> {
+    pub(crate) fn new(scene: &Scene, content: T) -> Self {
+        Self {
+            scene: scene.name.clone(),
+            scene_hash: scene_hash(&scene.file),
+            version: VERSION.to_owned(),
+            content,
+            scene_file: scene.file.clone(),
+            files: BTreeMap::new(),
+        }
+    }
+
+    /// Writes it after the files it lists; returns the folder.
+    pub(crate) fn finish(mut self, results: Results) -> Result<PathBuf, Failure> {
+        results.finish(|files| {
+            self.files.clone_from(files);
+            json(&self)
+        })
+    }
+}
+
+/// BLAKE3 of a scene file as JSON, defaults and overrides included.
+pub(crate) fn scene_hash(file: &SceneFile) -> String {
+    // Cannot fail: a scene file is plain data with finite numbers.
+    let text = serde_json::to_vec(file).unwrap_or_default();
+    blake3::hash(&text).to_hex().to_string()
+}
+
+/// The folder of an earlier stage.
+#[derive(Debug)]
+pub(crate) struct Stored<T> {
+    pub(crate) folder: PathBuf,
+    /// Path of the index, for messages.
+    path: PathBuf,
+    pub(crate) index: Index<T>,
+}
+
+impl<T: DeserializeOwned> Stored<T> {
+    /// Reads the index called `name` in a folder. It must be of this version and its scene the one it was hashed with.
+    pub(crate) fn read(folder: &Path, name: &str) -> Result<Self, Failure> {
+        let path = folder.join(name);
+        let shown = path.display();
+        let bytes =
+            fs::read(&path).map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+        let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
+        let tree: Value = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
+        // Before the rest, which another version may write in another way.
+        if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
+            return Err(fault(format!(
+                "written by version {version}, this is {VERSION}: all stages must be of one version"
+            )));
+        }
+        let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
+        if index.scene_hash != scene_hash(&index.scene_file) {
+            return Err(fault("scene_file does not match scene_hash".to_owned()));
+        }
+        Ok(Self {
+            folder: folder.to_owned(),
+            path,
+            index,
+        })
+    }
+}
+
+impl<T> Stored<T> {
+    /// The scene it is of.
+    pub(crate) fn scene(&self) -> Result<Scene, Failure> {
+        load::resolved(
+            &self.index.scene,
+            self.index.scene_file.clone(),
+            &self.path.display().to_string(),
+        )
+    }
+
+    /// The file `name`, whose bytes must be those that were written.
+    pub(crate) fn npz(&self, name: &str) -> Result<NpzFile, Failure> {
+        let path = self.folder.join(name);
+        let shown = path.display();
+        let hash = self.index.files.get(name);
+        let hash = hash.ok_or_else(|| self.fault(format!("files does not list {name}")))?;
+        let bytes =
+            fs::read(&path).map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+        if *hash != blake3::hash(&bytes).to_hex().as_str() {
+            let index = self.path.display();
+            let message = format!("{shown} is damaged: its hash is not the one in {index}");
+            return Err(Failure::bad_input(message));
+        }
+        NpzFile::new(path, bytes)
+    }
+
+    /// Fails when `other` is of another scene; with `run`, also when the scene is to be measured in another way.
+    pub(crate) fn check_scene<U>(&self, other: &Stored<U>, run: bool) -> Result<(), Failure> {
+        let tree = |file: &SceneFile| {
+            let mut tree = serde_json::to_value(file).unwrap_or_default();
+            if let (false, Some(fields)) = (run, tree.as_object_mut()) {
+                fields.remove("run");
+            }
+            tree
+        };
+        let [own, others] = [&self.index.scene_file, &other.index.scene_file].map(tree);
+        self.check_same(other, &own, &others)
+    }
+
+    /// Fails when this and `other` hold different values.
+    pub(crate) fn check_same<U>(
+        &self,
+        other: &Stored<U>,
+        own: &Value,
+        others: &Value,
+    ) -> Result<(), Failure> {
+        let Some((field, own, others)) = difference(own, others) else {
+            return Ok(());
+        };
+        let (path, other) = (self.path.display(), other.path.display());
+        Err(Failure::bad_input(format!(
+            "{path} and {other} do not fit together: {field} is {own} and {others}"
+        )))
+    }
+
+    /// What is wrong with the index, for the user.
+    pub(crate) fn fault(&self, what: impl Display) -> Failure {
+        Failure::bad_input(format!("{}: {what}", self.path.display()))
+    }
+}
+
+/// The first field in which two trees differ, named as for `--set`, and what it is in each.
+fn difference(a: &Value, b: &Value) -> Option<(String, String, String)> {
+    let child = |name: &str, a: Option<&Value>, b: Option<&Value>| {
+        let (field, a, b) = difference(a.unwrap_or(&Value::Null), b.unwrap_or(&Value::Null))?;
+        let dot = if field.is_empty() { "" } else { "." };
+        Some((format!("{name}{dot}{field}"), a, b))
+    };
+    match (a, b) {
+        (Value::Object(a), Value::Object(b)) => {
+            let added = b.keys().filter(|name| !a.contains_key(*name));
+            let mut names = a.keys().chain(added);
+            names.find_map(|name| child(name, a.get(name), b.get(name)))
+        }
+        (Value::Array(a), Value::Array(b)) => {
+            (0..a.len().max(b.len())).find_map(|i| child(&i.to_string(), a.get(i), b.get(i)))
+        }
+        _ => (a != b).then(|| (String::new(), brief(a), brief(b))),
+    }
+}
+
+/// A value on part of a line.
+fn brief(value: &Value) -> String {
+    const MOST: usize = 60;
+    let text = value.to_string();
+    if text.chars().count() <= MOST {
+        return text;
+    }
+    text.chars().take(MOST).chain("…".chars()).collect()
+}

@@ -1,0 +1,118 @@
+//! What the tests of the command share.
+
+#![allow(
+    dead_code,
+    unreachable_pub,
+    reason = "each test file uses its own part"
+)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use ndarray::{Array, Dimension};
+use ndarray_npy::{NpzReader, ReadableElement};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs::{self, File};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use tempfile::TempDir;
+
+/// A scene of this repository.
+pub fn scene(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .join("../../scenes")
+        .join(name)
+}
+
+pub fn etendue() -> Command {
+    Command::new(env!("CARGO_BIN_EXE_etendue"))
+}
+
+/// All files of a folder by relative name.
+pub fn files(folder: &Path) -> BTreeMap<String, Vec<u8>> {
+    let mut found = BTreeMap::new();
+    let mut folders = vec![folder.to_owned()];
+    while let Some(next) = folders.pop() {
+        for entry in fs::read_dir(next).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else {
+                let name = path
+                    .strip_prefix(folder)
+                    .unwrap()
+                    .to_string_lossy()
+                    .into_owned();
+                found.insert(name, fs::read(&path).unwrap());
+            }
+        }
+    }
+    found
+}
+
+/// Small, and full of numbers whose decimals are easily read back as a neighbour.
+pub const SCENE: &str = r#"(
+    light: Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773)),
+    blockers: [JitteredSquares(name: "blockers", center: (0.1234567890123456, 0.2, 1.3000000000000003),
+                               count: (5, 4), pitch: 0.10000000000000002, fill: 0.5999999999999999,
+                               jitter: 0.3, seed: 18446744073709551615)],
+    surfaces: [(name: "floor", center: (0.1, 0.2, 2.2360679774997896), size: (6, 6))],
+    path: (direction: (0, 0, 1), x_axis: (0.6180339887498949, 1, 0), visits: ["floor"]),
+    planes: [(name: "light", at: Emission), (name: "receiver", at: Before("floor"))],
+    window: (x: Hann(0.5), y: Box(0.4142135623730951), u: Hann(0.30000000000000004)),
+    frequencies: (azimuths: 3, rho: (max: 6), nu: (max: 9)),
+    run: (photons: 20000, seed: 18446744073709551557),
+)"#;
+
+/// The scene as `small.ron`, measured in two parts `a` (batches 0..20) and `b` (20..64), and its prediction `p`.
+pub fn stages() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    for arguments in [
+        "measure small.ron --out a --batches 0..20 --threads 1",
+        "measure small.ron --out b --batches 20..64 --threads 3",
+        "predict small.ron --out p",
+    ] {
+        let output = call(folder.path(), arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
+        assert!(output.stdout.is_empty() && output.stderr.is_empty());
+    }
+    folder
+}
+
+/// `etendue` with these arguments, quietly; names of files are below `folder`.
+pub fn call(folder: &Path, arguments: &str) -> Output {
+    etendue()
+        .current_dir(folder)
+        .args(arguments.split_whitespace())
+        .arg("--quiet")
+        .output()
+        .unwrap()
+}
+
+/// The command refuses bad input in one line that holds all `parts`, and does not write to `out`.
+pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
+    let output = call(folder, arguments);
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{arguments}: {message}");
+    assert!(message.starts_with("error: "), "{arguments}: {message}");
+    assert_eq!(message.lines().count(), 1, "{arguments}: {message}");
+    for part in parts {
+        assert!(
+            message.contains(part),
+            "{arguments}: {part} not in: {message}"
+        );
+    }
+    assert!(!folder.join("out").exists(), "{arguments}: out was written");
+}
+
+pub fn json(file: &Path) -> Value {
+    serde_json::from_slice(&fs::read(file).unwrap()).unwrap()
+}
+
+/// An array of an NPZ file, which must be in C order.
+pub fn array<A: ReadableElement, D: Dimension>(file: &Path, name: &str) -> Array<A, D> {
+    let mut npz = NpzReader::new(File::open(file).unwrap()).unwrap();
+    let array: Array<A, D> = npz.by_name(name).unwrap();
+    assert!(array.is_standard_layout(), "{name}: C order");
+    array
+}

@@ -1,0 +1,292 @@
+//! Files of a stage that someone has changed: `compare` refuses them, naming the file and the array.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{array, call, json, refused, stages};
+use etendue_field::Complex;
+use ndarray::{Array4, ArrayD};
+use ndarray_npy::{NpzReader, WritableElement, WriteNpyExt};
+use serde_json::{Value, json};
+use std::fs;
+use std::io::{Cursor, Write};
+use std::path::{Path, PathBuf};
+use zip::write::SimpleFileOptions;
+use zip::{ZipArchive, ZipWriter};
+
+const COMPARE: &str = "compare --measured a b --predicted p --out out";
+
+const LEDGER: &str = "a/ledger.npz";
+const BATCHES: &str = "a/receiver/batches.npz";
+const PREDICTION: &str = "p/receiver/prediction.npz";
+
+/// Tries other content for a file, and puts the old one back.
+struct Swap {
+    path: PathBuf,
+    whole: Vec<u8>,
+}
+
+impl Swap {
+    fn new(path: PathBuf, bytes: &[u8]) -> Self {
+        let whole = fs::read(&path).unwrap();
+        fs::write(&path, bytes).unwrap();
+        Self { path, whole }
+    }
+}
+
+impl Drop for Swap {
+    fn drop(&mut self) {
+        fs::write(&self.path, &self.whole).unwrap();
+    }
+}
+
+/// The index with a change.
+fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
+    let mut tree = json(index);
+    change(&mut tree);
+    Swap::new(index.to_owned(), tree.to_string().as_bytes())
+}
+
+/// `compare` with other bytes in `file`, whose hash in the index is made to fit.
+fn refused_with(folder: &Path, file: &str, bytes: &[u8], parts: &[&str]) {
+    let (stage, name) = file.split_once('/').unwrap();
+    let index = ["measurement.json", "prediction.json"].map(|index| folder.join(stage).join(index));
+    let index = index.iter().find(|index| index.exists()).unwrap();
+    let hash = blake3::hash(bytes).to_hex();
+    let _index = changed(index, |tree| tree["files"][name] = json!(hash.as_str()));
+    let _file = Swap::new(folder.join(file), bytes);
+    refused(folder, COMPARE, &[&[file], parts].concat());
+}
+
+/// The NPZ file with an array replaced, or left out.
+fn with_array(npz: &[u8], name: &str, content: Option<&[u8]>) -> Vec<u8> {
+    let mut old = ZipArchive::new(Cursor::new(npz)).unwrap();
+    let mut new = ZipWriter::new(Cursor::new(Vec::new()));
+    let name = format!("{name}.npy");
+    for i in 0..old.len() {
+        let entry = old.by_index_raw(i).unwrap();
+        if entry.name() != name {
+            new.raw_copy_file(entry).unwrap();
+        }
+    }
+    if let Some(content) = content {
+        new.start_file(name, SimpleFileOptions::default()).unwrap();
+        new.write_all(content).unwrap();
+    }
+    new.finish().unwrap().into_inner()
+}
+
+/// The bytes of an NPY file.
+fn npy<A: WritableElement>(array: &ArrayD<A>) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    array.write_npy(&mut bytes).unwrap();
+    bytes
+}
+
+#[test]
+fn a_changed_index_is_refused() {
+    let stages = stages();
+    let folder = stages.path();
+    let (a, p) = ("a/measurement.json", "p/prediction.json");
+    type Change = fn(&mut Value);
+    let cases: [(&str, Change, &[&str]); 11] = [
+        (
+            a,
+            |t| t["version"] = json!("0.0.9"),
+            &["0.0.9", "one version"],
+        ),
+        (
+            p,
+            |t| t["version"] = json!("9.0.0"),
+            &["9.0.0", "one version"],
+        ),
+        (
+            a,
+            |t| t["scene_file"]["run"]["seed"] = json!(2),
+            &["scene_hash"],
+        ),
+        (
+            p,
+            |t| t["scene_file"]["window"] = json!(2),
+            &["WindowFile", "line"],
+        ),
+        (
+            a,
+            |t| t["batches"] = json!({"start": 5, "end": 99}),
+            &["5..99", "0..64"],
+        ),
+        (
+            a,
+            |t| t["batches"] = json!({"start": 1, "end": 21}),
+            &["array batch", "1..21"],
+        ),
+        (
+            a,
+            |t| t["photons"] = json!(5),
+            &["ledger.npz", "array emitted"],
+        ),
+        (a, |t| t["method"] = json!("magic"), &["magic", "photons"]),
+        (
+            a,
+            |t| t["files"] = json!({}),
+            &["files does not list ledger.npz"],
+        ),
+        (
+            p,
+            |t| t["planes"] = json!([]),
+            &["planes []", "[light, receiver]"],
+        ),
+        (
+            p,
+            |t| t["planes"][0]["class"] = json!("guess"),
+            &["class of light", "guess"],
+        ),
+    ];
+    for (name, change, parts) in cases {
+        let _index = changed(&folder.join(name), change);
+        refused(folder, COMPARE, &[&[&name[..2]], parts].concat());
+    }
+    for name in [a, p] {
+        let start = fs::read(folder.join(name)).unwrap()[..200].to_vec();
+        for content in [b"", &b"[]"[..], b"{}", b"null", b"\0", b"\xff", &start] {
+            let _index = Swap::new(folder.join(name), content);
+            refused(folder, COMPARE, &[name]);
+        }
+    }
+    // No refusal had another reason.
+    assert_eq!(call(folder, COMPARE).status.code(), Some(0));
+}
+
+#[test]
+fn changed_files_are_refused() {
+    let stages = stages();
+    let folder = stages.path();
+    for file in [LEDGER, BATCHES, PREDICTION] {
+        let whole = fs::read(folder.join(file)).unwrap();
+        let mut flipped = whole.clone();
+        flipped[whole.len() / 2] ^= 1;
+        for bytes in [&whole[..whole.len() / 2], b"", b"PK\x03\x04", &flipped] {
+            {
+                let _file = Swap::new(folder.join(file), bytes);
+                refused(folder, COMPARE, &[file, "is damaged"]);
+            }
+            // With the hash of what is there it is seen all the same.
+            refused_with(folder, file, bytes, &[]);
+        }
+        fs::remove_file(folder.join(file)).unwrap();
+        refused(folder, COMPARE, &[file, "No such file"]);
+        fs::write(folder.join(file), whole).unwrap();
+    }
+    assert_eq!(call(folder, COMPARE).status.code(), Some(0));
+}
+
+/// Each array of each file in turn: missing, of another kind, larger than any memory, not an array.
+#[test]
+fn foreign_arrays_are_refused() {
+    let stages = stages();
+    let folder = stages.path();
+    let foreign = npy(&ArrayD::from_elem(vec![2, 2], 1.0_f32));
+    let huge = "{'descr': '<f8', 'fortran_order': False, 'shape': (1099511627776,), }";
+    let huge = format!("{huge:117}\n").into_bytes();
+    let huge = [b"\x93NUMPY\x01\x00\x76\x00", &huge[..]].concat();
+    let contents = [
+        None,
+        Some(&foreign[..]),
+        Some(&huge),
+        Some(b"text"),
+        Some(b""),
+    ];
+    for file in [LEDGER, BATCHES, PREDICTION] {
+        let whole = fs::read(folder.join(file)).unwrap();
+        let names = NpzReader::new(Cursor::new(&whole))
+            .unwrap()
+            .names()
+            .unwrap();
+        // The axes are for the reader.
+        let read = names
+            .iter()
+            .filter(|name| !["azimuth", "rho", "nu"].contains(&name.as_str()));
+        for array in read {
+            for content in contents {
+                let bytes = with_array(&whole, array, content);
+                refused_with(folder, file, &bytes, &[&format!("array {array}: ")]);
+            }
+        }
+    }
+}
+
+#[test]
+fn wrong_numbers_are_refused() {
+    let stages = stages();
+    let folder = stages.path();
+    let numbers = |shape: &[usize], value: f64| npy(&ArrayD::from_elem(shape, value));
+    let counts = |shape: &[usize], value: u64| npy(&ArrayD::from_elem(shape, value));
+    let slices: Array4<Complex> = array(&folder.join(BATCHES), "slices");
+    let mut broken = slices.clone();
+    broken[[19, 2, 1, 3]].im = f64::NAN;
+    let turned = slices.permuted_axes([0, 2, 1, 3]);
+    for (file, array, content, part) in [
+        (
+            LEDGER,
+            "ledger",
+            numbers(&[20, 4], f64::INFINITY),
+            "not finite",
+        ),
+        (
+            LEDGER,
+            "ledger",
+            numbers(&[20, 5], 1.0),
+            "[20, 5]; must be [20, 4]",
+        ),
+        (
+            LEDGER,
+            "emitted",
+            counts(&[20], u64::MAX),
+            "photons of each batch",
+        ),
+        (
+            BATCHES,
+            "emitted",
+            counts(&[20], 5),
+            "photons of each batch",
+        ),
+        (BATCHES, "tally", counts(&[20, 3], 1), "inside + outside"),
+        (
+            BATCHES,
+            "tally",
+            counts(&[20, 3], u64::MAX),
+            "inside + outside",
+        ),
+        (BATCHES, "slices", npy(&broken.into_dyn()), "not finite"),
+        (
+            BATCHES,
+            "slices",
+            npy(&turned.into_dyn()),
+            "must be [20, 3, ",
+        ),
+        (
+            BATCHES,
+            "projection",
+            numbers(&[20, 64, 65], 0.0),
+            "must be [20, 64, 64]",
+        ),
+        (
+            PREDICTION,
+            "projection",
+            numbers(&[64, 64], f64::NAN),
+            "not finite",
+        ),
+        (
+            PREDICTION,
+            "unblocked",
+            numbers(&[], f64::NAN),
+            "not finite",
+        ),
+        (PREDICTION, "values", numbers(&[1], 0.0), "[1]; must be"),
+    ] {
+        let bytes = with_array(&fs::read(folder.join(file)).unwrap(), array, Some(&content));
+        refused_with(folder, file, &bytes, &[&format!("array {array}: "), part]);
+    }
+    assert_eq!(call(folder, COMPARE).status.code(), Some(0));
+}
