@@ -115,6 +115,10 @@ pub(crate) struct PredictArgs {
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
 
+    /// Those of the measurement: where there is no theory, the other method measures as many
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 

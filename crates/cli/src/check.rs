@@ -1,7 +1,7 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::{load, pictures, say};
-use etendue_compare::{Class, chain, steps};
+use etendue_compare::{Class, steps};
 use etendue_scene::Scene;
 
 /// `etendue check`: returns the exit code.
@@ -25,19 +25,14 @@ fn description(scene: &Scene) -> String {
         ),
     ];
     for plane in &scene.planes {
-        let chain = chain(scene, plane);
         let [k, rho, nu] = plane.grid.full_shape();
         lines.push(format!(
             "\n{}: {} m along the central ray, prediction: {:?}",
             plane.name,
             plane.distance,
-            Class::of(&chain)
+            Class::of(scene, plane)
         ));
-        lines.extend(
-            steps(&chain, &plane.window)
-                .iter()
-                .map(|step| format!("  {step}")),
-        );
+        lines.extend(steps(scene, plane).iter().map(|step| format!("  {step}")));
         lines.push(format!(
             "  looked at in {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per unit slope",
             plane.grid.rho.max(),

@@ -20,11 +20,21 @@ pub(crate) fn cross_section<'a>(
     let mut segments = vec![light(scene)];
     for layer in &scene.blockers {
         let rows = layer_extents(layer);
-        segments.extend(labelled(SegmentKind::Blocker, &layer.name, rows, layer.distance));
+        segments.extend(labelled(
+            SegmentKind::Blocker,
+            &layer.name,
+            rows,
+            layer.distance,
+        ));
     }
     for surface in &scene.surfaces {
         let extent = vec![surface.rectangle.extent(0)];
-        segments.extend(labelled(SegmentKind::Surface, &surface.name, extent, surface.distance));
+        segments.extend(labelled(
+            SegmentKind::Surface,
+            &surface.name,
+            extent,
+            surface.distance,
+        ));
     }
     segments.extend(scene.meshes.iter().flat_map(mesh));
     let farthest = planes.iter().map(|plane| plane.distance);
@@ -83,11 +93,13 @@ fn layer_extents(layer: &BlockerLayer) -> Vec<[f64; 2]> {
                 .iter()
                 .map(Shape::bounds)
                 .filter(|r| r.center[1].abs() <= nearest + 0.5 * r.size[1]);
-            let halves = half_planes.iter().map(|half| match (half.axis, half.above) {
-                (0, true) => [half.edge, half.edge + DRAWN],
-                (0, false) => [half.edge - DRAWN, half.edge],
-                _ => [-DRAWN, DRAWN],
-            });
+            let halves = half_planes
+                .iter()
+                .map(|half| match (half.axis, half.above) {
+                    (0, true) => [half.edge, half.edge + DRAWN],
+                    (0, false) => [half.edge - DRAWN, half.edge],
+                    _ => [-DRAWN, DRAWN],
+                });
             row.map(|r| r.extent(0)).chain(halves).collect()
         }
         Mask::Grating(grating) if grating.axis == 0 => {
@@ -111,7 +123,9 @@ fn layer_extents(layer: &BlockerLayer) -> Vec<[f64; 2]> {
 
 /// The outline in which the plane y = 0 cuts a mesh.
 fn mesh(mesh: &MeshObject) -> Vec<Segment> {
-    let kind = mesh.albedo.map_or(SegmentKind::Blocker, |_| SegmentKind::Surface);
+    let kind = mesh
+        .albedo
+        .map_or(SegmentKind::Blocker, |_| SegmentKind::Surface);
     let mut label = Some(spaced(&mesh.name));
     let cuts = mesh.triangles.iter().filter_map(|corners| {
         let mut points = Vec::new();

@@ -8,6 +8,7 @@ mod batches;
 mod check;
 mod compare;
 mod conclude;
+mod drawing;
 mod failure;
 mod files;
 mod load;

@@ -25,9 +25,10 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     let mut results = Results::create(&args.out, MEASUREMENT)?;
     let method = args.photons.method;
     let held = on_threads(&args.threads, || {
-        let measurement = measured(&scene, method, batches.clone(), args.quiet);
+        let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
         results.begin()?;
         batches::write(&mut results, &measurement)?;
+        load::copy_meshes(&mut results, &scene, &args.scene)?;
         Ok(Held {
             seed: scene.run.seed,
             method,
@@ -58,13 +59,13 @@ pub(crate) fn measured(
     method: Method,
     batches: Range<u32>,
     quiet: bool,
-) -> Measurement {
-    let source = source(scene, method);
+) -> Result<Measurement, Failure> {
+    let source = source(scene, method)?;
     let photons = batches.clone().map(|batch| source.emitted(batch)).sum();
     let bar = progress::photons(photons, quiet);
     let measurement = etendue_spectrum::measure(&*source, &scene.planes, batches, &|photons| {
         bar.inc(photons);
     });
     bar.finish_and_clear();
-    measurement
+    Ok(measurement)
 }

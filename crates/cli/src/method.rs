@@ -1,7 +1,8 @@
+use crate::failure::Failure;
 use clap::ValueEnum;
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
-use etendue_trace::Tracer;
+use etendue_trace::{Backward, Tracer};
 use serde::{Deserialize, Serialize};
 
 /// How light is measured.
@@ -10,13 +11,16 @@ use serde::{Deserialize, Serialize};
 pub(crate) enum Method {
     /// Photons from the light, forward
     Photons,
+    /// Rays drawn in the window of each plane, traced back to the light
+    Backward,
 }
 
 /// The photons that `method` sends through a scene.
-pub(crate) fn source(scene: &Scene, method: Method) -> Box<dyn PhotonSource> {
-    match method {
+pub(crate) fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSource>, Failure> {
+    Ok(match method {
         Method::Photons => Box::new(Tracer::new(scene)),
-    }
+        Method::Backward => Box::new(Backward::new(scene).map_err(Failure::bad_input)?),
+    })
 }
 
 impl Method {
@@ -24,6 +28,15 @@ impl Method {
     pub(crate) fn keeps_ledger(self) -> bool {
         match self {
             Self::Photons => true,
+            Self::Backward => false,
+        }
+    }
+
+    /// The other, independent one.
+    pub(crate) fn other(self) -> Self {
+        match self {
+            Self::Photons => Self::Backward,
+            Self::Backward => Self::Photons,
         }
     }
 }

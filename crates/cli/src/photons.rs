@@ -22,7 +22,7 @@ struct Index {
 /// Traces the photons again, one plane after the other, and streams them to disk: they are the same ones,
 /// and memory holds a block of them.
 pub(crate) fn save(results: &mut Results, case: &Case) -> Result<(), Failure> {
-    let source = source(&case.scene, case.method);
+    let source = source(&case.scene, case.method)?;
     for (index, plane) in case.scene.planes.iter().enumerate() {
         let mut offsets = vec![0];
         let mut emitted = Vec::new();

@@ -171,8 +171,12 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
 
 /// Draws the scene with its central ray and planes into a PNG or SVG file.
 pub(crate) fn draw_scene(scene: &Scene, path: &Path) -> Result<(), Failure> {
-    let figure = section(&drawing::cross_section(scene, scene.planes.iter()), &scene.name, "")
-        .map_err(Failure::cannot_run)?;
+    let figure = section(
+        &drawing::cross_section(scene, scene.planes.iter()),
+        &scene.name,
+        "",
+    )
+    .map_err(Failure::cannot_run)?;
     let bytes = match path.extension().and_then(|e| e.to_str()) {
         Some("svg") => figure.svg.into_bytes(),
         Some("png") => figure.png().map_err(Failure::cannot_run)?,

@@ -1,19 +1,23 @@
 use crate::args::PredictArgs;
 use crate::failure::Failure;
+use crate::measure::measured;
+use crate::method::Method;
 use crate::results::Results;
 use crate::stored::{Index, PREDICTION};
 use crate::threads::on_threads;
 use crate::{load, predictions, progress, say};
-use etendue_compare::Prediction;
+use etendue_compare::{Class, Prediction};
+use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 
 /// `etendue predict`: returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, |_| ())?;
+    let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     let mut results = Results::create(&args.out, PREDICTION)?;
     let content = on_threads(&args.threads, || {
-        let predictions = predicted(&scene, args.quiet);
+        let predictions = predicted(&scene, args.photons.method, args.quiet)?;
         results.begin()?;
+        load::copy_meshes(&mut results, &scene, &args.scene)?;
         predictions::write(&mut results, &scene, &predictions)
     })?;
     let folder = Index::new(&scene, content).finish(results)?;
@@ -25,11 +29,35 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Predicts all planes of a scene.
-pub(crate) fn predicted(scene: &Scene, quiet: bool) -> Vec<Prediction> {
+/// Predicts all planes of a scene for a measurement by `method`; where theory has no word, the other method's
+/// measurement takes its place.
+pub(crate) fn predicted(
+    scene: &Scene,
+    method: Method,
+    quiet: bool,
+) -> Result<Vec<Prediction>, Failure> {
+    let class = |plane: &VirtualPlane| Class::of(scene, plane);
+    let mut referred = scene.clone();
+    referred
+        .planes
+        .retain(|plane| class(plane) == Class::Reference);
+    let reference = if referred.planes.is_empty() {
+        None
+    } else {
+        let all = 0..scene.run.batches;
+        Some(measured(&referred, method.other(), all, quiet)?)
+    };
     let stage = progress::stage("predicting", quiet);
-    let planes = scene.planes.iter();
-    let predictions = planes.map(|plane| Prediction::new(scene, plane)).collect();
+    let mut at = 0..;
+    let planes = scene.planes.iter().enumerate();
+    let predictions = planes.map(|(i, plane)| match (class(plane), &reference) {
+        (Class::Reference, Some(reference)) => {
+            let at = at.next().unwrap_or_default();
+            Prediction::reference(scene, i, reference, at).map_err(Failure::cannot_run)
+        }
+        _ => Ok(Prediction::new(scene, plane)),
+    });
+    let predictions = predictions.collect();
     stage.finish_and_clear();
     predictions
 }

@@ -4,13 +4,12 @@ use crate::failure::Failure;
 use crate::npz::Npz;
 use crate::results::Results;
 use crate::stored::Stored;
-use etendue_compare::{Class, PredictedParameter, Prediction, chain, steps};
+use etendue_compare::{Class, PredictedParameter, Prediction};
 use etendue_field::{Complex, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use ndarray::{Array0, Array1, Array4, Axis, arr0};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 /// What `prediction.json` says beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
@@ -22,10 +21,14 @@ pub(crate) struct Predicted {
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct PredictedPlane {
     name: String,
-    class: Value,
+    class: Class,
     chain: Vec<String>,
-    /// Names of the parameters, in the order of the arrays.
-    parameters: Vec<String>,
+    quadrature_error: Option<f64>,
+    /// Names and units of the parameters, in the order of the arrays.
+    parameters: Vec<[String; 2]>,
+    cuts: Vec<f64>,
+    /// Batches of a reference; none for theory.
+    replicates: usize,
 }
 
 fn file_of(plane: &VirtualPlane) -> String {
@@ -43,11 +46,14 @@ pub(crate) fn write(
         // Every field by name: a new one must be stored too.
         let Prediction {
             class,
-            chain,
+            steps,
             slices,
+            quadrature_error,
+            replicates,
             unblocked,
             projection,
             parameters,
+            cuts,
         } = prediction;
         let values: Array1<f64> = parameters.iter().map(|p| p.value).collect();
         let [azimuths, rho, nu] = slices.grid.half_shape();
@@ -55,20 +61,31 @@ pub(crate) fn write(
         for (mut row, parameter) in derivatives.outer_iter_mut().zip(parameters) {
             row.assign(&parameter.derivative.half);
         }
+        let mut batches = Array4::<Complex>::zeros([replicates.len(), azimuths, rho, nu]);
+        for (mut row, batch) in batches.outer_iter_mut().zip(replicates) {
+            row.assign(&batch.half);
+        }
         let bytes = Npz::new()
             .add("slices", &slices.half)?
             .add("projection", &projection.values)?
             .add("unblocked", &arr0(*unblocked))?
             .add("values", &values)?
             .add("derivatives", &derivatives)?
+            .add("replicates", &batches)?
             .add_half_axes(&slices.grid)?
             .bytes()?;
         results.write(&file_of(plane), &bytes)?;
         planes.push(PredictedPlane {
             name: plane.name.clone(),
-            class: word(*class),
-            chain: steps(chain, &plane.window),
-            parameters: parameters.iter().map(|p| p.name.clone()).collect(),
+            class: *class,
+            chain: steps.clone(),
+            quadrature_error: *quadrature_error,
+            parameters: parameters
+                .iter()
+                .map(|p| [p.name.clone(), p.unit.clone()])
+                .collect(),
+            cuts: cuts.clone(),
+            replicates: replicates.len(),
         });
     }
     Ok(Predicted { planes })
@@ -89,23 +106,15 @@ pub(crate) fn read(stored: &Stored<Predicted>, scene: &Scene) -> Result<Vec<Pred
     }
     let pairs = scene.planes.iter().zip(planes);
     pairs
-        .map(|(plane, words)| read_plane(stored, scene, plane, words))
+        .map(|(plane, words)| read_plane(stored, plane, words))
         .collect()
 }
 
 fn read_plane(
     stored: &Stored<Predicted>,
-    scene: &Scene,
     plane: &VirtualPlane,
     words: &PredictedPlane,
 ) -> Result<Prediction, Failure> {
-    // The chain is a matter of the scene: it is read off it again.
-    let chain = chain(scene, plane);
-    let class = Class::of(&chain);
-    if words.class != word(class) {
-        let (name, is, must) = (&plane.name, &words.class, word(class));
-        return Err(stored.fault(format!("class of {name} is {is}; must be {must}")));
-    }
     let mut file = stored.npz(&file_of(plane))?;
     let slices = |half| Slices {
         grid: plane.grid,
@@ -118,28 +127,28 @@ fn read_plane(
     let unblocked: Array0<f64> = file.array("unblocked", ())?;
     let values: Array1<f64> = file.array("values", [count])?;
     let derivatives: Array4<Complex> = file.array("derivatives", [count, azimuths, rho, nu])?;
+    let shape = [words.replicates, azimuths, rho, nu];
+    let batches: Array4<Complex> = file.array("replicates", shape)?;
     let parameters = words.parameters.iter().enumerate();
     Ok(Prediction {
-        class,
-        chain,
+        class: words.class,
+        steps: words.chain.clone(),
         slices: slices(half),
+        quadrature_error: words.quadrature_error,
+        replicates: batches.outer_iter().map(|b| slices(b.to_owned())).collect(),
+        cuts: words.cuts.clone(),
         unblocked: unblocked.into_scalar(),
         projection: Projection {
             grid: cells,
             values: file.array("projection", [cells.bins, cells.bins])?,
         },
         parameters: parameters
-            .map(|(i, name)| PredictedParameter {
+            .map(|(i, [name, unit])| PredictedParameter {
                 name: name.clone(),
+                unit: unit.clone(),
                 value: values[i],
                 derivative: slices(derivatives.index_axis(Axis(0), i).to_owned()),
             })
             .collect(),
     })
-}
-
-/// A class as written.
-fn word(class: Class) -> Value {
-    // Cannot fail: it is a word.
-    serde_json::to_value(class).unwrap_or_default()
 }

@@ -24,9 +24,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     let method = args.photons.method;
-    let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet);
+    let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;
     watch.lap("trace");
-    let predictions = predicted(&scene, args.quiet);
+    let predictions = predicted(&scene, method, args.quiet)?;
     watch.lap("predict");
     let case = Case {
         scene,

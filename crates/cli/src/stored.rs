@@ -106,6 +106,7 @@ impl<T> Stored<T> {
         load::resolved(
             &self.index.scene,
             self.index.scene_file.clone(),
+            &self.folder,
             &self.path.display().to_string(),
         )
     }

@@ -210,7 +210,7 @@ pub enum HalfName {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSource {
-    /// An OBJ or PLY file; the path is relative to the scene file.
+    /// An OBJ or PLY file; the path is relative to the scene file, and stays inside its folder.
     File(String),
     /// A generated closed surface around the origin: see [`Mesh::star`](crate::Mesh::star).
     Star {
@@ -392,6 +392,22 @@ fn eight() -> u32 {
 }
 
 impl SceneFile {
+    /// The mesh files it names.
+    pub fn mesh_files(&self) -> impl Iterator<Item = &str> {
+        let blockers = self.blockers.iter().filter_map(|b| match b {
+            BlockersFile::Mesh { mesh, .. } => Some(mesh),
+            _ => None,
+        });
+        let surfaces = self.surfaces.iter().filter_map(|s| match s {
+            SurfaceFile::Mesh { mesh, .. } => Some(mesh),
+            SurfaceFile::Rectangle { .. } => None,
+        });
+        blockers.chain(surfaces).filter_map(|mesh| match mesh {
+            MeshSource::File(path) => Some(path.as_str()),
+            MeshSource::Star { .. } => None,
+        })
+    }
+
     /// Reads a scene file.
     ///
     /// # Errors

@@ -5,6 +5,7 @@ use crate::file::{BlockersFile, MeshSource, SceneFile, SurfaceFile};
 use crate::scene::MeshObject;
 use etendue_field::Frame;
 use glam::DVec3;
+use std::path::{Component, Path};
 
 /// A mesh as the file has it.
 struct Placed<'a> {
@@ -98,6 +99,11 @@ impl Resolver<'_> {
 
     fn source(&mut self, of: &str, source: &MeshSource) -> Option<Mesh> {
         match source {
+            MeshSource::File(path) if !stays_inside(path) => {
+                let allowed = "a relative path inside the folder of the scene file";
+                self.faults.add(format!("{of}.mesh"), show(path), allowed);
+                None
+            }
             MeshSource::File(path) => match Mesh::load(&self.folder.join(path)) {
                 Ok(mesh) => Some(mesh),
                 Err(error) => {
@@ -124,4 +130,10 @@ impl Resolver<'_> {
             },
         }
     }
+}
+
+/// Whether a path leads nowhere but down: then a scene and its meshes can be moved together.
+fn stays_inside(path: &str) -> bool {
+    let mut components = Path::new(path).components();
+    components.all(|c| matches!(c, Component::Normal(_)))
 }
