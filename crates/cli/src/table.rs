@@ -2,7 +2,7 @@
 
 use crate::say;
 use crate::summary::Summary;
-use etendue_compare::{PlaneReport, Verdict};
+use etendue_compare::{ParameterReport, PlaneReport, Verdict};
 use std::path::Path;
 
 pub(crate) fn print(summary: &Summary, folder: &Path) {
@@ -80,8 +80,8 @@ fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
         "parameter",
-        "scene [m]",
-        "measured [m]",
+        "scene",
+        "measured",
         "smallest detectable change",
     ];
     let mut rows = vec![header.map(str::to_owned).to_vec()];
@@ -89,17 +89,31 @@ fn parameters(summary: &Summary) -> Vec<Vec<String>> {
         for parameter in &plane.parameters {
             rows.push(vec![
                 plane.name.clone(),
-                parameter.name.clone(),
+                with_unit(&parameter.name, &parameter.unit),
                 parameter.scene.to_string(),
                 uncertain(parameter.measured, parameter.error),
-                format!(
-                    "{:.2} %",
-                    100.0 * parameter.detectable / parameter.scene.abs()
-                ),
+                detectable(parameter),
             ]);
         }
     }
     rows
+}
+
+fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name} [{unit}]")
+    }
+}
+
+/// As a share of the parameter, if it has a size.
+fn detectable(parameter: &ParameterReport) -> String {
+    if parameter.scene == 0.0 {
+        format!("{:.1e}", parameter.detectable)
+    } else {
+        format!("{:.2} %", 100.0 * (parameter.detectable / parameter.scene).abs())
+    }
 }
 
 /// Columns as wide as their widest cell, two spaces apart; text to the left, numbers to the right.
