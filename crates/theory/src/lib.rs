@@ -39,6 +39,11 @@ mod derivative;
 mod expansion;
 mod fast;
 pub mod gaussian;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, reason = "until chains of reflections use it")
+)]
+mod irradiance;
 mod jitter;
 #[cfg(test)]
 mod laws;
