@@ -46,6 +46,11 @@ mod error;
 mod expansion;
 mod fast;
 pub mod gaussian;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, reason = "until chains of reflections use it")
+)]
+mod irradiance;
 mod jitter;
 #[cfg(test)]
 mod laws;
