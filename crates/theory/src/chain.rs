@@ -1,14 +1,12 @@
-use etendue_field::Rectangle;
+use etendue_field::{Light, Mask, Shape};
 
-/// The light: a uniform Lambertian rectangle in a plane orthogonal to the central ray.
+/// The light, in a plane orthogonal to the central ray.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Source {
     /// Name, for texts.
     pub name: String,
-    /// Where it is, relative to the central ray.
-    pub rectangle: Rectangle,
-    /// Its radiance, W m⁻² sr⁻¹.
-    pub radiance: f64,
+    /// What shines; coordinates relative to the central ray.
+    pub light: Light,
 }
 
 /// What happens to the light field on its way.
@@ -23,87 +21,136 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// Opaque rectangles in the plane where the light is now: a product with 1 − Σ rectangles
-    /// (Durand et al. 2005, Eq. 4). They must not overlap each other.
+    /// A mask in the plane where the light is now: a product with 1 − Σ shapes and half-planes, which must not
+    /// overlap each other, or with a cosine grating (Durand et al. 2005, Eq. 4).
     Visibility {
-        /// Name of the blockers.
+        /// Name of the mask.
         name: String,
-        /// The rectangles, relative to the central ray.
-        blockers: Vec<Rectangle>,
+        /// What it lets through; coordinates relative to the central ray.
+        mask: Mask,
+    },
+    /// A product with G = (1 + u² + v²)⁻² (docs/theory.md, Eq. 7): radiance becomes differential irradiance.
+    Cosine {
+        /// Name of the surface.
+        name: String,
+    },
+    /// Diffuse reflection: the integral over both slopes, times albedo/π. Exitant radiance, constant in slope
+    /// (Durand et al. 2005, section 5.1; the factor G is a [`Cosine`](Self::Cosine) before it).
+    ///
+    /// The frame turns round: the central ray goes back along −D, x' = −x, y' = y. Only travel may follow.
+    Diffuse {
+        /// Name of the surface.
+        name: String,
+        /// Reflected over incident flux.
+        albedo: f64,
     },
 }
 
 /// A light path: the source and the operators in the order the light meets them.
 ///
-/// The predicted light field is the radiance where the last operator ends, in two-plane coordinates.
+/// The predicted light field is the radiance where the last operator ends, in two-plane coordinates (with a
+/// cosine and nothing after it: the differential irradiance).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// The light.
     pub source: Source,
-    /// What happens to its light, in order.
+    /// What happens to its light, in order. At most one diffuse reflection, after which it only travels.
     pub operators: Vec<Operator>,
 }
 
-/// A plane with rectangles, seen from the end of the chain.
+/// A plane with a mask, seen from the end of a [`Path`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layer<'a> {
     /// Distance the light has travelled since it, in metres: the ray (x, u) was at x − distance · u there.
     pub(crate) distance: f64,
-    pub(crate) rectangles: &'a [Rectangle],
+    pub(crate) mask: &'a Mask,
+}
+
+/// What a diffuse surface at the end of a [`Path`] does.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Reflection {
+    pub(crate) albedo: f64,
+    /// Distance that the light travels afterwards, in metres.
+    pub(crate) after: f64,
+}
+
+/// A chain up to its end, or up to its diffuse surface, seen from there.
+#[derive(Clone, Debug)]
+pub(crate) struct Path<'a> {
+    pub(crate) light: &'a Light,
+    /// Distance from the light, in metres.
+    pub(crate) distance: f64,
+    /// The masks on the way, in the order of light.
+    pub(crate) layers: Vec<Layer<'a>>,
+    /// How many factors G there are.
+    pub(crate) cosines: u32,
+    pub(crate) reflection: Option<Reflection>,
 }
 
 impl Chain {
-    /// The planes with rectangles on them, in the order of light: first the source, then the blockers.
-    pub(crate) fn layers(&self) -> Vec<Layer<'_>> {
-        let mut distance = 0.0;
-        let mut layers = Vec::new();
+    /// The chain as its end sees it.
+    ///
+    /// # Panics
+    /// When anything but travel follows a diffuse reflection.
+    pub(crate) fn path(&self) -> Path<'_> {
+        let mut path = Path {
+            light: &self.source.light,
+            distance: 0.0,
+            layers: Vec::new(),
+            cosines: 0,
+            reflection: None,
+        };
         for operator in self.operators.iter().rev() {
             match operator {
-                Operator::Travel { distance: d, .. } => distance += d,
-                Operator::Visibility { blockers, .. } => layers.push(Layer {
-                    distance,
-                    rectangles: blockers,
+                Operator::Travel { distance, .. } => path.distance += distance,
+                Operator::Visibility { mask, .. } => path.layers.push(Layer {
+                    distance: path.distance,
+                    mask,
                 }),
+                Operator::Cosine { .. } => path.cosines += 1,
+                Operator::Diffuse { name, albedo } => {
+                    let only_travel =
+                        path.layers.is_empty() && path.cosines == 0 && path.reflection.is_none();
+                    assert!(only_travel, "only travel may follow the diffuse {name}");
+                    path.reflection = Some(Reflection {
+                        albedo: *albedo,
+                        after: path.distance,
+                    });
+                    path.distance = 0.0;
+                }
             }
         }
-        layers.push(Layer {
-            distance,
-            rectangles: std::slice::from_ref(&self.source.rectangle),
-        });
-        layers.reverse();
-        layers
-    }
-
-    /// The chain in words: one line for each step.
-    #[must_use]
-    pub fn describe(&self) -> Vec<String> {
-        let Source {
-            name,
-            rectangle,
-            radiance,
-        } = &self.source;
-        let [width, height] = rectangle.size;
-        let source = format!(
-            "source  {name}: Lambertian rectangle {width} x {height} m, radiance {radiance} W m⁻² sr⁻¹"
-        );
-        let steps = self.operators.iter().map(Operator::describe);
-        std::iter::once(source).chain(steps).collect()
+        path.layers.reverse();
+        path
     }
 }
 
-impl Operator {
-    fn describe(&self) -> String {
-        match self {
-            Self::Travel { from, to, distance } => {
-                let sign = if *distance < 0.0 { '−' } else { '+' };
-                let size = distance.abs();
-                format!("map  travel {distance} m, {from} to {to}: ℓ̂(Ωx, Ωu {sign} {size} Ωx)")
-            }
-            Self::Visibility { name, blockers } => {
-                let count = blockers.len();
-                let plural = if count == 1 { "" } else { "s" };
-                format!("multiply  visibility of {name}: {count} opaque rectangle{plural}")
-            }
+impl Path<'_> {
+    /// Shapes of the light: one, or none of a point.
+    pub(crate) fn light_shapes(&self) -> &[Shape] {
+        match self.light {
+            Light::Area { shape, .. } => std::slice::from_ref(shape),
+            Light::Point { .. } => &[],
         }
+    }
+
+    /// The power p of the factor (1 + u² + v²)^p: −n/2 from a spot's cosⁿθ, ½ from a point
+    /// (its distance to (x, y) is D √(1 + u² + v²)), −2 from each cosine.
+    pub(crate) fn slope_power(&self) -> f64 {
+        let light = match self.light {
+            Light::Area { exponent, .. } => -0.5 * exponent,
+            Light::Point { .. } => 0.5,
+        };
+        light - 2.0 * f64::from(self.cosines)
+    }
+
+    /// Whether a disc is among the light and the masks.
+    pub(crate) fn has_discs(&self) -> bool {
+        let of_masks = self.layers.iter().flat_map(|layer| match layer.mask {
+            Mask::Opaque { shapes, .. } => &shapes[..],
+            Mask::Grating(_) => &[],
+        });
+        let mut all = self.light_shapes().iter().chain(of_masks);
+        all.any(|shape| matches!(shape, Shape::Disc(_)))
     }
 }

@@ -12,10 +12,12 @@
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!
+//! The end of a segment along d has the quotient ± 1/(2πi k·d).
+//!
 //! Where a (k ± s)·d is nearly zero the corners cancel and [`Polygon::transform`] takes their place.
 
 use crate::expansion::Section;
-use crate::polygon::{Polygon, cross, dot};
+use crate::polygon::{self, Polygon, cross, dot};
 use crate::row::{Parts, Row, add_product, add_scaled};
 use crate::wave::Wave;
 use etendue_field::Complex;
@@ -31,21 +33,23 @@ const WAVES_AT_A_TIME: usize = 32;
 #[derive(Debug)]
 struct Corner {
     at: [f64; 2],
-    /// Index of its pair of directions, and the sign of their order.
+    /// Index of its pair of directions.
     pair: usize,
-    sign: f64,
+    /// The sign of their order; ±i for the ends of a segment.
+    sign: Complex,
     /// Index of its polygon.
     polygon: usize,
 }
 
-/// The corners of all polygons of a section.
+/// The corners of all polygons of a section, under a sum of waves.
 #[derive(Debug)]
 pub(crate) struct Corners<'a> {
     section: &'a Section,
+    waves: &'a [Wave],
     corners: Vec<Corner>,
     /// (cos θ, sin θ) of each corner and wave, [corner, wave].
     phases: Vec<[f64; 2]>,
-    /// Pairs of directions that meet at a corner, the lower index first.
+    /// Pairs of directions that meet at a corner, the lower index first; equal at the end of a segment.
     pairs: Vec<[usize; 2]>,
     /// Directions of an edge, each with the largest |k·d| at which it is nearly zero.
     edges: Vec<(usize, f64)>,
@@ -56,11 +60,11 @@ struct Quotients {
     /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` as they will multiply.
     values: Parts,
     /// Cells left to the plain transform: n, the shifted frequency, its weight.
-    left: Vec<(usize, [f64; 2], f64)>,
+    left: Vec<(usize, [f64; 2], Complex)>,
 }
 
 impl<'a> Corners<'a> {
-    pub(crate) fn new(section: &'a Section) -> Self {
+    pub(crate) fn new(section: &'a Section, waves: &'a [Wave]) -> Self {
         let mut pairs = Vec::new();
         let polygons = section.polygons.iter().enumerate();
         let corners: Vec<_> = polygons
@@ -68,7 +72,7 @@ impl<'a> Corners<'a> {
             .collect();
         let phases = corners
             .iter()
-            .flat_map(|corner| section.waves.iter().map(|w| w.phase(corner.at)))
+            .flat_map(|corner| waves.iter().map(|w| w.phase(corner.at)))
             .collect();
         let edges = section.directions.iter().enumerate();
         let edges = edges
@@ -77,6 +81,7 @@ impl<'a> Corners<'a> {
             .collect();
         Self {
             section,
+            waves,
             corners,
             phases,
             pairs,
@@ -90,10 +95,10 @@ impl<'a> Corners<'a> {
         let polygons = &self.section.polygons;
         let mut sums = Parts::zeros(polygons.len() * count);
         let mut plain = vec![Complex::ZERO; polygons.len() * count];
-        let waves = self.section.waves.len();
+        let waves = self.waves.len();
         for first in (0..waves).step_by(WAVES_AT_A_TIME) {
             let chunk = first..waves.min(first + WAVES_AT_A_TIME);
-            let quotients = self.quotients(row, &self.section.waves[chunk.clone()]);
+            let quotients = self.quotients(row, &self.waves[chunk.clone()]);
             self.add(row, &quotients, chunk, &mut sums);
             for &(n, k, weight) in &quotients.left {
                 for (target, polygon) in plain[n..].iter_mut().step_by(count).zip(polygons) {
@@ -101,7 +106,7 @@ impl<'a> Corners<'a> {
                 }
             }
         }
-        let scale = self.section.half[0] * self.section.half[1];
+        let scale = self.section.unit;
         let sums = sums.re.iter().zip(&sums.im);
         sums.zip(&plain)
             .map(|((&re, &im), &plain)| (Complex::new(re, im) + plain) * scale)
@@ -125,8 +130,8 @@ impl<'a> Corners<'a> {
                     }
                     for (pair, value) in self.pair_quotients(k).enumerate() {
                         let cell = (pair * waves.len() + w) * count + n;
-                        quotients.values.re[cell] += shift.weight * value;
-                        quotients.values.im[cell] -= shift.sign * shift.weight * value;
+                        quotients.values.re[cell] += shift.amplitude * value;
+                        quotients.values.im[cell] -= shift.sign * shift.amplitude * value;
                     }
                 }
             }
@@ -141,10 +146,13 @@ impl<'a> Corners<'a> {
         edges.any(|&(d, smallest)| dot(k, directions[d]).abs() < smallest)
     }
 
-    /// (d × e) / (4π² (k·d)(k·e)) of each pair of directions.
+    /// (d × e) / (4π² (k·d)(k·e)) of each pair of directions; 1/(2π k·d) of a direction with itself.
     fn pair_quotients(&self, k: [f64; 2]) -> impl Iterator<Item = f64> {
         self.pairs.iter().map(move |pair| {
             let [d, e] = pair.map(|i| self.section.directions[i]);
+            if pair[0] == pair[1] {
+                return 1.0 / (TAU * dot(k, d));
+            }
             cross(d, e) / (4.0 * PI * PI * dot(k, d) * dot(k, e))
         })
     }
@@ -158,7 +166,7 @@ impl<'a> Corners<'a> {
         sums: &mut Parts,
     ) {
         let count = row.count();
-        let all = self.section.waves.len();
+        let all = self.waves.len();
         let mut exponentials = Parts::zeros(count);
         let mut inner = Parts::zeros(count);
         for (corner, phases) in self.corners.iter().zip(self.phases.chunks_exact(all)) {
@@ -180,9 +188,9 @@ impl<'a> Corners<'a> {
 }
 
 impl Wave {
-    /// (cos θ, sin θ), θ = 2π s·p.
+    /// (cos θ, sin θ), θ = 2π s·p + phase.
     fn phase(&self, p: [f64; 2]) -> [f64; 2] {
-        let (sin, cos) = (TAU * dot(self.frequency, p)).sin_cos();
+        let (sin, cos) = self.angle(p).sin_cos();
         [cos, sin]
     }
 }
@@ -195,6 +203,9 @@ fn longest(direction: [f64; 2]) -> f64 {
 /// The corners of a polygon; new pairs of directions join `pairs`.
 fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
     let corners = polygon.corners();
+    if polygon.is_segment() {
+        return ends(corners, index, pairs);
+    }
     let before = corners.iter().cycle().skip(corners.len() - 1);
     let mut result = Vec::with_capacity(corners.len());
     for (corner, before) in corners.iter().zip(before) {
@@ -203,17 +214,37 @@ fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec
         if enter == leave {
             continue;
         }
-        let pair = [enter.min(leave), enter.max(leave)];
-        let known = pairs.iter().position(|p| *p == pair);
+        let sign = if enter < leave { 1.0 } else { -1.0 };
         result.push(Corner {
             at: corner.at,
-            pair: known.unwrap_or_else(|| {
-                pairs.push(pair);
-                pairs.len() - 1
-            }),
-            sign: if enter < leave { 1.0 } else { -1.0 },
+            pair: listed([enter.min(leave), enter.max(leave)], pairs),
+            sign: Complex::from(sign),
             polygon: index,
         });
     }
     result
+}
+
+/// The ends of a segment: (exp(−2πi k·a) − exp(−2πi k·b)) / (2πi k·d).
+fn ends(corners: &[polygon::Corner], index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
+    let signs = [-1.0, 1.0].into_iter();
+    corners
+        .iter()
+        .zip(signs)
+        .map(|(corner, sign)| Corner {
+            at: corner.at,
+            pair: listed([corner.edge; 2], pairs),
+            sign: Complex::new(0.0, sign),
+            polygon: index,
+        })
+        .collect()
+}
+
+/// The index of a pair in the list, where it is put if it is new.
+fn listed(pair: [usize; 2], pairs: &mut Vec<[usize; 2]>) -> usize {
+    let known = pairs.iter().position(|p| *p == pair);
+    known.unwrap_or_else(|| {
+        pairs.push(pair);
+        pairs.len() - 1
+    })
 }

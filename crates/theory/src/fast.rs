@@ -1,5 +1,9 @@
+use crate::chain::Path;
 use crate::corners::Corners;
+use crate::patch::Fineness;
 use crate::row::Row;
+use crate::slope::Slope;
+use crate::wave::Wave;
 use crate::{Chain, expansion::Expansion};
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
@@ -10,21 +14,46 @@ const ORTHOGONAL: f64 = 1e-15;
 /// The slices of the spectrum on a grid: the values of [`at`](crate::at), from sums over corners.
 ///
 /// Rows of constant (azimuth, ρ) are computed in parallel, each by one thread, so the result is the same for
-/// any number of threads. Differs from [`at`](crate::at) by less than 1e-10 of the largest value.
-/// Unit: W m⁻² sr⁻¹ · m².
+/// any number of threads. Differs from [`at`](crate::at) by less than 1e-10 of the largest value (with discs,
+/// by the error of their quadrature). Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
-    let expansion = Expansion::new(chain, window);
-    let corners = expansion.sections.each_ref().map(Corners::new);
+    let path = chain.path();
+    slices_at_fineness(&path, window, grid, &fineness(&path, window, grid))
+}
+
+/// How discs are taken apart for a grid.
+pub(crate) fn fineness(path: &Path<'_>, window: &Window, grid: &SliceGrid) -> Fineness {
+    Fineness::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
+}
+
+/// The slices with discs taken apart as told.
+pub(crate) fn slices_at_fineness(
+    path: &Path<'_>,
+    window: &Window,
+    grid: &SliceGrid,
+    fineness: &Fineness,
+) -> Slices {
+    let slope = Slope::new([&window.u, &window.v], path.slope_power());
+    let expansion = Expansion::new(path, window, &slope, fineness);
+    let products: Vec<_> = expansion
+        .products
+        .iter()
+        .map(|waves| Product::new(&expansion, waves))
+        .collect();
     let [azimuths, rows, _] = grid.half_shape();
     let values: Vec<Vec<Complex>> = (0..azimuths * rows)
         .into_par_iter()
         .map(|i| {
             let (sin, cos) = grid.azimuth(i / rows).sin_cos();
             let rho = (i % rows) as f64 * grid.rho.spacing;
-            let [x, y] = [(0, cos), (1, sin)]
-                .map(|(axis, along)| factors(&expansion, &corners[axis], axis, rho, along, grid));
-            expansion.combine(&x, &y, grid.nu.count())
+            let mut row = vec![Complex::ZERO; grid.nu.count()];
+            for product in &products {
+                let x = product.factors(0, rho, cos, grid);
+                let y = product.factors(1, rho, sin, grid);
+                expansion.add_terms(&x, &y, &mut row);
+            }
+            row
         })
         .collect();
     let mut slices = Slices::zeros(*grid);
@@ -34,54 +63,63 @@ pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
     slices
 }
 
-/// The factors of all polygons of a section in the row at ρ, [polygon, ν]; `along` is the cosine of the
-/// angle between the azimuth and the axis of the section.
-fn factors(
-    expansion: &Expansion,
-    corners: &Corners<'_>,
-    axis: usize,
-    rho: f64,
-    along: f64,
-    grid: &SliceGrid,
-) -> Vec<Complex> {
-    let section = &expansion.sections[axis];
-    if along.abs() < ORTHOGONAL {
-        // The row never leaves frequency zero of this section.
-        let count = grid.nu.count();
-        let polygons = section.polygons.iter();
-        return polygons
-            .flat_map(|p| std::iter::repeat_n(section.value(p, [0.0, 0.0]), count))
-            .collect();
+/// The polygons of both sections under one product of waves.
+struct Product<'a> {
+    expansion: &'a Expansion,
+    waves: &'a [Vec<Wave>; 2],
+    corners: [Corners<'a>; 2],
+}
+
+impl<'a> Product<'a> {
+    fn new(expansion: &'a Expansion, waves: &'a [Vec<Wave>; 2]) -> Self {
+        Self {
+            expansion,
+            waves,
+            corners: [0, 1].map(|axis| Corners::new(&expansion.sections[axis], &waves[axis])),
+        }
     }
-    let [position, step] = section.reduced([rho * along, grid.nu.spacing * along]);
-    corners.row(&Row {
-        position,
-        step,
-        half: grid.nu.half,
-    })
+
+    /// The factors of all polygons of section `axis` in the row at ρ, [polygon, ν]; `along` is the cosine of the
+    /// angle between the azimuth and the axis.
+    fn factors(&self, axis: usize, rho: f64, along: f64, grid: &SliceGrid) -> Vec<Complex> {
+        let section = &self.expansion.sections[axis];
+        if along.abs() < ORTHOGONAL {
+            // The row never leaves frequency zero of this section.
+            let value = |p| section.value(&self.waves[axis], p, [0.0, 0.0]);
+            let polygons = section.polygons.iter();
+            return polygons
+                .flat_map(|p| std::iter::repeat_n(value(p), grid.nu.count()))
+                .collect();
+        }
+        let [position, step] = section.reduced([rho * along, grid.nu.spacing * along]);
+        self.corners[axis].row(&Row {
+            position,
+            step,
+            half: grid.nu.half,
+        })
+    }
 }
 
 impl Expansion {
-    /// radiance · Σ terms along a row, from the factors [polygon, n] of both sections.
-    fn combine(&self, x: &[Complex], y: &[Complex], count: usize) -> Vec<Complex> {
-        let mut row = vec![Complex::ZERO; count];
+    /// Adds brightness · Σ terms along a row, from the factors [polygon, n] of both sections.
+    fn add_terms(&self, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
+        let count = row.len();
         for term in &self.terms {
             let [p, q] = term.polygons.map(|i| i * count..(i + 1) * count);
-            let scale = term.sign * self.radiance;
+            let scale = term.weight * self.brightness;
             for ((sum, x), y) in row.iter_mut().zip(&x[p]).zip(&y[q]) {
                 *sum += x * y * scale;
             }
         }
-        row
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::at;
-    use crate::testing::{blockers, chain, square, window};
-    use etendue_field::{FrequencyAxis, Profile};
+    use crate::plain::at_fineness;
+    use crate::testing::*;
+    use etendue_field::{FrequencyAxis, Light, Profile, Rectangle};
 
     /// A grid whose frequencies fall on the shifts of Hann profiles of half-width 1/2 and on the lines
     /// k·d = 0 of distances 1 and 2: wherever the corners cancel.
@@ -97,9 +135,27 @@ mod tests {
     /// Light, path and blockers of several kinds.
     fn chains() -> Vec<Chain> {
         let mut off_center = chain(0.3, &[(1.0, blockers(3, 0.2, 0.1)), (1.0, vec![])]);
-        off_center.source.rectangle.center = [0.13, -0.21];
-        off_center.source.rectangle.size = [0.4, 0.1];
+        off_center.source.light = lambertian(Rectangle {
+            center: [0.13, -0.21],
+            size: [0.4, 0.1],
+        });
+        let round = spot(disc([0.05, 0.1], 0.2), 0.0);
+        let steps = [
+            (1.0, Some(grating(0, 3.0, 0.4))),
+            (0.5, Some(opaque(vec![disc([0.1, 0.0], 0.1)]))),
+            (0.5, Some(half_plane(1, 0.1, false))),
+            (0.5, Some(grating(0, 2.0, 0.0))),
+        ];
+        let point = Light::Point { intensity: 2.0 };
+        let mut shaded = chain(0.3, &[(1.0, blockers(2, 0.2, 0.1)), (1.0, vec![])]);
+        shaded.operators.push(cosine());
         vec![
+            chain_of(round, steps.clone()),
+            chain_of(point, steps.clone()),
+            chain_of(point, []),
+            chain_of(point, [(2.0, Some(half_plane(0, 0.25, true)))]),
+            chain_of(spot(disc([0.0; 2], 0.2), 20.0), [(1.0, None)]),
+            shaded,
             chain(0.2, &[]),
             chain(0.2, &[(2.0, vec![])]),
             chain(0.2, &[(1.0, blockers(4, 0.2, 0.1)), (1.0, vec![])]),
@@ -119,11 +175,13 @@ mod tests {
 
     /// The largest difference of the two paths, relative to the largest value.
     fn difference(chain: &Chain, window: &Window, grid: &SliceGrid) -> f64 {
+        let path = chain.path();
         let fast = slices(chain, window, grid);
+        let fineness = fineness(&path, window, grid);
         let (mut worst, mut largest) = (0.0, 0.0);
         for ((k, m, n), value) in fast.half.indexed_iter() {
             let (rho, nu) = (m as f64 * grid.rho.spacing, grid.nu.value(n));
-            let plain = at(chain, window, grid.frequency(k, rho, nu));
+            let plain = at_fineness(&path, window, grid.frequency(k, rho, nu), &fineness);
             worst = f64::max(worst, (value - plain).norm());
             largest = f64::max(largest, plain.norm());
         }

@@ -1,26 +1,30 @@
 //! Predicted spectra of local light fields, in closed form.
 //!
-//! In goes a [`Chain`]: a uniform rectangular light, travel, and opaque rectangles in planes. Out come the
-//! values a measurement would have without noise: the [`slices`] of the windowed spectrum, their
-//! [`derivative`] by any length of the chain, and the [`projection`] on (x, u).
+//! In goes a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in planes, and the
+//! cosine and diffuse reflection of a receiver. Out come the values a measurement would have without noise: the
+//! [`slices`] of the windowed spectrum, how far they may be off ([`quadrature_error`]), their [`derivative`] by
+//! any number of the chain, and the [`projection`] on (x, u).
 //!
 //! Travel is a shear of (position, slope), so every edge stays a straight line and every field is a signed
-//! sum of products of convex polygons, one in (x, u) and one in (y, v); a window is a sum of cosines on a
-//! box. The transform of such a polygon is known in closed form: no quadrature, no grid, no aliasing.
+//! sum of products of convex polygons, one in (x, u) and one in (y, v); windows and gratings are sums of cosines.
+//! The transform of such a polygon is known in closed form: no quadrature, no grid, no aliasing. A disc is a
+//! weighted sum of rectangles, a factor of slope a sum of products of cosine series; both converge exponentially.
 //!
 //! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no evidence.
 //!
 //! ```
-//! use etendue_field::{FrequencyAxis, Profile, Rectangle, SliceGrid, Window};
+//! use etendue_field::{FrequencyAxis, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Window};
 //! use etendue_theory::{Chain, Operator, Source, at, slices};
 //!
-//! let square = |side| Rectangle { center: [0.0, 0.0], size: [side, side] };
+//! let square = |side| Shape::Rectangle(Rectangle { center: [0.0, 0.0], size: [side, side] });
+//! let light = Light::Area { shape: square(0.2), radiance: 1.0, exponent: 0.0 };
+//! let mask = Mask::Opaque { shapes: vec![square(0.1)], half_planes: vec![] };
 //! let travel = |from: &str, to: &str| Operator::Travel { from: from.into(), to: to.into(), distance: 1.0 };
 //! let chain = Chain {
-//!     source: Source { name: "light".into(), rectangle: square(0.2), radiance: 1.0 },
+//!     source: Source { name: "light".into(), light },
 //!     operators: vec![
 //!         travel("light", "blocker"),
-//!         Operator::Visibility { name: "blocker".into(), blockers: vec![square(0.1)] },
+//!         Operator::Visibility { name: "blocker".into(), mask },
 //!         travel("blocker", "receiver"),
 //!     ],
 //! };
@@ -36,13 +40,22 @@
 mod chain;
 mod corners;
 mod derivative;
+mod describe;
+mod disc;
+mod error;
 mod expansion;
 mod fast;
 pub mod gaussian;
+#[cfg_attr(
+    not(test),
+    allow(dead_code, reason = "until chains of reflections use it")
+)]
+mod irradiance;
 mod jitter;
 #[cfg(test)]
 mod laws;
 mod parameter;
+mod patch;
 mod plain;
 mod polygon;
 mod projection;
@@ -52,13 +65,14 @@ mod reference;
 mod row;
 mod shading;
 mod sinc;
+mod slope;
 #[cfg(test)]
 mod testing;
 mod wave;
 
 pub use chain::{Chain, Operator, Source};
 pub use derivative::derivative;
-pub use etendue_field::Rectangle;
+pub use error::quadrature_error;
 pub use fast::slices;
 pub use jitter::{JitteredArray, jittered_array_power};
 pub use parameter::Parameter;

@@ -1,35 +1,91 @@
 //! Chains and windows for the tests of this crate.
 
 use crate::{Chain, Operator, Source};
-use etendue_field::{Profile, Rectangle, Window};
+use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Profile, Rectangle, Shape, Window};
 
 /// A square light of unit radiance on the central ray, then travel and blockers by turns; the planes are
 /// named a, b, c, …
 pub(crate) fn chain(light: f64, steps: &[(f64, Vec<Rectangle>)]) -> Chain {
+    let steps = steps.iter().map(|(distance, blockers)| {
+        let mask = (!blockers.is_empty()).then(|| rectangles(blockers));
+        (*distance, mask)
+    });
+    chain_of(lambertian(square([0.0, 0.0], light)), steps)
+}
+
+/// A light, then travel and masks by turns; the planes are named a, b, c, …
+pub(crate) fn chain_of(
+    light: Light,
+    steps: impl IntoIterator<Item = (f64, Option<Mask>)>,
+) -> Chain {
     let mut names = ('a'..='z').map(String::from);
     let mut from = names.next().unwrap();
     let mut operators = Vec::new();
-    for (distance, blockers) in steps {
+    for (distance, mask) in steps {
         let to = names.next().unwrap();
         operators.push(Operator::Travel {
             from: std::mem::replace(&mut from, to.clone()),
             to: to.clone(),
-            distance: *distance,
+            distance,
         });
-        if !blockers.is_empty() {
-            operators.push(Operator::Visibility {
-                name: to,
-                blockers: blockers.clone(),
-            });
-        }
+        operators.extend(mask.map(|mask| Operator::Visibility { name: to, mask }));
     }
     Chain {
         source: Source {
             name: "light".into(),
-            rectangle: square([0.0, 0.0], light),
-            radiance: 1.0,
+            light,
         },
         operators,
+    }
+}
+
+/// A light of unit radiance.
+pub(crate) fn lambertian(rectangle: Rectangle) -> Light {
+    spot(Shape::Rectangle(rectangle), 0.0)
+}
+
+pub(crate) fn spot(shape: Shape, exponent: f64) -> Light {
+    Light::Area {
+        shape,
+        radiance: 1.0,
+        exponent,
+    }
+}
+
+pub(crate) fn rectangles(rectangles: &[Rectangle]) -> Mask {
+    opaque(rectangles.iter().copied().map(Shape::Rectangle).collect())
+}
+
+pub(crate) fn opaque(shapes: Vec<Shape>) -> Mask {
+    Mask::Opaque {
+        shapes,
+        half_planes: vec![],
+    }
+}
+
+pub(crate) fn half_plane(axis: usize, edge: f64, above: bool) -> Mask {
+    Mask::Opaque {
+        shapes: vec![],
+        half_planes: vec![HalfPlane { axis, edge, above }],
+    }
+}
+
+pub(crate) fn grating(axis: usize, frequency: f64, phase: f64) -> Mask {
+    Mask::Grating(Grating {
+        axis,
+        frequency,
+        modulation: 0.9,
+        phase,
+    })
+}
+
+pub(crate) fn disc(center: [f64; 2], radius: f64) -> Shape {
+    Shape::Disc(Disc { center, radius })
+}
+
+pub(crate) fn cosine() -> Operator {
+    Operator::Cosine {
+        name: "floor".into(),
     }
 }
 

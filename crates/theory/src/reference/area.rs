@@ -81,7 +81,7 @@ fn opaque_strips() {
             bench.light,
             &[(bench.to_blockers, blockers), (below, vec![])],
         );
-        chain.source.rectangle = strip(0.0, bench.light);
+        chain.source.light = lambertian(strip(0.0, bench.light));
         polygons.push((factor(&chain, profiles, k), complex(&sample["visible"])));
     }
     assert_close("closed form", deviation(20, closed));

@@ -8,7 +8,7 @@ mod grating;
 
 use crate::expansion::Expansion;
 use crate::gaussian::{Bench, Gaussian};
-use crate::testing::{chain, window};
+use crate::testing::{chain, lambertian, window};
 use crate::{Chain, JitteredArray, g_hat, g_hat_3d, jittered_array_power};
 use etendue_field::{Complex, Profile, Rectangle};
 use serde_json::Value;
@@ -62,11 +62,12 @@ fn cut(width: f64) -> Profile {
 
 /// The factor of (x, u) of a chain whose rectangles are endless along y.
 fn factor(chain: &Chain, [x, u]: [Profile; 2], k: [f64; 2]) -> Complex {
-    let expansion = Expansion::new(chain, &window(x, u));
+    let expansion = Expansion::of_rectangles(chain, &window(x, u));
     let section = &expansion.sections[0];
+    let waves = &expansion.products[0][0];
     let terms = expansion.terms.iter();
     terms
-        .map(|t| section.value(&section.polygons[t.polygons[0]], k) * t.sign)
+        .map(|t| section.value(waves, &section.polygons[t.polygons[0]], k) * t.weight)
         .sum()
 }
 
@@ -80,7 +81,7 @@ fn strip(center: f64, width: f64) -> Rectangle {
 /// A light of that width at that distance, nothing between.
 fn light(width: f64, distance: f64) -> Chain {
     let mut chain = chain(width, &[(distance, vec![])]);
-    chain.source.rectangle = strip(0.0, width);
+    chain.source.light = lambertian(strip(0.0, width));
     chain
 }
 

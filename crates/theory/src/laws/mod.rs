@@ -1,14 +1,19 @@
 //! Laws that every prediction obeys, and brute force where there is no law.
 
-use crate::testing::{blockers, chain, square, window};
-use crate::{Chain, Operator, at, slices};
-use etendue_field::{
-    Complex, FrequencyAxis, Profile, Rectangle, SliceGrid, Slices, TwoPlane, Window,
-};
-use std::f64::consts::TAU;
+mod brute_force;
+mod kinds;
+mod masks;
 
-const FREQUENCIES: [[f64; 4]; 4] = [
+use crate::testing::*;
+use crate::{Chain, Operator, at, slices};
+use brute_force::brute_force;
+use etendue_field::{
+    FrequencyAxis, HalfPlane, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Slices, Window,
+};
+
+const FREQUENCIES: [[f64; 4]; 5] = [
     [0.0; 4],
+    [2.9, 0.2, -2.5, 0.0],
     [1.0, 0.0, -1.7, 0.0],
     [0.4, -0.6, 0.3, 1.1],
     [-1.3, 0.9, 2.0, -2.5],
@@ -23,47 +28,12 @@ fn zero(chain: &Chain) -> f64 {
     at(chain, &hann(), [0.0; 4]).re
 }
 
-/// The transform by quasi-random rays: from the light to the final plane.
-///
-/// Points of the R₄ sequence (Roberts 2018): multiples of the powers of 1/φ, φ⁵ = φ + 1.
-fn brute_force(chain: &Chain, frequencies: &[[f64; 4]], rays: u32) -> Vec<Complex> {
-    let window = hann();
-    let layers = chain.layers();
-    let source = layers[0].rectangles[0];
-    let distance = layers[0].distance;
-    let powers = [1, 2, 3, 4].map(|i| 1.167_303_978_261_418_7_f64.powi(-i));
-    let mut sums = vec![Complex::ZERO; frequencies.len()];
-    for i in 0..rays {
-        let [a, b, c, d] = powers.map(|p| (f64::from(i) * p).fract() - 0.5);
-        let (x, y) = (
-            a * 2.0 * window.x.half_width(),
-            b * 2.0 * window.y.half_width(),
-        );
-        let from = [(0, c), (1, d)].map(|(k, t)| source.center[k] + t * source.size[k]);
-        let (u, v) = ((x - from[0]) / distance, (y - from[1]) / distance);
-        let ray = TwoPlane { x, y, u, v };
-        let free = layers[1..].iter().all(|layer| {
-            let then = ray.travelled(-layer.distance);
-            !layer.rectangles.iter().any(|r| r.contains(then.x, then.y))
-        });
-        if free {
-            for (sum, k) in sums.iter_mut().zip(frequencies) {
-                let phase = k[0] * x + k[1] * y + k[2] * u + k[3] * v;
-                *sum += Complex::cis(-TAU * phase) * window.value(&ray);
-            }
-        }
-    }
-    let area = 4.0 * window.x.half_width() * window.y.half_width() * source.area();
-    let scale = area / (distance * distance * f64::from(rays));
-    sums.iter().map(|sum| sum * scale).collect()
-}
-
 #[test]
 fn two_layers_agree_with_brute_force() {
     let steps = |first: Vec<Rectangle>, second| [(1.0, first), (0.6, second), (0.5, vec![])];
     let (first, second) = (blockers(3, 0.2, 0.14), blockers(4, 0.16, 0.12));
     let both = chain(0.3, &steps(first.clone(), second.clone()));
-    let truth = brute_force(&both, &FREQUENCIES, 400_000);
+    let truth = brute_force(&both, &hann(), &FREQUENCIES, 400_000);
     let open = chain(0.3, &steps(vec![], vec![]));
     let alone = [
         chain(0.3, &steps(first, vec![])),
@@ -126,7 +96,9 @@ fn two_halves_in_one_plane_block_everything() {
 fn radiance_is_a_factor() {
     let one = chain(0.2, &[(1.0, blockers(2, 0.2, 0.1)), (1.0, vec![])]);
     let mut five = one.clone();
-    five.source.radiance = 5.0;
+    if let Light::Area { radiance, .. } = &mut five.source.light {
+        *radiance = 5.0;
+    }
     for k in FREQUENCIES {
         let difference = at(&five, &hann(), k) - at(&one, &hann(), k) * 5.0;
         assert!(difference.norm() < 1e-14 * zero(&five)); // rounding
@@ -136,7 +108,7 @@ fn radiance_is_a_factor() {
 #[test]
 fn light_that_misses_the_window_is_dark() {
     let mut aside = chain(0.2, &[(1.0, blockers(2, 0.2, 0.1)), (0.5, vec![])]);
-    aside.source.rectangle.center = [0.0, 1.5];
+    aside.source.light = lambertian(square([0.0, 1.5], 0.2));
     let axis = FrequencyAxis {
         half: 2,
         spacing: 1.0,
@@ -163,7 +135,7 @@ fn a_wrong_sign_of_the_shear_shows() {
     let k = [1.0, 0.0, -2.0, 0.0];
     let difference = at(&right, &hann(), k) - at(&wrong, &hann(), k);
     assert!(difference.norm() > 0.3 * zero(&right)); // a third of everything
-    let truth = brute_force(&right, &[k], 100_000)[0];
+    let truth = brute_force(&right, &hann(), &[k], 100_000)[0];
     let close = 3e-3 * zero(&right); // about 1/√100000
     assert!((at(&right, &hann(), k) - truth).norm() < close);
 }
@@ -182,5 +154,49 @@ fn chain_in_words() {
             "multiply  visibility of b: 4 opaque rectangles",
             "map  travel -0.5 m, b to c: ℓ̂(Ωx, Ωu − 0.5 Ωx)",
         ]
+    );
+}
+
+#[test]
+fn new_kinds_in_words() {
+    let light = spot(disc([0.0, 0.0], 0.1), 20.0);
+    let mixed = Mask::Opaque {
+        shapes: vec![disc([0.0; 2], 0.1), Shape::Rectangle(square([0.5; 2], 0.1))],
+        half_planes: vec![HalfPlane {
+            axis: 0,
+            edge: 1.0,
+            above: true,
+        }],
+    };
+    let steps = [
+        (1.0, Some(mixed)),
+        (1.0, Some(half_plane(0, 0.0, true))),
+        (1.0, Some(grating(0, 5.0, 0.3))),
+    ];
+    let mut chain = chain_of(light, steps);
+    chain.operators.extend([
+        cosine(),
+        Operator::Diffuse {
+            name: "floor".into(),
+            albedo: 0.5,
+        },
+    ]);
+    let lines = chain.describe();
+    let others = lines.iter().filter(|line| !line.starts_with("map"));
+    assert_eq!(
+        others.collect::<Vec<_>>(),
+        [
+            "source  light: disc of radius 0.1 m, radiance 1 W m⁻² sr⁻¹ cosⁿθ, n = 20",
+            "multiply  visibility of b: 1 opaque rectangle, 1 disc, 1 half-plane",
+            "multiply  visibility of c: 1 opaque half-plane",
+            "multiply  grating d: ½(1 + 0.9 cos(2π 5 x + 0.3))",
+            "multiply  cosine at floor: G = (1 + u² + v²)⁻²",
+            "convolve  diffuse reflection at floor: albedo 0.5, constant in slope",
+        ]
+    );
+    chain.source.light = Light::Point { intensity: 3.0 };
+    assert_eq!(
+        chain.describe()[0],
+        "source  light: point, intensity 3 W sr⁻¹"
     );
 }

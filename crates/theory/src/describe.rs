@@ -1,0 +1,114 @@
+//! Chains in words.
+
+use crate::{Chain, Operator, Source};
+use etendue_field::{Disc, Grating, Light, Mask, Rectangle, Shape};
+
+impl Chain {
+    /// The chain in words: one line for each step.
+    #[must_use]
+    pub fn describe(&self) -> Vec<String> {
+        let steps = self.operators.iter().map(Operator::describe);
+        std::iter::once(self.source.describe())
+            .chain(steps)
+            .collect()
+    }
+}
+
+impl Source {
+    fn describe(&self) -> String {
+        let name = &self.name;
+        match self.light {
+            Light::Area {
+                shape,
+                radiance,
+                exponent,
+            } => {
+                let (kind, lobe) = if exponent == 0.0 {
+                    ("Lambertian ", String::new())
+                } else {
+                    ("", format!(" cosⁿθ, n = {exponent}"))
+                };
+                let shape = in_words(&shape);
+                format!("source  {name}: {kind}{shape}, radiance {radiance} W m⁻² sr⁻¹{lobe}")
+            }
+            Light::Point { intensity } => {
+                format!("source  {name}: point, intensity {intensity} W sr⁻¹")
+            }
+        }
+    }
+}
+
+impl Operator {
+    fn describe(&self) -> String {
+        match self {
+            Self::Travel { from, to, distance } => {
+                let sign = if *distance < 0.0 { '−' } else { '+' };
+                let size = distance.abs();
+                format!("map  travel {distance} m, {from} to {to}: ℓ̂(Ωx, Ωu {sign} {size} Ωx)")
+            }
+            Self::Visibility { name, mask } => match mask {
+                Mask::Opaque {
+                    shapes,
+                    half_planes,
+                } => {
+                    let opaque = opaque(shapes, half_planes.len());
+                    format!("multiply  visibility of {name}: {opaque}")
+                }
+                Mask::Grating(grating) => format!("multiply  grating {name}: {}", formula(grating)),
+            },
+            Self::Cosine { name } => {
+                format!("multiply  cosine at {name}: G = (1 + u² + v²)⁻²")
+            }
+            Self::Diffuse { name, albedo } => {
+                format!(
+                    "convolve  diffuse reflection at {name}: albedo {albedo}, constant in slope"
+                )
+            }
+        }
+    }
+}
+
+fn in_words(shape: &Shape) -> String {
+    match shape {
+        Shape::Rectangle(Rectangle {
+            size: [width, height],
+            ..
+        }) => format!("rectangle {width} x {height} m"),
+        Shape::Disc(Disc { radius, .. }) => format!("disc of radius {radius} m"),
+    }
+}
+
+/// E.g. "4 opaque rectangles, 1 half-plane".
+fn opaque(shapes: &[Shape], half_planes: usize) -> String {
+    let discs = shapes
+        .iter()
+        .filter(|s| matches!(s, Shape::Disc(_)))
+        .count();
+    let kinds = [
+        (shapes.len() - discs, "rectangle"),
+        (discs, "disc"),
+        (half_planes, "half-plane"),
+    ];
+    let mut present = kinds.into_iter().filter(|(count, _)| *count > 0);
+    let plural = |count| if count == 1 { "" } else { "s" };
+    let Some((count, kind)) = present.next() else {
+        return "nothing opaque".into();
+    };
+    let first = format!("{count} opaque {kind}{}", plural(count));
+    present.fold(first, |text, (count, kind)| {
+        format!("{text}, {count} {kind}{}", plural(count))
+    })
+}
+
+/// E.g. "½(1 + 0.9 cos(2π 5 x + 0.3))".
+fn formula(grating: &Grating) -> String {
+    let Grating {
+        axis,
+        frequency,
+        modulation,
+        phase,
+    } = grating;
+    let t = if *axis == 0 { 'x' } else { 'y' };
+    let (sign, size) = (if *phase < 0.0 { '−' } else { '+' }, phase.abs());
+    format!("½(1 + {modulation} cos(2π {frequency} {t} {sign} {size}))")
+}

@@ -1,0 +1,233 @@
+//! Sets of slopes: a rectangle and discs, intersected.
+
+use super::density::{Density, Sides};
+use etendue_field::{Disc, Shape};
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Discs that differ by less than this share of their radius are one.
+const SAME: f64 = 1e-12;
+
+/// The intersection of a rectangle and discs, in slopes.
+#[derive(Clone, Debug)]
+pub(crate) struct Region {
+    /// The rectangle; its sides may be infinite where there are discs.
+    sides: Sides,
+    discs: Vec<Disc>,
+}
+
+impl Region {
+    /// A rectangle.
+    pub(crate) fn rectangle(sides: Sides) -> Self {
+        Self {
+            sides,
+            discs: vec![],
+        }
+    }
+
+    /// A shape.
+    pub(crate) fn shape(shape: &Shape) -> Self {
+        match *shape {
+            Shape::Rectangle(r) => Self::rectangle([r.extent(0), r.extent(1)]),
+            Shape::Disc(disc) => Self {
+                sides: [[f64::NEG_INFINITY, f64::INFINITY]; 2],
+                discs: vec![disc],
+            },
+        }
+    }
+
+    /// The smallest rectangle known to hold it.
+    pub(crate) fn bounds(&self) -> Sides {
+        let discs = self.discs.iter().map(|disc| {
+            let bounds = Shape::Disc(*disc).bounds();
+            [bounds.extent(0), bounds.extent(1)]
+        });
+        discs.fold(self.sides, common)
+    }
+
+    /// What it has in common with a rectangle; `None` if nothing.
+    pub(crate) fn within(&self, sides: Sides) -> Option<Self> {
+        let region = Self {
+            sides: common(self.sides, sides),
+            discs: self.discs.clone(),
+        };
+        region.simplified()
+    }
+
+    /// What it has in common with a shape; `None` if nothing.
+    pub(crate) fn cut(&self, shape: &Shape) -> Option<Self> {
+        match *shape {
+            Shape::Rectangle(r) => self.within([r.extent(0), r.extent(1)]),
+            Shape::Disc(disc) => {
+                let mut region = self.clone();
+                region.discs.push(disc);
+                region.simplified()
+            }
+        }
+    }
+
+    /// Without the discs that hold the rectangle or another disc; `None` if two of its parts do not meet.
+    fn simplified(mut self) -> Option<Self> {
+        let [u, v] = self.sides;
+        if u[0] >= u[1] || v[0] >= v[1] {
+            return None;
+        }
+        let mut kept: Vec<Disc> = Vec::new();
+        for disc in self.discs {
+            let [near, far] = distances(self.sides, disc.center);
+            if near >= disc.radius {
+                return None;
+            }
+            if far <= disc.radius || kept.iter().any(|k| holds(&disc, k)) {
+                continue;
+            }
+            if kept.iter().any(|k| apart(&disc, k)) {
+                return None;
+            }
+            kept.retain(|k| !holds(k, &disc));
+            kept.push(disc);
+        }
+        self.discs = kept;
+        Some(self)
+    }
+
+    /// The integral of a density over it.
+    ///
+    /// By Green's theorem that of A(u, v) = ∫ density du along its boundary over v: arcs of the circles, on
+    /// which everything is smooth, and upright edges of the rectangle (docs/theory.md, Eq. 16).
+    pub(crate) fn integral(&self, density: &Density<'_>) -> f64 {
+        let Some(first) = self.discs.first() else {
+            return density.rectangle(self.sides);
+        };
+        let from = first.center[0];
+        let arcs = (0..self.discs.len()).map(|i| self.arcs(i, from, density));
+        let [left, right] = self.sides[0].map(|u| self.edge(u, from, density));
+        arcs.sum::<f64>() + right - left
+    }
+
+    /// ∫ A dv up the part of the line at u inside the discs and between the lower and upper side.
+    fn edge(&self, u: f64, from: f64, density: &Density<'_>) -> f64 {
+        let chords = self.discs.iter().map(|disc| {
+            let across = u - disc.center[0];
+            let half = (disc.radius * disc.radius - across * across).sqrt();
+            // Not a number where the line passes the disc by: the comparison below is false.
+            [disc.center[1] - half, disc.center[1] + half]
+        });
+        let mut part = self.sides[1];
+        for [low, high] in chords {
+            if low.is_nan() {
+                return 0.0;
+            }
+            part = [part[0].max(low), part[1].min(high)];
+        }
+        if part[0] < part[1] {
+            density.rectangle([[from, u], part])
+        } else {
+            0.0
+        }
+    }
+
+    /// ∫ A dv along the arcs of circle `i` that bound the region.
+    fn arcs(&self, i: usize, from: f64, density: &Density<'_>) -> f64 {
+        let disc = self.discs[i];
+        let ends = self.crossings(i);
+        let arcs = (0..ends.len()).map(|k| match ends.get(k + 1) {
+            Some(&next) => [ends[k], next],
+            None => [ends[k], ends[0] + TAU],
+        });
+        let inside = arcs.filter(|[start, end]| {
+            let [u, v] = on(&disc, 0.5 * (start + end));
+            let mut others = self.discs.iter().enumerate().filter(|(j, _)| *j != i);
+            contains(self.sides, u, v) && others.all(|(_, d)| d.contains(u, v))
+        });
+        inside.map(|arc| along(&disc, arc, from, density)).sum()
+    }
+
+    /// Angles, ascending, where circle `i` may enter or leave the rest; one at least.
+    fn crossings(&self, i: usize) -> Vec<f64> {
+        let disc = &self.discs[i];
+        let mut angles = vec![0.0];
+        for side in self.sides[0] {
+            let angle = ((side - disc.center[0]) / disc.radius).acos();
+            angles.extend([angle, -angle]);
+        }
+        for side in self.sides[1] {
+            let angle = ((side - disc.center[1]) / disc.radius).asin();
+            angles.extend([angle, 2.0 * FRAC_PI_2 - angle]);
+        }
+        for (_, other) in self.discs.iter().enumerate().filter(|(j, _)| *j != i) {
+            let [du, dv] = [0, 1].map(|k| other.center[k] - disc.center[k]);
+            let (r, s, d) = (disc.radius, other.radius, du.hypot(dv));
+            let half = ((d * d + r * r - s * s) / (2.0 * d * r)).acos();
+            let middle = dv.atan2(du);
+            angles.extend([middle - half, middle + half]);
+        }
+        // Not a number where they do not cross.
+        angles.retain(|a| a.is_finite());
+        angles.iter_mut().for_each(|a| *a = a.rem_euclid(TAU));
+        angles.sort_by(f64::total_cmp);
+        angles
+    }
+}
+
+/// ∫ A dv along an arc of a circle, A being zero at u = `from`.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "1 to 4 parts"
+)]
+fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &Density<'_>) -> f64 {
+    let quarters = ((end - start) / FRAC_PI_2).ceil().max(1.0) as usize;
+    let (panels, rule) = density.arc(disc.radius * (end - start) / quarters as f64);
+    let parts = quarters * panels;
+    let half = 0.5 * (end - start) / parts as f64;
+    let nodes = (0..parts).flat_map(|k| {
+        let middle = start + (2 * k + 1) as f64 * half;
+        rule.iter()
+            .map(move |&(t, w)| (middle + half * t, half * w))
+    });
+    nodes
+        .map(|(angle, weight)| {
+            let [u, v] = on(disc, angle);
+            density.along_u([from, u], v) * (disc.radius * angle.cos() * weight)
+        })
+        .sum()
+}
+
+/// The point of a circle at an angle.
+fn on(disc: &Disc, angle: f64) -> [f64; 2] {
+    let (sin, cos) = angle.sin_cos();
+    [
+        disc.center[0] + disc.radius * cos,
+        disc.center[1] + disc.radius * sin,
+    ]
+}
+
+fn contains([u, v]: Sides, x: f64, y: f64) -> bool {
+    u[0] <= x && x <= u[1] && v[0] <= y && y <= v[1]
+}
+
+fn common(a: Sides, b: Sides) -> Sides {
+    [0, 1].map(|k| [a[k][0].max(b[k][0]), a[k][1].min(b[k][1])])
+}
+
+/// Distances of a point from the nearest and the farthest point of a rectangle.
+fn distances(sides: Sides, point: [f64; 2]) -> [f64; 2] {
+    let along = [0, 1].map(|k| {
+        let [below, above] = [sides[k][0] - point[k], point[k] - sides[k][1]];
+        [below.max(above).max(0.0), (-below).max(-above)]
+    });
+    [0, 1].map(|end| along[0][end].hypot(along[1][end]))
+}
+
+/// Whether one disc holds another, or is the same.
+fn holds(large: &Disc, small: &Disc) -> bool {
+    distance(large, small) + small.radius <= large.radius * (1.0 + SAME)
+}
+
+fn apart(a: &Disc, b: &Disc) -> bool {
+    distance(a, b) >= a.radius + b.radius
+}
+
+fn distance(a: &Disc, b: &Disc) -> f64 {
+    (a.center[0] - b.center[0]).hypot(a.center[1] - b.center[1])
+}

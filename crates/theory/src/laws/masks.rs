@@ -1,0 +1,152 @@
+//! Half-planes and gratings: what the phase of a spectrum and its places say.
+
+use super::{FREQUENCIES, hann, zero};
+use crate::testing::*;
+use crate::{Chain, Parameter, at};
+use etendue_field::{HalfPlane, Light, Mask};
+
+fn open() -> Chain {
+    chain(0.2, &[(2.0, vec![])])
+}
+
+/// The scene of Durand et al. 2005, Fig. 7: one half-plane, then another that blocks the rest.
+#[test]
+fn two_half_planes_let_nothing_through_together() {
+    let [a, b] = [true, false].map(|above| half_plane(0, 0.013, above));
+    let behind = |masks: [Option<Mask>; 2]| {
+        let [first, second] = masks;
+        let light = lambertian(square([0.0, 0.0], 0.2));
+        chain_of(light, [(1.0, first), (0.0, second), (1.0, None)])
+    };
+    let both = behind([Some(a.clone()), Some(b.clone())]);
+    let alone = [behind([Some(a), None]), behind([None, Some(b)])];
+    for k in FREQUENCIES {
+        let value = |chain: &Chain| at(chain, &hann(), k);
+        let sum = value(&alone[0]) + value(&alone[1]);
+        assert!((sum - value(&open())).norm() < 1e-14 * zero(&open())); // rounding
+        assert!(value(&both).norm() < 1e-12 * zero(&open())); // rounding of four products
+    }
+    // Moduli alone do not know it: at the frequency of the shear they miss each other by far.
+    let k = [2.0, 0.0, -3.4, 0.0];
+    let value = |chain: &Chain| at(chain, &hann(), k).norm();
+    let blind = value(&alone[0]) + value(&alone[1]) - value(&open());
+    println!("{}", blind / zero(&open()));
+    assert!(blind > 0.05 * zero(&open())); // twelve orders above
+}
+
+#[test]
+fn two_half_planes_in_one_mask_leave_a_slit() {
+    let half_planes = [(-0.1, false), (0.15, true)].map(|(edge, above)| HalfPlane {
+        axis: 1,
+        edge,
+        above,
+    });
+    let slit = Mask::Opaque {
+        shapes: vec![],
+        half_planes: half_planes.to_vec(),
+    };
+    // The same from blockers that are large enough.
+    let blocks = rectangles(&[-50.1, 50.15].map(|y| square([0.0, y], 100.0)));
+    let behind = |mask| {
+        chain_of(
+            lambertian(square([0.0, 0.0], 0.2)),
+            [(1.0, Some(mask)), (1.0, None)],
+        )
+    };
+    let (slit, blocks) = (behind(slit), behind(blocks));
+    for k in FREQUENCIES {
+        let difference = at(&slit, &hann(), k) - at(&blocks, &hann(), k);
+        assert!(difference.norm() < 1e-13 * zero(&open())); // 100 m cost two digits
+    }
+}
+
+/// ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip) ℓ̂(Ωx − f, Ωu + h f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)), h being the distance since.
+#[test]
+fn a_grating_is_three_copies() {
+    let (f, phase, modulation, h) = (3.0, 0.4, 0.9, 0.7);
+    let behind = |mask| {
+        let steps = [(1.3, mask), (h, None)];
+        chain_of(spot(disc([0.0, 0.1], 0.2), 3.0), steps)
+    };
+    let (open, seen) = (behind(None), behind(Some(grating(1, f, phase))));
+    for [x, y, u, v] in FREQUENCIES {
+        let copy = |n: f64| {
+            let shifted = [x, y - n * f, u, v + n * h * f];
+            at(&open, &hann(), shifted) * etendue_field::Complex::cis(n * phase)
+        };
+        let sum = copy(0.0) * 0.5 + (copy(1.0) + copy(-1.0)) * (0.25 * modulation);
+        let difference = sum - at(&seen, &hann(), [x, y, u, v]);
+        assert!(difference.norm() < 1e-9 * zero(&open)); // discs taken apart for different frequencies
+    }
+}
+
+/// Content at (0, f Δh), outside the wedge between the lines of the two depths: each grating alone has nothing there.
+#[test]
+fn two_gratings_leave_the_wedge() {
+    // On a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
+    let (f, between) = (5.0, 1.0);
+    let mask = || Some(grating(0, f, 0.0));
+    let wide = || lambertian(square([0.0, 0.0], 8.0));
+    let seen = |first, second| chain_of(wide(), [(1.0, first), (between, second)]);
+    let k = [0.0, 0.0, f * between, 0.0];
+    let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
+    let both = value(&seen(mask(), mask()));
+    // (m/4)² of (½)² from the difference of the two frequencies; half of it is the edge of the window.
+    assert!(
+        (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
+        "{both}"
+    );
+    for alone in [seen(mask(), None), seen(None, mask())] {
+        println!("{both} {}", value(&alone));
+        assert!(value(&alone) < 0.02 * both, "{}", value(&alone) / both);
+    }
+}
+
+#[test]
+fn travels_add_up_with_gratings_and_points() {
+    let masks = [Some(grating(0, 3.0, 0.4)), Some(half_plane(1, 0.1, true))];
+    let [first, second] = masks;
+    let whole = [(1.0, first.clone()), (0.5, second.clone()), (0.75, None)];
+    let parts = [
+        (0.25, None),
+        (0.75, first),
+        (0.25, None),
+        (0.25, second),
+        (0.25, None),
+        (0.5, None),
+    ];
+    for light in [
+        Light::Point { intensity: 1.0 },
+        spot(disc([0.0, 0.0], 0.2), 6.0),
+    ] {
+        let [whole, parts] = [
+            chain_of(light, whole.clone()),
+            chain_of(light, parts.clone()),
+        ];
+        for k in FREQUENCIES {
+            let difference = at(&whole, &hann(), k) - at(&parts, &hann(), k);
+            assert!(difference.norm() < 1e-15 * zero(&whole)); // the same polygons, distances are exact
+        }
+    }
+}
+
+/// A grating of phase p moved by x₀ is one of phase p − 2π f x₀.
+#[test]
+fn a_phase_is_a_place() {
+    let behind = |phase, x: f64| {
+        let light = lambertian(square([x, 0.0], 0.3));
+        chain_of(light, [(1.0, Some(grating(0, 3.0, phase))), (0.0, None)])
+    };
+    let full_turn = behind(0.3 + std::f64::consts::TAU, 0.0);
+    let none = behind(0.3, 0.0);
+    let half_turn = behind(0.3, 0.0).with(Parameter::GratingPhase(1), 0.3 + std::f64::consts::PI);
+    for k in FREQUENCIES {
+        let value = |chain: &Chain| at(chain, &hann(), k);
+        let scale = zero(&chain(0.3, &[(1.0, vec![])]));
+        assert!((value(&full_turn) - value(&none)).norm() < 1e-14 * scale); // rounding of the phase
+        // The two add up to a grey filter.
+        let sum = value(&half_turn) + value(&none);
+        let open = value(&chain(0.3, &[(1.0, vec![])]));
+        assert!((sum - open).norm() < 1e-14 * scale); // rounding
+    }
+}
