@@ -3,7 +3,7 @@
 //! A local light field is the radiance around a central ray, a function of the four numbers at which a
 //! ray crosses a [virtual plane](VirtualPlane): position (x, y) and slopes (u, v), see [`TwoPlane`].
 //! A plane multiplies it by a [`Window`] and looks at it on a [`SliceGrid`] of frequencies; the outcome,
-//! measured or predicted, is a set of [`Slices`].
+//! measured or predicted, is a set of [`Slices`]. A [`FieldGrid`] divides the support of the window into cells.
 //!
 //! Everything here is a value: nothing traces, transforms, predicts or touches a disk.
 //!
@@ -11,6 +11,7 @@
 //! (`docs/conventions.md`).
 
 mod crossing;
+mod field_grid;
 mod frame;
 mod frequency;
 mod plane;
@@ -22,6 +23,7 @@ mod slices;
 mod window;
 
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
+pub use field_grid::{Assignment, FieldGrid};
 pub use frame::{Frame, TwoPlane};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use plane::{Quantity, Side, VirtualPlane};

@@ -31,6 +31,7 @@ mod batch;
 mod block;
 pub mod direct;
 pub mod estimate;
+pub mod field;
 mod fine;
 mod histogram;
 mod jackknife;

@@ -2,7 +2,9 @@ use crate::batch::{Batch, PlaneBatch};
 use crate::histogram::ProjectionHistogram;
 use crate::measurement::Measurement;
 use crate::transform::{Accumulator, SliceTransform};
-use etendue_field::{Crossing, PhotonSource, PlaneTally, ProjectionGrid, VirtualPlane, Window};
+use etendue_field::{
+    Crossing, PhotonSource, PlaneTally, ProjectionGrid, Quantity, VirtualPlane, Window,
+};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -62,9 +64,10 @@ fn measure_batch(
     }
 }
 
-/// Takes the crossings of one plane, applies its window and keeps the sums.
+/// Takes the crossings of one plane, applies its quantity and its window and keeps the sums.
 struct Recorder<'plan> {
     window: Window,
+    quantity: Quantity,
     tally: PlaneTally,
     slices: Accumulator<'plan>,
     projection: ProjectionHistogram,
@@ -75,6 +78,7 @@ impl<'plan> Recorder<'plan> {
         let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         Self {
             window: plane.window,
+            quantity: plane.quantity,
             tally: PlaneTally::default(),
             slices: plan.accumulator(),
             projection: ProjectionHistogram::new(cells),
@@ -89,7 +93,7 @@ impl<'plan> Recorder<'plan> {
                 continue;
             }
             self.tally.inside += 1;
-            let weight = weight * self.window.value(ray);
+            let weight = weight * self.window.value(ray) * self.quantity.factor(ray);
             self.slices.deposit(ray, weight);
             self.projection.deposit(ray, weight);
         }

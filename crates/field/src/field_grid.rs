@@ -1,0 +1,206 @@
+use crate::{SliceGrid, TwoPlane, Window};
+use serde::{Deserialize, Serialize};
+
+/// A 4D grid over the support of a window, axes in the order x, y, u, v.
+///
+/// Along an axis of half-width h and n cells the box is periodic, with period 2h; cell i is centred at
+/// (i − n/2) · 2h/n, so the plane's origin is the centre of cell n/2, and cell 0 lies half at either
+/// edge. The frequencies of its transform are the multiples of 1/(2h) up to the Nyquist frequency n/(4h).
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct FieldGrid {
+    /// Number n of cells along each axis: even, at least 8.
+    pub cells: [usize; 4],
+    /// Half-width h of the box along each axis: metres for x and y, slope for u and v.
+    pub half_widths: [f64; 4],
+}
+
+impl FieldGrid {
+    /// The smallest grid over the support of `window` whose Nyquist frequencies are not below the largest
+    /// frequencies of `slices`.
+    #[must_use]
+    pub fn new(window: &Window, slices: &SliceGrid) -> Self {
+        let half_widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
+        let max = [slices.rho.max(), slices.nu.max()];
+        let mut cells = [0; 4];
+        for (axis, n) in cells.iter_mut().enumerate() {
+            *n = even_cells(max[axis / 2] * 2.0 * half_widths[axis]);
+        }
+        Self { cells, half_widths }
+    }
+
+    /// Bytes of one such grid of f64, or of its transform. At most `u64::MAX`: a grid that no memory holds is not an
+    /// overflow, so a caller can ask before there is one.
+    #[must_use]
+    pub fn bytes(&self) -> u64 {
+        let [nx, ny, nu, nv] = self.cells.map(|n| n as u64);
+        // The transform of a row of n reals is n/2 + 1 complex numbers, and takes its place.
+        [nx, ny, nu, nv.saturating_add(2)]
+            .into_iter()
+            .fold(8, u64::saturating_mul)
+    }
+
+    /// Width of a cell along `axis`.
+    #[must_use]
+    pub fn cell_width(&self, axis: usize) -> f64 {
+        2.0 * self.half_widths[axis] / self.cells[axis] as f64
+    }
+
+    /// Volume of a cell, metre² · slope².
+    #[must_use]
+    pub fn cell_volume(&self) -> f64 {
+        (0..4).map(|axis| self.cell_width(axis)).product()
+    }
+
+    /// The centre of cell `i` along `axis`.
+    #[must_use]
+    pub fn center(&self, axis: usize, i: usize) -> f64 {
+        (i as f64 - self.cells[axis] as f64 / 2.0) * self.cell_width(axis)
+    }
+
+    /// A ray in units of cells: whole at the centre of a cell, 0 ≤ t < n inside the box.
+    #[inline]
+    #[must_use]
+    pub fn position(&self, ray: &TwoPlane) -> [f64; 4] {
+        let z = [ray.x, ray.y, ray.u, ray.v];
+        std::array::from_fn(|axis| {
+            (z[axis] / self.half_widths[axis] + 1.0) * 0.5 * self.cells[axis] as f64
+        })
+    }
+
+    /// Spacing 1/(2h) of the frequencies along `axis`, cycles per unit.
+    #[must_use]
+    pub fn spacing(&self, axis: usize) -> f64 {
+        0.5 / self.half_widths[axis]
+    }
+
+    /// The Nyquist frequency n/(4h) along `axis`.
+    #[must_use]
+    pub fn nyquist(&self, axis: usize) -> f64 {
+        self.cells[axis] as f64 / 2.0 * self.spacing(axis)
+    }
+
+    /// Which multiple of the spacing index `i` of the transform along `axis` is: 0, 1, … n/2 − 1, −n/2, … −1.
+    #[inline]
+    #[must_use]
+    #[expect(
+        clippy::cast_possible_wrap,
+        reason = "a grid in memory has fewer cells than isize::MAX"
+    )]
+    pub fn harmonic(&self, axis: usize, i: usize) -> isize {
+        let n = self.cells[axis] as isize;
+        let i = i as isize;
+        if 2 * i < n { i } else { i - n }
+    }
+
+    /// The 4D frequency (Ωx, Ωy, Ωu, Ωv) at `index` of the transform.
+    #[must_use]
+    pub fn frequency(&self, index: [usize; 4]) -> [f64; 4] {
+        std::array::from_fn(|axis| self.harmonic(axis, index[axis]) as f64 * self.spacing(axis))
+    }
+}
+
+/// How a weighted ray is shared among the cells of a [`FieldGrid`]: by a B-spline in units of a cell, along each axis
+/// (Hockney and Eastwood 1981, section 5-3; the names are theirs).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Assignment {
+    /// All to the cell it is in: the nearest grid point, order 1.
+    Nearest,
+    /// Cloud in cell, order 2: linear between two cells.
+    Cic,
+    /// Triangular shaped cloud, order 3: quadratic over three cells.
+    #[default]
+    Tsc,
+}
+
+impl Assignment {
+    /// The order p of the B-spline: cells along an axis, and the power of the sinc that is its transform.
+    #[inline]
+    #[must_use]
+    pub fn order(&self) -> usize {
+        match self {
+            Self::Nearest => 1,
+            Self::Cic => 2,
+            Self::Tsc => 3,
+        }
+    }
+}
+
+/// Twice `spacings` rounded up to a whole number, at least 8.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "not negative; a number beyond usize becomes its largest"
+)]
+fn even_cells(spacings: f64) -> usize {
+    // A product such as 0.7 · 2 · (5/1.4) may be above the whole number it stands for by rounding.
+    let whole = (spacings * (1.0 - 1e-12)).ceil();
+    (whole as usize).saturating_mul(2).max(8)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{FrequencyAxis, Profile};
+
+    fn grid(half_y: f64, max: [f64; 2]) -> FieldGrid {
+        let window = Window {
+            x: Profile::Hann(0.7),
+            y: Profile::Box(half_y),
+            u: Profile::Hann(0.4),
+            v: Profile::Hann(0.4),
+        };
+        let axis = |max: f64| FrequencyAxis {
+            half: 10,
+            spacing: max / 10.0,
+        };
+        let slices = SliceGrid {
+            azimuths: 8,
+            rho: axis(max[0]),
+            nu: axis(max[1]),
+        };
+        FieldGrid::new(&window, &slices)
+    }
+
+    #[test]
+    fn cells_reach_the_slices_frequencies() {
+        // 12/1.4 on 2 · 0.7 is 12 spacings; 2 · 0.5 at the same frequency 8.57, so 9; 9.9 on 0.8 is 7.92, so 8.
+        let grid = grid(0.5, [12.0 / 1.4, 9.9]);
+        assert_eq!(grid.cells, [24, 18, 16, 16]);
+        assert!(grid.nyquist(1) >= 12.0 / 1.4);
+        assert_eq!(grid.bytes(), 24 * 18 * 16 * 18 * 8);
+    }
+
+    #[test]
+    fn small_grids_have_eight_cells_and_huge_ones_a_size() {
+        assert_eq!(grid(0.5, [0.1, 0.1]).cells, [8; 4]);
+        assert_eq!(grid(0.5, [1e30, 1e30]).bytes(), u64::MAX);
+    }
+
+    #[test]
+    fn the_origin_is_the_centre_of_a_cell() {
+        let grid = grid(0.5, [6.0, 11.0]);
+        let origin = grid.position(&TwoPlane::default());
+        for (axis, (n, t)) in grid.cells.into_iter().zip(origin).enumerate() {
+            assert!((t - (n / 2) as f64).abs() < f64::MIN_POSITIVE);
+            assert!(grid.center(axis, n / 2).abs() < f64::MIN_POSITIVE);
+        }
+        let ray = TwoPlane {
+            x: grid.center(0, 3),
+            y: grid.center(1, 0),
+            u: grid.center(2, 1),
+            v: grid.center(3, 7),
+        };
+        for (t, i) in grid.position(&ray).into_iter().zip([3.0, 0.0, 1.0, 7.0]) {
+            assert!((t - i).abs() < 1e-14); // rounding
+        }
+    }
+
+    #[test]
+    fn harmonics_are_those_of_a_transform() {
+        let grid = grid(0.5, [0.1, 0.1]);
+        let all: Vec<_> = (0..8).map(|i| grid.harmonic(2, i)).collect();
+        assert_eq!(all, [0, 1, 2, 3, -4, -3, -2, -1]);
+        let [x, .., v] = grid.frequency([1, 0, 0, 7]);
+        assert!((x - 1.0 / 1.4).abs() < 1e-15 && (v + 1.25).abs() < 1e-15); // rounding
+    }
+}

@@ -1,0 +1,160 @@
+//! Times the 4D real transform, or transforms a file; the other side of `tests/peers/fft4d.py`.
+//!
+//!     cargo run --release -p etendue-spectrum --example fft4d -- time 64 [ROUNDS] [THREADS]
+//!     cargo run --release -p etendue-spectrum --example fft4d -- serve 64 f32|f64 native|portable kept|fresh
+//!     cargo run --release -p etendue-spectrum --example fft4d -- file NX NY NU NV native|portable IN OUT
+//!
+//! `serve` answers each line of its input with the milliseconds of one transform, and the end of it with its peak
+//! memory in megabytes. `file` reads and writes raw little-endian f64.
+
+#![allow(clippy::print_stdout, reason = "its purpose")]
+
+use etendue_spectrum::field::{Kernels, RealFft4, real_mut};
+use rustfft::FftNum;
+use rustfft::num_complex::Complex;
+use std::io::{BufRead, Write};
+use std::time::Instant;
+
+type Failure = Box<dyn std::error::Error>;
+
+fn main() -> Result<(), Failure> {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let arguments: Vec<&str> = arguments.iter().map(String::as_str).collect();
+    match arguments[..] {
+        ["time", n, ref more @ ..] => {
+            let number = |i: usize, default| more.get(i).map_or(Ok(default), |s| s.parse());
+            time(n.parse()?, number(0, 9)?, number(1, 2)?)
+        }
+        ["serve", n, "f32", kernels, memory] => serve::<f32>(n.parse()?, kernels, memory),
+        ["serve", n, "f64", kernels, memory] => serve::<f64>(n.parse()?, kernels, memory),
+        ["file", nx, ny, nu, nv, kernels, from, to] => {
+            let shape = [nx.parse()?, ny.parse()?, nu.parse()?, nv.parse()?];
+            file(shape, kernels, from, to)
+        }
+        _ => Err("see the head of this file for the arguments".into()),
+    }
+}
+
+fn kernels(word: &str) -> Result<Kernels, Failure> {
+    match word {
+        "native" => Ok(Kernels::Native),
+        "portable" => Ok(Kernels::Portable),
+        _ => Err(format!("kernels are native or portable, not {word}").into()),
+    }
+}
+
+/// A transform with its input, n⁴ reals, and the memory it is done in.
+struct Job<T: FftNum> {
+    plan: RealFft4<T>,
+    input: Vec<T>,
+    place: Vec<Complex<T>>,
+    /// Whether each transform is done in new memory.
+    fresh: bool,
+}
+
+impl<T: FftNum> Job<T> {
+    fn new(n: usize, kernels: Kernels, fresh: bool) -> Self {
+        let plan = RealFft4::new([n; 4], kernels);
+        let value = |i: usize| (i as f64 * 0.618_033_988_749_895).fract() - 0.5;
+        let input = (0..n.pow(4)).map(|i| T::from_f64(value(i)).unwrap_or_else(T::zero));
+        Self {
+            input: input.collect(),
+            place: Vec::new(),
+            plan,
+            fresh,
+        }
+    }
+
+    /// Milliseconds of one transform: in memory that is there and filled, or new memory and filling it included.
+    fn run(&mut self) -> f64 {
+        if self.fresh {
+            self.place = Vec::new();
+        } else {
+            self.fill();
+        }
+        let start = Instant::now();
+        if self.fresh {
+            self.place = self.plan.padded(&self.input);
+        }
+        self.plan.forward(&mut self.place);
+        let seconds = start.elapsed().as_secs_f64();
+        std::hint::black_box(&self.place);
+        seconds * 1e3
+    }
+
+    fn fill(&mut self) {
+        if self.place.is_empty() {
+            self.place = self.plan.padded(&self.input);
+        }
+        let [.., n] = self.plan.shape();
+        let rows = self.place.chunks_exact_mut(self.plan.row());
+        for (row, reals) in rows.zip(self.input.chunks_exact(n)) {
+            for (l, value) in reals.iter().enumerate() {
+                *real_mut(row, l) = *value;
+            }
+        }
+    }
+}
+
+/// Peak memory of this process so far, in megabytes.
+fn peak() -> f64 {
+    let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
+    let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));
+    let kilobytes = line.and_then(|line| line.trim().trim_end_matches(" kB").parse::<f64>().ok());
+    kilobytes.unwrap_or(f64::NAN) / 1e3
+}
+
+fn time(n: usize, rounds: usize, threads: usize) -> Result<(), Failure> {
+    rayon::ThreadPoolBuilder::new()
+        .num_threads(threads)
+        .build_global()?;
+    for kernels in [Kernels::Native, Kernels::Portable] {
+        for fresh in [false, true] {
+            let mut single = Job::<f32>::new(n, kernels, fresh);
+            let mut double = Job::<f64>::new(n, kernels, fresh);
+            single.run();
+            double.run();
+            let times: Vec<[f64; 2]> = (0..rounds).map(|_| [single.run(), double.run()]).collect();
+            let [f32, f64] = [0, 1].map(|i| median(times.iter().map(|t| t[i]).collect()));
+            let memory = if fresh { "fresh" } else { "kept" };
+            println!("{n}^4 {kernels:?}, memory {memory}: f32 {f32:.1} ms, f64 {f64:.1} ms");
+        }
+    }
+    println!("peak {:.0} MB", peak());
+    Ok(())
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn serve<T: FftNum>(n: usize, word: &str, memory: &str) -> Result<(), Failure> {
+    let mut job = Job::<T>::new(n, kernels(word)?, memory == "fresh");
+    job.run();
+    for line in std::io::stdin().lock().lines() {
+        line?;
+        println!("{}", job.run());
+        std::io::stdout().flush()?;
+    }
+    println!("{}", peak());
+    Ok(())
+}
+
+fn file(shape: [usize; 4], word: &str, from: &str, to: &str) -> Result<(), Failure> {
+    let plan = RealFft4::<f64>::new(shape, kernels(word)?);
+    let bytes = std::fs::read(from)?;
+    let reals: Vec<f64> = bytes
+        .as_chunks()
+        .0
+        .iter()
+        .map(|eight| f64::from_le_bytes(*eight))
+        .collect();
+    let mut data = plan.padded(&reals);
+    plan.forward(&mut data);
+    let numbers = data.iter().flat_map(|z| [z.re, z.im]);
+    Ok(std::fs::write(
+        to,
+        numbers.flat_map(f64::to_le_bytes).collect::<Vec<u8>>(),
+    )?)
+}

@@ -1,0 +1,22 @@
+//! The windowed light field itself on a 4D grid, its transform, and the full radial spectrum.
+//!
+//! The slices need no grid and do not alias. A grid is for what needs all four dimensions at once: the field as a file, and the power
+//! over (|Ωxy|, |Ωuv|), both azimuths averaged. [`measure_field`] traces the photons of one plane onto a
+//! [`FieldGrid`](etendue_field::FieldGrid); [`FieldSpectrum::aliasing`] says what the grid costs.
+
+mod aliasing;
+mod bins;
+mod cells;
+mod cross;
+mod fft;
+mod measure;
+mod spectrum;
+mod spline;
+
+pub use aliasing::Aliasing;
+pub use bins::{RadialBins, full_radial_of};
+pub use cells::{FieldCells, FieldTransform};
+pub use cross::FullRadial;
+pub use fft::{Kernels, RealFft4, real, real_mut};
+pub use measure::{FieldMeasurement, FieldOptions, measure_field};
+pub use spectrum::FieldSpectrum;

@@ -1,0 +1,123 @@
+use super::spectrum::FieldSpectrum;
+use super::spline::mean_square_alias;
+use etendue_field::{Complex, FrequencyAxis, Slices};
+
+/// How far a 4D spectrum is from the alias-free slices of the same photons, where they share frequencies.
+///
+/// All relative: ‖·‖ over the shared frequencies, divided by that of the slices.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Aliasing {
+    /// Frequencies compared, one of each conjugate pair.
+    pub compared: usize,
+    /// The difference. The slices' own error is part of it: below 2·10⁻⁷ Σw at each frequency.
+    pub difference: f64,
+    /// What aliasing makes of it if the spectrum beyond Nyquist is as strong as in the outermost quarter inside. No bound: right
+    /// for white noise, too much where the spectrum falls off, too little where it comes back.
+    pub expected: f64,
+    /// The bound of [`FieldSpectrum::alias_bound`]: holds for any photons, and is far away from most.
+    pub bound: f64,
+}
+
+/// A frequency that slices and spectrum share.
+struct Shared {
+    harmonics: [isize; 4],
+    /// Cycles per cell along the two axes of the line, 0 to ½.
+    f: [f64; 2],
+    slice: Complex,
+}
+
+impl FieldSpectrum {
+    /// Compares with the slices of the same photons at all shared frequencies up to `share` of Nyquist (excluded).
+    ///
+    /// Ωy = Ωv = 0 is azimuth 0, and Ωx = Ωu = 0 azimuth π/2 when the number of azimuths is even; slices finer than
+    /// the natural spacing share every so many frequencies. `None` when nothing is shared or no light is there.
+    ///
+    /// On these lines only the two axes that a line runs along alias; elsewhere all four do.
+    #[must_use]
+    pub fn aliasing(&self, slices: &Slices, share: f64) -> Option<Aliasing> {
+        let all = self.shared(slices);
+        let (mut compared, mut norm) = (0, 0.0);
+        let [mut difference, mut expected, mut bound] = [0.0; 3];
+        for line in &all {
+            let beyond = edge_powers(line);
+            let inside = |s: &&Shared| s.f.iter().all(|f| *f < 0.5 * share);
+            for Shared {
+                harmonics,
+                f,
+                slice,
+            } in line.iter().filter(inside)
+            {
+                compared += 1;
+                norm += slice.norm_sqr();
+                difference += (self.at(*harmonics) - slice).norm_sqr();
+                bound += self.alias_bound(*harmonics).powi(2);
+                let [a, b] = f.map(|f| mean_square_alias(self.assignment, f));
+                let both = a * b * beyond[0].max(beyond[1]);
+                expected += a * beyond[0] + b * beyond[1] + both;
+            }
+        }
+        let relative = |square: f64| (square / norm).sqrt();
+        (norm > 0.0).then(|| Aliasing {
+            compared,
+            difference: relative(difference),
+            expected: relative(expected),
+            bound: relative(bound),
+        })
+    }
+
+    /// The shared frequencies of each line, up to and with Nyquist.
+    fn shared(&self, slices: &Slices) -> Vec<Vec<Shared>> {
+        let grid = &slices.grid;
+        let mut lines = vec![(0, [0, 2])];
+        if grid.azimuths.is_multiple_of(2) {
+            lines.push((grid.azimuths / 2, [1, 3]));
+        }
+        let line = |(k, [a, b]): (usize, [usize; 2])| {
+            let mut shared = Vec::new();
+            for m in 0..=grid.rho.half {
+                for n in 0..grid.nu.count() {
+                    let along = [
+                        self.harmonic_at(a, &grid.rho, grid.rho.half + m),
+                        self.harmonic_at(b, &grid.nu, n),
+                    ];
+                    let [Some(i), Some(j)] = along else { continue };
+                    if !grid.is_independent(m, n) {
+                        continue;
+                    }
+                    let mut harmonics = [0; 4];
+                    (harmonics[a], harmonics[b]) = (i, j);
+                    let cycles =
+                        |axis: usize, i: isize| i.abs() as f64 / self.grid.cells[axis] as f64;
+                    shared.push(Shared {
+                        harmonics,
+                        f: [cycles(a, i), cycles(b, j)],
+                        slice: slices.half[[k, m, n]],
+                    });
+                }
+            }
+            shared
+        };
+        lines.into_iter().map(line).collect()
+    }
+
+    /// Which multiple of the spacing along `axis` the frequency at `index` of `frequencies` is, if it is one up to Nyquist.
+    #[expect(clippy::cast_possible_truncation, reason = "below the number of cells")]
+    fn harmonic_at(&self, axis: usize, frequencies: &FrequencyAxis, index: usize) -> Option<isize> {
+        let exact = frequencies.value(index) / self.grid.spacing(axis);
+        let whole = exact.round();
+        let found =
+            (exact - whole).abs() < 1e-9 && 2.0 * whole.abs() <= self.grid.cells[axis] as f64;
+        found.then_some(whole as isize)
+    }
+}
+
+/// The mean power of a line in the outermost quarter along each of its axes: a stand-in for that beyond Nyquist.
+fn edge_powers(line: &[Shared]) -> [f64; 2] {
+    [0, 1].map(|axis| {
+        let outer = line.iter().filter(|s| s.f[axis] >= 0.375);
+        let (count, sum) = outer.fold((0, 0.0), |(count, sum), s| {
+            (count + 1, sum + s.slice.norm_sqr())
+        });
+        sum / f64::from(count.max(1))
+    })
+}

@@ -1,0 +1,160 @@
+use super::fft::{Kernels, RealFft4, real, real_mut};
+use super::spectrum::FieldSpectrum;
+use super::spline::{taps, transform};
+use etendue_field::{Assignment, Complex, FieldGrid, TwoPlane};
+use ndarray::Array4;
+use rayon::prelude::*;
+
+/// The plan that takes weighted rays to a 4D grid and the grid to its spectrum.
+///
+/// Its transform uses [`Kernels::Portable`], so a spectrum has the same bits on every processor, as the slices
+/// have; [`Kernels::Native`] would save a third of a transform's time.
+#[derive(Debug)]
+pub struct FieldTransform {
+    grid: FieldGrid,
+    assignment: Assignment,
+    fft: RealFft4<f64>,
+    /// What each axis is multiplied by, at each index of the transform.
+    factors: [Vec<f64>; 4],
+}
+
+impl FieldTransform {
+    /// The plan for `grid`.
+    #[must_use]
+    pub fn new(grid: FieldGrid, assignment: Assignment) -> Self {
+        let factor = |axis: usize, i: usize| {
+            let harmonic = grid.harmonic(axis, i);
+            // The origin is cell n/2, half a period from cell 0, to which the transform refers its phases.
+            let sign = if harmonic % 2 == 0 { 1.0 } else { -1.0 };
+            sign / transform(assignment, harmonic as f64 / grid.cells[axis] as f64)
+        };
+        let axes = [0, 1, 2, 3];
+        Self {
+            grid,
+            assignment,
+            fft: RealFft4::new(grid.cells, Kernels::Portable),
+            factors: axes.map(|axis| (0..grid.cells[axis]).map(|i| factor(axis, i)).collect()),
+        }
+    }
+
+    /// An empty grid.
+    #[must_use]
+    pub fn cells(&self) -> FieldCells {
+        FieldCells {
+            grid: self.grid,
+            assignment: self.assignment,
+            row: self.fft.row(),
+            data: vec![Complex::ZERO; self.fft.size()],
+        }
+    }
+
+    /// The spectrum of what is on the grid, in its memory.
+    ///
+    /// # Panics
+    ///
+    /// When `cells` is of another plan.
+    #[must_use]
+    pub fn spectrum(&self, cells: FieldCells) -> FieldSpectrum {
+        assert_eq!((cells.grid, cells.assignment), (self.grid, self.assignment));
+        let mut data = cells.data;
+        self.fft.forward(&mut data);
+        self.compensate(&mut data);
+        let [nx, ny, nu, _] = self.grid.cells;
+        let shape = (nx, ny, nu, self.fft.row());
+        let values = Array4::from_shape_vec(shape, data).expect("the grid's own size");
+        FieldSpectrum {
+            grid: self.grid,
+            assignment: self.assignment,
+            values,
+        }
+    }
+
+    /// Divides by the transform of the spline and moves the origin.
+    fn compensate(&self, data: &mut [Complex]) {
+        let [_, ny, nu, _] = self.grid.cells;
+        let row = self.fft.row();
+        let [fx, fy, fu, fv] = &self.factors;
+        data.par_chunks_exact_mut(row)
+            .enumerate()
+            .with_min_len(64)
+            .for_each(|(i, values)| {
+                let factor = fx[i / (ny * nu)] * fy[i / nu % ny] * fu[i % nu];
+                for (value, fv) in values.iter_mut().zip(fv) {
+                    *value *= factor * fv;
+                }
+            });
+    }
+}
+
+/// A sum of weighted rays on a 4D grid.
+///
+/// Window and radiance weight are the caller's. Cells hold Σ w · share, f64, added in the order of the rays.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldCells {
+    grid: FieldGrid,
+    assignment: Assignment,
+    /// Complex numbers of a row.
+    row: usize,
+    /// Laid out for [`RealFft4`].
+    data: Vec<Complex>,
+}
+
+impl FieldCells {
+    /// Adds a ray, which must be inside the box.
+    #[inline]
+    pub fn deposit(&mut self, ray: &TwoPlane, weight: f64) {
+        match self.assignment {
+            Assignment::Nearest => self.share::<1>(ray, weight),
+            Assignment::Cic => self.share::<2>(ray, weight),
+            Assignment::Tsc => self.share::<3>(ray, weight),
+        }
+    }
+
+    #[inline]
+    fn share<const P: usize>(&mut self, ray: &TwoPlane, weight: f64) {
+        let [nx, ny, nu, nv] = self.grid.cells;
+        let [x, y, u, v] = self.grid.position(ray);
+        let (xs, wx) = taps::<P>(x, nx);
+        let (ys, wy) = taps::<P>(y, ny);
+        let (us, wu) = taps::<P>(u, nu);
+        let (vs, wv) = taps::<P>(v, nv);
+        for (x, wx) in xs.iter().zip(wx) {
+            for (y, wy) in ys.iter().zip(wy) {
+                for (u, wu) in us.iter().zip(wu) {
+                    let start = ((x * ny + y) * nu + u) * self.row;
+                    let row = &mut self.data[start..start + self.row];
+                    let weight = weight * wx * wy * wu;
+                    for (v, wv) in vs.iter().zip(wv) {
+                        *real_mut(row, *v) += weight * wv;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Adds another sum, cell by cell.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.data
+            .par_iter_mut()
+            .zip(&other.data)
+            .with_min_len(1 << 14)
+            .for_each(|(a, b)| *a += b);
+    }
+
+    /// The light field: Σ w · share / (volume of a cell), [x, y, u, v], all ascending, at the cells' centres.
+    #[must_use]
+    pub fn field(&self) -> Array4<f64> {
+        let volume = self.grid.cell_volume();
+        let mut field = Array4::zeros(self.grid.cells);
+        for (mut out, row) in field
+            .rows_mut()
+            .into_iter()
+            .zip(self.data.chunks_exact(self.row))
+        {
+            for (l, out) in out.iter_mut().enumerate() {
+                *out = real(row, l) / volume;
+            }
+        }
+        field
+    }
+}

@@ -1,0 +1,217 @@
+use super::bins::RadialBins;
+use super::cells::{FieldCells, FieldTransform};
+use super::cross::{FullRadial, GroupPower, full_radial};
+use super::spectrum::FieldSpectrum;
+use crate::estimate::TooFewBatches;
+use etendue_field::{Assignment, Crossing, FieldGrid, PhotonSource, PlaneTally, VirtualPlane};
+use ndarray::Array4;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// The least groups a jackknife can do with.
+const LEAST: usize = 3;
+
+/// How a light field is put on a 4D grid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct FieldOptions {
+    /// How a ray is shared among cells.
+    pub assignment: Assignment,
+    /// Independent groups of batches for the errors: at least 3, at most as many as there are batches.
+    pub groups: usize,
+    /// Keep the grids of all groups. Else photons are traced twice: once for the sum, once for the groups.
+    /// The result is the same to the bit.
+    pub keep: bool,
+}
+
+impl Default for FieldOptions {
+    /// Triangular shaped clouds, 16 groups, not kept.
+    fn default() -> Self {
+        Self {
+            assignment: Assignment::Tsc,
+            groups: 16,
+            keep: false,
+        }
+    }
+}
+
+impl FieldOptions {
+    /// Bytes that [`measure_field`] needs on `threads` threads: the field, its spectrum, and a grid for each group
+    /// at work or kept. The caller's to compare with the memory there is, before measuring.
+    #[must_use]
+    pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
+        let groups = self.groups.max(LEAST);
+        let grids = if self.keep {
+            groups
+        } else {
+            groups.min(threads)
+        };
+        grid.bytes().saturating_mul(2 + grids as u64)
+    }
+}
+
+/// The light field of a plane on its 4D grid, and what was read off it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldMeasurement {
+    /// The grid.
+    pub grid: FieldGrid,
+    /// Photons that crossed the plane.
+    pub tally: PlaneTally,
+    /// The mean windowed light field, [x, y, u, v] ascending, at the cells' centres, smoothed by the assignment's
+    /// spline. Unit: that of L W, W m⁻² sr⁻¹.
+    pub field: Array4<f64>,
+    /// Its spectrum, the spline divided out.
+    pub spectrum: FieldSpectrum,
+    /// Its full radial spectrum.
+    pub full_radial: FullRadial,
+}
+
+/// Measures the light field of plane number `index` of `source` on the grid [`FieldGrid::new`] asks for.
+///
+/// The batches are those [`measure`](crate::measure) takes, and so are the photons: field and spectrum are plain
+/// means over batches, as [`estimate::slices`](crate::estimate::slices) are. The i-th batch that emits anything
+/// belongs to group i mod R. A group is the sequential work of one thread and groups are summed in order, so the
+/// result is the same to the bit on any number of threads.
+///
+/// One plane at a time: see [`FieldOptions::bytes`]. `progress` is told the photons as they are traced, twice unless
+/// groups are kept.
+///
+/// # Errors
+///
+/// With fewer than three batches that emit anything.
+pub fn measure_field(
+    source: &dyn PhotonSource,
+    index: usize,
+    plane: &VirtualPlane,
+    batches: Range<u32>,
+    options: &FieldOptions,
+    progress: &(dyn Fn(u64) + Sync),
+) -> Result<FieldMeasurement, TooFewBatches> {
+    let batches: Vec<u32> = batches.filter(|b| source.emitted(*b) > 0).collect();
+    if batches.len() < LEAST {
+        return Err(TooFewBatches {
+            have: batches.len(),
+            need: LEAST,
+        });
+    }
+    let grid = FieldGrid::new(&plane.window, &plane.grid);
+    let run = Run {
+        source,
+        index,
+        plane,
+        groups: options.groups.clamp(LEAST, batches.len()),
+        batches,
+        transform: FieldTransform::new(grid, options.assignment),
+        progress,
+    };
+    let (sum, tally, kept) = run.sum(options.keep);
+    let field = sum.field();
+    let spectrum = run.transform.spectrum(sum);
+    let bins = RadialBins::new(&grid);
+    Ok(FieldMeasurement {
+        full_radial: full_radial(&bins, &run.powers(&bins, &spectrum, kept)),
+        grid,
+        tally,
+        field,
+        spectrum,
+    })
+}
+
+/// What all groups need to know.
+struct Run<'a> {
+    source: &'a dyn PhotonSource,
+    index: usize,
+    plane: &'a VirtualPlane,
+    batches: Vec<u32>,
+    groups: usize,
+    transform: FieldTransform,
+    progress: &'a (dyn Fn(u64) + Sync),
+}
+
+impl Run<'_> {
+    /// The sum of all groups, and the groups if they are to be kept.
+    fn sum(&self, keep: bool) -> (FieldCells, PlaneTally, Vec<FieldCells>) {
+        let mut sum = self.transform.cells();
+        let mut tally = PlaneTally::default();
+        let mut kept = Vec::new();
+        for wave in self.waves() {
+            let groups: Vec<_> = wave
+                .into_par_iter()
+                .map(|group| self.trace(group))
+                .collect();
+            for (cells, group_tally) in groups {
+                sum.add(&cells);
+                tally.add(&group_tally);
+                if keep {
+                    kept.push(cells);
+                }
+            }
+        }
+        (sum, tally, kept)
+    }
+
+    /// What each group says of the power, `all` being the spectrum of their sum.
+    fn powers(
+        &self,
+        bins: &RadialBins,
+        all: &FieldSpectrum,
+        kept: Vec<FieldCells>,
+    ) -> Vec<GroupPower> {
+        let mut kept = kept.into_iter();
+        let mut powers = Vec::new();
+        for wave in self.waves() {
+            let groups: Vec<_> = wave.map(|group| (group, kept.next())).collect();
+            powers.par_extend(groups.into_par_iter().map(|(group, cells)| {
+                let cells = cells.unwrap_or_else(|| self.trace(group).0);
+                let share = self.members(group).len() as f64 / self.batches.len() as f64;
+                GroupPower::new(bins, share, &self.transform.spectrum(cells), all)
+            }));
+        }
+        powers
+    }
+
+    /// Groups at work at the same time, as many as threads: no more grids than that are in memory.
+    fn waves(&self) -> impl Iterator<Item = Range<usize>> {
+        let threads = rayon::current_num_threads();
+        let starts = (0..self.groups).step_by(threads);
+        starts.map(move |start| start..(start + threads).min(self.groups))
+    }
+
+    /// The batches of a group.
+    fn members(&self, group: usize) -> impl ExactSizeIterator<Item = u32> {
+        self.batches
+            .iter()
+            .skip(group)
+            .step_by(self.groups)
+            .copied()
+    }
+
+    /// The share of a group in the field.
+    fn trace(&self, group: usize) -> (FieldCells, PlaneTally) {
+        let mut cells = self.transform.cells();
+        let mut tally = PlaneTally::default();
+        let VirtualPlane {
+            window, quantity, ..
+        } = self.plane;
+        for batch in self.members(group) {
+            let scale = 1.0 / (self.source.emitted(batch) as f64 * self.batches.len() as f64);
+            let record = &mut |plane: usize, crossings: &[Crossing]| {
+                if plane != self.index {
+                    return;
+                }
+                for Crossing { ray, weight } in crossings {
+                    tally.crossed += 1;
+                    if !window.contains(ray) {
+                        tally.outside += 1;
+                        continue;
+                    }
+                    tally.inside += 1;
+                    let weight = weight * window.value(ray) * quantity.factor(ray);
+                    cells.deposit(ray, scale * weight);
+                }
+            };
+            self.source
+                .emit(batch, record, &|photons| (self.progress)(photons));
+        }
+        (cells, tally)
+    }
+}

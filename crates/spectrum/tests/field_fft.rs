@@ -1,0 +1,156 @@
+//! The 4D transform against the plain sum.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod common;
+
+use common::Random;
+use etendue_field::Complex;
+use etendue_spectrum::field::{Kernels, RealFft4, real, real_mut};
+use rustfft::FftNum;
+use rustfft::num_complex::Complex as Number;
+use std::f64::consts::TAU;
+
+const BOTH: [Kernels; 2] = [Kernels::Portable, Kernels::Native];
+
+/// Random reals laid out for `plan`.
+fn field<T: FftNum>(plan: &RealFft4<T>, seed: u64) -> Vec<Number<T>> {
+    let mut random = Random(seed);
+    // What a row leaves over is not to be read: it is filled, too.
+    let wild = Number::new(T::from_f64(1e9).unwrap(), T::from_f64(-1e9).unwrap());
+    let mut data = vec![wild; plan.size()];
+    for row in data.chunks_exact_mut(plan.row()) {
+        for l in 0..plan.shape()[3] {
+            *real_mut(row, l) = T::from_f64(random.within(1.0)).unwrap();
+        }
+    }
+    data
+}
+
+fn indices([n0, n1, n2, n3]: [usize; 4]) -> impl Iterator<Item = [usize; 4]> {
+    let all = move |i| [i / (n1 * n2 * n3), i / (n2 * n3) % n1, i / n3 % n2, i % n3];
+    (0..n0 * n1 * n2 * n3).map(all)
+}
+
+/// The plain sum at `frequency`.
+fn plain(shape: [usize; 4], reals: &[f64], frequency: [usize; 4]) -> Complex {
+    let term = |(z, f): ([usize; 4], &f64)| {
+        let cycles =
+            |axis: usize| (z[axis] * frequency[axis] % shape[axis]) as f64 / shape[axis] as f64;
+        Complex::from_polar(*f, -TAU * (0..4).map(cycles).sum::<f64>())
+    };
+    indices(shape).zip(reals).map(term).sum()
+}
+
+fn reals<T: FftNum + Into<f64>>(plan: &RealFft4<T>, data: &[Number<T>]) -> Vec<f64> {
+    let rows = data.chunks_exact(plan.row());
+    rows.flat_map(|row| (0..plan.shape()[3]).map(|l| real(row, l).into()))
+        .collect()
+}
+
+/// The largest difference between the transform and the plain sum, relative to the root mean square of the latter.
+fn error<T: FftNum + Into<f64>>(shape: [usize; 4], kernels: Kernels) -> f64 {
+    let plan = RealFft4::<T>::new(shape, kernels);
+    let mut data = field(&plan, 7);
+    let reals = reals(&plan, &data);
+    plan.forward(&mut data);
+    let half = [shape[0], shape[1], shape[2], plan.row()];
+    let (mut largest, mut square) = (0.0_f64, 0.0);
+    for (frequency, found) in indices(half).zip(&data) {
+        let expected = plain(shape, &reals, frequency);
+        let found = Complex::new(found.re.into(), found.im.into());
+        largest = largest.max((found - expected).norm());
+        square += expected.norm_sqr();
+    }
+    largest / (square / plan.size() as f64).sqrt()
+}
+
+const SMALL: [[usize; 4]; 9] = [
+    [1, 1, 1, 1],
+    [2, 3, 4, 5],
+    [5, 4, 3, 2],
+    [3, 3, 3, 3],
+    [4, 4, 4, 4],
+    [1, 2, 1, 7],
+    [7, 1, 3, 6],
+    [3, 5, 17, 1],
+    [8, 6, 2, 10],
+];
+
+#[test]
+fn the_transform_is_the_plain_sum() {
+    for kernels in BOTH {
+        for shape in SMALL {
+            let double = error::<f64>(shape, kernels);
+            assert!(double < 1e-14, "{shape:?}: {double}"); // rounding of sums of 960 terms
+            let single = error::<f32>(shape, kernels);
+            assert!(single < 3e-6, "{shape:?}: {single}"); // the same, f32
+        }
+    }
+}
+
+#[test]
+fn arrays_are_padded_by_rows() {
+    for shape in SMALL {
+        let plan = RealFft4::<f64>::new(shape, Kernels::Portable);
+        let mut random = Random(6);
+        let count = shape.iter().product();
+        let values: Vec<f64> = (0..count).map(|_| random.unit()).collect();
+        assert_eq!(reals(&plan, &plan.padded(&values)), values);
+    }
+}
+
+/// Bands of the first axis and blocks of columns, with some left over.
+#[test]
+fn large_shapes_are_put_together_right() {
+    let shape = [6, 10, 9, 14];
+    let plan = RealFft4::<f64>::new(shape, Kernels::Portable);
+    let mut data = field(&plan, 8);
+    let reals = reals(&plan, &data);
+    plan.forward(&mut data);
+    let half = [shape[0], shape[1], shape[2], plan.row()];
+    let scale = (reals.len() as f64 / 3.0).sqrt(); // root mean square of F
+    for (frequency, found) in indices(half).zip(&data).step_by(37) {
+        let off = (found - plain(shape, &reals, frequency)).norm();
+        assert!(off < 1e-13 * scale, "{frequency:?}: {off}"); // rounding of sums of 7560 terms
+    }
+}
+
+#[test]
+fn power_is_the_sum_of_squares() {
+    for (shape, kernels) in [([12, 10, 9, 15], BOTH[0]), ([16, 12, 10, 20], BOTH[1])] {
+        let plan = RealFft4::<f64>::new(shape, kernels);
+        let mut data = field(&plan, 9);
+        let reals = reals(&plan, &data);
+        plan.forward(&mut data);
+        let weight = |m: usize| {
+            if m == 0 || 2 * m == shape[3] {
+                1.0
+            } else {
+                2.0
+            }
+        };
+        let powers = data.iter().enumerate();
+        let power: f64 = powers
+            .map(|(i, z)| weight(i % plan.row()) * z.norm_sqr())
+            .sum();
+        let squares: f64 = reals.iter().map(|f| f * f).sum();
+        assert!((power / (squares * reals.len() as f64) - 1.0).abs() < 1e-13); // rounding
+    }
+}
+
+#[test]
+fn any_number_of_threads_gives_the_same_bits() {
+    for kernels in BOTH {
+        let plan = RealFft4::<f64>::new([10, 12, 9, 16], kernels);
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let mut data = field(&plan, 10);
+            pool.build().unwrap().install(|| plan.forward(&mut data));
+            data
+        };
+        let one = on(1);
+        assert_eq!(one, on(2));
+        assert_eq!(one, on(5));
+    }
+}
