@@ -4,7 +4,7 @@ use crate::report::Section;
 use crate::scenes::{SUITE, compared, named, predicted, referred, traced, traced_backwards};
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Verdict, sidak};
 use etendue_scene::Scene;
-use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A scene of the suite, run.
 struct Outcome {
@@ -311,6 +311,7 @@ fn corner(x: f64, y: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn a_light_all_around_fills_the_hemisphere() {
