@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Validate a scene; print the chain read off it and the class of each plane; with --draw, draw it.
     Check(CheckArgs),
+    /// Write a scene for another program, which then can be asked for the same light field.
+    Export(ExportArgs),
 }
 
 #[derive(Debug, Args)]
@@ -210,11 +212,38 @@ pub(crate) struct SceneArgs {
     pub(crate) set: Vec<(String, String)>,
 }
 
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  etendue export --to mitsuba scenes/fig9b.ron --out out/mitsuba
+  python tests/peers/mitsuba_light_field.py --help         records the same light field with Mitsuba and compares spectra")]
+pub(crate) struct ExportArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// The program
+    #[arg(long, value_name = "PROGRAM")]
+    pub(crate) to: Program,
+
+    /// Folder for its files [default: out/NAME-mitsuba]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+}
+
+/// What `--to` knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Program {
+    /// Mitsuba 3: scene.xml, PLY files, and planes.json
+    Mitsuba,
+}
+
 /// What `--save` keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Save {
     /// Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each
     Photons,
+    /// The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz; takes two more passes
+    /// over the photons for each plane
+    Field,
 }
 
 /// What `--expect` may expect.

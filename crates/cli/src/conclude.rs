@@ -3,7 +3,7 @@ use crate::failure::Failure;
 use crate::method::Method;
 use crate::results::Results;
 use crate::summary::{Stopwatch, Summary};
-use crate::{files, photons, pictures, progress, table};
+use crate::{field, files, photons, pictures, progress, table};
 use etendue_compare::{PlaneComparison, Prediction, Verdict, compare, sidak};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -39,7 +39,7 @@ pub(crate) fn conclude(
     watch.lap("compare");
     stage.set_message("writing results");
     let summary = Summary::new(case, &planes);
-    let folder = written(case, ending.save, results, &summary, &planes, watch)?;
+    let folder = written(case, ending, results, &summary, &planes, watch)?;
     stage.finish_and_clear();
     if !ending.quiet {
         table::print(&summary, &folder);
@@ -66,7 +66,7 @@ fn compared(case: &Case) -> Result<Vec<PlaneComparison>, Failure> {
 /// Writes everything; the summary last.
 fn written(
     case: &Case,
-    save: &[Save],
+    ending: &Ending<'_>,
     mut results: Results,
     summary: &Summary,
     planes: &[PlaneComparison],
@@ -78,8 +78,11 @@ fn written(
         pictures::plane(&mut results, summary, prediction, plane)?;
     }
     pictures::path(&mut results, summary, &case.scene, planes)?;
-    if save.contains(&Save::Photons) {
+    if ending.save.contains(&Save::Photons) {
         photons::save(&mut results, case)?;
+    }
+    if ending.save.contains(&Save::Field) {
+        field::save(&mut results, case, ending.quiet)?;
     }
     watch.lap("write");
     results.write_unlisted("timing.json", &watch.json(summary.photons))?;

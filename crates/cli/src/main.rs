@@ -9,7 +9,9 @@ mod check;
 mod compare;
 mod conclude;
 mod drawing;
+mod export;
 mod failure;
+mod field;
 mod files;
 mod load;
 mod machine;
@@ -41,6 +43,7 @@ fn main() -> ExitCode {
         Command::Predict(args) => predict::predict(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
+        Command::Export(args) => export::export(&args),
     };
     match outcome {
         Ok(code) => ExitCode::from(code),

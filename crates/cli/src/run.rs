@@ -1,12 +1,12 @@
-use crate::args::RunArgs;
+use crate::args::{RunArgs, Save};
 use crate::conclude::{Case, Ending, conclude};
 use crate::failure::Failure;
-use crate::load;
 use crate::measure::measured;
 use crate::predict::predicted;
 use crate::results::{Results, SUMMARY};
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
+use crate::{field, load};
 use etendue_scene::Scene;
 use std::path::Path;
 
@@ -23,6 +23,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 
 fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
+    if args.save.contains(&Save::Field) {
+        field::check_memory(&scene)?;
+    }
     let method = args.photons.method;
     let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;
     watch.lap("trace");

@@ -112,7 +112,10 @@ fn detectable(parameter: &ParameterReport) -> String {
     if parameter.scene == 0.0 {
         format!("{:.1e}", parameter.detectable)
     } else {
-        format!("{:.2} %", 100.0 * (parameter.detectable / parameter.scene).abs())
+        format!(
+            "{:.2} %",
+            100.0 * (parameter.detectable / parameter.scene).abs()
+        )
     }
 }
 

@@ -70,10 +70,12 @@ impl Resolver<'_> {
         self.distinct(&stops);
         let nearest = |stop: &Stop<'_>| length - stop.extent[1];
         let back = stops.iter().map(nearest).filter(|gap| *gap > 0.0);
+        // Light that leaves a mesh is not measured.
+        let flat = surfaces.iter().any(|s| file.path.visits.contains(&s.name));
         let path = CentralRay {
             frame: checked,
             length,
-            back: back.fold(length, f64::min),
+            back: if flat { back.fold(length, f64::min) } else { 0.0 },
         };
         let planes = self.planes(&file, &path, &stops);
         self.memory(&planes, file.run.batches, memory);
