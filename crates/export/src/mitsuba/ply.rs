@@ -1,0 +1,62 @@
+//! Meshes as binary PLY files (Turk 1994).
+
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// A mesh; corners with the same coordinates become one vertex.
+pub(super) fn ply(triangles: &[[DVec3; 3]]) -> Vec<u8> {
+    let (vertices, faces) = indexed(triangles);
+    let header = format!(
+        "ply\nformat binary_little_endian 1.0\n\
+         element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
+        vertices.len(),
+        faces.len()
+    );
+    let mut bytes = header.into_bytes();
+    for vertex in vertices {
+        bytes.extend(vertex.to_array().map(f64::to_le_bytes).as_flattened());
+    }
+    for face in faces {
+        bytes.push(3);
+        bytes.extend(face.map(u32::to_le_bytes).as_flattened());
+    }
+    bytes
+}
+
+/// Vertices in the order in which they are first met, and the triangles over them.
+fn indexed(triangles: &[[DVec3; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+    let (mut vertices, mut next) = (Vec::new(), 0);
+    let mut numbers = HashMap::new();
+    let mut number = |corner: DVec3| {
+        let bits = corner.to_array().map(f64::to_bits);
+        *numbers.entry(bits).or_insert_with(|| {
+            vertices.push(corner);
+            next += 1;
+            next - 1
+        })
+    };
+    let faces = triangles.iter().map(|t| t.map(&mut number)).collect();
+    (vertices, faces)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shared_corners_are_written_once_and_every_bit_is_kept() {
+        let [a, b, c, d] = [0.1, 1.0 / 3.0, 1e-9, -2.5e7].map(|t| DVec3::new(t, 1.0 - t, 0.2 * t));
+        let bytes = ply(&[[a, b, c], [c, b, d]]);
+        let mark: &[u8] = b"end_header\n";
+        let start = bytes.windows(mark.len()).position(|w| w == mark).unwrap() + mark.len();
+        let (vertices, faces) = bytes[start..].split_at(4 * 24);
+        let numbers = vertices
+            .chunks(8)
+            .map(|n| f64::from_le_bytes(n.try_into().unwrap()));
+        let written = [a, b, c, d].map(|p| p.to_array());
+        assert_eq!(numbers.collect::<Vec<f64>>(), written.as_flattened());
+        let face = |n: [u8; 3]| [3, n[0], 0, 0, 0, n[1], 0, 0, 0, n[2], 0, 0, 0];
+        assert_eq!(faces, [face([0, 1, 2]), face([2, 1, 3])].as_flattened());
+    }
+}
