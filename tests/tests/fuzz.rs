@@ -1,12 +1,21 @@
 //! Mutated scene files: whatever is in the file, the answer is a scene or a fault, never a panic.
 
 use etendue_compare::{Prediction, compare, sidak};
+use etendue_field::Mask;
 use etendue_field::random::{self, Stream};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
 
-const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
+/// A scene of each kind of light, blockers and planes; the first is fuzzed most.
+const SCENES: [&str; 6] = [
+    include_str!("../../scenes/fig9b.ron"),
+    include_str!("../../scenes/disc_light.ron"),
+    include_str!("../../scenes/fig4_point.ron"),
+    include_str!("../../scenes/fig4_spot.ron"),
+    include_str!("../../scenes/two_layers.ron"),
+    include_str!("../../scenes/mesh_blocker.ron"),
+];
 
 /// Numbers and words that break things.
 const TOKENS: [&str; 24] = [
@@ -53,7 +62,8 @@ impl Dice {
 /// The scene file with one to three tokens replaced, removed or doubled, or cut short.
 fn mutated(index: u64) -> String {
     let mut dice = Dice { index, block: 0 };
-    let body: String = FIG9B
+    let scene = SCENES[dice.below(2 * SCENES.len()).saturating_sub(SCENES.len())];
+    let body: String = scene
         .lines()
         .map(|line| line.split("//").next().unwrap_or_default())
         .collect();
@@ -126,8 +136,15 @@ fn make_small(scene: &mut Scene) {
         plane.grid.nu.half = plane.grid.nu.half.min(3);
     }
     for layer in &mut scene.blockers {
-        layer.rectangles.truncate(20);
+        if let Mask::Opaque { shapes, .. } = &mut layer.mask {
+            shapes.truncate(20);
+        }
     }
+    for mesh in &mut scene.meshes {
+        mesh.triangles.truncate(200);
+    }
+    // A receiver's prediction takes seconds, whatever the frequencies.
+    scene.planes.retain(|plane| plane.reflections == 0);
 }
 
 fn whole_run(scene: &Scene) {

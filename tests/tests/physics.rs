@@ -49,7 +49,7 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
 #[test]
 fn other_scenes_agree() {
     let fin = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),
-                 (name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
+                 Rectangle(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
     let two_layers = r#"JitteredSquares(name: "more", center: (0.02, 0, 1.4), count: (6, 6), pitch: 0.2, fill: 0.4),
         JitteredSquares("#;
     let floor = r#"(name: "floor", center: (0, 0, 2), size: (6, 6), albedo: 0.5),"#;
@@ -89,13 +89,15 @@ fn other_scenes_agree() {
             "millimetres",
             &[
                 ("size: (0.2, 0.2)", "size: (2e-4, 2e-4)"),
-                ("pitch: 0.1", "pitch: 1e-4"),
+                ("pitch: 0.2", "pitch: 2e-4"),
                 (
                     "(0, 0, 1),\n            count",
                     "(0, 0, 1e-3),\n            count",
                 ),
                 ("center: (0, 0, 2)", "center: (0, 0, 2e-3)"),
                 ("x: Hann(0.5)", "x: Hann(5e-4)"),
+                ("x: Hann(1.5)", "x: Hann(1.5e-3)"),
+                ("rho: (max: 12)", "rho: (max: 12e3)"),
                 ("rho: (max: 16)", "rho: (max: 16e3)"),
                 ("nu: (max: 32)", "nu: (max: 32)"),
             ],
@@ -125,10 +127,16 @@ fn other_scenes_agree() {
 /// A prediction that forgets the surface beside the ray is rejected behind it, and only there.
 #[test]
 fn a_forgotten_surface_is_noticed() {
-    let fin = r#"surfaces: [(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
+    let fin = r#"surfaces: [Rectangle(name: "fin", center: (0.25, 0, 1.5), size: (0.3, 0.3)),"#;
     let verdicts = verdicts(&scene(&[("surfaces: [", fin)]), &scene(&[]));
     assert_eq!(
         verdicts,
-        [Verdict::Pass, Verdict::Pass, Verdict::Pass, Verdict::Fail]
+        [
+            Verdict::Pass,
+            Verdict::Pass,
+            Verdict::Pass,
+            Verdict::Fail,
+            Verdict::Fail
+        ]
     );
 }

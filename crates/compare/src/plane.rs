@@ -78,7 +78,8 @@ pub fn compare(
         name: plane.name.clone(),
         class: prediction.class,
         chain: prediction.steps.clone(),
-        quadrature_error: prediction.quadrature_error,
+        // That of a dark field is a ratio of roundings.
+        quadrature_error: quadrature.map(|(error, _)| error),
         frame: plane.frame,
         distance: plane.distance,
         crossed: tally.crossed,

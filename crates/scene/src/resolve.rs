@@ -75,7 +75,11 @@ impl Resolver<'_> {
         let path = CentralRay {
             frame: checked,
             length,
-            back: if flat { back.fold(length, f64::min) } else { 0.0 },
+            back: if flat {
+                back.fold(length, f64::min)
+            } else {
+                0.0
+            },
         };
         let planes = self.planes(&file, &path, &stops);
         self.memory(&planes, file.run.batches, memory);
