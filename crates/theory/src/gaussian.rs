@@ -1,11 +1,13 @@
-//! Closed forms in 2D under a Gaussian window that is not cut: for checks only.
+//! Closed forms under a Gaussian window that is not cut: for checks only.
 //!
-//! A [`Window`](etendue_field::Window) has a finite support, so this one exists nowhere else. Frequencies
-//! are (Ωx, Ωv), in cycles per metre and per unit slope; the slope is called v, as in the paper.
+//! A [`Window`](etendue_field::Window) has a finite support, so this one exists nowhere else. All but the disc
+//! are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope; the slope is called v, as in the
+//! paper.
 
 use crate::quadrature::integrate;
 use crate::shading::g_hat;
 use crate::sinc::sinc;
+use complex_bessel::besselj;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -16,6 +18,37 @@ pub struct Gaussian {
     pub a: f64,
     /// Width b along the slope; may be infinite.
     pub b: f64,
+}
+
+/// What light has become after a distance under the window (docs/theory.md, Eq. 9).
+struct Travelled {
+    distance: f64,
+    /// 1/a².
+    inverse_a2: f64,
+    q: f64,
+    p: f64,
+}
+
+impl Travelled {
+    fn new(distance: f64, window: &Gaussian) -> Self {
+        let inverse_a2 = 1.0 / (window.a * window.a);
+        let inverse_b2 = 1.0 / (window.b * window.b);
+        let q = distance * distance * inverse_a2 + inverse_b2;
+        let p = inverse_b2 * inverse_a2 / q;
+        Self {
+            distance,
+            inverse_a2,
+            q,
+            p,
+        }
+    }
+
+    /// ω and Q at the frequencies of one axis.
+    fn frequencies(&self, [x, v]: [f64; 2]) -> [f64; 2] {
+        let omega = v + self.distance * x;
+        let big_q = x - self.distance * omega * self.inverse_a2 / self.q;
+        [omega, big_q]
+    }
 }
 
 /// A light, a plane of blockers, and a receiver.
@@ -59,13 +92,10 @@ impl Grating {
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
-pub fn area_light(width: f64, distance: f64, window: &Gaussian, [x, v]: [f64; 2]) -> Complex {
-    let a2 = window.a * window.a;
-    let inverse_b2 = 1.0 / (window.b * window.b);
-    let omega = v + distance * x;
-    let q = distance * distance / a2 + inverse_b2;
-    let p = inverse_b2 / (a2 * q);
-    let big_q = x - distance * omega / (a2 * q);
+pub fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 2]) -> Complex {
+    let travelled = Travelled::new(distance, window);
+    let [omega, big_q] = travelled.frequencies(k);
+    let Travelled { p, q, .. } = travelled;
     let half = 0.5 * width;
     // Enough for the oscillation, and for the Gaussian where it is narrower than the light.
     let nodes = 16 + count(2.0 * width * (big_q.abs() + p.sqrt()));
@@ -73,6 +103,76 @@ pub fn area_light(width: f64, distance: f64, window: &Gaussian, [x, v]: [f64; 2]
         Complex::from_polar((-PI * p * y * y).exp(), -TAU * big_q * y)
     });
     integral * ((-PI * omega * omega / q).exp() / q.sqrt())
+}
+
+/// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the area light's
+/// factor (docs/theory.md, Eq. 20).
+#[must_use]
+pub fn point_light(distance: f64, window: &Gaussian, k: [f64; 2]) -> f64 {
+    let travelled = Travelled::new(distance, window);
+    let [omega, _] = travelled.frequencies(k);
+    (-PI * omega * omega / travelled.q).exp() / travelled.q.sqrt()
+}
+
+/// The field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light under a window
+/// narrowed by the lobe, 1/b² + 1/c².
+#[must_use]
+pub fn spot(width: f64, lobe: f64, distance: f64, window: &Gaussian, k: [f64; 2]) -> Complex {
+    let b = window.b.recip().hypot(lobe.recip()).recip();
+    area_light(width, distance, &Gaussian { a: window.a, b }, k)
+}
+
+/// The field of a disc of radius R at distance D, in 4D under the window of a and b along both axes:
+/// q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, ω and Q being vectors (docs/theory.md, Eq. 21).
+///
+/// Frequencies (Ωx, Ωy, Ωu, Ωv). The disc is centred, so the spectrum is real.
+#[must_use]
+pub fn disc_light(radius: f64, distance: f64, window: &Gaussian, [x, y, u, v]: [f64; 4]) -> f64 {
+    let travelled = Travelled::new(distance, window);
+    let [[omega_x, q_x], [omega_y, q_y]] = [[x, u], [y, v]].map(|k| travelled.frequencies(k));
+    let Travelled { p, q, .. } = travelled;
+    let (omega, big_q) = (omega_x.hypot(omega_y), q_x.hypot(q_y));
+    let nodes = 16 + count(4.0 * radius * (big_q + p.sqrt()));
+    let integral = integrate(nodes, [0.0, radius], |r| {
+        r * (-PI * p * r * r).exp() * j0(TAU * big_q * r)
+    });
+    TAU * integral * (-PI * omega * omega / q).exp() / q
+}
+
+/// The Bessel function J₀ of a real number.
+fn j0(z: f64) -> f64 {
+    besselj(0.0, Complex::from(z)).map_or(f64::NAN, |j| j.re)
+}
+
+/// The field exp(−π(α x² + 2β x v + γ v²)): a Gaussian window after travel, for one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Tilted {
+    /// α, per square metre.
+    pub alpha: f64,
+    /// β, per metre.
+    pub beta: f64,
+    /// γ.
+    pub gamma: f64,
+}
+
+/// The spectra of a field alone, with x < 0 blocked and with x > 0 blocked:
+/// F₀ = γ^(−1/2) exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times the same without its last exponential times
+/// Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md, Eq. 22).
+#[must_use]
+pub fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
+    let Tilted { alpha, beta, gamma } = *field;
+    let a = (alpha - beta * beta / gamma).sqrt().recip();
+    let along = x - beta * v / gamma;
+    let scale = a * (-PI * v * v / gamma).exp() / gamma.sqrt();
+    let even = scale * (-PI * (a * along).powi(2)).exp();
+    let odd = scale / PI.sqrt() * dawson(PI.sqrt() * a * along);
+    let half = Complex::new(0.5 * even, -odd);
+    [even.into(), half, half.conj()]
+}
+
+/// Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule: the integrand is entire.
+fn dawson(x: f64) -> f64 {
+    integrate(24 + count(x * x), [0.0, x], |t| (t * t - x * x).exp())
 }
 
 /// The same light seen through a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.

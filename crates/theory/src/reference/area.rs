@@ -16,11 +16,6 @@ fn area_light_under_a_hann_window() {
     assert_close("Hann", deviation(5, pairs));
 }
 
-/// (Ωx, Ωy, Ωu, Ωv) of a sample.
-fn frequency_4d(sample: &Value) -> [f64; 4] {
-    ["ox", "oy", "ou", "ov"].map(|name| number(&sample[name]))
-}
-
 #[test]
 fn square_light_in_4d() {
     let block = block("square_light_4d");

@@ -5,6 +5,8 @@
 
 mod area;
 mod grating;
+mod half_planes;
+mod lights;
 
 use crate::expansion::Expansion;
 use crate::gaussian::{Bench, Gaussian};
@@ -38,6 +40,11 @@ fn samples(value: &Value) -> &[Value] {
 /// (Ωx, Ωv) of a sample.
 fn frequency(sample: &Value) -> [f64; 2] {
     [number(&sample["ox"]), number(&sample["ov"])]
+}
+
+/// (Ωx, Ωy, Ωu, Ωv) of a sample.
+fn frequency_4d(sample: &Value) -> [f64; 4] {
+    ["ox", "oy", "ou", "ov"].map(|name| number(&sample[name]))
 }
 
 /// The largest deviation relative to the largest expected value; at least `count` samples are required.

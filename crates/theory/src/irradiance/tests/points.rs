@@ -16,16 +16,15 @@ fn alone(light: Light, distance: f64) -> Bench {
 
 #[test]
 fn square_seen_from_below_its_corner() {
-    // Howell, A Catalog of Radiation Heat Transfer Configuration Factors, B-4: 0.1385 for a unit square one unit above.
+    // 1/π · 1/√2 · arctan(1/√2) = 0.1385 for a unit square one unit above (Howell 1982, section B).
     let bench = alone(area(rectangle([0.5, 0.5], [1.0, 1.0]), 0.0), 1.0);
     let factor = bench.receiver().irradiance(0.0, 0.0) / (1.7 * PI);
     assert!((factor - 0.5_f64.sqrt() * 0.5_f64.sqrt().atan() / PI).abs() < CLOSE);
-    assert!((factor - 0.1385).abs() < 5e-5); // as printed
 }
 
 #[test]
 fn disc_seen_from_anywhere() {
-    // Howell B-13: R = radius / offset, H = distance / offset, Z = 1 + H² + R²,
+    // Howell 1982, section B: R = radius / offset, H = distance / offset, Z = 1 + H² + R²,
     // F = ½ (1 − (Z − 2R²) / √(Z² − 4R²)).
     for (radius, distance) in [(0.3, 2.0), (1.5, 1.0), (20.0, 0.5), (0.01, 3.0)] {
         let receiver = alone(area(disc([0.2, -0.1], radius), 0.0), distance);

@@ -1,6 +1,7 @@
 //! Slices and projections, against plain sums and against rays drawn over all variables at once.
 
 use super::*;
+use crate::quadrature::integrate;
 use crate::testing::{blockers, window};
 use etendue_field::{
     Complex, FrequencyAxis, Profile, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
@@ -276,4 +277,40 @@ fn cost_of_many_blockers() {
             );
         }
     }
+}
+
+#[test]
+fn hard_shadows_of_a_point_light() {
+    let mask = opaque(vec![rectangle([0.1, -0.05], [0.2, 0.15])]);
+    let bench = Bench::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
+    let receiver = bench.receiver();
+    let [x, y, u, v] = [2.0, -3.0, 1.0, 0.5];
+    // In the turned frame, over a rectangle of the receiver; the shadow is 4/3 as large as the mask.
+    let lit = |along_x: [f64; 2], along_y: [f64; 2]| -> Complex {
+        integrate(40, along_x, |s| {
+            integrate(40, along_y, |t| {
+                let window = Profile::Hann(0.5).value(s) * Profile::Hann(0.5).value(t);
+                let irradiance = 3.0 * 2.0 * (4.0 + s * s + t * t).powf(-1.5);
+                Complex::from_polar(0.6 / PI * irradiance * window, -TAU * (x * s + y * t))
+            })
+        })
+    };
+    let slope = |frequency: f64| -> Complex {
+        integrate(40, [-0.4, 0.4], |u| {
+            Complex::from_polar(Profile::Hann(0.4).value(u), -TAU * frequency * u)
+        })
+    };
+    let shadow = lit(
+        [-4.0 / 3.0 * 0.2, 0.0],
+        [-4.0 / 3.0 * 0.125, 4.0 / 3.0 * 0.025],
+    );
+    let expected = (lit([-0.5, 0.5], [-0.5, 0.5]) - shadow) * slope(u) * slope(v);
+    let errors = [128, 256, 512].map(|nodes| {
+        let got = receiver.table(&hann(), nodes).at([x, y, u, v]);
+        (got - expected).norm() / expected.norm()
+    });
+    let order = (errors[0] / errors[2]).log2() / 2.0;
+    // Means over cells keep the second order where edges cross them.
+    assert!(errors[2] < 2e-4 && order > 1.6, "{errors:?}");
+    assert_eq!(receiver.nodes(&hann()), 1024);
 }
