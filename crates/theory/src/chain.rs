@@ -144,13 +144,21 @@ impl Path<'_> {
         light - 2.0 * f64::from(self.cosines)
     }
 
+    /// The shapes in each plane with edges: the light's, then those of opaque masks.
+    pub(crate) fn planes(&self) -> Vec<&[Shape]> {
+        let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
+            Mask::Opaque { shapes, .. } => Some(&shapes[..]),
+            Mask::Grating(_) => None,
+        });
+        std::iter::once(self.light_shapes())
+            .chain(of_masks)
+            .collect()
+    }
+
     /// Whether a disc is among the light and the masks.
     pub(crate) fn has_discs(&self) -> bool {
-        let of_masks = self.layers.iter().flat_map(|layer| match layer.mask {
-            Mask::Opaque { shapes, .. } => &shapes[..],
-            Mask::Grating(_) => &[],
-        });
-        let mut all = self.light_shapes().iter().chain(of_masks);
+        let planes = self.planes();
+        let mut all = planes.into_iter().flatten();
         all.any(|shape| matches!(shape, Shape::Disc(_)))
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::patch::Patch;
 use etendue_field::Disc;
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::FRAC_PI_2;
 
 /// How a disc is taken apart.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -14,6 +14,12 @@ pub(crate) enum Discs {
 }
 
 impl Discs {
+    pub(crate) fn count(self) -> usize {
+        match self {
+            Self::Rule(n) | Self::Strips(n) => n,
+        }
+    }
+
     pub(crate) fn patches(self, disc: &Disc) -> Vec<Patch> {
         match self {
             Self::Rule(n) => rule(disc, n),
@@ -22,24 +28,28 @@ impl Discs {
     }
 }
 
-/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k] (docs/theory.md, Eq. 5b), t_j = π (2j + 1)/4n and
-/// w_jk = π/n² Σ m cos(m t_j) sin(m t_k) over odd m < 2n.
+/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md, Eq. 5b).
 ///
 /// It stands for the disc under every integral with something smooth: ∫ A(R cos t) dB(R sin t), A and B being
-/// the integrals over the two rectangles' sides, is integrated after A and B have been written in the cosines
-/// and sines of odd multiples of t that their oddness leaves. The error falls faster than exponentially once
-/// n > π R Ω; as n⁻⁴ where something hard-edged ends within the disc.
+/// the integrals over the two rectangles' sides, once A and B have been written in the cosines and sines of odd
+/// multiples of t that their oddness leaves. With the sum over multiples m < 2n in closed form,
+/// π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), c(i) = −(−1)^i / sin(π i/2n), c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<Patch> {
-    let node = |j: usize| PI * (2 * j + 1) as f64 / (4 * n) as f64;
-    let pairs = (0..n).flat_map(|j| (0..n).map(move |k| [node(j), node(k)]));
+    let angle = FRAC_PI_2 / n as f64;
+    let node = |j: usize| angle * (j as f64 + 0.5);
+    let cosecant = |i: usize| match i {
+        0 => 0.0,
+        _ if i.is_multiple_of(2) => -1.0 / (angle * i as f64).sin(),
+        _ => 1.0 / (angle * i as f64).sin(),
+    };
+    let pairs = (0..n).flat_map(|j| (0..n).map(move |k| (j, k)));
     pairs
-        .map(|[t, s]| {
-            let odd = (0..n).map(|i| (2 * i + 1) as f64);
-            let sum: f64 = odd.map(|m| m * (m * t).cos() * (m * s).sin()).sum();
-            let half = [disc.radius * t.cos(), disc.radius * s.sin()];
+        .map(|(j, k)| {
+            let half = [node(j).cos(), node(k).sin()].map(|t| disc.radius * t);
+            let difference = if k < j { -1.0 } else { 1.0 } * cosecant(k.abs_diff(j));
             Patch {
                 extent: [0, 1].map(|i| [disc.center[i] - half[i], disc.center[i] + half[i]]),
-                weight: PI * sum / (n * n) as f64,
+                weight: angle * (cosecant(k + j + 1) + difference),
             }
         })
         .collect()
@@ -72,7 +82,7 @@ mod tests {
     use super::*;
     use crate::quadrature::integrate;
     use crate::sinc::sinc;
-    use std::f64::consts::TAU;
+    use std::f64::consts::{PI, TAU};
 
     const DISC: Disc = Disc {
         center: [0.0, 0.0],
@@ -120,6 +130,20 @@ mod tests {
         assert!(errors[0] < 1e-8, "{errors:?}");
         assert!(errors[1] < 1e-12, "{errors:?}");
         assert!(errors[2] < 1e-14, "{errors:?}"); // rounding
+    }
+
+    #[test]
+    fn weights_are_the_sum_in_closed_form() {
+        for n in [1, 2, 5, 12] {
+            let patches = rule(&DISC, n);
+            for (i, patch) in patches.iter().enumerate() {
+                let [t, s] = [i / n, i % n].map(|j| PI * (2 * j + 1) as f64 / (4 * n) as f64);
+                let odd = (0..n).map(|i| (2 * i + 1) as f64);
+                let sum: f64 = odd.map(|m| m * (m * t).cos() * (m * s).sin()).sum();
+                let expected = PI * sum / (n * n) as f64;
+                assert!((patch.weight - expected).abs() < 1e-13); // rounding of weights up to 3
+            }
+        }
     }
 
     #[test]

@@ -46,10 +46,6 @@ mod error;
 mod expansion;
 mod fast;
 pub mod gaussian;
-#[cfg_attr(
-    not(test),
-    allow(dead_code, reason = "until chains of reflections use it")
-)]
 mod irradiance;
 mod jitter;
 #[cfg(test)]
@@ -62,6 +58,7 @@ mod projection;
 mod quadrature;
 #[cfg(test)]
 mod reference;
+mod reflection;
 mod row;
 mod shading;
 mod sinc;

@@ -1,5 +1,7 @@
 use crate::chain::Path;
 use crate::disc::Discs;
+use crate::expansion::Expansion;
+use crate::slope::Slope;
 use etendue_field::{HalfPlane, Mask, Profile, Rectangle, Shape, Window};
 use std::f64::consts::PI;
 
@@ -9,6 +11,10 @@ const SPARE_NODES: f64 = 6.0;
 const MOST_NODES: f64 = 72.0;
 /// How far out, in largest frequencies, edges in other planes are followed.
 const FARTHEST: f64 = 4.0;
+/// Share of that which is resolved: the rest is the corners of the grid of frequencies, where there is little.
+const FAR_SHARE: f64 = 0.7;
+/// Most terms of an expansion that discs may make.
+const MOST_TERMS: f64 = 3e5;
 /// Most strips of a disc.
 const MOST_STRIPS: f64 = 64.0;
 
@@ -53,10 +59,40 @@ impl Fineness {
     /// For spectra up to `frequency`, along position and slope (docs/theory.md, after Eq. 5b).
     pub(crate) fn for_spectrum(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
         let rates = Rates::new(path, window, frequency);
-        Self::of(path, |radius, plane| {
+        let nodes = Self::of(path, |radius, plane| {
             let nodes = (PI * radius * rates.at(plane)).ceil() + SPARE_NODES;
             Discs::Rule(whole(nodes.min(MOST_NODES)))
-        })
+        });
+        if path.has_discs() {
+            nodes.affordable(path, window)
+        } else {
+            nodes
+        }
+    }
+
+    /// Fewer nodes where discs in several planes would make too many terms.
+    fn affordable(self, path: &Path<'_>, window: &Window) -> Self {
+        let slope = Slope::new([&window.u, &window.v], 0.0);
+        let single = Self(vec![Discs::Rule(1); self.0.len()]);
+        let seen = Expansion::new(path, window, &slope, &single).terms.len();
+        let round = path
+            .planes()
+            .into_iter()
+            .map(|shapes| largest(shapes) > 0.0);
+        let planes: Vec<_> = self.0.iter().zip(round).collect();
+        let (mut terms, mut count) = (seen as f64, 0.0);
+        for (discs, _) in planes.iter().filter(|(_, round)| *round) {
+            terms *= (discs.count() as f64).powi(2);
+            count += 1.0;
+        }
+        let share = (MOST_TERMS / terms).powf(0.5 / count).min(1.0);
+        let fewer = |n: usize| whole((share * n as f64).round()).max(1);
+        Self(
+            planes
+                .into_iter()
+                .map(|(discs, _)| Discs::Rule(fewer(discs.count())))
+                .collect(),
+        )
     }
 
     /// For the light field on a grid of `bins` positions.
@@ -68,20 +104,19 @@ impl Fineness {
         })
     }
 
-    /// `discs` chooses from the largest radius in a plane and the index of the plane among those with edges.
+    /// `discs` chooses from the largest radius in a plane and the index of the plane.
     fn of(path: &Path<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
-        let of_masks = path.layers.iter().filter_map(|layer| match layer.mask {
-            Mask::Opaque { shapes, .. } => Some(&shapes[..]),
-            Mask::Grating(_) => None,
-        });
-        let planes = std::iter::once(path.light_shapes()).chain(of_masks);
-        let all = planes.enumerate();
-        Self(all.map(|(i, shapes)| discs(largest(shapes), i)).collect())
+        let planes = path.planes().into_iter().enumerate();
+        Self(
+            planes
+                .map(|(i, shapes)| discs(largest(shapes), i))
+                .collect(),
+        )
     }
 
-    /// Half as fine again.
+    /// A quarter finer.
     pub(crate) fn finer(&self) -> Self {
-        let more = |n: usize| n + n.div_ceil(2);
+        let more = |n: usize| n + n.div_ceil(4);
         Self(
             self.0
                 .iter()
@@ -138,7 +173,8 @@ impl Rates {
         let others = self.planes.iter().enumerate().filter(|(j, _)| *j != plane);
         // Infinite for one at the same distance.
         let meets = others.map(|(_, g)| (u + g.abs() * x) / (g - h).abs());
-        meets.fold(own, f64::max).min(FARTHEST * widest)
+        let farthest = meets.fold(0.0, f64::max).min(FARTHEST * widest);
+        own.max(FAR_SHARE * farthest)
     }
 }
 

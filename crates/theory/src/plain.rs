@@ -1,4 +1,3 @@
-use crate::chain::Path;
 use crate::patch::Fineness;
 use crate::slope::Slope;
 use crate::{Chain, expansion::Expansion};
@@ -13,20 +12,13 @@ use etendue_field::{Complex, Window};
 #[must_use]
 pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
     let path = chain.path();
+    if let Some(receiver) = path.receiver() {
+        return receiver.at(window, frequency);
+    }
     let [x, y, u, v] = frequency.map(f64::abs);
     let fineness = Fineness::for_spectrum(&path, window, [x.max(y), u.max(v)]);
-    at_fineness(&path, window, frequency, &fineness)
-}
-
-/// The same with discs taken apart as told.
-pub(crate) fn at_fineness(
-    path: &Path<'_>,
-    window: &Window,
-    frequency: [f64; 4],
-    fineness: &Fineness,
-) -> Complex {
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
-    Expansion::new(path, window, &slope, fineness).at(frequency)
+    Expansion::new(&path, window, &slope, &fineness).at(frequency)
 }
 
 impl Expansion {

@@ -24,6 +24,9 @@ const NODES_PER_CYCLE: f64 = 5.0;
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();
+    if let Some(receiver) = path.receiver() {
+        return receiver.projection(window, grid);
+    }
     let fineness = Fineness::for_projection(&path, window, grid.bins);
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
     let expansion = Expansion::new(&path, window, &slope, &fineness);
@@ -247,8 +250,9 @@ fn whole(value: f64) -> usize {
 mod tests {
     use super::*;
     use crate::at;
-    use crate::testing::{blockers, chain, square, window};
-    use etendue_field::Profile;
+    use crate::quadrature::integrate;
+    use crate::testing::*;
+    use etendue_field::{Light, Profile, Rectangle, Shape};
 
     #[test]
     fn sums_to_the_spectrum_at_zero() {
@@ -267,6 +271,68 @@ mod tests {
             let sum = projection.values.sum() * grid.cell_area();
             let zero = at(&chain, &window, [0.0; 4]).re;
             assert!((sum / zero - 1.0).abs() < close, "{}", sum / zero - 1.0);
+        }
+    }
+
+    #[test]
+    fn every_kind_sums_to_the_spectrum_at_zero() {
+        let point = Light::Point { intensity: 2.0 };
+        let square = lambertian(square([0.0, 0.05], 0.3));
+        let oblong = Shape::Rectangle(Rectangle {
+            center: [0.1, 0.0],
+            size: [0.2, 0.4],
+        });
+        let masks = [
+            (0.5, Some(grating(0, 9.0, 0.3))),
+            (0.5, Some(half_plane(1, 0.1, true))),
+            (0.3, Some(grating(1, 4.0, 0.0))),
+            (0.2, None),
+        ];
+        let mut shaded = chain_of(square, masks.clone());
+        shaded.operators.push(cosine());
+        let round = chain_of(spot(disc([0.05, 0.0], 0.2), 0.0), masks.clone());
+        for (chain, close) in [
+            (chain_of(square, masks.clone()), 1e-11), // as said at NODES
+            (chain_of(point, masks.clone()), 1e-11),  // as said at NODES
+            (chain_of(point, [(0.0, None)]), 1e-11),  // on an edge between cells
+            (chain_of(spot(oblong, 20.0), masks), 1e-11), // the same series on both sides
+            (shaded, 1e-11),                          // the same series on both sides
+            (round, 1e-4),                            // strips between sines of 64 angles
+        ] {
+            let window = window(Profile::Hann(0.5), Profile::Hann(0.3));
+            let grid = ProjectionGrid::new(&window, 16);
+            let projection = projection(&chain, &window, &grid);
+            let sum = projection.values.sum() * grid.cell_area();
+            let error = (sum / at(&chain, &window, [0.0; 4]).re - 1.0).abs();
+            assert!(error < close, "{error:e} {:?}", chain.describe());
+        }
+    }
+
+    #[test]
+    fn cell_behind_a_grating_is_the_mean_of_rays_through_it() {
+        let light = spot(Shape::Rectangle(square([0.0, 0.0], 5.0)), 6.0);
+        let chain = chain_of(light, [(1.0, Some(grating(0, 4.0, 0.7))), (0.8, None)]);
+        let window = window(Profile::Hann(0.5), Profile::Hann(0.3));
+        let grid = ProjectionGrid::new(&window, 16);
+        let projection = projection(&chain, &window, &grid);
+        let seen = grating(0, 4.0, 0.7);
+        let Mask::Grating(seen) = seen else {
+            unreachable!()
+        };
+        for index in [[8, 8], [3, 11]] {
+            let center = [0, 1].map(|k| grid.center(index[k], [grid.half_x, grid.half_u][k]));
+            let half = [grid.half_x, grid.half_u].map(|half| half / 16.0);
+            let expected = mean(100, center, half, |x, u| {
+                // cos⁶θ, integrated over v; the whole window sees the light.
+                let lobe = integrate(40, [-0.3, 0.3], |v| {
+                    window.v.value(v) * (1.0 + u * u + v * v).powi(-3)
+                });
+                // ∫ W dy is the half-width of a Hann profile.
+                let along = window.x.value(x) * window.u.value(u) * 0.5;
+                along * seen.transmittance(x - 0.8 * u, 0.0) * lobe
+            });
+            let error = (projection.values[index] / expected - 1.0).abs();
+            assert!(error < 1e-4, "{error:e}"); // midpoints of 100 points: (2π/50)²/24 and less
         }
     }
 

@@ -39,8 +39,8 @@ impl Row {
     }
 
     /// scale · exp(−2πi k·p) along the row, by powers outwards from the middle.
-    pub(crate) fn exponentials(&self, p: [f64; 2], scale: Complex, to: &mut Parts) {
-        let middle = Complex::cis(-TAU * self.position * p[0]) * scale;
+    pub(crate) fn exponentials(&self, p: [f64; 2], scale: impl Into<Complex>, to: &mut Parts) {
+        let middle = Complex::cis(-TAU * self.position * p[0]) * scale.into();
         let up = Complex::cis(-TAU * self.step * p[1]);
         let (mut above, mut below) = (middle, middle);
         (to.re[self.half], to.im[self.half]) = (middle.re, middle.im);

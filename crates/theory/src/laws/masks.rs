@@ -30,7 +30,6 @@ fn two_half_planes_let_nothing_through_together() {
     let k = [2.0, 0.0, -3.4, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm();
     let blind = value(&alone[0]) + value(&alone[1]) - value(&open());
-    println!("{}", blind / zero(&open()));
     assert!(blind > 0.05 * zero(&open())); // twelve orders above
 }
 
@@ -97,7 +96,6 @@ fn two_gratings_leave_the_wedge() {
         "{both}"
     );
     for alone in [seen(mask(), None), seen(None, mask())] {
-        println!("{both} {}", value(&alone));
         assert!(value(&alone) < 0.02 * both, "{}", value(&alone) / both);
     }
 }

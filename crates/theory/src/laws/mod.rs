@@ -3,6 +3,7 @@
 mod brute_force;
 mod kinds;
 mod masks;
+mod receiver;
 
 use crate::testing::*;
 use crate::{Chain, Operator, at, slices};
