@@ -127,7 +127,7 @@ fn elsewhere() -> Vec<(&'static str, Faults)> {
     let without_cosine = || {
         chained(|c: &mut Chain| {
             c.operators
-                .retain(|o| !matches!(o, Operator::Cosine { .. }))
+                .retain(|o| !matches!(o, Operator::Cosine { .. }));
         })
     };
     vec![

@@ -6,10 +6,9 @@ use etendue_compare::{Class, PredictedParameter, Prediction, Residuals, Verdict,
 use etendue_field::random::{self, Stream};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Ledger, PlaneTally, Profile, Projection, ProjectionGrid,
-    Quantity, Rectangle, Side, SliceGrid, Slices, VirtualPlane, Window,
+    Quantity, Side, SliceGrid, Slices, VirtualPlane, Window,
 };
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
-use etendue_theory::{Chain, Source};
 use glam::DVec3;
 
 const BATCHES: u32 = 64;
@@ -101,20 +100,12 @@ fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
 fn prediction(width: f64) -> Prediction {
     let [slices, derivative] = spectrum(width);
     let grid = ProjectionGrid::new(&plane().window, PROJECTION_BINS);
-    let rectangle = Rectangle {
-        center: [0.0; 2],
-        size: [1.0; 2],
-    };
     Prediction {
         class: Class::Exact,
-        chain: Chain {
-            source: Source {
-                name: "light".into(),
-                rectangle,
-                radiance: 1.0,
-            },
-            operators: Vec::new(),
-        },
+        steps: Vec::new(),
+        quadrature_error: None,
+        replicates: Vec::new(),
+        cuts: Vec::new(),
         projection: Projection {
             grid,
             values: ndarray::Array2::zeros((grid.bins, grid.bins)),
@@ -123,10 +114,36 @@ fn prediction(width: f64) -> Prediction {
         slices,
         parameters: vec![PredictedParameter {
             name: "width".into(),
+            unit: "m".into(),
             value: width,
             derivative,
         }],
     }
+}
+
+/// Another measurement in place of theory: its noise counts, and so does a difference from it.
+#[test]
+fn a_reference_is_judged_with_its_own_noise() {
+    let verdict = |reference_width: f64, seed: u64| {
+        let [truth, _] = spectrum(1.0);
+        let [other, _] = spectrum(reference_width);
+        let reference = measurement(&other, 0.02, seed + 1000);
+        let mut expected = prediction(reference_width);
+        expected.class = Class::Reference;
+        expected.replicates = reference.at_plane(0).map(|b| b.slices.clone()).collect();
+        let measured = measurement(&truth, 0.02, seed);
+        compare(&measured, 0, &expected, 0.01, 1).unwrap().report
+    };
+    let (mut chi2, mut seeds) = (0.0, 0.0);
+    for seed in 1..=8 {
+        let same = verdict(1.0, seed);
+        assert_eq!(same.verdict, Verdict::Pass, "seed {seed}: {same:?}");
+        chi2 += same.chi2_per_dof.unwrap();
+        seeds += 1.0;
+        assert_eq!(verdict(1.05, seed).verdict, Verdict::Fail);
+    }
+    // Eight times 170 complex numbers: 1/√1360 = 0.027, four of them. Without the reference's noise it would be 2.
+    assert!((chi2 / seeds - 1.0).abs() < 0.11, "{}", chi2 / seeds);
 }
 
 #[test]
