@@ -8,10 +8,12 @@ use crate::npz::Npz;
 use crate::progress;
 use crate::results::Results;
 use crate::summary::json;
+use etendue_compare::{Class, chain};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
-use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
-use ndarray::{Array1, Array4};
+use etendue_spectrum::field::{FieldMeasurement, FieldOptions, full_radial_of, measure_field};
+use etendue_theory::Harmonics;
+use ndarray::{Array1, Array2, Array4};
 use ndarray_npy::WriteNpyExt;
 use serde::Serialize;
 use std::io;
@@ -76,9 +78,31 @@ pub(crate) fn save(results: &mut Results, case: &Case, quiet: bool) -> Result<()
         let measured = measured.map_err(Failure::cannot_run)?;
         let slices = etendue_spectrum::estimate::slices(&case.measurement, index);
         let slices = slices.map_err(Failure::cannot_run)?.mean;
-        write(results, plane, &measured, &slices)?;
+        let predicted = predicted(&case.scene, plane, &measured.grid);
+        write(results, plane, &measured, &slices, predicted)?;
     }
     Ok(())
+}
+
+/// The full radial spectrum that theory predicts, where it can tell all four dimensions at once: on the way to
+/// the receiver, and not behind a mesh.
+fn predicted(scene: &Scene, plane: &VirtualPlane, grid: &FieldGrid) -> Option<Array2<f64>> {
+    if Class::of(scene, plane) != Class::Exact {
+        return None;
+    }
+    let axes = [0, 1, 2, 3];
+    let spacing = axes.map(|axis| grid.spacing(axis));
+    let half = axes.map(|axis| grid.cells[axis] / 2);
+    let harmonics = Harmonics::new(&chain(scene, plane), &plane.window, spacing, half)?;
+    #[expect(
+        clippy::cast_possible_truncation,
+        reason = "a multiple below the number of cells"
+    )]
+    let multiples =
+        |frequency: [f64; 4]| axes.map(|axis| (frequency[axis] / spacing[axis]).round() as isize);
+    Some(full_radial_of(grid, |frequency| {
+        harmonics.at(multiples(frequency))
+    }))
 }
 
 /// The share of Nyquist up to which the grid is held against the slices.
@@ -89,6 +113,7 @@ fn write(
     plane: &VirtualPlane,
     measured: &FieldMeasurement,
     slices: &Slices,
+    predicted: Option<Array2<f64>>,
 ) -> Result<(), Failure> {
     let name = &plane.name;
     let FieldMeasurement {
@@ -117,8 +142,11 @@ fn write(
             }),
     };
     results.write(&format!("{name}/field.json"), &json(&index))?;
-    let bytes = Npz::new()
-        .add("power", &full_radial.power)?
+    let mut npz = Npz::new().add("power", &full_radial.power)?;
+    if let Some(predicted) = predicted {
+        npz = npz.add("predicted_power", &predicted)?;
+    }
+    let bytes = npz
         .add("sigma", &full_radial.sigma)?
         .add("shot_noise", &full_radial.shot_noise)?
         .add("counts", &full_radial.counts)?

@@ -46,6 +46,7 @@ mod error;
 mod expansion;
 mod fast;
 pub mod gaussian;
+mod harmonics;
 mod irradiance;
 mod jitter;
 #[cfg(test)]
@@ -71,6 +72,7 @@ pub use chain::{Chain, Operator, Source};
 pub use derivative::derivative;
 pub use error::quadrature_error;
 pub use fast::slices;
+pub use harmonics::Harmonics;
 pub use jitter::{JitteredArray, jittered_array_power};
 pub use parameter::Parameter;
 pub use plain::at;
