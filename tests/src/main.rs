@@ -94,7 +94,7 @@ fn sections(command: &Command) -> Vec<Section> {
             let mut sections = calibration::calibration(100, 20_000);
             sections.push(faults::planted(3_000_000, SEED));
             sections.push(noise::floor(&[100_000, 1_000_000], SEED));
-            sections.extend(suite::suite(Some(500_000)));
+            sections.extend(suite::suite(Some(200_000)));
             sections
         }
         Command::Calibration { seeds, photons } => calibration::calibration(seeds, photons),
