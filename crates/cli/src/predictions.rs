@@ -106,7 +106,14 @@ pub(crate) fn read(stored: &Stored<Predicted>, scene: &Scene) -> Result<Vec<Pred
     }
     let pairs = scene.planes.iter().zip(planes);
     pairs
-        .map(|(plane, words)| read_plane(stored, plane, words))
+        .map(|(plane, words)| {
+            let class = Class::of(scene, plane);
+            if words.class != class {
+                let (name, is) = (&plane.name, words.class);
+                return Err(stored.fault(format!("class of {name} is {is:?}; must be {class:?}")));
+            }
+            read_plane(stored, plane, words)
+        })
         .collect()
 }
 

@@ -152,7 +152,7 @@ fn bad_input_is_refused_with_a_message() {
         ("not a scene", "\u{0}\u{1}binary".to_owned(), 2, &["line 1"]),
         (
             "NaN",
-            text.replace("pitch: 0.1", "pitch: NaN"),
+            text.replace("pitch: 0.2", "pitch: NaN"),
             2,
             &["blockers[0].pitch", "NaN", "allowed"],
         ),
@@ -194,7 +194,7 @@ fn bad_input_is_refused_with_a_message() {
         ),
         (
             "wrong kind",
-            text.replace("pitch: 0.1", "pitch: \"wide\""),
+            text.replace("pitch: 0.2", "pitch: \"wide\""),
             2,
             &["line", "column"],
         ),

@@ -140,7 +140,12 @@ fn a_changed_index_is_refused() {
         (
             p,
             |t| t["planes"][0]["class"] = json!("guess"),
-            &["class of light", "guess"],
+            &["guess", "exact"],
+        ),
+        (
+            p,
+            |t| t["planes"][0]["class"] = json!("reference"),
+            &["class of light"],
         ),
     ];
     for (name, change, parts) in cases {

@@ -91,7 +91,7 @@ fn arrays_are_what_the_conventions_say() {
     assert_eq!(projection.dim(), (64, 64));
     let words = json(&stages.path().join("p/prediction.json"));
     let mut names = words["planes"][1]["parameters"].as_array().unwrap().iter();
-    let travel = names.position(|name| name == "travel light to blockers");
+    let travel = names.position(|words| words[0] == "travel light to blockers");
     assert!((values[travel.unwrap()] - 1.0).abs() < 1e-12); // metres, from 0.3 to 1.3
 }
 

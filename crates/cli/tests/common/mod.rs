@@ -55,7 +55,7 @@ pub const SCENE: &str = r#"(
     blockers: [JitteredSquares(name: "blockers", center: (0.1234567890123456, 0.2, 1.3000000000000003),
                                count: (5, 4), pitch: 0.10000000000000002, fill: 0.5999999999999999,
                                jitter: 0.3, seed: 18446744073709551615)],
-    surfaces: [(name: "floor", center: (0.1, 0.2, 2.2360679774997896), size: (6, 6))],
+    surfaces: [Rectangle(name: "floor", center: (0.1, 0.2, 2.2360679774997896), size: (6, 6))],
     path: (direction: (0, 0, 1), x_axis: (0.6180339887498949, 1, 0), visits: ["floor"]),
     planes: [(name: "light", at: Emission), (name: "receiver", at: Before("floor"))],
     window: (x: Hann(0.5), y: Box(0.4142135623730951), u: Hann(0.30000000000000004)),

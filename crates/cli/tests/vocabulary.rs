@@ -1,0 +1,159 @@
+//! Other methods, other programs, meshes and the 4D light field, from the command line.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{SCENE, array, call, files, json, refused};
+use ndarray::{Array2, Array4};
+use ndarray_npy::ReadNpyExt;
+use std::fs::{self, File};
+
+/// The small scene in a folder of its own, with other text in place of some.
+fn folder(edits: &[(&str, &str)]) -> tempfile::TempDir {
+    let mut text = SCENE.to_owned();
+    for (from, to) in edits {
+        assert!(text.contains(from), "{from} is not in the scene");
+        text = text.replacen(from, to, 1);
+    }
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.ron"), text).unwrap();
+    folder
+}
+
+const LIGHT: &str =
+    "Rectangle(center: (0.1, 0.2, 0.30000000000000004), size: (0.2, 0.17320508075688773))";
+const POINT: &str = "Point(center: (0.1, 0.2, 0.30000000000000004))";
+const LAYER: &str = "blockers: [";
+const MESH: &str = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
+const TETRA: &str =
+    "v 1 1 1\nv -1 -1 1\nv -1 1 -1\nv 1 -1 -1\nf 1 2 3\nf 1 4 2\nf 1 3 4\nf 2 4 3\n";
+
+#[test]
+fn backward_rays_agree_and_keep_no_ledger() {
+    let folder = folder(&[]);
+    let output = call(
+        folder.path(),
+        "run small.ron --method backward --photons 100000 --out out",
+    );
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let summary = json(&folder.path().join("out/summary.json"));
+    assert_eq!(summary["method"], "backward");
+    assert!(summary["ledger"].is_null());
+    assert!(summary["planes"][1]["in_window"].as_u64().unwrap() > 1000);
+}
+
+#[test]
+fn a_point_is_not_found_backwards() {
+    let folder = folder(&[(LIGHT, POINT)]);
+    refused(
+        folder.path(),
+        "run small.ron --method backward --out out",
+        &["point light"],
+    );
+}
+
+#[test]
+fn a_mesh_goes_through_all_stages() {
+    let folder = folder(&[(LAYER, MESH)]);
+    let path = folder.path();
+    fs::create_dir(path.join("meshes")).unwrap();
+    fs::write(path.join("meshes/tetra.obj"), TETRA).unwrap();
+    for arguments in [
+        "run small.ron --photons 60000 --out run",
+        "measure small.ron --photons 60000 --out m",
+        "predict small.ron --photons 60000 --out p",
+    ] {
+        let output = call(path, arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
+    }
+    // The stages have all they need.
+    fs::remove_dir_all(path.join("meshes")).unwrap();
+    let output = call(path, "compare --measured m --predicted p --out out");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let [run, compared] = ["run", "out"].map(|result| {
+        let mut files = files(&path.join(result));
+        assert!(files.remove("timing.json").is_some());
+        files
+    });
+    assert!(run == compared);
+    let summary = json(&path.join("run/summary.json"));
+    assert_eq!(summary["planes"][1]["class"], "reference");
+    refused(path, "check small.ron", &["tetra.obj"]);
+}
+
+#[test]
+fn the_light_field_is_written_on_its_grid() {
+    let folder = folder(&[]);
+    let path = folder.path();
+    let output = call(
+        path,
+        "run small.ron --save field --out out --set window.y=0.5",
+    );
+    assert_eq!(
+        output.status.code(),
+        Some(2),
+        "a window is a profile: {output:?}"
+    );
+    let output = call(path, "run small.ron --save field --out out");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let plane = path.join("out/receiver");
+    let field: Array4<f64> =
+        Array4::read_npy(File::open(plane.join("field.npy")).unwrap()).unwrap();
+    let index = json(&plane.join("field.json"));
+    let cells: Vec<usize> = serde_json::from_value(index["cells"].clone()).unwrap();
+    assert_eq!(field.shape(), cells.as_slice());
+    let width: Vec<f64> = serde_json::from_value(index["width"].clone()).unwrap();
+    // The field's sum is ∫ L W, which the slices have at zero.
+    let sum: f64 = field.sum() * width.iter().product::<f64>();
+    let slices: ndarray::Array3<etendue_field::Complex> =
+        array(&plane.join("slices.npz"), "measured");
+    let [_, rho, nu] = [0, slices.shape()[1] / 2, slices.shape()[2] / 2];
+    assert!((sum / slices[[0, rho, nu]].re - 1.0).abs() < 1e-6); // 2e-7 of the weights, of the slices
+    let [power, predicted]: [Array2<f64>; 2] =
+        ["power", "predicted_power"].map(|name| array(&plane.join("full_radial.npz"), name));
+    let sigma: Array2<f64> = array(&plane.join("full_radial.npz"), "sigma");
+    let zero = [0, 0];
+    // Five jackknife errors: the noise of 20,000 photons.
+    assert!(
+        (power[zero] - predicted[zero]).abs() < 5.0 * sigma[zero],
+        "{} {}",
+        power[zero],
+        predicted[zero]
+    );
+}
+
+#[test]
+fn a_grid_beyond_memory_is_refused_before_work() {
+    let folder = folder(&[("rho: (max: 6)", "rho: (max: 4000)")]);
+    let output = call(folder.path(), "run small.ron --save field --out out");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(
+        message.contains("GB") && message.contains("cells"),
+        "{message}"
+    );
+    assert!(!folder.path().join("out/summary.json").exists());
+}
+
+#[test]
+fn scenes_are_exported_or_refused() {
+    let scene = folder(&[]);
+    let output = common::etendue()
+        .current_dir(scene.path())
+        .args(["export", "--to", "mitsuba", "small.ron", "--out", "mi"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let written = files(&scene.path().join("mi"));
+    assert!(written.contains_key("scene.xml") && written.contains_key("planes.json"));
+    let spot = "Spot(center: (0.1, 0.2, 0.30000000000000004), bulb: Square(0.1), exponent: 3)";
+    let scene = folder(&[(LIGHT, spot)]);
+    let output = common::etendue()
+        .current_dir(scene.path())
+        .args(["export", "--to", "mitsuba", "small.ron", "--out", "out"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(!scene.path().join("out").exists());
+}
