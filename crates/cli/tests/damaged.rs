@@ -90,7 +90,7 @@ fn a_changed_index_is_refused() {
     let folder = stages.path();
     let (a, p) = ("a/measurement.json", "p/prediction.json");
     type Change = fn(&mut Value);
-    let cases: [(&str, Change, &[&str]); 11] = [
+    let cases: [(&str, Change, &[&str]); 12] = [
         (
             a,
             |t| t["version"] = json!("0.0.9"),
