@@ -19,7 +19,7 @@ use std::process::ExitCode;
 #[command(after_help = "Examples:
   cargo run --release -p etendue-validation -- short
   cargo run --release -p etendue-validation -- faults --photons 10000000
-  cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
+  cargo run --release -p etendue-validation -- all          twenty minutes; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -106,7 +106,7 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Noise { most } => noise(most),
         Command::All => {
             let mut sections = suite::suite(None);
-            sections.extend(noise(1_000_000_000));
+            sections.extend(noise(100_000_000));
             sections.extend(calibration::calibration(1000, 100_000));
             sections.push(faults::planted(10_000_000, SEED));
             sections.push(faults::planted_elsewhere(4_000_000, SEED));
