@@ -6,7 +6,7 @@ use crate::results::Results;
 use crate::stored::{Index, MEASUREMENT};
 use crate::table::grouped;
 use crate::threads::on_threads;
-use crate::{load, progress, say};
+use crate::{load, method, progress, say};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use std::ops::Range;
@@ -14,6 +14,7 @@ use std::ops::Range;
 /// `etendue measure`: returns the exit code.
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    method::check(&scene, args.photons.method)?;
     let all = 0..scene.run.batches;
     let batches = args.batches.clone().unwrap_or(all.clone());
     if batches.end > all.end {

@@ -1,8 +1,9 @@
 use crate::failure::Failure;
 use clap::ValueEnum;
-use etendue_field::PhotonSource;
+use etendue_compare::Class;
+use etendue_field::{Light, PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
-use etendue_trace::{Backward, Tracer};
+use etendue_trace::{Backward, PointLight, Tracer};
 use serde::{Deserialize, Serialize};
 
 /// How light is measured.
@@ -21,6 +22,17 @@ pub(crate) fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSour
         Method::Photons => Box::new(Tracer::new(scene)),
         Method::Backward => Box::new(Backward::new(scene).map_err(Failure::bad_input)?),
     })
+}
+
+/// Fails, before anything is written, when a scene cannot be measured by `method`, or needs the other one as a
+/// reference that it cannot have.
+pub(crate) fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
+    let reference = |plane: &VirtualPlane| Class::of(scene, plane) == Class::Reference;
+    let backward = method == Method::Backward || scene.planes.iter().any(reference);
+    match scene.light {
+        Light::Point { .. } if backward => Err(Failure::bad_input(PointLight)),
+        _ => Ok(()),
+    }
 }
 
 impl Method {

@@ -5,7 +5,7 @@ use crate::method::Method;
 use crate::results::Results;
 use crate::stored::{Index, PREDICTION};
 use crate::threads::on_threads;
-use crate::{load, predictions, progress, say};
+use crate::{load, method, predictions, progress, say};
 use etendue_compare::{Class, Prediction};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
@@ -13,6 +13,7 @@ use etendue_scene::Scene;
 /// `etendue predict`: returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    method::check(&scene, args.photons.method)?;
     let mut results = Results::create(&args.out, PREDICTION)?;
     let content = on_threads(&args.threads, || {
         let predictions = predicted(&scene, args.photons.method, args.quiet)?;

@@ -6,13 +6,14 @@ use crate::predict::predicted;
 use crate::results::{Results, SUMMARY};
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
-use crate::{field, load};
+use crate::{field, load, method};
 use etendue_scene::Scene;
 use std::path::Path;
 
 /// `etendue run`: returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    method::check(&scene, args.photons.method)?;
     let folder = args
         .out
         .clone()

@@ -177,7 +177,7 @@ fn bad_arguments_are_refused() {
         ("measure small.ron --out file/out", 3, "cannot write"),
         ("measure small.ron", 2, "--out"),
         ("measure none.ron --out out", 2, "none.ron"),
-        ("predict small.ron --out out --photons 5", 2, "--photons"),
+        ("predict small.ron --out out --batches 0..5", 2, "--batches"),
         (
             "predict small.ron --out out --set light.radiance=-1",
             2,

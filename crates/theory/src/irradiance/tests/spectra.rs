@@ -242,43 +242,6 @@ fn any_number_of_threads_gives_the_same_bits() {
     assert_eq!(one, on(5));
 }
 
-/// The scenes of the aim; run with --ignored --nocapture for times and errors.
-#[test]
-#[ignore = "a measurement of time"]
-#[expect(clippy::print_stdout, reason = "what it measures")]
-fn cost_of_many_blockers() {
-    let light = area(Shape::Rectangle(square([0.0; 2], 0.2)), 0.0);
-    let window = window(Profile::Hann(0.5), Profile::Hann(0.5));
-    let grid = SliceGrid {
-        azimuths: 8,
-        rho: FrequencyAxis {
-            half: 32,
-            spacing: 0.5,
-        },
-        nu: FrequencyAxis {
-            half: 64,
-            spacing: 0.5,
-        },
-    };
-    for (count, pitch) in [(20, 0.1), (100, 0.02), (100, 0.1)] {
-        let shapes = blockers(count, pitch, 0.6 * pitch);
-        let mask = opaque(shapes.into_iter().map(Shape::Rectangle).collect());
-        let bench = Bench::new(light, vec![(1.0, mask)]);
-        for after in [0.0, 1.0] {
-            let receiver = bench.after(after);
-            let start = std::time::Instant::now();
-            let slices = receiver.slices(&window, &grid);
-            let seconds = start.elapsed().as_secs_f64();
-            let told = receiver.quadrature_error(&window, &grid, &slices).unwrap();
-            let truth = distance(&slices, &receiver.table(&window, 1024).slices(&grid));
-            println!(
-                "{count}² blockers, after {after}: {} nodes, {seconds:.2} s, told {told:.1e}, truth {truth:.1e}",
-                receiver.nodes(&window)
-            );
-        }
-    }
-}
-
 #[test]
 fn hard_shadows_of_a_point_light() {
     let mask = opaque(vec![rectangle([0.1, -0.05], [0.2, 0.15])]);
