@@ -29,7 +29,7 @@ pub use frequency::{FrequencyAxis, SliceGrid};
 pub use plane::{Quantity, Side, VirtualPlane};
 pub use projection::{Projection, ProjectionGrid};
 pub use rectangle::Rectangle;
-pub use shape::{Disc, Grating, HalfPlane, Light, Mask, Shape};
+pub use shape::{Disc, Grating, HalfPlane, Light, Mask, Shape, triangle_distance};
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};
 

@@ -1,4 +1,5 @@
-use crate::Rectangle;
+use crate::{Rectangle, TwoPlane};
+use glam::DVec3;
 use serde::Serialize;
 
 /// A disc in a plane orthogonal to the central ray, coordinates relative to the ray.
@@ -60,6 +61,23 @@ impl Shape {
             Self::Disc(disc) => std::f64::consts::PI * disc.radius * disc.radius,
         }
     }
+}
+
+/// The distance along the central ray at which a ray meets a triangle, both given in the frame the ray is counted from.
+///
+/// Seen along the ray it is a flat triangle around the origin or not. Two triangles see a common edge with the same two
+/// products, so nothing passes between them (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*, whose
+/// shear this is).
+#[inline]
+#[must_use]
+pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
+    let [a, b, c] = corners.map(|p| [p.x - ray.x - ray.u * p.z, p.y - ray.y - ray.v * p.z]);
+    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
+    let weights = [cross(b, c), cross(c, a), cross(a, b)];
+    let inside = weights.iter().all(|w| *w >= 0.0) || weights.iter().all(|w| *w <= 0.0);
+    let sum: f64 = weights.iter().sum();
+    let depth: f64 = weights.iter().zip(corners).map(|(w, p)| w * p.z).sum();
+    (inside && sum != 0.0).then(|| depth / sum)
 }
 
 /// The points of a plane on one side of a line along X or Y.

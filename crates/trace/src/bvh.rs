@@ -3,7 +3,7 @@
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
 
-use etendue_field::{Shape, TwoPlane};
+use etendue_field::{Shape, TwoPlane, triangle_distance};
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -38,7 +38,7 @@ impl Form {
                 let at = ray.travelled(*distance);
                 shape.contains(at.x, at.y).then_some(*distance)
             }
-            Self::Triangle(corners) => triangle(corners, ray),
+            Self::Triangle(corners) => triangle_distance(corners, ray),
         }
     }
 
@@ -53,20 +53,6 @@ impl Form {
             Self::Triangle([a, b, c]) => [a.min(*b).min(*c), a.max(*b).max(*c)],
         }
     }
-}
-
-/// Where a ray meets a triangle: seen along the ray it is a flat triangle around the origin or not.
-///
-/// Two triangles see a common edge with the same two products, so nothing passes between them
-/// (Woop, Benthin and Wald 2013, *Watertight ray/triangle intersection*, whose shear this is).
-fn triangle(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
-    let [a, b, c] = corners.map(|p| [p.x - ray.x - ray.u * p.z, p.y - ray.y - ray.v * p.z]);
-    let cross = |p: [f64; 2], q: [f64; 2]| p[0] * q[1] - p[1] * q[0];
-    let weights = [cross(b, c), cross(c, a), cross(a, b)];
-    let inside = weights.iter().all(|w| *w >= 0.0) || weights.iter().all(|w| *w <= 0.0);
-    let sum: f64 = weights.iter().sum();
-    let depth: f64 = weights.iter().zip(corners).map(|(w, p)| w * p.z).sum();
-    (inside && sum != 0.0).then(|| depth / sum)
 }
 
 /// Targets, and the hierarchy that finds the first one hit.

@@ -2,7 +2,7 @@ use super::Resolver;
 use super::faults::show;
 use crate::file::{SceneFile, SurfaceFile};
 use crate::scene::{MeshObject, Surface};
-use etendue_field::{Frame, Rectangle};
+use etendue_field::{Frame, Rectangle, TwoPlane, triangle_distance};
 use glam::DVec3;
 
 impl Resolver<'_> {
@@ -110,17 +110,9 @@ impl Resolver<'_> {
 impl MeshObject {
     /// Where the central ray hits it first.
     fn on_axis(&self) -> Option<f64> {
-        let hits = self.triangles.iter().filter_map(crossing_of_axis);
+        let central = TwoPlane::default();
+        let hits = self.triangles.iter();
+        let hits = hits.filter_map(|corners| triangle_distance(corners, &central));
         hits.reduce(f64::min)
     }
-}
-
-/// The coordinate along the ray at which it crosses a triangle.
-fn crossing_of_axis([a, b, c]: &[DVec3; 3]) -> Option<f64> {
-    let area = |p: &DVec3, q: &DVec3| p.x * q.y - p.y * q.x;
-    let weights = [area(b, c), area(c, a), area(a, b)];
-    let inside = weights.iter().all(|w| *w >= 0.0) || weights.iter().all(|w| *w <= 0.0);
-    let sum: f64 = weights.iter().sum();
-    let depth = weights[0] * a.z + weights[1] * b.z + weights[2] * c.z;
-    (inside && sum != 0.0).then(|| depth / sum)
 }
