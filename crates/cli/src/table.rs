@@ -90,7 +90,7 @@ fn parameters(summary: &Summary) -> Vec<Vec<String>> {
             rows.push(vec![
                 plane.name.clone(),
                 with_unit(&parameter.name, &parameter.unit),
-                parameter.scene.to_string(),
+                tidy(parameter.scene),
                 uncertain(parameter.measured, parameter.error),
                 detectable(parameter),
             ]);
@@ -107,9 +107,15 @@ fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
+/// A number as the scene file may have it, without the last digits that arithmetic leaves.
+fn tidy(x: f64) -> String {
+    let rounded = (x * 1e12).round() / 1e12;
+    rounded.to_string()
+}
+
 /// As a share of the parameter, if it has a size.
 fn detectable(parameter: &ParameterReport) -> String {
-    if parameter.scene == 0.0 {
+    if parameter.scene.abs() < 1e-12 {
         format!("{:.1e}", parameter.detectable)
     } else {
         format!(

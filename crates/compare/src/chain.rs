@@ -54,7 +54,7 @@ pub fn meshes<'a>(scene: &'a Scene, plane: &VirtualPlane) -> impl Iterator<Item 
 }
 
 /// The flat surface that the central ray visits.
-fn visited(scene: &Scene) -> Option<&Surface> {
+pub(crate) fn visited(scene: &Scene) -> Option<&Surface> {
     let visits = &scene.file.path.visits;
     scene.surfaces.iter().find(|s| visits.contains(&s.name))
 }

@@ -2,13 +2,13 @@ use crate::prediction::Prediction;
 use crate::report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
 use crate::score::score;
-use etendue_field::{PlaneTally, SliceGrid, Slices};
+use etendue_field::{Complex, PlaneTally, SliceGrid, Slices};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
     BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, shear_slope,
 };
 use etendue_spectrum::{CrossPower, Measurement, RadialPower};
-use ndarray::{Array2, Array3, ArrayView2};
+use ndarray::{Array2, Array3, ArrayView2, Axis};
 
 /// A plane compared: the report, and the arrays behind it.
 #[derive(Clone, Debug)]
@@ -65,7 +65,12 @@ pub fn compare(
         estimate.variance
     };
     let power = CrossPower::new(measurement, index)?;
-    let predicted_radial = predicted.radial_power();
+    // That of a mean holds the noise of its batches; crossed with each other they have none in common.
+    let predicted_radial = if is_reference {
+        crossed_power(&prediction.replicates)
+    } else {
+        predicted.radial_power()
+    };
     let agreement = Agreement::new(&residuals, &variance, &predicted);
     let p_value = residuals.p_value(seed);
     let verdict = verdict(&predicted, &tally, p_value, level, agreement.noise_limit());
@@ -129,6 +134,21 @@ pub fn compare(
         predicted,
         projection: estimate::projection(measurement, index)?,
     })
+}
+
+/// The radial power of a reference from its batches, without their noise (docs/theory.md, Eq. 13), [ρ, ν].
+fn crossed_power(replicates: &[Slices]) -> Array2<f64> {
+    let grid = replicates[0].grid;
+    let mut sum = Array3::<Complex>::zeros(grid.half_shape());
+    let mut own = Array3::<f64>::zeros(grid.half_shape());
+    for batch in replicates {
+        sum += &batch.half;
+        own.zip_mut_with(&batch.half, |own, s| *own += s.norm_sqr());
+    }
+    let r = replicates.len() as f64;
+    let crossed = sum.mapv(|s| s.norm_sqr()) - own;
+    let radial = crossed.sum_axis(Axis(0)) / (r * (r - 1.0) * grid.azimuths as f64);
+    grid.unfold_radial(radial.view())
 }
 
 /// A number read off both powers by the same estimator.
@@ -268,13 +288,13 @@ fn warnings(
     if peak <= 0.0 {
         warnings.push("no light is predicted in this window".to_owned());
     }
-    let at = |axis: ndarray::Axis| {
+    let at = |axis: Axis| {
         let first = predicted.index_axis(axis, 0);
         first.iter().copied().fold(0.0, f64::max)
     };
     for (name, axis, max) in [
-        ("rho", ndarray::Axis(0), grid.rho.max()),
-        ("nu", ndarray::Axis(1), grid.nu.max()),
+        ("rho", Axis(0), grid.rho.max()),
+        ("nu", Axis(1), grid.nu.max()),
     ] {
         let border = at(axis);
         if border > BORDER * peak {

@@ -1,5 +1,5 @@
-use crate::chain::{chain, meshes};
-use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
+use crate::chain::{chain, meshes, visited};
+use etendue_field::{Profile, Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
@@ -17,15 +17,30 @@ pub enum Class {
 }
 
 impl Class {
-    /// The kind of prediction a plane has: what stands in planes has closed forms or quadratures, a mesh has not.
+    /// The kind of prediction a plane has: what stands in planes has closed forms or quadratures; a mesh has not, nor has a
+    /// plane that sees the edge of the surface light leaves.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if meshes(scene, plane).next().is_some() {
+        if meshes(scene, plane).next().is_some() || !is_covered(scene, plane) {
             Self::Reference
         } else {
             Self::Exact
         }
     }
+}
+
+/// Whether a plane after the reflection looks at nothing beyond the edge of the surface: theory takes it to be endless.
+fn is_covered(scene: &Scene, plane: &VirtualPlane) -> bool {
+    let (1.., Some(surface)) = (plane.reflections, visited(scene)) else {
+        return true;
+    };
+    let (w, travelled) = (&plane.window, plane.distance - scene.path.length);
+    let covers = |axis: usize, space: &Profile, slope: &Profile| {
+        let reach = space.half_width() + travelled * slope.half_width();
+        let [low, high] = surface.rectangle.extent(axis);
+        low <= -reach && reach <= high
+    };
+    covers(0, &w.x, &w.u) && covers(1, &w.y, &w.v)
 }
 
 /// Everything a measurement of a plane is held against.

@@ -61,6 +61,10 @@ impl Tracer {
         let words = |block| random::words(self.seed, Stream::Photon, index, block);
         let ray = self.emitter.sample([words(0), words(1)]);
         let weight = self.emitter.weight(&ray);
+        // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
+        if weight <= 0.0 {
+            return;
+        }
         let secant_squared = ray.secant_squared();
         let flux = weight / (secant_squared * secant_squared);
         let met = self.obstacles.first(&ray);
@@ -90,7 +94,8 @@ impl Tracer {
             Some((_, Meeting::Surface { albedo, visited })) => {
                 ledger.stopped += albedo * arrives;
                 ledger.absorbed += (1.0 - albedo) * arrives;
-                if let (Some(scatterer), true) = (&self.scatterer, visited) {
+                let reflects = visited && albedo > 0.0;
+                if let (Some(scatterer), true) = (&self.scatterer, reflects) {
                     let at = ray.travelled(self.length);
                     let sampled = scatterer.sample(turned(&at), words(2));
                     if let Some((ray, density)) = sampled {

@@ -151,8 +151,14 @@ impl Resolver<'_> {
         }
         let moved = |c: [f64; 2]| [center[0] + c[0], center[1] + c[1]];
         let (mut shapes, mut half_planes) = (Vec::new(), Vec::new());
+        // Where each stands in the file.
+        let (mut of_shapes, mut of_half_planes) = (Vec::new(), Vec::new());
         for (i, file) in files.iter().enumerate() {
             let of = format!("{of}.shapes[{i}]");
+            match file {
+                ShapeFile::HalfPlane { .. } => of_half_planes.push(i),
+                _ => of_shapes.push(i),
+            }
             match *file {
                 ShapeFile::Rectangle { center, size } => {
                     self.faults.coordinates(&format!("{of}.center"), &center);
@@ -177,32 +183,43 @@ impl Resolver<'_> {
             }
         }
         if self.faults.0.is_empty() {
+            let shapes: Vec<_> = of_shapes.iter().zip(&shapes).collect();
+            let half_planes: Vec<_> = of_half_planes.iter().zip(&half_planes).collect();
             self.apart(of, &shapes, &half_planes);
         }
         opaque(shapes, half_planes)
     }
 
-    /// What overlaps would be counted twice by the prediction.
-    fn apart(&mut self, of: &str, shapes: &[Shape], half_planes: &[HalfPlane]) {
+    /// What overlaps would be counted twice by the prediction. Each shape comes with its place in the file.
+    fn apart(
+        &mut self,
+        of: &str,
+        shapes: &[(&usize, &Shape)],
+        half_planes: &[(&usize, &HalfPlane)],
+    ) {
         let mut overlaps = Vec::new();
-        for (i, a) in shapes.iter().enumerate() {
-            overlaps.extend(
-                shapes[..i]
-                    .iter()
-                    .filter(|b| overlap(a, b))
-                    .map(|b| (show(a), show(b))),
-            );
-            let crossed = half_planes.iter().filter(|h| reaches(a, h));
-            overlaps.extend(crossed.map(|h| (show(a), show(h))));
+        for (i, (a, shape)) in shapes.iter().enumerate() {
+            let others = shapes[..i]
+                .iter()
+                .filter(|(_, other)| overlap(shape, other));
+            overlaps.extend(others.map(|(b, _)| (*b, *a)));
+            let crossed = half_planes.iter().filter(|(_, half)| reaches(shape, half));
+            overlaps.extend(crossed.map(|(b, _)| (*b, *a)));
         }
-        for (i, a) in half_planes.iter().enumerate() {
-            let both = half_planes[..i].iter().filter(|b| !facing_away(a, b));
-            overlaps.extend(both.map(|b| (show(a), show(b))));
+        for (i, (a, half)) in half_planes.iter().enumerate() {
+            let both = half_planes[..i]
+                .iter()
+                .filter(|(_, other)| !facing_away(half, other));
+            overlaps.extend(both.map(|(b, _)| (*b, *a)));
         }
         if let Some((a, b)) = overlaps.first() {
+            let (low, high) = (a.min(b), a.max(b));
             self.faults.add(
                 format!("{of}.shapes"),
-                format!("{} that overlap, first {a} and {b}", overlaps.len()),
+                format!(
+                    "a list in which shapes[{low}] and shapes[{high}] overlap ({} pairs do)",
+                    overlaps.len()
+                ),
                 "shapes that do not overlap; put them in two layers",
             );
         }
