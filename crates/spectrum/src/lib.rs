@@ -5,7 +5,7 @@
 //! field, its projection on (x, u) and the tally of the window. Out: a [`Measurement`], partial or whole,
 //! and the estimates made from its independent batches: mean slices with their variance
 //! ([`estimate::slices`]), radial power without the photons' noise ([`CrossPower`]), slopes and bandwidths
-//! with jackknife errors ([`moments`]).
+//! with jackknife errors ([`moments`]). The field itself on a 4D grid, with its full radial spectrum, is [`field`]'s.
 //!
 //! The transform is [`SliceTransform`], held against the plain sums of [`direct`]. Nothing here traces or
 //! predicts, and nothing judges: comparing with a prediction is another crate's.

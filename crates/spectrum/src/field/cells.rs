@@ -8,7 +8,7 @@ use rayon::prelude::*;
 /// The plan that takes weighted rays to a 4D grid and the grid to its spectrum.
 ///
 /// Its transform uses [`Kernels::Portable`], so a spectrum has the same bits on every processor, as the slices
-/// have; [`Kernels::Native`] would save a third of a transform's time.
+/// have; [`Kernels::Native`] would save some 40 % of a transform's time.
 #[derive(Debug)]
 pub struct FieldTransform {
     grid: FieldGrid,
