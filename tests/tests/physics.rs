@@ -1,6 +1,6 @@
 //! Scenes that must pass and scenes that must not, end to end: from scene text to verdict.
 
-use etendue_compare::{Prediction, Verdict, compare, sidak};
+use etendue_compare::{Class, Prediction, Verdict, compare, sidak};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
@@ -139,4 +139,24 @@ fn a_forgotten_surface_is_noticed() {
             Verdict::Fail
         ]
     );
+}
+
+/// Theory takes the receiver to be endless: where a window sees its edge, the other tracer is asked.
+#[test]
+fn the_edge_of_the_receiver_is_left_to_the_reference() {
+    let classes = |size: &str| -> Vec<Class> {
+        let scene = scene(&[("size: (6, 6)", size)]);
+        scene.planes.iter().map(|p| Class::of(&scene, p)).collect()
+    };
+    assert!(classes("size: (3, 3)").iter().all(|c| *c == Class::Exact));
+    let small = classes("size: (3, 2.9)");
+    assert_eq!(small[4], Class::Reference);
+    assert!(small[..4].iter().all(|c| *c == Class::Exact));
+}
+
+/// A black receiver sends nothing back, and nothing is what is predicted.
+#[test]
+fn a_black_receiver_is_dark() {
+    let black = scene(&[("albedo: 0.5", "albedo: 0")]);
+    assert_eq!(verdicts(&black, &black), [Verdict::Pass; 5]);
 }
