@@ -73,18 +73,28 @@ const SEED: u64 = 1;
 fn main() -> ExitCode {
     let command = Cli::parse().command;
     let page = match command {
-        Command::All => Some(("docs/validation.md", "Validation", "all")),
-        Command::Suite { photons: None } => Some(("docs/suite.md", "The suite", "suite")),
+        Command::All => Some((
+            "docs/validation.md",
+            "Validation",
+            "all",
+            "Scene: `scenes/fig9b.ron`",
+        )),
+        Command::Suite { photons: None } => Some((
+            "docs/suite.md",
+            "The suite",
+            "suite",
+            "Scenes: all of `scenes/`",
+        )),
         _ => None,
     };
     let sections = sections(&command);
     let text: Vec<String> = sections.iter().map(Section::markdown).collect();
     let text = text.join("\n");
     println!("{text}");
-    if let Some((path, title, name)) = page {
+    if let Some((path, title, name, of)) = page {
         let page = format!(
             "# {title}\n\nWritten by `cargo run --release -p etendue-validation -- {name}`. \
-             Scene: `scenes/fig9b.ron`, seed {SEED} unless said.\n\n{text}"
+             {of}, seed {SEED} unless said.\n\n{text}"
         );
         if let Err(error) = std::fs::write(path, page) {
             eprintln!("{path}: {error}");
