@@ -48,7 +48,7 @@ class Recorder:
         self.window = [Profile(plane["window"][axis]) for axis in "xyuv"]
         self.light = next((shape for shape in scene.shapes() if shape.is_emitter()), None)
         # The light itself, and what one surface makes of it.
-        self.integrator = mi.load_dict({"type": "path", "max_depth": 1 + plane["reflections"]})
+        self.integrator = mi.load_dict({"type": "path", "max_depth": 1 + plane["leg"]})
         # A ray starts a little beside the plane, and so beside what stands in it: towards the light to look at what
         # arrives there, away from it to look at what comes out. The ray is the same.
         self.aside = (1e-4 if plane["side"] == "after" else -1e-4) * length
@@ -63,7 +63,7 @@ class Recorder:
         volume = [self.window[0].integral * self.window[1].integral, self.window[2].integral * self.window[3].integral]
         distance, position, slope = self.plane["distance"], (0, 1), (2, 3)
         choices = {"window": volume[0] * volume[1]}
-        if self.plane["reflections"] == 0:
+        if self.plane["leg"] == 0:
             area = np.prod(self.size)
             choices["slopes"] = area * volume[1]
             choices["positions"] = volume[0] * area / distance**2 if distance > 0 else np.inf
@@ -172,7 +172,7 @@ def main():
     passed = True
     for plane in planes:
         recorder = Recorder(scene, plane, length)
-        if recorder.light is None and plane["reflections"] == 0:
+        if recorder.light is None and plane["leg"] == 0:
             print(f"{plane['name']:24} no ray hits a point light")
             continue
         measured = np.load(asked.measured / plane["name"] / "batches.npz")["slices"]

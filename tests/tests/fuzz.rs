@@ -144,7 +144,7 @@ fn make_small(scene: &mut Scene) {
         mesh.triangles.truncate(200);
     }
     // A receiver's prediction takes seconds, whatever the frequencies.
-    scene.planes.retain(|plane| plane.reflections == 0);
+    scene.planes.retain(|plane| plane.leg == 0);
 }
 
 fn whole_run(scene: &Scene) {

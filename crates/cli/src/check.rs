@@ -15,13 +15,27 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
+/// The lengths of the legs, with what they end on.
+fn length(scene: &Scene) -> String {
+    let legs = scene.path.legs.iter().enumerate();
+    let ends = legs.filter_map(|(i, leg)| {
+        let name = scene.name_of(scene.path.ends_at(i)?.object);
+        Some(format!("{} m to {name}", leg.length))
+    });
+    ends.collect::<Vec<_>>().join(", ")
+}
+
 fn description(scene: &Scene) -> String {
     let run = &scene.run;
     let mut lines = vec![
         format!("{}: sound", scene.name),
         format!(
-            "central ray: {} m, photons: {} in {} batches, {:?} emission, α = {}",
-            scene.path.length, run.photons, run.batches, run.emission, run.alpha
+            "central ray: {}, photons: {} in {} batches, {:?} emission, α = {}",
+            length(scene),
+            run.photons,
+            run.batches,
+            run.emission,
+            run.alpha
         ),
     ];
     for plane in &scene.planes {

@@ -3,9 +3,10 @@
 use crate::pictures::spaced;
 use etendue_field::{Light, Mask, Shape, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
-use etendue_scene::{BlockerLayer, MeshObject, Scene};
+use etendue_scene::{BlockerLayer, Leg, MeshObject, Object, Scene};
+use glam::DVec3;
 
-/// The cut, with the planes given; the way back from the surface is unfolded behind it.
+/// The cut, with the planes given; the path is unfolded: each surface is cut as light arrives at it.
 pub(crate) fn cross_section<'a>(
     scene: &Scene,
     planes: impl Iterator<Item = &'a VirtualPlane>,
@@ -27,30 +28,59 @@ pub(crate) fn cross_section<'a>(
             layer.distance,
         ));
     }
-    for surface in &scene.surfaces {
-        let extent = vec![surface.rectangle.extent(0)];
-        segments.extend(labelled(
-            SegmentKind::Surface,
-            &surface.name,
-            extent,
-            surface.distance,
-        ));
+    for (i, surface) in scene.surfaces.iter().enumerate() {
+        let outline = cut(&surface.corners(), arriving(scene, Object::Surface(i)));
+        segments.extend(outline.map(|[start, end]| Segment {
+            kind: SegmentKind::Surface,
+            start,
+            end,
+            label: Some(spaced(&surface.name)),
+        }));
     }
-    segments.extend(scene.meshes.iter().flat_map(mesh));
+    for (i, object) in scene.meshes.iter().enumerate() {
+        segments.extend(mesh(object, arriving(scene, Object::Mesh(i))));
+    }
+    let last = scene.path.legs.last().map_or(0.0, |leg| leg.start);
     let farthest = planes.iter().map(|plane| plane.distance);
     Section {
-        length: farthest.fold(scene.path.length, f64::max),
+        length: farthest.fold(last, f64::max),
         segments,
         planes,
         cones: Vec::new(),
     }
 }
 
+/// The leg on which light arrives at something; the first for what the path does not visit.
+fn arriving(scene: &Scene, object: Object) -> &Leg {
+    let legs = &scene.path.legs;
+    let ends = |leg: &usize| {
+        scene
+            .path
+            .ends_at(*leg)
+            .is_some_and(|hit| hit.object == object)
+    };
+    &legs[(0..legs.len()).find(ends).unwrap_or(0)]
+}
+
+/// The piece (z, x) in which the plane y = 0 of a leg cuts a flat outline; z is the distance along the path.
+fn cut(corners: &[DVec3], leg: &Leg) -> Option<[[f64; 2]; 2]> {
+    let corners: Vec<DVec3> = corners.iter().map(|p| leg.frame.to_local(*p)).collect();
+    let mut points = Vec::new();
+    for (i, a) in corners.iter().enumerate() {
+        let b = corners[(i + 1) % corners.len()];
+        if (a.y < 0.0) != (b.y < 0.0) {
+            let at = a.lerp(b, a.y / (a.y - b.y));
+            points.push([leg.start + at.z, at.x]);
+        }
+    }
+    points.try_into().ok()
+}
+
 fn light(scene: &Scene) -> Segment {
     let [low, high] = match scene.light {
         Light::Area { shape, .. } => shape.bounds().extent(0),
         // A dot.
-        Light::Point { .. } => [-0.005, 0.005].map(|x| x * scene.path.length),
+        Light::Point { .. } => [-0.005, 0.005].map(|x| x * scene.path.first_hit()),
     };
     Segment {
         kind: SegmentKind::Light,
@@ -121,24 +151,14 @@ fn layer_extents(layer: &BlockerLayer) -> Vec<[f64; 2]> {
     }
 }
 
-/// The outline in which the plane y = 0 cuts a mesh.
-fn mesh(mesh: &MeshObject) -> Vec<Segment> {
+/// The outline in which the plane y = 0 of a leg cuts a mesh.
+fn mesh(mesh: &MeshObject, leg: &Leg) -> Vec<Segment> {
     let kind = mesh
         .albedo
         .map_or(SegmentKind::Blocker, |_| SegmentKind::Surface);
     let mut label = Some(spaced(&mesh.name));
     let cuts = mesh.triangles.iter().filter_map(|corners| {
-        let mut points = Vec::new();
-        for i in 0..3 {
-            let (a, b) = (corners[i], corners[(i + 1) % 3]);
-            if (a.y < 0.0) != (b.y < 0.0) {
-                let at = a.lerp(b, a.y / (a.y - b.y));
-                points.push([at.z, at.x]);
-            }
-        }
-        let &[start, end] = points.as_slice() else {
-            return None;
-        };
+        let [start, end] = cut(corners, leg)?;
         Some(Segment {
             kind,
             start,

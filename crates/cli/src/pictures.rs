@@ -148,11 +148,10 @@ fn made_from(summary: &Summary) -> String {
 /// Where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind blockers of
 /// frequency f, the same line through (± f, ∓ h f). A diffuse surface leaves what lies at ν = 0, and travel begins anew.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
-    let reflected = plane.reflections > 0;
-    let since = if reflected { scene.path.length } else { 0.0 };
+    let reflected = plane.leg > 0;
     let through = |through| Guide {
         through,
-        slope: since - plane.distance,
+        slope: -scene.path.along(plane),
     };
     let behind = scene
         .blockers

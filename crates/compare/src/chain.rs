@@ -1,11 +1,11 @@
 //! The chain read off the scene: the only code that sees both the scene and theory.
 
-use etendue_field::{Mask, Quantity, Side, VirtualPlane};
-use etendue_scene::{MeshObject, Scene, Surface};
+use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
+use etendue_scene::{Object, Scene};
 use etendue_theory::{Chain, Operator, Source};
 
-/// The chain that leads from the light to a virtual plane: travels, visibilities and reflection as the central ray
-/// meets them. Meshes are left out: theory has no word for them (see [`meshes`]).
+/// The chain that leads from the light to a virtual plane: travels, visibilities and reflections as the central ray
+/// meets them. What theory has no word for is left out (see [`Class`](crate::Class)).
 #[must_use]
 pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     let mut walk = Walk {
@@ -22,16 +22,17 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
             });
         }
     }
-    if let (1.., Some(surface)) = (plane.reflections, visited(scene)) {
-        let name = surface.name.clone();
-        walk.travel(&name, surface.distance);
-        walk.operators.extend([
-            Operator::Cosine { name: name.clone() },
-            Operator::Diffuse {
-                name,
-                albedo: surface.albedo,
-            },
-        ]);
+    for leg in &scene.path.legs[1..=plane.leg] {
+        let Some(hit) = leg.leaves else { continue };
+        let name = scene.name_of(hit.object).to_owned();
+        let albedo = match hit.object {
+            Object::Surface(i) => scene.surfaces[i].albedo,
+            Object::Mesh(i) => scene.meshes[i].albedo.unwrap_or(0.0),
+        };
+        walk.travel(&name, leg.start);
+        let cosine = Operator::Cosine { name: name.clone() };
+        walk.operators
+            .extend([cosine, Operator::Diffuse { name, albedo }]);
     }
     walk.travel(&plane.name, plane.distance);
     if plane.quantity == Quantity::DifferentialIrradiance {
@@ -47,28 +48,17 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// The meshes that light may meet before it reaches a plane.
-pub fn meshes<'a>(scene: &'a Scene, plane: &VirtualPlane) -> impl Iterator<Item = &'a MeshObject> {
-    let end = plane.distance.min(scene.path.length);
-    scene.meshes.iter().filter(move |mesh| mesh.extent[0] < end)
-}
-
-/// The flat surface that the central ray visits.
-pub(crate) fn visited(scene: &Scene) -> Option<&Surface> {
-    let visits = &scene.file.path.visits;
-    scene.surfaces.iter().find(|s| visits.contains(&s.name))
-}
-
 /// What stands across the path, with its distance: blockers, and surfaces, since those beside the central ray stop light too.
 fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     let blockers = scene.blockers.iter();
     let blockers = blockers.map(|layer| (layer.name.as_str(), layer.distance, layer.mask.clone()));
-    let surfaces = scene.surfaces.iter().map(|surface| {
+    let surfaces = scene.surfaces.iter().filter_map(|surface| {
+        let (distance, rectangle) = surface.across()?;
         let mask = Mask::Opaque {
-            shapes: vec![surface.shape()],
+            shapes: vec![Shape::Rectangle(rectangle)],
             half_planes: Vec::new(),
         };
-        (surface.name.as_str(), surface.distance, mask)
+        Some((surface.name.as_str(), distance, mask))
     });
     let mut obstacles: Vec<_> = blockers.chain(surfaces).collect();
     obstacles.sort_by(|(_, a, _), (_, b, _)| a.total_cmp(b));
@@ -78,8 +68,8 @@ fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
 /// Whether light meets what stands at `distance` on its way to the plane.
 #[must_use]
 pub fn stands_before(distance: f64, scene: &Scene, plane: &VirtualPlane) -> bool {
-    if plane.reflections > 0 {
-        return distance < scene.path.length;
+    if plane.leg > 0 {
+        return distance < scene.path.first_hit();
     }
     match plane.side {
         Side::Before => distance < plane.distance,

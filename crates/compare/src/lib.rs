@@ -7,15 +7,17 @@
 //! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
 
 mod chain;
+mod class;
 mod plane;
 mod prediction;
 mod report;
 mod residuals;
 mod score;
 
-pub use chain::{chain, meshes, stands_before};
+pub use chain::{chain, stands_before};
+pub use class::Class;
 pub use plane::{PlaneComparison, compare};
-pub use prediction::{Class, PredictedParameter, Prediction, steps};
+pub use prediction::{PredictedParameter, Prediction, steps};
 pub use report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
 pub use residuals::Residuals;
 pub use score::ParameterReport;

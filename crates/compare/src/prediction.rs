@@ -1,47 +1,10 @@
-use crate::chain::{chain, meshes, visited};
-use etendue_field::{Profile, Projection, ProjectionGrid, Slices, VirtualPlane, Window};
+use crate::chain::chain;
+use crate::class::{Class, without_theory};
+use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
 use etendue_theory::{Chain, Operator};
-use serde::{Deserialize, Serialize};
-
-/// What kind of prediction a plane has.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Class {
-    /// Equals the expectation of the measurement, in closed form or by quadrature.
-    Exact,
-    /// There is no theory: the other tracer's measurement takes its place.
-    Reference,
-}
-
-impl Class {
-    /// The kind of prediction a plane has: what stands in planes has closed forms or quadratures; a mesh has not, nor has a
-    /// plane that sees the edge of the surface light leaves.
-    #[must_use]
-    pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if meshes(scene, plane).next().is_some() || !is_covered(scene, plane) {
-            Self::Reference
-        } else {
-            Self::Exact
-        }
-    }
-}
-
-/// Whether a plane after the reflection looks at nothing beyond the edge of the surface: theory takes it to be endless.
-fn is_covered(scene: &Scene, plane: &VirtualPlane) -> bool {
-    let (1.., Some(surface)) = (plane.reflections, visited(scene)) else {
-        return true;
-    };
-    let (w, travelled) = (&plane.window, plane.distance - scene.path.length);
-    let covers = |axis: usize, space: &Profile, slope: &Profile| {
-        let reach = space.half_width() + travelled * slope.half_width();
-        let [low, high] = surface.rectangle.extent(axis);
-        low <= -reach && reach <= high
-    };
-    covers(0, &w.x, &w.u) && covers(1, &w.y, &w.v)
-}
 
 /// Everything a measurement of a plane is held against.
 #[derive(Clone, Debug)]
@@ -56,7 +19,7 @@ pub struct Prediction {
     pub quadrature_error: Option<f64>,
     /// For a reference, its independent batches, of which `slices` is the mean; theory has none.
     pub replicates: Vec<Slices>,
-    /// ∫ L W if nothing stood in the way: what the slices are small or large against.
+    /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against; zero for a reference.
     pub unblocked: f64,
     /// The windowed light field in (x, u).
     pub projection: Projection,
@@ -79,15 +42,16 @@ pub struct PredictedParameter {
     pub derivative: Slices,
 }
 
-/// The steps that make the spectrum of a plane, a line for each: the chain, meshes, and the window last.
+/// The steps that make the spectrum of a plane, a line for each: the chain, what theory has no word for, and the window last.
 #[must_use]
 pub fn steps(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let Window { x, y, u, v } = &plane.window;
     let mut steps = chain(scene, plane).describe();
-    steps.extend(meshes(scene, plane).map(|mesh| {
-        let (name, count, [near, far]) = (&mesh.name, mesh.triangles.len(), mesh.extent);
-        format!("multiply  visibility of {name}: {count} triangles at {near:.4} to {far:.4} m, without theory")
-    }));
+    steps.extend(
+        without_theory(scene, plane)
+            .iter()
+            .map(|step| format!("without theory  {step}")),
+    );
     steps.push(format!(
         "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
     ));
@@ -145,7 +109,7 @@ impl Prediction {
                 .at_plane(at)
                 .map(|batch| batch.slices.clone())
                 .collect(),
-            unblocked: unblocked(chain(scene, plane), &plane.window),
+            unblocked: 0.0,
             projection: estimate::projection(measurement, at)?.mean,
             parameters: Vec::new(),
             cuts: cuts(scene, plane),
@@ -156,7 +120,7 @@ impl Prediction {
 /// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times that, to see whether
 /// H hangs on the cut; none where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
-    if plane.reflections == 0 || plane.distance > scene.path.length {
+    if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();
     }
     let cut = 2.0 / plane.window.x.half_width();

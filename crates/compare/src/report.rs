@@ -1,4 +1,4 @@
-use crate::prediction::Class;
+use crate::class::Class;
 use crate::score::ParameterReport;
 use etendue_field::Frame;
 use serde::Serialize;

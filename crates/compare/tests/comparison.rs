@@ -22,7 +22,7 @@ fn plane() -> VirtualPlane {
     VirtualPlane {
         name: "plane".into(),
         distance: 0.0,
-        reflections: 0,
+        leg: 0,
         side: Side::After,
         quantity: Quantity::default(),
         frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),

@@ -9,7 +9,7 @@ mod xml;
 
 use crate::Export;
 use etendue_field::{HalfPlane, Light, Mask, Rectangle, Shape};
-use etendue_scene::{BlockerLayer, Scene};
+use etendue_scene::{BlockerLayer, Scene, Surface};
 use glam::DVec3;
 use xml::{Xml, diffuse, emitter};
 
@@ -33,6 +33,16 @@ pub enum NotInMitsuba {
         /// Name of its layer.
         name: String,
     },
+    /// A plane after several reflections.
+    #[error(
+        "Mitsuba sums over paths of all lengths: the plane {name:?}, after {leg} reflections, cannot be exported"
+    )]
+    Reflections {
+        /// Its name.
+        name: String,
+        /// Surfaces that light has left on its way.
+        leg: usize,
+    },
 }
 
 /// The scene for Mitsuba 3: `scene.xml`, a `.ply` for each mesh and each layer of rectangles, and `planes.json` with
@@ -48,6 +58,10 @@ pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
         meshes: Vec::new(),
     };
     writer.light(&scene.light)?;
+    if let Some(plane) = scene.planes.iter().find(|plane| plane.leg > 1) {
+        let (name, leg) = (plane.name.clone(), plane.leg);
+        return Err(NotInMitsuba::Reflections { name, leg });
+    }
     let beyond = 2.0 * reach(scene);
     for (number, layer) in scene.blockers.iter().enumerate() {
         writer.layer(number, layer, beyond)?;
@@ -56,8 +70,14 @@ pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
         writer.xml.comment(&format!("surface {:?}", surface.name));
         let looks = diffuse(surface.albedo);
         let id = surface_id(number);
-        let shape = surface.shape();
-        writer.xml.flat(&id, &shape, surface.distance, &looks);
+        if let Some((distance, rectangle)) = surface.across() {
+            writer
+                .xml
+                .flat(&id, &Shape::Rectangle(rectangle), distance, &looks);
+        } else {
+            let [a, b, c, d] = surface.corners();
+            writer.mesh(&id, &[[a, b, c], [a, c, d]], &looks);
+        }
     }
     for (number, mesh) in scene.meshes.iter().enumerate() {
         writer.xml.comment(&format!("mesh {:?}", mesh.name));
@@ -184,12 +204,13 @@ fn reach(scene: &Scene) -> f64 {
         Light::Area { shape, .. } => shape.bounds().reach(),
         Light::Point { .. } => 0.0,
     };
-    let windows = scene.planes.iter().filter(|plane| plane.reflections == 0);
+    let windows = scene.planes.iter().filter(|plane| plane.leg == 0);
     let windows = windows.map(|p| p.window.x.half_width().max(p.window.y.half_width()));
-    let surfaces = scene.surfaces.iter().map(|s| s.rectangle.reach());
-    let corners = scene.meshes.iter().flat_map(|m| m.triangles.as_flattened());
+    let surfaces = scene.surfaces.iter().flat_map(Surface::corners);
+    let meshes = scene.meshes.iter().flat_map(|m| m.triangles.as_flattened());
+    let corners = surfaces.chain(meshes.copied());
     let corners = corners.map(|p| p.x.abs().max(p.y.abs()));
-    windows.chain(surfaces).chain(corners).fold(light, f64::max)
+    windows.chain(corners).fold(light, f64::max)
 }
 
 #[cfg(test)]

@@ -1,4 +1,4 @@
-use glam::DVec3;
+use glam::{DQuat, DVec3};
 use serde::Serialize;
 
 /// A ray in the two-plane parameterisation of a [`Frame`]: it passes through O + x X + y Y
@@ -56,6 +56,14 @@ pub struct Frame {
 }
 
 impl Frame {
+    /// The frame of the coordinates themselves.
+    pub const IDENTITY: Self = Self {
+        origin: DVec3::ZERO,
+        x: DVec3::X,
+        y: DVec3::Y,
+        d: DVec3::Z,
+    };
+
     /// The frame at `origin` with D along `d` and X as near to `x` as orthogonality allows.
     ///
     /// `None` when `d` or `x` has no length, or they are parallel to a millionth.
@@ -87,12 +95,37 @@ impl Frame {
         }
     }
 
+    /// A frame given in the coordinates of this one, in those of the world.
+    #[must_use]
+    pub fn compose(&self, local: &Self) -> Self {
+        Self {
+            origin: self.to_world(local.origin),
+            x: self.vector_to_world(local.x),
+            y: self.vector_to_world(local.y),
+            d: self.vector_to_world(local.d),
+        }
+    }
+
+    /// The frame turned, by the smallest angle, until D is along the unit vector `d`.
+    #[must_use]
+    pub fn turned_to(&self, d: DVec3) -> Self {
+        let turn = DQuat::from_rotation_arc(self.d, d);
+        // Rounding of the turn is taken off the axes.
+        let x = turn * self.x;
+        let x = (x - d * d.dot(x)).normalize();
+        Self {
+            origin: self.origin,
+            x,
+            y: d.cross(x),
+            d,
+        }
+    }
+
     /// A point of the world in the coordinates (X, Y, D) of this frame.
     #[inline]
     #[must_use]
     pub fn to_local(&self, point: DVec3) -> DVec3 {
-        let p = point - self.origin;
-        DVec3::new(p.dot(self.x), p.dot(self.y), p.dot(self.d))
+        self.vector_to_local(point - self.origin)
     }
 
     /// The point of the world at `local` coordinates (X, Y, D) of this frame.
@@ -100,6 +133,13 @@ impl Frame {
     #[must_use]
     pub fn to_world(&self, local: DVec3) -> DVec3 {
         self.origin + self.vector_to_world(local)
+    }
+
+    /// A vector of the world as components along X, Y and D.
+    #[inline]
+    #[must_use]
+    pub fn vector_to_local(&self, vector: DVec3) -> DVec3 {
+        DVec3::new(vector.dot(self.x), vector.dot(self.y), vector.dot(self.d))
     }
 
     /// The vector of the world with components `local` along X, Y and D.

@@ -44,10 +44,10 @@ impl Quantity {
 pub struct VirtualPlane {
     /// Name: the folder of its results.
     pub name: String,
-    /// Distance from the light along the central ray, in metres; it goes on growing after a reflection.
+    /// Distance from the light along the central ray, in metres; it goes on growing from leg to leg.
     pub distance: f64,
-    /// Surfaces the light has left on its way: 0 before the path's surface reflects it, 1 after.
-    pub reflections: usize,
+    /// The leg of the path it stands on: the number of surfaces the light has left on its way.
+    pub leg: usize,
     /// Side of whatever stands at that distance.
     pub side: Side,
     /// What is recorded.

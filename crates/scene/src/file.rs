@@ -148,6 +148,19 @@ pub enum BlockersFile {
     },
 }
 
+impl BlockersFile {
+    /// Their name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::JitteredSquares { name, .. }
+            | Self::Shapes { name, .. }
+            | Self::Grating { name, .. }
+            | Self::Mesh { name, .. } => name,
+        }
+    }
+}
+
 /// A shape in the plane of its blockers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
@@ -229,7 +242,7 @@ pub enum MeshSource {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum SurfaceFile {
-    /// A rectangle orthogonal to the central ray, edges along X and Y.
+    /// A rectangle, edges along X and Y unless it faces elsewhere.
     Rectangle {
         /// Name, for the path and the planes to refer to.
         name: String,
@@ -237,6 +250,10 @@ pub enum SurfaceFile {
         center: [f64; 3],
         /// Side lengths along X and Y.
         size: [f64; 2],
+        /// Its normal, any length: back along `path.direction` unless stated. Its edges are then along the part of the path's
+        /// X axis that is orthogonal to it (of Y, if X is along it), and across.
+        #[serde(default)]
+        facing: Option<[f64; 3]>,
         /// Reflected over incident flux.
         #[serde(default = "half")]
         albedo: f64,
@@ -258,7 +275,18 @@ pub enum SurfaceFile {
     },
 }
 
-/// The central ray: it leaves the light's centre, and the surface it visits sends it straight back.
+impl SurfaceFile {
+    /// Its name.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        match self {
+            Self::Rectangle { name, .. } | Self::Mesh { name, .. } => name,
+        }
+    }
+}
+
+/// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
+/// next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PathFile {
@@ -266,8 +294,11 @@ pub struct PathFile {
     pub direction: [f64; 3],
     /// The X axis: its part orthogonal to the direction is used.
     pub x_axis: [f64; 3],
-    /// Name of the surface it visits.
+    /// Names of the surfaces it visits, in the order of light.
     pub visits: Vec<String>,
+    /// Direction in which it leaves the last of them, any length: straight back unless stated.
+    #[serde(default)]
+    pub leaves: Option<[f64; 3]>,
 }
 
 /// A virtual plane.

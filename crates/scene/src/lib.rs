@@ -31,4 +31,4 @@ pub use file::{
 };
 pub use mesh::{Mesh, MeshError};
 pub use resolve::resolve;
-pub use scene::{BlockerLayer, CentralRay, MeshObject, Run, Scene, Surface};
+pub use scene::{BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, Run, Scene, Surface};

@@ -3,15 +3,17 @@ mod faults;
 mod jitter;
 mod light;
 mod meshes;
+mod path;
 mod planes;
 mod surfaces;
 
 use crate::fault::SceneError;
 use crate::file::{RunFile, SceneFile};
-use crate::scene::{BlockerLayer, CentralRay, MeshObject, Run, Scene, Surface};
+use crate::scene::{CentralRay, Object, Run, Scene};
 use etendue_field::Frame;
 use faults::{Faults, show};
 use glam::DVec3;
+use path::Things;
 use std::path::Path;
 
 /// Checks a scene file and resolves it to a scene; paths of meshes are relative to `folder`, `memory` is what
@@ -55,32 +57,20 @@ impl Resolver<'_> {
         self.level(file.run.alpha, file.planes.len());
         self.layers(&file);
         // Without a frame no distance is known: check on with one that leaves the values as they are.
-        let checked = frame.unwrap_or(Frame {
-            origin: DVec3::ZERO,
-            x: DVec3::X,
-            y: DVec3::Y,
-            d: DVec3::Z,
-        });
+        let checked = frame.unwrap_or(Frame::IDENTITY);
         let surfaces = self.surfaces(&file, &checked);
         let meshes = self.meshes(&file, &checked);
-        let length = self.length(&file, &surfaces, &meshes);
-        let mut blockers = self.blockers(&file, &checked, length);
-        let stops = stops(&blockers, &surfaces, &meshes);
+        let mut blockers = self.blockers(&file, &checked);
+        let things = Things {
+            blockers: &blockers,
+            surfaces: &surfaces,
+            meshes: &meshes,
+        };
+        let path = self.path(&file, checked, things);
+        self.ends(&file, &blockers, path.first_hit());
+        let stops = stops(&path, things);
         self.names(&file, &stops);
         self.distinct(&stops);
-        let nearest = |stop: &Stop<'_>| length - stop.extent[1];
-        let back = stops.iter().map(nearest).filter(|gap| *gap > 0.0);
-        // Light that leaves a mesh is not measured.
-        let flat = surfaces.iter().any(|s| file.path.visits.contains(&s.name));
-        let path = CentralRay {
-            frame: checked,
-            length,
-            back: if flat {
-                back.fold(length, f64::min)
-            } else {
-                0.0
-            },
-        };
         let planes = self.planes(&file, &path, &stops);
         self.memory(&planes, file.run.batches, memory);
 
@@ -189,12 +179,15 @@ impl Resolver<'_> {
     }
 }
 
-/// Something on the path.
+/// Something that planes can be before and after.
 struct Stop<'a> {
     name: &'a str,
-    /// Nearest and farthest distance; one and the same for what is flat.
+    /// Nearest and farthest distance on the first leg; one and the same for what is flat.
     extent: [f64; 2],
+    /// Whether light leaves it.
     surface: bool,
+    /// The leg that ends on it, if the path visits it.
+    ends: Option<usize>,
 }
 
 impl Stop<'_> {
@@ -203,30 +196,40 @@ impl Stop<'_> {
     }
 }
 
-/// Everything on the path, by distance.
-fn stops<'a>(
-    blockers: &'a [BlockerLayer],
-    surfaces: &'a [Surface],
-    meshes: &'a [MeshObject],
-) -> Vec<Stop<'a>> {
-    let blockers = blockers.iter().map(|b| Stop {
+/// Everything there is, by distance.
+fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<Stop<'a>> {
+    let ends = |object: Object| {
+        let mut legs = 0..path.legs.len();
+        legs.find(|leg| path.ends_at(*leg).is_some_and(|hit| hit.object == object))
+    };
+    let blockers = things.blockers.iter().map(|b| Stop {
         name: &b.name,
         extent: [b.distance; 2],
         surface: false,
+        ends: None,
     });
-    let surfaces = surfaces.iter().map(|s| Stop {
+    let surfaces = things.surfaces.iter().enumerate().map(|(i, s)| Stop {
         name: &s.name,
-        extent: [s.distance; 2],
+        extent: extent(&s.corners()),
         surface: true,
+        ends: ends(Object::Surface(i)),
     });
-    let meshes = meshes.iter().map(|m| Stop {
+    let meshes = things.meshes.iter().enumerate().map(|(i, m)| Stop {
         name: &m.name,
         extent: m.extent,
         surface: m.albedo.is_some(),
+        ends: ends(Object::Mesh(i)),
     });
     let mut stops: Vec<Stop<'a>> = blockers.chain(surfaces).chain(meshes).collect();
     stops.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
     stops
+}
+
+/// Smallest and largest distance of points.
+fn extent(points: &[DVec3]) -> [f64; 2] {
+    let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
+    let high = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
+    [low, high]
 }
 
 fn repeated<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {

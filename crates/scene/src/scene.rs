@@ -1,8 +1,8 @@
 use crate::{Emission, SceneFile};
-use etendue_field::{Frame, Light, Mask, Rectangle, Shape, VirtualPlane};
+use etendue_field::{Frame, Light, Mask, Rectangle, VirtualPlane};
 use glam::DVec3;
 
-/// A checked experiment. Distances are along the central ray from the light, flat things lie across it, and
+/// A checked experiment. Distances are along the central ray from the light, blockers lie across its first leg, and
 /// all coordinates are those of the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scene {
@@ -16,7 +16,7 @@ pub struct Scene {
     pub light: Light,
     /// The blockers, by distance.
     pub blockers: Vec<BlockerLayer>,
-    /// The flat surfaces, in the order of the file.
+    /// The rectangular surfaces, in the order of the file.
     pub surfaces: Vec<Surface>,
     /// The meshes: blockers, then surfaces, in the order of the file.
     pub meshes: Vec<MeshObject>,
@@ -26,33 +26,80 @@ pub struct Scene {
     pub run: Run,
 }
 
-/// The ray everything is measured from.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// The ray everything is measured from: straight legs from surface to surface.
+#[derive(Clone, Debug, PartialEq)]
 pub struct CentralRay {
-    /// Frame at the light.
+    /// Frame at the light, in the world of the scene file.
     pub frame: Frame,
-    /// Distance of the surface it visits.
+    /// The legs, in the order of light: one more than surfaces visited.
+    pub legs: Vec<Leg>,
+}
+
+/// A straight piece of the central ray.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Leg {
+    /// Frame at its beginning, in the frame at the light.
+    pub frame: Frame,
+    /// Distance along the path at which it begins.
+    pub start: f64,
+    /// Distance to the surface that ends it; for the last leg, until something stands in its way.
     pub length: f64,
-    /// Distance it goes back, along the path, until something stands in its way.
-    pub back: f64,
+    /// Where it leaves a surface; `None` for the first.
+    pub leaves: Option<Hit>,
+}
+
+/// Where the central ray meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// What it meets.
+    pub object: Object,
+    /// Where, in the frame at the light.
+    pub point: DVec3,
+    /// The surface's unit normal there, on the side the light comes from, in the frame at the light.
+    pub normal: DVec3,
+}
+
+/// Something that light can meet and leave.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Object {
+    /// The flat surface with this index.
+    Surface(usize),
+    /// The mesh with this index.
+    Mesh(usize),
 }
 
 impl CentralRay {
-    /// The frame at a distance along the path, after `reflections` (0 or 1) on the surface it visits.
-    ///
-    /// At normal incidence the outgoing frame is (−X, Y, −D) (Durand et al. 2005, section 4.1, steps 1 and 7, at θ = 0).
+    /// Distance at which the central ray meets its first surface.
     #[must_use]
-    pub fn frame_at(&self, distance: f64, reflections: usize) -> Frame {
-        if reflections == 0 {
-            return self.frame.travelled(distance);
-        }
-        let at_surface = self.frame.travelled(self.length);
-        let turned = Frame {
-            x: -at_surface.x,
-            d: -at_surface.d,
-            ..at_surface
-        };
-        turned.travelled(distance - self.length)
+    pub fn first_hit(&self) -> f64 {
+        self.legs[0].length
+    }
+
+    /// Where the leg ends; `None` for the last.
+    #[must_use]
+    pub fn ends_at(&self, leg: usize) -> Option<&Hit> {
+        self.legs.get(leg + 1)?.leaves.as_ref()
+    }
+
+    /// How far a plane is along its leg.
+    #[must_use]
+    pub fn along(&self, plane: &VirtualPlane) -> f64 {
+        plane.distance - self.legs[plane.leg].start
+    }
+
+    /// The frame at a distance along the path, on a leg, in the frame at the light.
+    #[must_use]
+    pub fn frame_at(&self, distance: f64, leg: usize) -> Frame {
+        let Leg { frame, start, .. } = &self.legs[leg];
+        frame.travelled(distance - start)
+    }
+}
+
+impl Leg {
+    /// Whether it runs along the first leg or straight back: what lies across that one lies across this one.
+    #[must_use]
+    pub fn is_straight(&self) -> bool {
+        self.frame.d.x == 0.0 && self.frame.d.y == 0.0
     }
 }
 
@@ -74,6 +121,8 @@ pub struct BlockerLayer {
 pub struct MeshObject {
     /// Name.
     pub name: String,
+    /// Where its own origin is, in the frame at the light.
+    pub center: DVec3,
     /// Corners of the triangles, in the frame at the light.
     pub triangles: Vec<[DVec3; 3]>,
     /// Nearest and farthest distance of its corners.
@@ -82,24 +131,50 @@ pub struct MeshObject {
     pub albedo: Option<f64>,
 }
 
-/// A Lambertian surface across the central ray.
+/// A Lambertian rectangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
     /// Name.
     pub name: String,
-    /// Distance of its plane.
-    pub distance: f64,
-    /// Its shape.
-    pub rectangle: Rectangle,
+    /// O at its centre, X and Y along its edges, D its normal on the side that light arrives at; in the frame at the light.
+    pub frame: Frame,
+    /// Side lengths along X and Y of its frame.
+    pub size: [f64; 2],
     /// Reflected over incident flux.
     pub albedo: f64,
 }
 
 impl Surface {
-    /// Its shape.
+    /// Distance and rectangle, if it lies across the first leg with its edges along X and Y.
     #[must_use]
-    pub fn shape(&self) -> Shape {
-        Shape::Rectangle(self.rectangle)
+    pub fn across(&self) -> Option<(f64, Rectangle)> {
+        let Frame { origin, x, d, .. } = &self.frame;
+        (d.z == -1.0 && x.x == 1.0).then_some((
+            origin.z,
+            Rectangle {
+                center: [origin.x, origin.y],
+                size: self.size,
+            },
+        ))
+    }
+
+    /// The four corners, in the frame at the light.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 4] {
+        let [x, y] = self.size.map(|side| 0.5 * side);
+        [[x, y], [-x, y], [-x, -y], [x, -y]]
+            .map(|[x, y]| self.frame.to_world(DVec3::new(x, y, 0.0)))
+    }
+}
+
+impl Scene {
+    /// The name of a surface.
+    #[must_use]
+    pub fn name_of(&self, object: Object) -> &str {
+        match object {
+            Object::Surface(i) => &self.surfaces[i].name,
+            Object::Mesh(i) => &self.meshes[i].name,
+        }
     }
 }
 

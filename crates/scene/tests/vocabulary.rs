@@ -68,7 +68,7 @@ fn everything_resolves_to_what_it_says() {
     let places: Vec<_> = scene
         .planes
         .iter()
-        .map(|p| (p.side, p.reflections, p.quantity))
+        .map(|p| (p.side, p.leg, p.quantity))
         .collect();
     assert_eq!(
         places[2],
@@ -76,7 +76,7 @@ fn everything_resolves_to_what_it_says() {
     );
     assert_eq!(places[3], (Side::After, 1, Quantity::Radiance));
     // Light goes back as far as the grating.
-    assert!((scene.path.back - 0.8).abs() < 1e-15); // rounding
+    assert!((scene.path.legs[1].length - 0.8).abs() < 1e-15); // rounding
     let back = &scene.planes[4].frame;
     assert!((back.origin.z - 1.5).abs() < 1e-15 && back.d.z < 0.0 && back.x.x < 0.0); // rounding
     assert!((back.x.cross(back.y) - back.d).length() < 1e-15); // rounding

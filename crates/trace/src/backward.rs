@@ -1,11 +1,15 @@
+use crate::bvh::{Target, Targets};
 use crate::emit::{LAMBERTIAN, point, radiance};
-use crate::obstacles::Obstacles;
+use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
 use crate::proposal::Follower;
 use crate::shares::Shares;
-use crate::tracer::turned;
+use crate::tracer::rounding;
 use etendue_field::random::{self, Stream};
-use etendue_field::{Crossing, Ledger, Light, PhotonSource, Shape, Side, TwoPlane, VirtualPlane};
-use etendue_scene::{Scene, Surface};
+use etendue_field::{
+    Crossing, Frame, Ledger, Light, PhotonSource, Shape, Side, TwoPlane, VirtualPlane,
+};
+use etendue_scene::{Object, Scene};
+use glam::DVec3;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
@@ -14,10 +18,8 @@ use etendue_scene::{Scene, Surface};
 #[derive(Debug)]
 pub struct Backward {
     light: Area,
-    obstacles: Obstacles,
+    legs: Vec<Leg>,
     lookers: Vec<Looker>,
-    /// The surface that the central ray visits; `None` if it is a mesh.
-    surface: Option<Surface>,
     shares: Shares,
     seed: u64,
 }
@@ -29,6 +31,39 @@ struct Area {
     shape: Shape,
 }
 
+/// A leg of the path, looked along from its end.
+#[derive(Debug)]
+struct Leg {
+    /// In the frame at the light.
+    frame: Frame,
+    obstacles: Obstacles,
+    /// The surface at its beginning; `None` for the first.
+    leaves: Option<Leaves>,
+    /// What it ends on.
+    ends: Option<Object>,
+}
+
+/// The surface that light leaves at the beginning of a leg.
+#[derive(Debug)]
+struct Leaves {
+    object: Object,
+    albedo: f64,
+    /// In the frame of the leg.
+    targets: Targets<()>,
+    /// In the frame at the light, for points of it to be drawn: parallelograms or triangles with their running share of its area.
+    pieces: Vec<(f64, Piece)>,
+    area: f64,
+    rounding: f64,
+}
+
+/// A corner and two edges, of a parallelogram or of a triangle.
+#[derive(Clone, Copy, Debug)]
+struct Piece {
+    corner: DVec3,
+    edges: [DVec3; 2],
+    is_triangle: bool,
+}
+
 /// A backward ray has no chance to hit a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("no backward ray hits a point light: it has no radiance that one could find")]
@@ -37,9 +72,10 @@ pub struct PointLight;
 /// How rays of one plane are drawn.
 #[derive(Clone, Copy, Debug)]
 struct Looker {
+    leg: usize,
+    /// Along the leg.
     distance: f64,
     side: Side,
-    reflected: bool,
     position: [Follower; 2],
     slope: [Follower; 2],
     /// Whether slopes are drawn towards points of the light: where they are the narrower choice.
@@ -55,19 +91,16 @@ impl Backward {
         let Light::Area { shape, .. } = scene.light else {
             return Err(PointLight);
         };
-        let visited = |s: &&Surface| scene.file.path.visits.contains(&s.name);
+        let lookers = scene.planes.iter().map(|p| Looker::new(scene, p, &shape));
         Ok(Self {
             light: Area {
                 light: scene.light,
                 shape,
             },
-            obstacles: Obstacles::new(scene),
-            lookers: scene
-                .planes
-                .iter()
-                .map(|p| Looker::new(p, &shape))
+            legs: (0..scene.path.legs.len())
+                .map(|leg| Leg::new(scene, leg))
                 .collect(),
-            surface: scene.surfaces.iter().find(visited).cloned(),
+            lookers: lookers.collect(),
             shares: Shares::new(&scene.run),
             seed: scene.run.seed,
         })
@@ -75,8 +108,13 @@ impl Backward {
 
     /// The ray of one plane with this number, and what it stands for in radiance space.
     fn look(&self, looker: &Looker, plane: u32, index: u64) -> Crossing {
-        let words = |block| random::words(self.seed, Stream::Backward, index, 2 * plane + block);
-        let (r, s) = (words(0).map(random::unit), words(1).map(random::unit));
+        // One block for the ray, one for each surface on its way.
+        let blocks = u32::try_from(self.legs.len().max(2)).unwrap_or(u32::MAX);
+        let words = |block| {
+            let block = blocks * plane + block;
+            random::words(self.seed, Stream::Backward, index, block).map(random::unit)
+        };
+        let r = words(0);
         let [x, y] = [0, 1].map(|axis| looker.position[axis].quantile(r[axis]));
         let mut density = looker.position[0].density(x) * looker.position[1].density(y);
         let [u, v] = if looker.to_light {
@@ -89,66 +127,207 @@ impl Backward {
             slopes
         };
         let ray = TwoPlane { x, y, u, v };
-        let found = if looker.reflected {
-            self.exitant(&ray, looker.distance, [s[0], s[1]])
-        } else {
-            self.incident(&ray, looker.distance, looker.side)
-        };
+        let found = self.incident(
+            looker.leg,
+            &ray.travelled(-looker.distance),
+            looker.distance,
+            looker.side,
+            1,
+            &words,
+        );
         let weight = if density > 0.0 { found / density } else { 0.0 };
         Crossing { ray, weight }
     }
 
-    /// The radiance that arrives along a ray of a plane at `distance`.
-    fn incident(&self, ray: &TwoPlane, distance: f64, side: Side) -> f64 {
-        let at_light = ray.travelled(-distance);
-        let radiance = radiance(&self.light.light, &at_light);
-        if radiance > 0.0 {
-            radiance * self.obstacles.visibility(&at_light, distance, side)
-        } else {
-            0.0
+    /// The radiance that arrives at `distance` along a ray of a leg, given where the leg begins; `block` numbers the random
+    /// numbers of the next surface on its way back.
+    fn incident(
+        &self,
+        leg: usize,
+        ray: &TwoPlane,
+        distance: f64,
+        side: Side,
+        block: u32,
+        words: &impl Fn(u32) -> [f64; 4],
+    ) -> f64 {
+        let this = &self.legs[leg];
+        let Some(leaves) = &this.leaves else {
+            let radiance = radiance(&self.light.light, ray);
+            if radiance <= 0.0 {
+                return 0.0;
+            }
+            let visible = this
+                .obstacles
+                .visibility(ray, 0.0, distance, side, |what| what.is(this.ends));
+            return radiance * visible;
+        };
+        let Some((at, target)) = leaves.targets.last(ray) else {
+            return 0.0;
+        };
+        let from = at + leaves.rounding;
+        let ignored = |object| Some(object) == this.ends || object == leaves.object;
+        let visible = this
+            .obstacles
+            .visibility(ray, from, distance, side, |what| {
+                what.object().is_some_and(ignored)
+            });
+        if visible <= 0.0 {
+            return 0.0;
+        }
+        // It was left on the side it goes away from.
+        let normal = target.form.normal();
+        let normal = this
+            .frame
+            .vector_to_world(normal.dot(direction(ray)).signum() * normal);
+        let point = this.frame.to_world(start(ray) + at * direction(ray));
+        let irradiance = self.irradiance(leg - 1, point, normal, block, words);
+        visible * leaves.albedo / LAMBERTIAN * irradiance
+    }
+
+    /// The irradiance at a point, with its normal, at the end of a leg, from one point of what light leaves at its beginning;
+    /// in the frame at the light.
+    fn irradiance(
+        &self,
+        leg: usize,
+        point: DVec3,
+        normal: DVec3,
+        block: u32,
+        words: &impl Fn(u32) -> [f64; 4],
+    ) -> f64 {
+        let r = words(block);
+        let (from, facing, area) = match &self.legs[leg].leaves {
+            None => {
+                let [x, y] = self::point(&self.light.shape, [r[0], r[1]]);
+                (DVec3::new(x, y, 0.0), DVec3::Z, self.light.shape.area())
+            }
+            Some(leaves) => {
+                let (from, facing) = leaves.point([r[0], r[1], r[2]]);
+                (from, facing, leaves.area)
+            }
+        };
+        let this = &self.legs[leg];
+        let [end, begin] = [point, from].map(|p| this.frame.to_local(p));
+        let way = end - begin;
+        let cosines = way.dot(this.frame.vector_to_local(facing)).abs()
+            * -way.dot(this.frame.vector_to_local(normal));
+        let Some(ray) = ray_through(end, way).filter(|_| cosines > 0.0) else {
+            return 0.0;
+        };
+        // What stands nearer on the same line is not the point that was drawn.
+        let nearer = |leaves: &Leaves| {
+            leaves
+                .targets
+                .last(&ray)
+                .is_none_or(|(at, _)| at > begin.z + leaves.rounding)
+        };
+        if this.leaves.as_ref().is_some_and(nearer) {
+            return 0.0;
+        }
+        // cos θ cos θ' dA / r².
+        let solid = cosines * area / way.length_squared().powi(2);
+        solid * self.incident(leg, &ray, end.z, Side::Before, block + 1, words)
+    }
+}
+
+impl Leg {
+    fn new(scene: &Scene, leg: usize) -> Self {
+        let this = &scene.path.legs[leg];
+        Self {
+            frame: this.frame,
+            obstacles: Obstacles::new(scene, this),
+            leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
+            ends: scene.path.ends_at(leg).map(|hit| hit.object),
+        }
+    }
+}
+
+impl Leaves {
+    fn new(scene: &Scene, leg: &etendue_scene::Leg, object: Object) -> Self {
+        let around = Around(leg.frame);
+        let target = |form| Target { form, tag: () };
+        let (forms, all, albedo): (Vec<_>, Vec<_>, f64) = match object {
+            Object::Surface(i) => {
+                let surface = &scene.surfaces[i];
+                let [a, b, _, d] = surface.corners();
+                (
+                    vec![target(around.surface(surface))],
+                    vec![Piece::new(a, [b, d], false)],
+                    surface.albedo,
+                )
+            }
+            Object::Mesh(i) => {
+                let mesh = &scene.meshes[i];
+                let pieces = mesh
+                    .triangles
+                    .iter()
+                    .map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
+                (
+                    around.mesh(mesh).map(target).collect(),
+                    pieces.collect(),
+                    mesh.albedo.unwrap_or(0.0),
+                )
+            }
+        };
+        let mut area = 0.0;
+        let pieces = all.into_iter().map(|piece| {
+            area += piece.area();
+            (area, piece)
+        });
+        Self {
+            object,
+            albedo,
+            targets: Targets::new(&forms, 0.0),
+            pieces: pieces.collect(),
+            area,
+            rounding: rounding(leg),
         }
     }
 
-    /// The radiance that left the surface along a ray of a plane at `distance`: albedo/π · E, the irradiance E from
-    /// one point of the light, du dv = dA / length².
-    fn exitant(&self, ray: &TwoPlane, distance: f64, r: [f64; 2]) -> f64 {
-        let Some(surface) = &self.surface else {
-            return 0.0;
+    /// A uniform point of it and a normal there, from three numbers in (0, 1).
+    fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
+        let wanted = r[2] * self.area;
+        let i = self.pieces.partition_point(|(upto, _)| *upto < wanted);
+        let (_, piece) = self.pieces[i.min(self.pieces.len() - 1)];
+        let [a, b] = piece.edges;
+        let folded = piece.is_triangle && r[0] + r[1] > 1.0;
+        let [s, t] = if folded {
+            [1.0 - r[0], 1.0 - r[1]]
+        } else {
+            [r[0], r[1]]
         };
-        let length = surface.distance;
-        // The frame in which light arrives is this one turned.
-        let [x, y] = turned(&ray.travelled(length - distance));
-        if !surface.rectangle.contains(x, y) {
-            return 0.0;
+        (piece.corner + s * a + t * b, a.cross(b).normalize())
+    }
+}
+
+impl Piece {
+    fn new(corner: DVec3, ends: [DVec3; 2], is_triangle: bool) -> Self {
+        Self {
+            corner,
+            edges: ends.map(|end| end - corner),
+            is_triangle,
         }
-        let [x0, y0] = point(&self.light.shape, r);
-        let arriving = TwoPlane {
-            x,
-            y,
-            u: (x - x0) / length,
-            v: (y - y0) / length,
-        };
-        let secant_squared = arriving.secant_squared();
-        let cosine = 1.0 / (secant_squared * secant_squared);
-        let slopes = self.light.shape.area() / (length * length);
-        let irradiance = self.incident(&arriving, length, Side::Before) * cosine * slopes;
-        surface.albedo / LAMBERTIAN * irradiance
+    }
+
+    fn area(&self) -> f64 {
+        let [a, b] = self.edges;
+        let whole = a.cross(b).length();
+        if self.is_triangle { 0.5 * whole } else { whole }
     }
 }
 
 impl Looker {
-    fn new(plane: &VirtualPlane, shape: &Shape) -> Self {
+    fn new(scene: &Scene, plane: &VirtualPlane, shape: &Shape) -> Self {
         let w = &plane.window;
         let bounds = shape.bounds();
         let slopes = |axis: usize| bounds.size[axis] / plane.distance;
         let narrower = slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width();
         Self {
-            distance: plane.distance,
+            leg: plane.leg,
+            distance: scene.path.along(plane),
             side: plane.side,
-            reflected: plane.reflections > 0,
             position: [Follower::new(&w.x), Follower::new(&w.y)],
             slope: [Follower::new(&w.u), Follower::new(&w.v)],
-            to_light: plane.reflections == 0 && narrower,
+            to_light: plane.leg == 0 && narrower,
         }
     }
 }

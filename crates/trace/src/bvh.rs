@@ -3,7 +3,7 @@
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
 
-use etendue_field::{Shape, TwoPlane, triangle_distance};
+use etendue_field::{Frame, Shape, TwoPlane, triangle_distance};
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -20,17 +20,19 @@ pub(crate) struct Target<T> {
     pub(crate) tag: T,
 }
 
-/// Its form, in the frame at the light.
+/// Its form, in the frame of a leg.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Form {
     /// A flat shape across the central ray.
     Flat { distance: f64, shape: Shape },
+    /// A flat shape in the plane of X and Y of a frame.
+    Oblique { frame: Frame, shape: Shape },
     /// A triangle.
     Triangle([DVec3; 3]),
 }
 
 impl Form {
-    /// The distance, along the central ray, at which a ray from the light's plane meets it.
+    /// The distance, along the central ray, at which a ray meets it.
     #[inline]
     fn meets(&self, ray: &TwoPlane) -> Option<f64> {
         match self {
@@ -38,7 +40,23 @@ impl Form {
                 let at = ray.travelled(*distance);
                 shape.contains(at.x, at.y).then_some(*distance)
             }
+            Self::Oblique { frame, shape } => {
+                let direction = DVec3::new(ray.u, ray.v, 1.0);
+                let start = DVec3::new(ray.x, ray.y, 0.0);
+                let distance = (frame.origin - start).dot(frame.d) / direction.dot(frame.d);
+                let at = frame.to_local(start + distance * direction);
+                (distance.is_finite() && shape.contains(at.x, at.y)).then_some(distance)
+            }
             Self::Triangle(corners) => triangle_distance(corners, ray),
+        }
+    }
+
+    /// A normal, of unit length.
+    pub(crate) fn normal(&self) -> DVec3 {
+        match self {
+            Self::Flat { .. } => DVec3::Z,
+            Self::Oblique { frame, .. } => frame.d,
+            Self::Triangle([a, b, c]) => (b - a).cross(c - a).normalize(),
         }
     }
 
@@ -49,6 +67,15 @@ impl Form {
                 let bounds = shape.bounds();
                 let [x, y] = [bounds.extent(0), bounds.extent(1)];
                 [0, 1].map(|i| DVec3::new(x[i], y[i], *distance))
+            }
+            Self::Oblique { frame, shape } => {
+                let bounds = shape.bounds();
+                let [[left, right], [low, high]] = [bounds.extent(0), bounds.extent(1)];
+                let corners = [[left, low], [right, low], [left, high], [right, high]]
+                    .map(|[x, y]| frame.to_world(DVec3::new(x, y, 0.0)));
+                let least = corners.into_iter().reduce(DVec3::min);
+                let most = corners.into_iter().reduce(DVec3::max);
+                [least, most].map(Option::unwrap_or_default)
             }
             Self::Triangle([a, b, c]) => [a.min(*b).min(*c), a.max(*b).max(*c)],
         }
@@ -62,6 +89,8 @@ pub(crate) struct Targets<T> {
     targets: Vec<Target<T>>,
     /// Beyond everything.
     far: f32,
+    /// A distance along the leg beyond everything.
+    front: f64,
 }
 
 impl<T: fmt::Debug> fmt::Debug for Targets<T> {
@@ -98,15 +127,17 @@ impl<T: Copy> Targets<T> {
             bvh,
             targets,
             far: single(4.0 * extent),
+            front: 1.1 * extent,
         }
     }
 
-    /// The first target hit by a ray that leaves the light's plane, and at what distance.
+    /// The first target that a ray meets beyond `from`, and at what distance.
     #[inline]
-    pub(crate) fn first(&self, ray: &TwoPlane) -> Option<(f64, T)> {
-        let origin = Vec3A::new(single(ray.x), single(ray.y), 0.0);
+    pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, &Target<T>)> {
+        let start = ray.travelled(from);
+        let origin = Vec3A::new(single(start.x), single(start.y), single(from));
         let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
-        let mut first: Option<T> = None;
+        let mut first = None;
         let mut nearest = f64::INFINITY;
         self.bvh.ray_traverse(
             Ray::new(origin, direction, 0.0, self.far),
@@ -114,33 +145,64 @@ impl<T: Copy> Targets<T> {
             |_, i| {
                 let target = &self.targets[i];
                 match target.form.meets(ray) {
-                    Some(distance) if distance < nearest && distance > 0.0 => {
+                    Some(distance) if distance < nearest && distance > from => {
                         nearest = distance;
-                        first = Some(target.tag);
+                        first = Some(target);
                         // Boxes this far are still opened: the first hit is decided in f64.
-                        single(distance * (1.0 + PADDING))
+                        single((distance - from) * (1.0 + PADDING) + PADDING * distance.abs())
                     }
                     _ => f32::INFINITY,
                 }
             },
         );
-        first.map(|tag| (nearest, tag))
+        first.map(|target| (nearest, target))
     }
 
-    /// Whether light on a ray, given by where it leaves the light's plane, meets a target before it has come
-    /// as far as `distance`; at that very distance when `inclusive`. Looked for backwards, from there.
-    pub(crate) fn blocks(&self, ray: &TwoPlane, distance: f64, inclusive: bool) -> bool {
-        let from = ray.travelled(distance);
-        let origin = Vec3A::new(single(from.x), single(from.y), single(distance));
+    /// The last target on the line of a ray, and at what distance; looked for backwards, from beyond everything.
+    pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, &Target<T>)> {
+        let end = ray.travelled(self.front);
+        let origin = Vec3A::new(single(end.x), single(end.y), single(self.front));
+        let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
+        let mut last: Option<(f64, &Target<T>)> = None;
+        self.bvh.ray_traverse(
+            Ray::new(origin, direction, 0.0, f32::MAX),
+            &mut RayHit::none(),
+            |_, i| {
+                let target = &self.targets[i];
+                match target.form.meets(ray) {
+                    Some(at) if last.is_none_or(|(farthest, _)| at > farthest) => {
+                        last = Some((at, target));
+                        let back = self.front - at;
+                        single(back + PADDING * (back.abs() + at.abs()))
+                    }
+                    _ => f32::INFINITY,
+                }
+            },
+        );
+        last
+    }
+
+    /// Whether light on a ray meets a target between `from` and `distance`; at that very distance when `inclusive`.
+    /// Looked for backwards, from there; what `ignored` says does not count.
+    pub(crate) fn blocks(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        distance: f64,
+        inclusive: bool,
+        ignored: impl Fn(&T) -> bool,
+    ) -> bool {
+        let end = ray.travelled(distance);
+        let origin = Vec3A::new(single(end.x), single(end.y), single(distance));
         let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
         let mut blocked = false;
         self.bvh.ray_traverse(
             Ray::new(origin, direction, 0.0, self.far),
             &mut RayHit::none(),
             |_, i| {
-                let met = self.targets[i].form.meets(ray);
-                let before = |at: f64| at > 0.0 && (at < distance || inclusive && at <= distance);
-                if met.is_some_and(before) {
+                let Target { form, tag } = &self.targets[i];
+                let before = |at: f64| at > from && (at < distance || inclusive && at <= distance);
+                if form.meets(ray).is_some_and(before) && !ignored(tag) {
                     blocked = true;
                     // Nothing beyond matters any more.
                     return 0.0;
@@ -202,6 +264,16 @@ mod tests {
             DVec3::new(t.sin(), (1.3 * t).cos(), 1.5 + 0.4 * (2.9 * t).sin())
         };
         targets.extend((0..60).map(|i| Form::Triangle([corner(i), corner(i + 1), corner(i + 2)])));
+        targets.extend((0..40).map(|i| {
+            let d = corner(i) - DVec3::new(0.0, 0.0, 1.0);
+            let center = [0.02, -0.01];
+            let shape = Shape::Disc(Disc {
+                center,
+                radius: 0.1,
+            });
+            let frame = Frame::new(corner(i + 3), d, DVec3::X).unwrap_or(Frame::IDENTITY);
+            Form::Oblique { frame, shape }
+        }));
         let tags = 0u32..;
         let tagged = targets.into_iter().zip(tags);
         tagged.map(|(form, tag)| Target { form, tag }).collect()
@@ -222,6 +294,22 @@ mod tests {
                     }),
                 },
             },
+            Form::Oblique { frame, shape } => {
+                let Form::Flat { shape, .. } = scaled(
+                    &Form::Flat {
+                        distance: 0.0,
+                        shape: *shape,
+                    },
+                    scale,
+                ) else {
+                    unreachable!("a flat form scales to a flat form")
+                };
+                let origin = frame.origin * scale;
+                Form::Oblique {
+                    frame: Frame { origin, ..*frame },
+                    shape,
+                }
+            }
             Form::Triangle(corners) => Form::Triangle(corners.map(|p| p * scale)),
         }
     }
@@ -243,17 +331,21 @@ mod tests {
                 };
                 let met = all.iter().filter_map(|t| t.form.meets(&ray));
                 let expected = met.fold(f64::INFINITY, f64::min);
-                let first = found.first(&ray).map_or(f64::INFINITY, |(at, _)| at);
+                let first = found.first(&ray, 0.0).map_or(f64::INFINITY, |(at, _)| at);
                 assert!(
                     first.total_cmp(&expected).is_eq(),
                     "{ray:?} at scale {scale}"
                 );
                 hits += u32::from(first.is_finite());
+                let met = all.iter().filter_map(|t| t.form.meets(&ray));
+                let farthest = met.fold(f64::NEG_INFINITY, f64::max);
+                let last = found.last(&ray).map_or(f64::NEG_INFINITY, |(at, _)| at);
+                assert!(last.total_cmp(&farthest).is_eq(), "{ray:?}: last");
                 for (distance, inclusive) in [(1.0, false), (1.0, true), (1.6, true), (2.0, false)]
                 {
                     let distance = distance * scale;
                     let expected = expected < distance || inclusive && expected <= distance;
-                    let blocks = found.blocks(&ray, distance, inclusive);
+                    let blocks = found.blocks(&ray, 0.0, distance, inclusive, |_| false);
                     assert_eq!(blocks, expected, "{ray:?} to {distance}");
                     blocked += u32::from(blocks);
                 }
@@ -291,7 +383,7 @@ mod tests {
                     let (x, y) = (0.013 * f64::from(i), -0.017 * f64::from(j));
                     let [u, v] = [(p.x - x) / p.z, (p.y - y) / p.z];
                     let ray = TwoPlane { x, y, u, v };
-                    assert!(found.first(&ray).is_some(), "{ray:?}");
+                    assert!(found.first(&ray, 0.0).is_some(), "{ray:?}");
                 }
             }
         }

@@ -1,6 +1,8 @@
 use crate::proposal::{Follower, Proposal};
+use crate::reach::reach;
 use etendue_field::{Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
+use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// How rays leave the light: a density over (x, y, u, v) at the light, and a way to sample it. That of a point
@@ -16,7 +18,7 @@ impl Emitter {
     /// The emitter of a scene.
     ///
     /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose window
-    /// the light reaches; for a plane after the reflection, of rays to the part of the surface that its window sees.
+    /// the light reaches; for a plane on a later leg, of rays to the part of the first surface from which light can get there.
     /// Where it reaches none, emission is plain: every window stays empty all the same.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
@@ -25,19 +27,25 @@ impl Emitter {
             Light::Area { shape, .. } => [0, 1].map(|axis| shape.bounds().extent(axis)),
             Light::Point { .. } => [[0.0; 2]; 2],
         };
+        let [[left, right], [low, high]] = extent;
+        let corners = [[left, low], [right, low], [left, high], [right, high]];
+        let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
         let proposal = |plane: &VirtualPlane| {
             let w = &plane.window;
+            let half = match plane.leg {
+                0 => None,
+                _ => reach(scene, plane, 0, &corners),
+            };
             let along = |axis: usize, space: &Profile, slope: &Profile| {
-                if plane.reflections == 0 {
+                if plane.leg == 0 {
                     let (space, slope) = (Follower::new(space), Follower::new(slope));
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
-                let length = scene.path.length;
-                let seen = space.half_width() + (plane.distance - length) * slope.half_width();
+                let (length, half) = (scene.path.first_hit(), half?[axis]);
                 // The slopes of all rays from the light to there.
                 let [low, high] = extent[axis].map(f64::abs);
-                let slope = Follower::cosine((seen + low.max(high)) / length);
-                let space = Follower::new(&Profile::Box(seen));
+                let slope = Follower::cosine((half + low.max(high)) / length);
+                let space = Follower::new(&Profile::Box(half));
                 Proposal::new(length, extent[axis], space, slope)
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])

@@ -3,8 +3,8 @@
 //! [`Tracer`] emits photons from the light, finds what each meets first and reports every virtual plane it
 //! crosses before that. It keeps the ledger of flux, and knows nothing of windows' spectra or of theory.
 //!
-//! Everything is computed in the frame of the central ray at the light, so a direction is (u, v, 1) and a
-//! distance along the ray is a coordinate. Random numbers are functions of (seed, photon), so a photon's
+//! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a
+//! distance along the central ray is a coordinate. Random numbers are functions of (seed, photon), so a photon's
 //! life does not depend on who traces it.
 
 mod backward;
@@ -12,6 +12,7 @@ mod bvh;
 mod emit;
 mod obstacles;
 mod proposal;
+mod reach;
 mod scatter;
 mod shares;
 mod tracer;

@@ -1,33 +1,75 @@
 use crate::bvh::{Form, Target, Targets};
-use etendue_field::{Grating, HalfPlane, Light, Mask, Side, TwoPlane};
-use etendue_scene::Scene;
+use etendue_field::{Frame, Grating, HalfPlane, Light, Mask, Rectangle, Shape, Side, TwoPlane};
+use etendue_scene::{Leg, MeshObject, Object, Scene, Surface};
+use glam::DVec3;
 
 /// What a photon meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Meeting {
     Blocker,
-    Surface {
-        albedo: f64,
-        /// Whether the central ray visits it.
-        visited: bool,
-    },
+    Surface { object: Object, albedo: f64 },
 }
 
-/// Everything that stands in the way of light, and the questions both tracers ask of it.
+impl Meeting {
+    /// What it is, if it reflects.
+    pub(crate) fn object(&self) -> Option<Object> {
+        match self {
+            Self::Blocker => None,
+            Self::Surface { object, .. } => Some(*object),
+        }
+    }
+
+    /// Whether it is what a leg begins or ends on.
+    pub(crate) fn is(&self, end: Option<Object>) -> bool {
+        end.is_some() && self.object() == end
+    }
+}
+
+/// Everything that stands in the way of light on one leg, and the questions both tracers ask of it.
 ///
-/// Rays are given by where they leave the light's plane.
+/// Rays are given by where they cross the plane at the beginning of the leg, distances are along it.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
     targets: Targets<Meeting>,
-    /// What has no end, with its distance.
-    half_planes: Vec<(f64, HalfPlane)>,
-    gratings: Vec<(f64, Grating)>,
+    /// What has no end.
+    half_planes: Vec<Layer<HalfPlane>>,
+    gratings: Vec<Layer<Grating>>,
+}
+
+/// Something that fills the plane of its blockers.
+#[derive(Clone, Copy, Debug)]
+struct Layer<T> {
+    distance: f64,
+    /// The leg, unless it is the first one.
+    leg: Option<Frame>,
+    what: T,
+}
+
+impl<T> Layer<T> {
+    /// How far along the leg a ray crosses the plane, and where in it.
+    #[inline]
+    fn crossing(&self, ray: &TwoPlane) -> (f64, [f64; 2]) {
+        let Some(leg) = &self.leg else {
+            let at = ray.travelled(self.distance);
+            return (self.distance, [at.x, at.y]);
+        };
+        let (start, direction) = (
+            leg.to_world(start(ray)),
+            leg.vector_to_world(direction(ray)),
+        );
+        let along = (self.distance - start.z) / direction.z;
+        let at = start + along * direction;
+        (along, [at.x, at.y])
+    }
 }
 
 impl Obstacles {
-    pub(crate) fn new(scene: &Scene) -> Self {
+    /// What stands around a leg of the path.
+    pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
         let mut targets = Vec::new();
         let (mut half_planes, mut gratings) = (Vec::new(), Vec::new());
+        let around = Around(leg.frame);
+        let later = leg.leaves.map(|_| leg.frame);
         for layer in &scene.blockers {
             let distance = layer.distance;
             match &layer.mask {
@@ -35,36 +77,40 @@ impl Obstacles {
                     shapes,
                     half_planes: halves,
                 } => {
-                    targets.extend(shapes.iter().map(|&shape| Target {
-                        form: Form::Flat { distance, shape },
+                    targets.extend(shapes.iter().map(|shape| Target {
+                        form: around.layer(distance, shape),
                         tag: Meeting::Blocker,
                     }));
-                    half_planes.extend(halves.iter().map(|half| (distance, *half)));
+                    half_planes.extend(halves.iter().map(|half| Layer {
+                        distance,
+                        leg: later,
+                        what: *half,
+                    }));
                 }
-                Mask::Grating(grating) => gratings.push((distance, *grating)),
+                Mask::Grating(grating) => gratings.push(Layer {
+                    distance,
+                    leg: later,
+                    what: *grating,
+                }),
             }
         }
-        targets.extend(scene.surfaces.iter().map(|surface| Target {
-            form: Form::Flat {
-                distance: surface.distance,
-                shape: surface.shape(),
-            },
-            tag: Meeting::Surface {
-                albedo: surface.albedo,
-                visited: scene.file.path.visits.contains(&surface.name),
-            },
-        }));
-        for mesh in &scene.meshes {
+        for (i, surface) in scene.surfaces.iter().enumerate() {
+            let object = Object::Surface(i);
+            let albedo = surface.albedo;
+            targets.push(Target {
+                form: around.surface(surface),
+                tag: Meeting::Surface { object, albedo },
+            });
+        }
+        for (i, mesh) in scene.meshes.iter().enumerate() {
+            let object = Object::Mesh(i);
             let tag = mesh
                 .albedo
                 .map_or(Meeting::Blocker, |albedo| Meeting::Surface {
+                    object,
                     albedo,
-                    visited: false,
                 });
-            targets.extend(mesh.triangles.iter().map(|corners| Target {
-                form: Form::Triangle(*corners),
-                tag,
-            }));
+            targets.extend(around.mesh(mesh).map(|form| Target { form, tag }));
         }
         let origins = match scene.light {
             Light::Area { shape, .. } => shape.bounds().reach(),
@@ -77,57 +123,162 @@ impl Obstacles {
         }
     }
 
-    /// What a ray meets first, and at what distance.
+    /// What a ray meets first beyond `from`, and at what distance.
     #[inline]
-    pub(crate) fn first(&self, ray: &TwoPlane) -> Option<(f64, Meeting)> {
-        let mut first = self.targets.first(ray);
-        for (distance, half_plane) in &self.half_planes {
-            let at = ray.travelled(*distance);
-            if half_plane.contains(at.x, at.y) && first.is_none_or(|(d, _)| *distance < d) {
-                first = Some((*distance, Meeting::Blocker));
+    pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, &Target<Meeting>)> {
+        let first = self.targets.first(ray, from);
+        let mut nearest = first.map_or(f64::INFINITY, |(distance, _)| distance);
+        let mut blocked = false;
+        for half_plane in &self.half_planes {
+            let (distance, [x, y]) = half_plane.crossing(ray);
+            let meets = distance > from && distance < nearest && half_plane.what.contains(x, y);
+            if meets {
+                nearest = distance;
+                blocked = true;
             }
         }
-        first
+        if blocked {
+            Some((nearest, &HALF_PLANE))
+        } else {
+            first
+        }
     }
 
-    /// The share of light on a ray that gratings let through on its way to a plane.
+    /// The share of light on a ray that gratings let through between `from` and a plane.
     #[inline]
-    pub(crate) fn transmittance(&self, ray: &TwoPlane, distance: f64, side: Side) -> f64 {
-        let passed = self
-            .gratings
-            .iter()
-            .filter(|(d, _)| is_passed(*d, distance, side));
-        passed
-            .map(|(d, grating)| {
-                let at = ray.travelled(*d);
-                grating.transmittance(at.x, at.y)
-            })
-            .product()
+    pub(crate) fn transmittance(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        distance: f64,
+        side: Side,
+    ) -> f64 {
+        let met = self.gratings.iter().filter_map(|grating| {
+            let (at, [x, y]) = grating.crossing(ray);
+            let passed = at > from && is_passed(at, distance, side);
+            passed.then(|| grating.what.transmittance(x, y))
+        });
+        met.product()
     }
 
-    /// The share of light on a ray that reaches a plane, looked for from the plane back.
-    pub(crate) fn visibility(&self, ray: &TwoPlane, distance: f64, side: Side) -> f64 {
+    /// The share of light on a ray that reaches a plane from `from`, looked for from the plane back; what `ignored` says
+    /// does not stand in its way.
+    pub(crate) fn visibility(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        distance: f64,
+        side: Side,
+        ignored: impl Fn(&Meeting) -> bool,
+    ) -> f64 {
         let halves = || {
-            let mut passed = self
-                .half_planes
-                .iter()
-                .filter(|(d, _)| is_passed(*d, distance, side));
-            passed.any(|(d, half_plane)| {
-                let at = ray.travelled(*d);
-                half_plane.contains(at.x, at.y)
+            self.half_planes.iter().any(|half_plane| {
+                let (at, [x, y]) = half_plane.crossing(ray);
+                at > from && is_passed(at, distance, side) && half_plane.what.contains(x, y)
             })
         };
-        if self.targets.blocks(ray, distance, side == Side::After) || halves() {
+        let inclusive = side == Side::After;
+        if self.targets.blocks(ray, from, distance, inclusive, ignored) || halves() {
             return 0.0;
         }
-        self.transmittance(ray, distance, side)
+        self.transmittance(ray, from, distance, side)
     }
 }
+
+/// What a ray meets in a half-plane.
+const HALF_PLANE: Target<Meeting> = Target {
+    form: Form::Triangle([DVec3::ZERO; 3]),
+    tag: Meeting::Blocker,
+};
 
 /// Whether light passes what stands at `obstacle` on its way to a plane at `distance`.
 fn is_passed(obstacle: f64, distance: f64, side: Side) -> bool {
     match side {
         Side::Before => obstacle < distance,
         Side::After => obstacle <= distance,
+    }
+}
+
+/// Where a ray begins, in the frame it is given in.
+pub(crate) fn start(ray: &TwoPlane) -> DVec3 {
+    DVec3::new(ray.x, ray.y, 0.0)
+}
+
+/// Where it goes: a step of 1 along D.
+pub(crate) fn direction(ray: &TwoPlane) -> DVec3 {
+    DVec3::new(ray.u, ray.v, 1.0)
+}
+
+/// The ray through a point along a direction, both in the frame it is wanted in; `None` when it does not go forward along D.
+pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
+    let [u, v] = [direction.x / direction.z, direction.y / direction.z];
+    (direction.z > 0.0).then_some(TwoPlane {
+        x: point.x - point.z * u,
+        y: point.y - point.z * v,
+        u,
+        v,
+    })
+}
+
+/// A leg's view of what is given in the frame at the light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Around(pub(crate) Frame);
+
+impl Around {
+    fn frame(&self, frame: &Frame) -> Frame {
+        Frame {
+            origin: self.0.to_local(frame.origin),
+            x: self.0.vector_to_local(frame.x),
+            y: self.0.vector_to_local(frame.y),
+            d: self.0.vector_to_local(frame.d),
+        }
+    }
+
+    /// A shape in the plane of blockers.
+    fn layer(&self, distance: f64, shape: &Shape) -> Form {
+        let plane = Frame::IDENTITY.travelled(distance);
+        Self::flat(&self.frame(&plane), shape)
+    }
+
+    pub(crate) fn surface(&self, surface: &Surface) -> Form {
+        let shape = Shape::Rectangle(Rectangle {
+            center: [0.0; 2],
+            size: surface.size,
+        });
+        Self::flat(&self.frame(&surface.frame), &shape)
+    }
+
+    pub(crate) fn mesh(&self, mesh: &MeshObject) -> impl Iterator<Item = Form> {
+        let corners = mesh.triangles.iter();
+        corners.map(|corners| Form::Triangle(corners.map(|p| self.0.to_local(p))))
+    }
+
+    /// A shape in the plane of a frame; across the leg, with axes along its own, distances are exact.
+    fn flat(frame: &Frame, shape: &Shape) -> Form {
+        let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;
+        if !across {
+            return Form::Oblique {
+                frame: *frame,
+                shape: *shape,
+            };
+        }
+        let moved = |center: [f64; 2]| {
+            let at = frame.to_world(DVec3::new(center[0], center[1], 0.0));
+            [at.x, at.y]
+        };
+        let shape = match *shape {
+            Shape::Rectangle(r) => Shape::Rectangle(Rectangle {
+                center: moved(r.center),
+                ..r
+            }),
+            Shape::Disc(disc) => Shape::Disc(etendue_field::Disc {
+                center: moved(disc.center),
+                ..disc
+            }),
+        };
+        Form::Flat {
+            distance: frame.origin.z,
+            shape,
+        }
     }
 }

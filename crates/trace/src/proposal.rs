@@ -97,19 +97,22 @@ pub(crate) struct Aim {
 }
 
 impl Aim {
-    pub(crate) fn new(distance: f64, space: &Profile, slope: &Profile) -> Self {
+    pub(crate) fn new(distance: f64, space: &Profile, slope: Follower) -> Self {
         Self {
             distance,
             half: space.half_width(),
-            slope: Follower::new(slope),
+            slope,
         }
     }
 
-    /// Cumulative of the slope at the ends of the range that crosses the window from `x`; `None` if empty.
+    /// Cumulative of the slope at the ends of the range that crosses the window from `x` at distance `from`; `None` if empty.
     #[inline]
-    fn range(&self, x: f64) -> Option<[f64; 2]> {
-        let range = if self.distance > 0.0 {
-            [-self.half, self.half].map(|end| self.slope.cumulative((end - x) / self.distance))
+    fn range(&self, x: f64, from: f64) -> Option<[f64; 2]> {
+        let distance = self.distance - from;
+        let range = if distance > 0.0 {
+            [-self.half, self.half].map(|end| self.slope.cumulative((end - x) / distance))
+        } else if distance < 0.0 {
+            [self.half, -self.half].map(|end| self.slope.cumulative((end - x) / distance))
         } else if x.abs() < self.half {
             [0.0, 1.0]
         } else {
@@ -118,18 +121,18 @@ impl Aim {
         (range[0] < range[1]).then_some(range)
     }
 
-    /// A slope at `x`, from a number in (0, 1).
+    /// A slope at `x` and distance `from`, from a number in (0, 1).
     #[inline]
-    pub(crate) fn sample(&self, x: f64, random: f64) -> Option<f64> {
-        let [low, high] = self.range(x)?;
+    pub(crate) fn sample(&self, x: f64, from: f64, random: f64) -> Option<f64> {
+        let [low, high] = self.range(x, from)?;
         Some(self.slope.quantile(low + random * (high - low)))
     }
 
     /// The density of [`Self::sample`] with respect to du.
     #[inline]
-    pub(crate) fn density(&self, x: f64, u: f64) -> f64 {
-        let crosses = (x + self.distance * u).abs() < self.half;
-        match self.range(x) {
+    pub(crate) fn density(&self, x: f64, from: f64, u: f64) -> f64 {
+        let crosses = (x + (self.distance - from) * u).abs() < self.half;
+        match self.range(x, from) {
             Some([low, high]) if crosses => self.slope.density(u) / (high - low),
             _ => 0.0,
         }

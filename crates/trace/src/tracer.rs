@@ -1,35 +1,49 @@
+use crate::bvh::Target;
 use crate::emit::{Emitter, LAMBERTIAN};
-use crate::obstacles::{Meeting, Obstacles};
+use crate::obstacles::{Meeting, Obstacles, direction, start};
 use crate::scatter::Scatterer;
 use crate::shares::Shares;
 use etendue_field::random::{self, Stream};
-use etendue_field::{Crossing, Ledger, PhotonSource, Side, TwoPlane};
-use etendue_scene::Scene;
+use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane};
+use etendue_scene::{Object, Scene};
+use glam::DVec3;
 
 /// The forward tracer of a scene.
 ///
 /// A photon leaves the light and crosses the planes in front of what it meets first; gratings on the way take
-/// their share of it. Blockers absorb it, a surface absorbs 1 − albedo of it. What the surface on the central ray reflects
-/// crosses the planes after it, and is stopped: the path ends.
+/// their share of it. Blockers absorb it, a surface absorbs 1 − albedo of it. What the surface at the end of a leg reflects
+/// crosses the planes on the next one, and so on; anything else it meets ends it.
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
-    obstacles: Obstacles,
-    /// `None` when no plane looks at reflected light.
-    scatterer: Option<Scatterer>,
-    planes: Vec<Station>,
-    /// Distance of the surface that the central ray visits.
-    length: f64,
+    legs: Vec<Leg>,
+    planes: usize,
     shares: Shares,
     seed: u64,
 }
 
-/// Where a plane stands.
+/// A leg of the path, as photons see it.
+#[derive(Debug)]
+struct Leg {
+    /// In the frame at the light.
+    frame: Frame,
+    obstacles: Obstacles,
+    stations: Vec<Station>,
+    /// How light begins the leg; `None` for the first.
+    scatterer: Option<Scatterer>,
+    /// What the leg begins and ends on.
+    leaves: Option<Object>,
+    ends: Option<Object>,
+    /// Distances that are zero but for rounding.
+    rounding: f64,
+}
+
+/// Where a plane stands on its leg.
 #[derive(Clone, Copy, Debug)]
 struct Station {
+    plane: usize,
     distance: f64,
     side: Side,
-    reflected: bool,
 }
 
 /// Photons traced between two reports.
@@ -39,17 +53,13 @@ impl Tracer {
     /// The tracer of a scene.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let planes = scene.planes.iter().map(|plane| Station {
-            distance: plane.distance,
-            side: plane.side,
-            reflected: plane.reflections > 0,
-        });
+        // Legs beyond the last plane are of no interest.
+        let last = scene.planes.iter().map(|plane| plane.leg).max();
+        let legs = (0..=last.unwrap_or(0)).map(|leg| Leg::new(scene, leg));
         Self {
             emitter: Emitter::new(scene),
-            obstacles: Obstacles::new(scene),
-            scatterer: Scatterer::new(scene),
-            planes: planes.collect(),
-            length: scene.path.length,
+            legs: legs.collect(),
+            planes: scene.planes.len(),
             shares: Shares::new(&scene.run),
             seed: scene.run.seed,
         }
@@ -65,65 +75,175 @@ impl Tracer {
         if weight <= 0.0 {
             return;
         }
-        let secant_squared = ray.secant_squared();
-        let flux = weight / (secant_squared * secant_squared);
-        let met = self.obstacles.first(&ray);
+        let flux = weight / cosines(&ray);
+        let first = &self.legs[0];
+        let met = first.obstacles.first(&ray, 0.0);
+        first.record(&ray, 0.0, weight, met, crossings);
 
+        ledger.emitted += flux;
         let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
-        for (plane, crossings) in self.planes.iter().zip(crossings.iter_mut()) {
-            let &Station { distance, side, .. } = plane;
+        let arrives = flux * first.obstacles.transmittance(&ray, 0.0, end, Side::Before);
+        ledger.absorbed += flux - arrives;
+        match met {
+            None => ledger.escaped += arrives,
+            Some((distance, target)) => match target.tag {
+                Meeting::Blocker => ledger.absorbed += arrives,
+                Meeting::Surface { albedo, .. } => {
+                    ledger.stopped += albedo * arrives;
+                    ledger.absorbed += (1.0 - albedo) * arrives;
+                    let arrival = Arrival {
+                        ray,
+                        distance,
+                        target,
+                        flux: arrives,
+                    };
+                    self.onwards(arrival, words, crossings);
+                }
+            },
+        }
+    }
+
+    /// The later legs of a photon that meets something on the first.
+    fn onwards<'a>(
+        &'a self,
+        mut arrival: Arrival<'a>,
+        words: impl Fn(u32) -> [u32; 4],
+        crossings: &mut [Vec<Crossing>],
+    ) {
+        for (legs, block) in self.legs.windows(2).zip(2..) {
+            let [this, next] = legs else { return };
+            let Meeting::Surface { albedo, .. } = arrival.target.tag else {
+                return;
+            };
+            let Some(scatterer) = &next.scatterer else {
+                return;
+            };
+            if albedo <= 0.0 || !arrival.target.tag.is(this.ends) {
+                return;
+            }
+            let (point, normal) = next.hit(this, &arrival);
+            let Some((ray, density)) = scatterer.sample(point, normal, words(block)) else {
+                return;
+            };
+            // Radiance albedo/π · E, and a photon's flux is E at its point.
+            let weight = albedo * arrival.flux / (LAMBERTIAN * density);
+            let from = point.z + next.rounding;
+            let met = next.obstacles.first(&ray, from);
+            if met.is_some_and(|(_, target)| target.tag.is(next.leaves)) {
+                return;
+            }
+            next.record(&ray, from, weight, met, crossings);
+            let Some((distance, target)) = met else {
+                return;
+            };
+            let passes = next
+                .obstacles
+                .transmittance(&ray, from, distance, Side::Before);
+            let flux = weight / cosines(&ray) * passes;
+            arrival = Arrival {
+                ray,
+                distance,
+                target,
+                flux,
+            };
+        }
+    }
+}
+
+/// A photon at the end of a leg.
+struct Arrival<'a> {
+    ray: TwoPlane,
+    distance: f64,
+    target: &'a Target<Meeting>,
+    flux: f64,
+}
+
+/// (1 + u² + v²)² = 1/cos⁴θ: radiance space over flux.
+fn cosines(ray: &TwoPlane) -> f64 {
+    let secant_squared = ray.secant_squared();
+    secant_squared * secant_squared
+}
+
+impl Leg {
+    fn new(scene: &Scene, leg: usize) -> Self {
+        let this = &scene.path.legs[leg];
+        let planes = scene.planes.iter().enumerate();
+        let stations = planes.filter(|(_, p)| p.leg == leg).map(|(i, p)| Station {
+            plane: i,
+            distance: scene.path.along(p),
+            side: p.side,
+        });
+        Self {
+            frame: this.frame,
+            obstacles: Obstacles::new(scene, this),
+            stations: stations.collect(),
+            scatterer: Scatterer::new(scene, leg),
+            leaves: this.leaves.map(|hit| hit.object),
+            ends: scene.path.ends_at(leg).map(|hit| hit.object),
+            rounding: rounding(this),
+        }
+    }
+
+    /// Where a photon that arrives on the leg before begins this one, and the normal there on the side it came from.
+    fn hit(&self, before: &Self, arrival: &Arrival<'_>) -> (DVec3, DVec3) {
+        let (from, along) = (start(&arrival.ray), direction(&arrival.ray));
+        let normal = arrival.target.form.normal();
+        let normal = -normal.dot(along).signum() * normal;
+        let point = before.frame.to_world(from + arrival.distance * along);
+        let normal = before.frame.vector_to_world(normal);
+        (
+            self.frame.to_local(point),
+            self.frame.vector_to_local(normal),
+        )
+    }
+
+    /// The planes a photon crosses before what it meets.
+    #[inline]
+    fn record(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        weight: f64,
+        met: Option<(f64, &Target<Meeting>)>,
+        crossings: &mut [Vec<Crossing>],
+    ) {
+        let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
+        let on_path = met.is_some_and(|(_, target)| target.tag.is(self.ends));
+        for &Station {
+            plane,
+            distance,
+            side,
+        } in &self.stations
+        {
             // A plane beside something is at the very same distance: no rounding can come between.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,
             };
-            if crossed && !plane.reflected {
-                crossings.push(Crossing {
+            // A surface that is not flat, or not across the leg, begins before the plane that looks at what it receives.
+            let crossed = crossed
+                || on_path
+                    && self
+                        .obstacles
+                        .visibility(ray, from, distance, side, |what| what.is(self.ends))
+                        > 0.0;
+            if crossed {
+                crossings[plane].push(Crossing {
                     ray: ray.travelled(distance),
-                    weight: weight * self.obstacles.transmittance(&ray, distance, side),
-                });
-            }
-        }
-
-        ledger.emitted += flux;
-        let arrives = flux * self.obstacles.transmittance(&ray, end, Side::Before);
-        ledger.absorbed += flux - arrives;
-        match met {
-            None => ledger.escaped += arrives,
-            Some((_, Meeting::Blocker)) => ledger.absorbed += arrives,
-            Some((_, Meeting::Surface { albedo, visited })) => {
-                ledger.stopped += albedo * arrives;
-                ledger.absorbed += (1.0 - albedo) * arrives;
-                let reflects = visited && albedo > 0.0;
-                if let (Some(scatterer), true) = (&self.scatterer, reflects) {
-                    let at = ray.travelled(self.length);
-                    let sampled = scatterer.sample(turned(&at), words(2));
-                    if let Some((ray, density)) = sampled {
-                        // Radiance albedo/π · E, and a photon's flux is E at its point.
-                        let weight = albedo * arrives / (LAMBERTIAN * density);
-                        self.reflected(&ray, weight, crossings);
-                    }
-                }
-            }
-        }
-    }
-
-    /// Crossings of light that leaves the surface on the central ray; nothing stands in its way there.
-    fn reflected(&self, ray: &TwoPlane, weight: f64, crossings: &mut [Vec<Crossing>]) {
-        for (plane, crossings) in self.planes.iter().zip(crossings) {
-            if plane.reflected {
-                crossings.push(Crossing {
-                    ray: ray.travelled(plane.distance - self.length),
-                    weight,
+                    weight: weight * self.obstacles.transmittance(ray, from, distance, side),
                 });
             }
         }
     }
 }
 
-/// A point of the surface in the frame in which light leaves it, (−X, Y, −D).
-pub(crate) fn turned(at: &TwoPlane) -> [f64; 2] {
-    [-at.x, at.y]
+/// How far a leg's beginning is left behind before something can be met.
+pub(crate) fn rounding(leg: &etendue_scene::Leg) -> f64 {
+    const SHARE: f64 = 1e-9;
+    match leg.leaves {
+        None => 0.0,
+        Some(hit) => SHARE * (hit.point.length() + leg.start),
+    }
 }
 
 impl PhotonSource for Tracer {
@@ -137,7 +257,7 @@ impl PhotonSource for Tracer {
         record: &mut dyn FnMut(usize, &[Crossing]),
         progress: &dyn Fn(u64),
     ) -> Ledger {
-        let mut crossings = vec![Vec::with_capacity(BLOCK); self.planes.len()];
+        let mut crossings = vec![Vec::with_capacity(BLOCK); self.planes];
         let mut total = Ledger::default();
         let range = self.shares.of(batch);
         for start in range.clone().step_by(BLOCK) {

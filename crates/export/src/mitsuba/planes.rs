@@ -2,8 +2,7 @@
 
 use super::{mesh_id, surface_id};
 use etendue_field::{Frame, Quantity, Side, SliceGrid, Window};
-use etendue_scene::{CentralRay, Scene};
-use glam::DVec3;
+use etendue_scene::{Object, Scene};
 use serde::Serialize;
 
 /// `planes.json`.
@@ -23,7 +22,7 @@ struct Plane<'a> {
     frame: Frame,
     distance: f64,
     side: Side,
-    reflections: usize,
+    leg: usize,
     /// Identifier of the shape that light leaves last, if any reflects it.
     leaves: Option<String>,
     quantity: Quantity,
@@ -32,22 +31,15 @@ struct Plane<'a> {
 }
 
 pub(super) fn json(scene: &Scene) -> Vec<u8> {
-    let path = CentralRay {
-        frame: Frame {
-            origin: DVec3::ZERO,
-            x: DVec3::X,
-            y: DVec3::Y,
-            d: DVec3::Z,
-        },
-        ..scene.path
-    };
     let planes = scene.planes.iter().map(|plane| Plane {
         name: &plane.name,
-        frame: path.frame_at(plane.distance, plane.reflections),
+        frame: scene.path.frame_at(plane.distance, plane.leg),
         distance: plane.distance,
         side: plane.side,
-        reflections: plane.reflections,
-        leaves: visited(scene).filter(|_| plane.reflections > 0),
+        leg: plane.leg,
+        leaves: scene.path.legs[plane.leg]
+            .leaves
+            .map(|hit| shape_id(hit.object)),
         quantity: plane.quantity,
         window: plane.window,
         frequencies: plane.grid,
@@ -63,10 +55,9 @@ pub(super) fn json(scene: &Scene) -> Vec<u8> {
     bytes
 }
 
-/// Identifier of the surface that the central ray visits.
-fn visited(scene: &Scene) -> Option<String> {
-    let is_visited = |name: &String| scene.file.path.visits.contains(name);
-    let flat = scene.surfaces.iter().position(|s| is_visited(&s.name));
-    let mesh = scene.meshes.iter().position(|m| is_visited(&m.name));
-    flat.map(surface_id).or(mesh.map(mesh_id))
+fn shape_id(object: Object) -> String {
+    match object {
+        Object::Surface(i) => surface_id(i),
+        Object::Mesh(i) => mesh_id(i),
+    }
 }

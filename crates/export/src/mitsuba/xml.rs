@@ -111,14 +111,14 @@ fn plane_text(plane: &VirtualPlane) -> String {
     let VirtualPlane {
         name,
         distance,
-        reflections,
+        leg,
         side,
         quantity,
         ..
     } = plane;
     format!(
         "virtual plane {name:?}: {quantity:?} at {distance:?} m along the path, {side:?} what stands there, \
-         after {reflections} reflections"
+         after {leg} reflections"
     )
 }
 

@@ -15,28 +15,29 @@ const STRIPS: f64 = 64.0;
 
 impl Resolver<'_> {
     /// The blockers that lie across the central ray.
-    pub(super) fn blockers(
-        &mut self,
-        file: &SceneFile,
-        frame: &Frame,
-        length: f64,
-    ) -> Vec<BlockerLayer> {
+    pub(super) fn blockers(&mut self, file: &SceneFile, frame: &Frame) -> Vec<BlockerLayer> {
         let blockers = file.blockers.iter().enumerate();
         blockers
-            .filter_map(|(i, blockers)| {
-                self.layer(&format!("blockers[{i}]"), blockers, frame, length)
-            })
+            .filter_map(|(i, blockers)| self.layer(&format!("blockers[{i}]"), blockers, frame))
             .collect()
     }
 
+    /// Blockers stand on the first leg, which has this length.
+    pub(super) fn ends(&mut self, file: &SceneFile, layers: &[BlockerLayer], length: f64) {
+        for (i, blockers) in file.blockers.iter().enumerate() {
+            let layer = layers.iter().find(|layer| layer.name == blockers.name());
+            if let Some(layer) = layer.filter(|layer| layer.distance >= length) {
+                self.faults.add(
+                    format!("blockers[{i}].center"),
+                    format!("at distance {} m from the light", layer.distance),
+                    format!("a place before the first surface of the path, at {length} m"),
+                );
+            }
+        }
+    }
+
     /// `None` for a mesh.
-    fn layer(
-        &mut self,
-        of: &str,
-        blockers: &BlockersFile,
-        frame: &Frame,
-        length: f64,
-    ) -> Option<BlockerLayer> {
+    fn layer(&mut self, of: &str, blockers: &BlockersFile, frame: &Frame) -> Option<BlockerLayer> {
         let (BlockersFile::JitteredSquares { name, center, .. }
         | BlockersFile::Shapes { name, center, .. }
         | BlockersFile::Grating { name, center, .. }) = blockers
@@ -46,13 +47,6 @@ impl Resolver<'_> {
         self.faults.coordinates(&format!("{of}.center"), center);
         let center = frame.to_local(DVec3::from(*center));
         self.ahead(of, center.z);
-        if center.z >= length {
-            self.faults.add(
-                format!("{of}.center"),
-                format!("at distance {} m from the light", center.z),
-                format!("a place before the path ends, at {length} m"),
-            );
-        }
         let (mask, pitch) = self.mask(of, blockers, [center.x, center.y])?;
         Some(BlockerLayer {
             name: name.clone(),

@@ -83,14 +83,11 @@ impl Resolver<'_> {
             .iter()
             .map(|corners| corners.each_ref().map(local))
             .collect();
-        let depths = || triangles.as_flattened().iter().map(|p| p.z);
-        let extent = [
-            depths().fold(f64::INFINITY, f64::min),
-            depths().fold(f64::NEG_INFINITY, f64::max),
-        ];
+        let extent = super::extent(triangles.as_flattened());
         self.ahead(of, extent[0]);
         Some(MeshObject {
             name: placed.name.clone(),
+            center: frame.to_local(center),
             triangles,
             extent,
             albedo: placed.albedo,

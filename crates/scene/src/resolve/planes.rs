@@ -11,7 +11,7 @@ use etendue_field::{FrequencyAxis, Profile, Side, SliceGrid, VirtualPlane, Windo
 struct OnPath {
     distance: f64,
     side: Side,
-    reflections: usize,
+    leg: usize,
 }
 
 /// Bytes of one complex number.
@@ -29,7 +29,7 @@ impl Resolver<'_> {
         let mut planes = Vec::new();
         for (i, plane) in file.planes.iter().enumerate() {
             let of = format!("planes[{i}]");
-            let place = self.place(&format!("{of}.at"), &plane.at, path, stops);
+            let place = self.place(&format!("{of}.at"), &plane.at, file, path, stops);
             let window = match &plane.window {
                 Some(window) => self.window(&format!("{of}.window"), window),
                 None => self.window("window", &file.window),
@@ -44,10 +44,12 @@ impl Resolver<'_> {
             planes.push(VirtualPlane {
                 name: plane.name.clone(),
                 distance: place.distance,
-                reflections: place.reflections,
+                leg: place.leg,
                 side: place.side,
                 quantity: plane.quantity,
-                frame: path.frame_at(place.distance, place.reflections),
+                frame: path
+                    .frame
+                    .compose(&path.frame_at(place.distance, place.leg)),
                 window,
                 grid,
             });
@@ -66,6 +68,7 @@ impl Resolver<'_> {
         &mut self,
         of: &str,
         place: &Place,
+        file: &SceneFile,
         path: &CentralRay,
         stops: &[Stop<'_>],
     ) -> Option<OnPath> {
@@ -73,30 +76,35 @@ impl Resolver<'_> {
             Place::Emission => Some(OnPath {
                 distance: 0.0,
                 side: Side::After,
-                reflections: 0,
+                leg: 0,
             }),
             Place::Before(name) => {
                 let stop = self.stop(of, place, name, path, stops)?;
                 Some(OnPath {
-                    distance: stop.extent[0],
+                    distance: match stop.ends {
+                        Some(leg) => path.legs[leg + 1].start,
+                        None => stop.extent[0],
+                    },
                     side: Side::Before,
-                    reflections: 0,
+                    leg: stop.ends.unwrap_or(0),
                 })
             }
             Place::After(name) => {
                 let stop = self.stop(of, place, name, path, stops)?;
-                if stop.surface && !stop.is_flat() {
-                    let allowed = "Before(…): light leaving a mesh is not measured";
+                let visited = stop.ends.is_some() || file.path.visits.contains(name);
+                if stop.surface && !visited {
+                    let allowed = "After(…) of a surface that the path visits";
                     self.faults.add(of, show(place), allowed);
                 }
-                if stop.surface && stop.extent[0] < path.length {
-                    let allowed = "After(…) of the surface that the path visits";
-                    self.faults.add(of, show(place), allowed);
-                }
+                let leg = stop.ends.map_or(0, |leg| leg + 1);
                 Some(OnPath {
-                    distance: stop.extent[1],
+                    distance: if leg > 0 {
+                        path.legs[leg].start
+                    } else {
+                        stop.extent[1]
+                    },
                     side: Side::After,
-                    reflections: usize::from(stop.surface),
+                    leg,
                 })
             }
             Place::Distance(distance) => Some(self.at_distance(of, *distance, path, stops)),
@@ -118,15 +126,15 @@ impl Resolver<'_> {
                 .add(of, show(place), format!("one of {}", names.join(", ")));
             return None;
         };
-        if stop.extent[0] > path.length {
-            let length = path.length;
-            let allowed = format!("a place on the path, which reaches its surface at {length} m");
+        let length = path.first_hit();
+        if stop.ends.is_none() && stop.extent[0] > length {
+            let allowed = format!("a place on the path, whose first surface is at {length} m");
             self.faults.add(of, show(place), allowed);
         }
         Some(stop)
     }
 
-    /// On the way to the surface, or on the way back.
+    /// On the leg that holds this distance along the path.
     fn at_distance(
         &mut self,
         of: &str,
@@ -134,17 +142,24 @@ impl Resolver<'_> {
         path: &CentralRay,
         stops: &[Stop<'_>],
     ) -> OnPath {
-        let CentralRay { length, back, .. } = *path;
         let value = || format!("Distance({distance:?})");
-        if !length.is_nan() && !(0.0..length + back).contains(&distance) {
-            let end = length + back;
+        let leg = path.legs.iter().rposition(|leg| leg.start <= distance);
+        let leg = leg.unwrap_or(0);
+        let last = &path.legs[path.legs.len() - 1];
+        let end = last.start + last.length;
+        if !end.is_nan() && !(0.0..end).contains(&distance) {
             let allowed = format!(
-                "0 to {length} m on the way to the surface, up to {end} m on the way back, where something stands"
+                "0 to {} m on the way to the last surface, up to {end} m on the way from it, where something stands",
+                last.start
             );
             self.faults.add(of, value(), allowed);
         }
         let beside = |s: &&Stop<'_>| s.extent.iter().any(|end| near(*end, distance));
-        if let Some(stop) = stops.iter().find(beside) {
+        let ends = |leg: &usize| near(path.legs[leg + 1].start, distance);
+        let hit = (0..path.legs.len() - 1).find(ends);
+        let hit = hit.and_then(|leg| stops.iter().find(|s| s.ends == Some(leg)));
+        let on_first = || stops.iter().filter(|_| leg == 0).find(beside);
+        if let Some(stop) = hit.or_else(on_first) {
             let name = stop.name;
             let allowed = format!("Before(\"{name}\") or After(\"{name}\") at that distance");
             self.faults.add(of, value(), allowed);
@@ -152,7 +167,7 @@ impl Resolver<'_> {
         OnPath {
             distance,
             side: Side::After,
-            reflections: usize::from(distance > length),
+            leg,
         }
     }
 

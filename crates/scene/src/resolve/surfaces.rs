@@ -1,12 +1,12 @@
 use super::Resolver;
 use super::faults::show;
 use crate::file::{SceneFile, SurfaceFile};
-use crate::scene::{MeshObject, Surface};
-use etendue_field::{Frame, Rectangle, TwoPlane, triangle_distance};
+use crate::scene::Surface;
+use etendue_field::Frame;
 use glam::DVec3;
 
 impl Resolver<'_> {
-    /// The flat surfaces.
+    /// The rectangular surfaces.
     pub(super) fn surfaces(&mut self, file: &SceneFile, frame: &Frame) -> Vec<Surface> {
         let surfaces = file.surfaces.iter().enumerate();
         surfaces
@@ -19,6 +19,7 @@ impl Resolver<'_> {
             name,
             center,
             size,
+            facing,
             albedo,
         } = surface
         else {
@@ -29,17 +30,42 @@ impl Resolver<'_> {
         self.size(&of, size);
         self.faults
             .within(format!("{of}.albedo"), *albedo, 0.0..=1.0);
-        let center = frame.to_local(DVec3::from(*center));
-        self.ahead(&of, center.z);
+        let origin = frame.to_local(DVec3::from(*center));
+        let frame = if let Some(facing) = facing {
+            self.facing(&of, *facing, origin, frame)?
+        } else {
+            self.ahead(&of, origin.z);
+            Frame {
+                origin,
+                x: DVec3::X,
+                y: DVec3::NEG_Y,
+                d: DVec3::NEG_Z,
+            }
+        };
         Some(Surface {
             name: name.clone(),
-            distance: center.z,
-            rectangle: Rectangle {
-                center: [center.x, center.y],
-                size: *size,
-            },
+            frame,
+            size: *size,
             albedo: *albedo,
         })
+    }
+
+    /// The frame of a surface that faces along a direction of the world.
+    fn facing(
+        &mut self,
+        of: &str,
+        facing: [f64; 3],
+        origin: DVec3,
+        light: &Frame,
+    ) -> Option<Frame> {
+        let of = format!("{of}.facing");
+        self.faults.coordinates(&of, &facing);
+        let d = light.vector_to_local(DVec3::from(facing));
+        let frame = Frame::new(origin, d, DVec3::X).or_else(|| Frame::new(origin, d, DVec3::Y));
+        if frame.is_none() && d.is_finite() {
+            self.faults.add(of, show(facing), "a direction");
+        }
+        frame
     }
 
     pub(super) fn size(&mut self, of: &str, size: &[f64; 2]) {
@@ -58,61 +84,5 @@ impl Resolver<'_> {
                 allowed,
             );
         }
-    }
-
-    /// The distance of the surface that the central ray visits.
-    pub(super) fn length(
-        &mut self,
-        file: &SceneFile,
-        surfaces: &[Surface],
-        meshes: &[MeshObject],
-    ) -> f64 {
-        let [visit] = file.path.visits.as_slice() else {
-            let allowed = "the name of one surface, on which the central ray ends";
-            self.faults
-                .add("path.visits", show(&file.path.visits), allowed);
-            return f64::NAN;
-        };
-        let flat = surfaces.iter().map(|s| {
-            let hit = s.rectangle.contains(0.0, 0.0).then_some(s.distance);
-            (s.name.as_str(), hit, s.distance.is_finite())
-        });
-        let meshes = meshes.iter().filter(|m| m.albedo.is_some());
-        let meshes = meshes.map(|m| (m.name.as_str(), m.on_axis(), true));
-        let known: Vec<_> = flat.chain(meshes).collect();
-        let Some((_, hit, located)) = known.iter().find(|(name, ..)| name == visit) else {
-            let names: Vec<&str> = known.iter().map(|(name, ..)| *name).collect();
-            self.faults.add(
-                "path.visits[0]",
-                show(visit),
-                format!("one of the surfaces: {}", names.join(", ")),
-            );
-            return f64::NAN;
-        };
-        let Some(distance) = *hit else {
-            if *located {
-                let allowed = "a surface that the central ray hits";
-                self.faults.add("path.visits[0]", show(visit), allowed);
-            }
-            return f64::NAN;
-        };
-        for (name, ..) in known
-            .iter()
-            .filter(|(_, hit, _)| hit.is_some_and(|d| d < distance))
-        {
-            let allowed = format!("{}, which the central ray hits first", show(name));
-            self.faults.add("path.visits[0]", show(visit), allowed);
-        }
-        distance
-    }
-}
-
-impl MeshObject {
-    /// Where the central ray hits it first.
-    fn on_axis(&self) -> Option<f64> {
-        let central = TwoPlane::default();
-        let hits = self.triangles.iter();
-        let hits = hits.filter_map(|corners| triangle_distance(corners, &central));
-        hits.reduce(f64::min)
     }
 }

@@ -81,7 +81,7 @@ pub fn plane(name: &str, window: Window, grid: SliceGrid) -> VirtualPlane {
     VirtualPlane {
         name: name.into(),
         distance: 1.0,
-        reflections: 0,
+        leg: 0,
         side: Side::Before,
         quantity: Quantity::default(),
         frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),

@@ -1,0 +1,240 @@
+//! The central ray: straight legs from surface to surface.
+
+use super::Resolver;
+use super::faults::show;
+use crate::file::SceneFile;
+use crate::scene::{BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, Surface};
+use etendue_field::{Frame, TwoPlane, triangle_distance};
+use glam::DVec3;
+
+/// Share of a leg within which it does not meet again what it has just left.
+const LEFT: f64 = 1e-9;
+
+/// What the central ray may meet.
+#[derive(Clone, Copy)]
+pub(super) struct Things<'a> {
+    pub(super) blockers: &'a [BlockerLayer],
+    pub(super) surfaces: &'a [Surface],
+    pub(super) meshes: &'a [MeshObject],
+}
+
+impl Resolver<'_> {
+    /// The legs as far as they can be followed; the length of one that is at fault is NaN.
+    pub(super) fn path(
+        &mut self,
+        file: &SceneFile,
+        frame: Frame,
+        things: Things<'_>,
+    ) -> CentralRay {
+        let visits = &file.path.visits;
+        if visits.is_empty() {
+            let allowed = "the names of the surfaces that the central ray visits";
+            self.faults.add("path.visits", show(visits), allowed);
+        }
+        let mut leg = Leg {
+            frame: Frame::IDENTITY,
+            start: 0.0,
+            length: f64::NAN,
+            leaves: None,
+        };
+        let mut legs = Vec::new();
+        for i in 0..visits.len() {
+            let Some((length, hit)) = self.visit(i, file, &leg.frame, things) else {
+                break;
+            };
+            legs.push(Leg { length, ..leg });
+            let Some(d) = self.onwards(i, file, &frame, &leg.frame, &hit, things) else {
+                return CentralRay { frame, legs };
+            };
+            leg = Leg {
+                frame: leaving(&leg.frame, &hit, d),
+                start: leg.start + length,
+                length: f64::NAN,
+                leaves: Some(hit),
+            };
+        }
+        if legs.len() == visits.len() {
+            leg.length = things.clear(&leg.frame);
+        }
+        legs.push(leg);
+        CentralRay { frame, legs }
+    }
+
+    /// How far visit `i` is along the leg, and where it hits.
+    fn visit(
+        &mut self,
+        i: usize,
+        file: &SceneFile,
+        leg: &Frame,
+        things: Things<'_>,
+    ) -> Option<(f64, Hit)> {
+        let of = format!("path.visits[{i}]");
+        let visit = &file.path.visits[i];
+        let known = things.objects();
+        let Some(&(object, _)) = known.iter().find(|(_, name)| name == visit) else {
+            // What is at fault itself has been named already.
+            if !file.surfaces.iter().any(|s| s.name() == visit) {
+                let names: Vec<&str> = known.iter().map(|(_, name)| *name).collect();
+                let allowed = format!("one of the surfaces: {}", names.join(", "));
+                self.faults.add(of, show(visit), allowed);
+            }
+            return None;
+        };
+        let hits = known
+            .iter()
+            .filter_map(|(o, name)| Some((things.hit(*o, leg)?, *o, *name)));
+        let hits: Vec<_> = hits.collect();
+        let Some(&((length, point, normal), ..)) = hits.iter().find(|(_, o, _)| *o == object)
+        else {
+            if things.is_finite(object) {
+                let allowed = "a surface that the central ray hits";
+                self.faults.add(of, show(visit), allowed);
+            }
+            return None;
+        };
+        let before = hits
+            .iter()
+            .filter(|((distance, ..), ..)| *distance < length);
+        for (.., name) in before {
+            let allowed = format!("{}, which the central ray hits first", show(name));
+            self.faults.add(&of, show(visit), allowed);
+        }
+        let hit = Hit {
+            object,
+            point,
+            normal,
+        };
+        Some((length, hit))
+    }
+
+    /// The direction in which the central ray leaves visit `i`.
+    fn onwards(
+        &mut self,
+        i: usize,
+        file: &SceneFile,
+        world: &Frame,
+        leg: &Frame,
+        hit: &Hit,
+        things: Things<'_>,
+    ) -> Option<DVec3> {
+        let path = &file.path;
+        let (of, value, d) = if let Some(next) = path.visits.get(i + 1) {
+            let known = things.objects();
+            let Some((object, _)) = known.iter().find(|(_, name)| name == next) else {
+                // Its own visit says so.
+                return Some(hit.normal);
+            };
+            let towards = things.center(*object) - hit.point;
+            (format!("path.visits[{}]", i + 1), show(next), towards)
+        } else if let Some(leaves) = path.leaves {
+            self.faults.coordinates("path.leaves", &leaves);
+            let d = world.vector_to_local(DVec3::from(leaves));
+            ("path.leaves".to_owned(), show(leaves), d)
+        } else {
+            return Some(-leg.d);
+        };
+        let d = d.try_normalize().filter(|d| d.dot(hit.normal) > 1e-6);
+        if d.is_none() {
+            let name = show(&path.visits[i]);
+            let allowed = format!("in front of {name}, on the side that light comes from");
+            self.faults.add(of, value, allowed);
+        }
+        d
+    }
+}
+
+/// The frame in which light leaves a hit along `d`: that of a mirror, (−X, Y) reflected, turned by the smallest
+/// angle until it looks along `d`. Straight back at normal incidence it is (−X, Y, −D) (Durand et al. 2005,
+/// section 4.1, steps 1 and 7, at θ = 0); in the plane of incidence it is that of docs/conventions.md.
+fn leaving(arriving: &Frame, hit: &Hit, d: DVec3) -> Frame {
+    let n = hit.normal;
+    let reflected = |v: DVec3| v - 2.0 * v.dot(n) * n;
+    let mirrored = Frame {
+        origin: hit.point,
+        x: -reflected(arriving.x),
+        y: reflected(arriving.y),
+        d: reflected(arriving.d),
+    };
+    if mirrored.d == d {
+        mirrored
+    } else {
+        mirrored.turned_to(d)
+    }
+}
+
+impl Things<'_> {
+    /// Everything that reflects, with its name.
+    fn objects(&self) -> Vec<(Object, &str)> {
+        let surfaces = self.surfaces.iter().enumerate();
+        let surfaces = surfaces.map(|(i, s)| (Object::Surface(i), s.name.as_str()));
+        let meshes = self.meshes.iter().enumerate();
+        let meshes = meshes.filter(|(_, m)| m.albedo.is_some());
+        let meshes = meshes.map(|(i, m)| (Object::Mesh(i), m.name.as_str()));
+        surfaces.chain(meshes).collect()
+    }
+
+    /// Where the axis of a frame meets an object first: distance, point and the normal on this side.
+    fn hit(&self, object: Object, frame: &Frame) -> Option<(f64, DVec3, DVec3)> {
+        let found = match object {
+            Object::Surface(i) => {
+                let surface = &self.surfaces[i];
+                let n = surface.frame.d;
+                let t = (surface.frame.origin - frame.origin).dot(n) / frame.d.dot(n);
+                let at = surface.frame.to_local(frame.origin + t * frame.d);
+                let [x, y] = surface.size;
+                let inside = 2.0 * at.x.abs() <= x && 2.0 * at.y.abs() <= y;
+                (t > LEFT && inside).then_some((t, n))
+            }
+            Object::Mesh(i) => self.meshes[i].first_on(frame),
+        };
+        let (t, n) = found?;
+        let normal = if n.dot(frame.d) > 0.0 { -n } else { n };
+        Some((t, frame.origin + t * frame.d, normal))
+    }
+
+    fn is_finite(&self, object: Object) -> bool {
+        match object {
+            Object::Surface(i) => self.surfaces[i].frame.origin.is_finite(),
+            Object::Mesh(_) => true,
+        }
+    }
+
+    fn center(&self, object: Object) -> DVec3 {
+        match object {
+            Object::Surface(i) => self.surfaces[i].frame.origin,
+            Object::Mesh(i) => self.meshes[i].center,
+        }
+    }
+
+    /// How far the axis of a frame goes until it meets an object, or the plane of the light or of blockers.
+    fn clear(&self, frame: &Frame) -> f64 {
+        let objects = self.objects();
+        let objects = objects
+            .iter()
+            .filter_map(|(o, _)| Some(self.hit(*o, frame)?.0));
+        let black = self.meshes.iter().filter(|m| m.albedo.is_none());
+        let black = black.filter_map(|mesh| Some(mesh.first_on(frame)?.0));
+        let planes = self.blockers.iter().map(|layer| layer.distance);
+        let crossed = planes
+            .chain([0.0])
+            .map(|z| (z - frame.origin.z) / frame.d.z)
+            .filter(|t| *t > LEFT);
+        objects
+            .chain(black)
+            .chain(crossed)
+            .fold(f64::INFINITY, f64::min)
+    }
+}
+
+impl MeshObject {
+    /// Where the axis of a frame meets it first, and the normal of the triangle.
+    fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
+        let central = TwoPlane::default();
+        let hits = self.triangles.iter().filter_map(|corners| {
+            let t = triangle_distance(&corners.map(|p| frame.to_local(p)), &central)?;
+            let [a, b, c] = *corners;
+            (t > LEFT).then_some((t, (b - a).cross(c - a).normalize()))
+        });
+        hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
+    }
+}

@@ -1,0 +1,124 @@
+//! Where light that a plane looks at can come from: what emission and scattering are aimed at.
+
+use etendue_field::{Frame, Profile, VirtualPlane};
+use etendue_scene::{Leg, Object, Scene};
+use glam::DVec3;
+
+/// Half-widths, across the end of `leg`, of a box around the central ray through which all light passes that can
+/// reach the window of `plane`, on a later leg, coming from `origins` (in the frame of the leg); `None` if there is none.
+pub(crate) fn reach(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    leg: usize,
+    origins: &[DVec3],
+) -> Option<[f64; 2]> {
+    let this = &scene.path.legs[leg];
+    let points = if leg + 1 == plane.leg {
+        seen(scene, plane)
+    } else {
+        // Diffuse light that leaves the next surface anywhere can go on to the window.
+        outline(scene, scene.path.ends_at(leg)?.object)
+    };
+    let points: Vec<DVec3> = points.iter().map(|p| this.frame.to_local(*p)).collect();
+    let mut half = [0.0_f64; 2];
+    for from in origins {
+        for to in &points {
+            // What lies behind the origin cannot be reached from there.
+            let share = (this.length - from.z) / (to.z - from.z).max(LEAST * this.length);
+            let at = from.lerp(*to, share);
+            half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
+        }
+    }
+    (!points.is_empty()).then_some(half.map(|h| h * (1.0 + MARGIN)))
+}
+
+/// The corners of what light can leave, in the frame at the light; those of a box around a mesh.
+pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
+    match object {
+        Object::Surface(i) => scene.surfaces[i].corners().to_vec(),
+        Object::Mesh(i) => {
+            let corners = scene.meshes[i].triangles.as_flattened();
+            let low = corners.iter().copied().reduce(DVec3::min);
+            let high = corners.iter().copied().reduce(DVec3::max);
+            let [low, high] = [low, high].map(Option::unwrap_or_default);
+            let pick = |bit: u32, a: f64, b: f64| if bit == 0 { a } else { b };
+            let corner = |i: u32| {
+                DVec3::new(
+                    pick(i & 1, low.x, high.x),
+                    pick(i & 2, low.y, high.y),
+                    pick(i & 4, low.z, high.z),
+                )
+            };
+            (0..8).map(corner).collect()
+        }
+    }
+}
+
+/// The corners of the part of its surface that a plane's window sees, or of more than that.
+fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
+    let leg = &scene.path.legs[plane.leg];
+    let Some(hit) = leg.leaves else {
+        return Vec::new();
+    };
+    let all = outline(scene, hit.object);
+    let Object::Surface(i) = hit.object else {
+        return all;
+    };
+    let surface = &scene.surfaces[i];
+    // Edges of the tube of rays that cross the window meet the surface at the corners of what is seen of it.
+    let tube = tube(plane, scene.path.along(plane), leg);
+    let side = leg.frame.d.dot(surface.frame.d).signum();
+    let met = tube
+        .iter()
+        .map(|[from, to]| meets(*from, *to, &surface.frame, side));
+    let Some(met) = met.collect::<Option<Vec<DVec3>>>() else {
+        return all;
+    };
+    let mut points = Vec::new();
+    let extent = |axis: usize| {
+        let along = met.iter().map(|p| p[axis]);
+        let low = along.clone().fold(f64::INFINITY, f64::min);
+        let high = along.fold(f64::NEG_INFINITY, f64::max);
+        let end = 0.5 * surface.size[axis];
+        [low.max(-end), high.min(end)]
+    };
+    let [x, y] = [extent(0), extent(1)];
+    if x[0] < x[1] && y[0] < y[1] {
+        for [x, y] in [[x[0], y[0]], [x[1], y[0]], [x[0], y[1]], [x[1], y[1]]] {
+            points.push(surface.frame.to_world(DVec3::new(x, y, 0.0)));
+        }
+    }
+    points
+}
+
+/// The rays through the corners of a window with its extreme slopes, by two points each, in the frame at the light.
+fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
+    let w = &plane.window;
+    let ends = |profile: &Profile| [-1.0, 1.0].map(|s| s * profile.half_width());
+    let mut rays = Vec::new();
+    for x in ends(&w.x) {
+        for u in ends(&w.u) {
+            for y in ends(&w.y) {
+                for v in ends(&w.v) {
+                    let at = DVec3::new(x, y, along);
+                    let to = at + DVec3::new(u, v, 1.0);
+                    rays.push([at, to].map(|p| leg.frame.to_world(p)));
+                }
+            }
+        }
+    }
+    rays
+}
+
+/// Where the line through two points meets the plane of a surface, in the surface's frame; `None` when it leaves to the
+/// other side of it or along it.
+fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
+    let [a, b] = [from, to].map(|p| surface.to_local(p));
+    let leaves = (b - a).z;
+    (side * leaves > LEAST).then(|| a - (a.z / leaves) * (b - a))
+}
+
+/// Cosine, and share of a leg, below which light runs along a surface.
+const LEAST: f64 = 1e-3;
+/// What is aimed at is wider than what is looked at by more than rounding.
+const MARGIN: f64 = 1e-9;
