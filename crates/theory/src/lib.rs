@@ -10,6 +10,9 @@
 //! The transform of such a polygon is known in closed form: no quadrature, no grid, no aliasing. A disc is a
 //! weighted sum of rectangles, a factor of slope a sum of products of cosine series; both converge exponentially.
 //!
+//! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors, refraction, lenses) as affine
+//! maps of rays, with what they do to spectra and covariances; a chain does not use them.
+//!
 //! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no evidence.
 //!
 //! ```
@@ -46,6 +49,7 @@ mod error;
 mod expansion;
 mod fast;
 pub mod gaussian;
+pub mod geometry;
 mod harmonics;
 mod irradiance;
 mod jitter;

@@ -4,6 +4,7 @@
 //! field is made of polygons also the polygon path with a cut at 3.4 widths, where the window is 2e-16.
 
 mod area;
+mod geometry;
 mod grating;
 mod half_planes;
 mod lights;

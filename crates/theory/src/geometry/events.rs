@@ -1,0 +1,64 @@
+//! What happens at a surface from light frame to light frame, made of the steps.
+
+use super::{Map, Matrix, Media};
+
+impl Map<2> {
+    /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
+    ///
+    /// Incidence, curvature, mirror, back, outgoing at −θ₀. The product is x' = −x, θ' = −θ − (2k/cos θ₀) x
+    /// (docs/theory.md, Eq. 26): both shears of a curved surface add up (Durand et al. 2005, step 6).
+    #[must_use]
+    pub fn mirror_reflection(theta0: f64, k: f64) -> Self {
+        Self::incidence(theta0)
+            .then(&Self::curvature(k))
+            .then(&Self::mirror())
+            .then(&Self::back(k))
+            .then(&Self::outgoing(-theta0))
+    }
+
+    /// Refraction at a surface of curvature k, in 1/m (convex positive, seen from where light comes), met at the angle θ₀.
+    ///
+    /// Incidence, curvature, refraction, back, and off the surface on its other side, where the central ray goes on
+    /// at θ₂. `None` as for [`refraction`](Self::refraction).
+    #[must_use]
+    pub fn refracting_surface(theta0: f64, k: f64, media: &Media) -> Option<Self> {
+        let theta2 = media.refracted(theta0)?;
+        let local = Self::refraction(theta0, media)?;
+        let onto = Self::incidence(theta0).then(&Self::curvature(k));
+        let off = Self::back(k).then(&Self::incidence(theta2).inverse()?);
+        Some(onto.then(&local).then(&off))
+    }
+
+    /// A caustic: mirror reflection, then travel by a distance in metres (Durand et al. 2005, Fig. 11).
+    ///
+    /// At the [focus](Self::focus) of the reflection, −cos θ₀/2k, positions depend on directions alone: parallel light is a point.
+    #[must_use]
+    pub fn caustic(theta0: f64, k: f64, distance: f64) -> Self {
+        Self::mirror_reflection(theta0, k).then(&Self::travel(distance))
+    }
+}
+
+impl Map<4> {
+    /// Reflection by a mirror with the shape operator M (see [`curvature`](Self::curvature)), met at the angle θ₀.
+    ///
+    /// The product is x' = −x, y' = y, θ' = −θ − (2 M₁₁/c₀) x + 2 M₁₂ y, φ' = φ − 2 M₁₂ x + 2 c₀ M₂₂ y: a sphere of radius R focuses at
+    /// R/2 · cos θ₀ in the plane of incidence and at R/(2 cos θ₀) across it (Coddington's equations).
+    #[must_use]
+    pub fn mirror_reflection(theta0: f64, shape: Matrix<2>) -> Self {
+        Self::incidence(theta0)
+            .then(&Self::curvature(shape, theta0))
+            .then(&Self::mirror())
+            .then(&Self::back(shape, -theta0))
+            .then(&Self::outgoing(-theta0))
+    }
+
+    /// Refraction at a surface with the shape operator M, met at the angle θ₀: as in 2D, and back with the cosine of θ₂.
+    #[must_use]
+    pub fn refracting_surface(theta0: f64, shape: Matrix<2>, media: &Media) -> Option<Self> {
+        let theta2 = media.refracted(theta0)?;
+        let local = Self::refraction(theta0, media)?;
+        let onto = Self::incidence(theta0).then(&Self::curvature(shape, theta0));
+        let off = Self::back(shape, theta2).then(&Self::incidence(theta2).inverse()?);
+        Some(onto.then(&local).then(&off))
+    }
+}

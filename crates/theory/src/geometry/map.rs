@@ -1,0 +1,146 @@
+use super::SpectrumMap;
+use super::matrix::{self, Matrix, congruent, diagonal, plus, times, transpose};
+use etendue_field::Complex;
+
+/// An affine map of rays, z' = A z + t, that keeps radiance (docs/theory.md, Eq. 1).
+///
+/// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No other N has constructors.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Map<const N: usize> {
+    /// A, as rows.
+    pub matrix: Matrix<N>,
+    /// t.
+    pub offset: [f64; N],
+}
+
+impl<const N: usize> Map<N> {
+    /// The map z' = A z.
+    #[must_use]
+    pub const fn linear(matrix: Matrix<N>) -> Self {
+        let offset = [0.0; N];
+        Self { matrix, offset }
+    }
+
+    /// The map that changes nothing.
+    #[must_use]
+    pub fn identity() -> Self {
+        Self::linear(diagonal([1.0; N]))
+    }
+
+    /// This map, then `next`: steps are written in the order in which light meets them.
+    #[must_use]
+    pub fn then(&self, next: &Self) -> Self {
+        Self {
+            matrix: matrix::product(&next.matrix, &self.matrix),
+            offset: next.apply(self.offset),
+        }
+    }
+
+    /// The map that takes rays back; `None` if an elimination of A meets a pivot that is zero or not finite.
+    #[must_use]
+    pub fn inverse(&self) -> Option<Self> {
+        let inverse = matrix::inverse(&self.matrix)?;
+        Some(Self {
+            matrix: inverse,
+            offset: times(&inverse, &self.offset).map(|t| -t),
+        })
+    }
+
+    /// det A: how areas of ray space grow. Negative where orientation turns over, as on the way onto a surface.
+    #[must_use]
+    pub fn det(&self) -> f64 {
+        matrix::determinant(&self.matrix)
+    }
+
+    /// Where a ray goes: A z + t.
+    #[must_use]
+    pub fn apply(&self, ray: [f64; N]) -> [f64; N] {
+        plus(&times(&self.matrix, &ray), &self.offset)
+    }
+
+    /// Aᵀ Ω: where the spectrum before is looked at for the frequency Ω after.
+    #[must_use]
+    pub fn transpose_apply(&self, omega: [f64; N]) -> [f64; N] {
+        times(&transpose(&self.matrix), &omega)
+    }
+
+    /// Where spectral content at Ω goes: A⁻ᵀ Ω, the inverse of [`transpose_apply`](Self::transpose_apply). `None` as for
+    /// [`inverse`](Self::inverse).
+    #[must_use]
+    pub fn content(&self, omega: [f64; N]) -> Option<[f64; N]> {
+        Some(times(&transpose(&matrix::inverse(&self.matrix)?), &omega))
+    }
+
+    /// What the map does to spectra: factor |det A|, matrix Aᵀ, phase vector t.
+    #[must_use]
+    pub fn spectrum_map(&self) -> SpectrumMap<N> {
+        SpectrumMap {
+            factor: self.det().abs(),
+            matrix: transpose(&self.matrix),
+            phase: self.offset,
+        }
+    }
+
+    /// The spectrum after the map at Ω, |det A| e^(−2πi Ω·t) L(Aᵀ Ω), of a field with the spectrum L before.
+    ///
+    /// Frequencies in cycles per unit of each coordinate.
+    #[must_use]
+    pub fn spectrum(&self, omega: [f64; N], before: &dyn Fn([f64; N]) -> Complex) -> Complex {
+        self.spectrum_map().spectrum(omega, before)
+    }
+
+    /// The covariance of rays after the map, A S Aᵀ, of rays with the covariance S before.
+    #[must_use]
+    pub fn covariance(&self, before: &Matrix<N>) -> Matrix<N> {
+        congruent(&self.matrix, before)
+    }
+
+    /// The covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, of S before. `None` as for [`inverse`](Self::inverse).
+    #[must_use]
+    pub fn spectral_covariance(&self, before: &Matrix<N>) -> Option<Matrix<N>> {
+        let inverse = matrix::inverse(&self.matrix)?;
+        Some(congruent(&transpose(&inverse), before))
+    }
+
+    /// How far the map is from keeping étendue: the largest entry of |Aᵀ J A − r J|, J = [[0, 1], [−1, 0]] in blocks, where r is
+    /// the index of refraction before over that after.
+    ///
+    /// Zero between two planes across the light, whatever stands between: n dx du is conserved in 2D (J then gives |det A − r|), and the
+    /// Lagrange invariant of every pair of rays in 4D. Maps onto or off a surface have a cosine too much or too little.
+    #[must_use]
+    pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
+        let half = N / 2;
+        let j = |i: usize, k: usize| {
+            f64::from(u8::from(i + half == k)) - f64::from(u8::from(i == k + half))
+        };
+        let kept = congruent(&transpose(&self.matrix), &matrix::from_fn(j));
+        let entries = (0..N).flat_map(|i| (0..N).map(move |k| (i, k)));
+        entries
+            .map(|(i, k)| (kept[i][k] - index_ratio * j(i, k)).abs())
+            // A maximum that does not lose what is not a number.
+            .fold(0.0, |most, x| if most >= x { most } else { x })
+    }
+}
+
+impl Map<2> {
+    /// The distance after which rays that were parallel before the map meet, −A₀₀/A₁₀ metres; negative if behind.
+    /// `None` if they stay parallel.
+    #[must_use]
+    pub fn focus(&self) -> Option<f64> {
+        let [[x, _], [slope, _]] = self.matrix;
+        let distance = -x / slope;
+        distance.is_finite().then_some(distance)
+    }
+}
+
+impl Map<4> {
+    /// The map that takes (x, u) by one map and (y, v) by another.
+    #[must_use]
+    pub fn sections(x: &Map<2>, y: &Map<2>) -> Self {
+        let [[x0, u0], [y0, v0]] = [x.offset, y.offset];
+        Self {
+            matrix: matrix::sections(&x.matrix, &y.matrix),
+            offset: [x0, y0, u0, v0],
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What happens to rays near a central ray: every geometric step of a light path as one affine map.
+//!
+//! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step turns it into
+//! z' = A z + t and keeps its radiance, and so turns the spectrum L into
+//! L'(Ω) = |det A| e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md, Eq. 1). That is a [`Map`]; everything else here makes
+//! one, or says what one does to rays, spectra and covariances. Steps are chained by [`Map::then`] in the order in
+//! which light meets them:
+//!
+//! | step | constructor | in Durand et al. 2005 |
+//! |---|---|---|
+//! | travel | [`Map::travel`] | Eq. 3 |
+//! | thin lens | [`Map::thin_lens`] | – |
+//! | light incidence: onto the surface | [`incidence`](Map::<2>::incidence) | Eq. 9 |
+//! | curvature: into the frames of local normals | [`curvature`](Map::<2>::curvature) | Eq. 11, 19 |
+//! | mirror | [`Map::mirror`] | Eq. 14 |
+//! | refraction | [`refraction`](Map::<2>::refraction) | – |
+//! | back from the local normals | [`back`](Map::<2>::back) | step 6 |
+//! | outgoing angle: off the surface | [`outgoing`](Map::<2>::outgoing) | Eq. 10 |
+//! | turning the axes | [`Map::rotation`] | section 5.2 |
+//!
+//! In the frame of a light ray the last coordinates are slopes or angles to the central ray; to the order at which
+//! these maps hold, both are the same ([`plane_sphere`] has the exact change). Lengths are in metres, angles in radians.
+//!
+//! **Surface frame.** N is the normal where the central ray hits, on the side the light comes from; (T, N) are right-handed
+//! axes of the plane of incidence, T to the right when N is up; B = N × T. Directions point away from the
+//! surface; their angle θ is counted from N towards T. s is arc length along T. With c₀ = cos θ₀: D = −(sin θ₀ T + c₀ N) and
+//! X = −c₀ T + sin θ₀ N before, D = sin θ₁ T + c₁ N and X = c₁ T − sin θ₁ N after, Y = B always. In 4D a direction is
+//! cos φ (sin θ T + cos θ N) + sin φ B: longitude θ, latitude φ.
+//!
+//! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface is linear in the size e of the
+//! neighbourhood, with a relative error that falls as e, and as e² at normal incidence.
+//!
+//! **The print.** What the paper prints differs in places; [`Print`] has both.
+//!
+//! ```
+//! use etendue_theory::geometry::Map;
+//!
+//! // A concave mirror of radius 2 m, met at 0.3 rad, focuses parallel light at R/2 · cos 0.3.
+//! let map = Map::<2>::mirror_reflection(0.3, -0.5);
+//! let f = map.focus().unwrap();
+//! assert!((f - 0.3_f64.cos()).abs() < 1e-15);
+//! // There the position of a ray depends on its direction alone.
+//! let [x, _] = map.then(&Map::travel(f)).apply([0.01, 0.002]);
+//! assert!((x + f * 0.002).abs() < 1e-15);
+//! ```
+
+pub mod covariance;
+mod events;
+mod kernel;
+mod map;
+mod matrix;
+pub mod plane_sphere;
+mod printed;
+mod refraction;
+mod spectrum_map;
+mod surface;
+#[cfg(test)]
+mod tests;
+mod travel;
+
+pub use kernel::plane_sphere_kernel;
+pub use map::Map;
+pub use matrix::Matrix;
+pub use printed::Print;
+pub use refraction::Media;
+pub use spectrum_map::SpectrumMap;

@@ -1,0 +1,130 @@
+use super::{Map, Matrix, SpectrumMap};
+use std::f64::consts::TAU;
+
+/// Which print of the geometric operators is asked for (docs/theory.md, section 7).
+///
+/// What Durand et al. 2005 print for the steps on and off a surface differs from ray geometry, and between their text and their table.
+/// Mirror and travel are printed right.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Print {
+    /// As ray geometry has it: the maps of this module.
+    Corrected,
+    /// The numbered equations: 9, 11, 10, and 19 for a surface in 3D.
+    Equations,
+    /// Table 1: its light incidence, curvature and outgoing angle. It has no line for 3D; there Eq. 19 with the table's sign.
+    Table,
+}
+
+impl Print {
+    /// Light incidence. Eq. 9: e^(−iΩθ θ₀) c₀ L(−c₀ Ωx, Ωθ); Table 1: e^(−iΩθ θ₀)/c₀ L(−c₀ Ωx, Ωθ).
+    #[must_use]
+    pub fn incidence(self, theta0: f64) -> SpectrumMap<2> {
+        let right = Map::<2>::incidence(theta0).spectrum_map();
+        let c0 = theta0.cos();
+        let factor = match self {
+            Self::Corrected => return right,
+            Self::Equations => c0,
+            Self::Table => 1.0 / c0,
+        };
+        SpectrumMap {
+            factor,
+            matrix: [[-c0, 0.0], [0.0, 1.0]],
+            phase: without_two_pi(right.phase),
+        }
+    }
+
+    /// Curvature, into the frames of the local normals. Eq. 11: L(Ωx + k Ωθ, Ωθ).
+    #[must_use]
+    pub fn curvature(self, k: f64) -> SpectrumMap<2> {
+        Map::<2>::curvature(self.sign() * k).spectrum_map()
+    }
+
+    /// Back from the frames of the local normals: the inverse of [`curvature`](Self::curvature), as step 6 says.
+    #[must_use]
+    pub fn back(self, k: f64) -> SpectrumMap<2> {
+        Map::<2>::back(self.sign() * k).spectrum_map()
+    }
+
+    /// Outgoing angle. Eq. 10 and Table 1: e^(iΩθ θ₁) c₁ L(Ωx/c₁, Ωθ).
+    #[must_use]
+    pub fn outgoing(self, theta1: f64) -> SpectrumMap<2> {
+        let right = Map::<2>::outgoing(theta1).spectrum_map();
+        match self {
+            Self::Corrected => right,
+            Self::Equations | Self::Table => SpectrumMap {
+                factor: right.factor,
+                matrix: [[1.0 / theta1.cos(), 0.0], [0.0, 1.0]],
+                phase: without_two_pi(right.phase),
+            },
+        }
+    }
+
+    /// Incidence, curvature, mirror, back, outgoing at −θ₀.
+    #[must_use]
+    pub fn mirror_reflection(self, theta0: f64, k: f64) -> SpectrumMap<2> {
+        self.incidence(theta0)
+            .then(&self.curvature(k))
+            .then(&Map::mirror().spectrum_map())
+            .then(&self.back(k))
+            .then(&self.outgoing(-theta0))
+    }
+
+    /// Light incidence in 4D: (x, θ) as in 2D; the paper leaves out that the latitude turns over, which no print gets wrong.
+    #[must_use]
+    pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
+        SpectrumMap::sections(&self.incidence(theta0), &Map::mirror().spectrum_map())
+    }
+
+    /// Curvature in 4D. Eq. 19: a shear by M, without the cosine.
+    #[must_use]
+    pub fn curvature_4d(self, shape: Matrix<2>, theta0: f64) -> SpectrumMap<4> {
+        Map::<4>::curvature(self.signed(shape), self.longitude(theta0)).spectrum_map()
+    }
+
+    /// Back from the frames of the local normals in 4D.
+    #[must_use]
+    pub fn back_4d(self, shape: Matrix<2>, theta1: f64) -> SpectrumMap<4> {
+        Map::<4>::back(self.signed(shape), self.longitude(theta1)).spectrum_map()
+    }
+
+    /// Outgoing angle in 4D: (x, θ) as in 2D.
+    #[must_use]
+    pub fn outgoing_4d(self, theta1: f64) -> SpectrumMap<4> {
+        SpectrumMap::sections(&self.outgoing(theta1), &Map::identity().spectrum_map())
+    }
+
+    /// Incidence, curvature, mirror, back, outgoing at −θ₀ in 4D.
+    #[must_use]
+    pub fn mirror_reflection_4d(self, theta0: f64, shape: Matrix<2>) -> SpectrumMap<4> {
+        self.incidence_4d(theta0)
+            .then(&self.curvature_4d(shape, theta0))
+            .then(&Map::mirror().spectrum_map())
+            .then(&self.back_4d(shape, -theta0))
+            .then(&self.outgoing_4d(-theta0))
+    }
+
+    /// The sign of Eq. 11, relative to ray geometry.
+    fn sign(self) -> f64 {
+        match self {
+            Self::Corrected | Self::Table => 1.0,
+            Self::Equations => -1.0,
+        }
+    }
+
+    fn signed(self, shape: Matrix<2>) -> Matrix<2> {
+        shape.map(|row| row.map(|entry| self.sign() * entry))
+    }
+
+    /// The longitude whose cosine Eq. 19 has: 1.
+    fn longitude(self, theta: f64) -> f64 {
+        match self {
+            Self::Corrected => theta,
+            Self::Equations | Self::Table => 0.0,
+        }
+    }
+}
+
+/// The phase vector that makes e^(−2πi Ω·t) what the paper prints, e^(−iΩ·t).
+fn without_two_pi(phase: [f64; 2]) -> [f64; 2] {
+    phase.map(|t| t / TAU)
+}

@@ -1,0 +1,66 @@
+use super::Map;
+
+/// The refractive indices on both sides of an interface, positive.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Media {
+    /// Index n₁ of the medium in which light arrives.
+    pub before: f64,
+    /// Index n₂ of the medium in which it goes on.
+    pub after: f64,
+}
+
+impl Media {
+    /// n₁/n₂: what [`Map::symplectic_defect`] asks for, and how étendue in (x, u) changes along each axis.
+    #[must_use]
+    pub fn index_ratio(&self) -> f64 {
+        self.before / self.after
+    }
+
+    /// The same interface met from the other side.
+    #[must_use]
+    pub fn reversed(&self) -> Self {
+        Self {
+            before: self.after,
+            after: self.before,
+        }
+    }
+
+    /// The angle θ₂ of the refracted ray, n₁ sin θ₁ = n₂ sin θ₂ (Snell's law). `None` where all light is reflected.
+    ///
+    /// As every angle on a surface it says where light seems to come from: the refracted central ray runs along −(sin θ₂ T + cos θ₂ N).
+    #[must_use]
+    pub fn refracted(&self, theta1: f64) -> Option<f64> {
+        let sine = self.index_ratio() * theta1.sin();
+        (sine.abs() < 1.0).then(|| sine.asin())
+    }
+}
+
+impl Map<2> {
+    /// Refraction of local directions, Snell's law made linear at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos θ₀/(n₂ cos θ₂).
+    ///
+    /// By differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md, Eq. 27); the paper has no refraction. Directions stay flipped, and
+    /// light goes on through the surface: the next step back into a light frame is the inverse of the incidence at θ₂.
+    /// `None` where all light is reflected, and at the critical angle, where there is no derivative.
+    #[must_use]
+    pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
+        let theta2 = media.refracted(theta0)?;
+        let scale = media.index_ratio() * theta0.cos() / theta2.cos();
+        Some(Self {
+            matrix: [[1.0, 0.0], [0.0, scale]],
+            offset: [0.0, theta2 - scale * theta0],
+        })
+    }
+}
+
+impl Map<4> {
+    /// Refraction of local directions: the longitude as in 2D, and n₁ φ = n₂ φ' out of the plane of incidence.
+    ///
+    /// The tangential part of n ω is the same on both sides; along B that is n sin φ, along T it is n cos φ sin θ, where cos φ is 1 to
+    /// first order (docs/theory.md, Eq. 27).
+    #[must_use]
+    pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
+        let in_plane = Map::<2>::refraction(theta0, media)?;
+        let across = Map::<2>::refraction(0.0, media)?;
+        Some(Self::sections(&in_plane, &across))
+    }
+}

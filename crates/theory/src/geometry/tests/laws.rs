@@ -1,0 +1,228 @@
+//! What must hold for any numbers.
+
+use super::*;
+
+/// Rounding of products of a handful of entries of order one.
+const ROUNDING: f64 = 1e-14;
+
+#[test]
+fn travels_add_up() {
+    let both = Map::<4>::travel(0.7).then(&Map::travel(1.9));
+    assert!(apart(&both, &Map::travel(2.6)) < ROUNDING);
+    assert!(apart(&both, &Map::travel(2.5)) > 0.09); // the test can fail
+}
+
+#[test]
+fn inverses() {
+    let shears = Map::<2>::curvature(0.6).then(&Map::<2>::back(0.6));
+    assert!(apart(&shears, &Map::identity()) < ROUNDING);
+    let shears = Map::<4>::curvature(SHAPE, 0.7).then(&Map::<4>::back(SHAPE, -0.7));
+    assert!(apart(&shears, &Map::identity()) < ROUNDING);
+    let twice = Map::<4>::mirror().then(&Map::mirror());
+    assert!(apart(&twice, &Map::identity()) < ROUNDING);
+    let off = Map::<4>::outgoing(-0.4)
+        .then(&Map::rotation(0.3))
+        .then(&Map::travel(2.0));
+    let back = off.then(&off.inverse().unwrap());
+    assert!(apart(&back, &Map::identity()) < ROUNDING);
+    assert!(
+        Map::<2>::linear([[1.0, 2.0], [2.0, 4.0]])
+            .inverse()
+            .is_none()
+    );
+}
+
+#[test]
+fn composition_is_one_map_after_the_other() {
+    let (first, second) = (Map::<4>::incidence(0.5), Map::<4>::curvature(SHAPE, 0.5));
+    let ray = [0.3, -0.2, 0.1, 0.4];
+    let one = first.then(&second).apply(ray);
+    let other = second.apply(first.apply(ray));
+    let wrong = first.apply(second.apply(ray));
+    let difference = |a: [f64; 4], b: [f64; 4]| (0..4).map(|i| (a[i] - b[i]).abs()).sum::<f64>();
+    assert!(difference(one, other) < ROUNDING);
+    assert!(difference(one, wrong) > 0.1); // the order matters
+    let omega = [1.0, -2.0, 0.5, 3.0];
+    let moved = first.content(first.transpose_apply(omega)).unwrap();
+    assert!(difference(moved, omega) < ROUNDING);
+}
+
+#[test]
+fn thin_lens_between_travels() {
+    let (a, b, f) = (1.3, 0.8, 0.6);
+    let system = Map::<2>::travel(a)
+        .then(&Map::thin_lens(f))
+        .then(&Map::travel(b));
+    let abcd = [[1.0 - b / f, a + b - a * b / f], [-1.0 / f, 1.0 - a / f]];
+    assert!(apart(&system, &Map::linear(abcd)) < ROUNDING);
+    // 1/a + 1/b = 1/f: an image, where direction does not matter, b/a as large and upside down.
+    let b = 1.0 / (1.0 / f - 1.0 / a);
+    let image = Map::<4>::travel(a)
+        .then(&Map::thin_lens(f))
+        .then(&Map::travel(b));
+    let [x, y, ..] = image.apply([0.1, -0.2, 0.5, 0.7]);
+    assert!((x + 0.1 * b / a).abs() < ROUNDING && (y - 0.2 * b / a).abs() < ROUNDING);
+}
+
+#[test]
+fn closed_form_of_a_mirror() {
+    let (theta0, k) = (0.7_f64, -0.4);
+    let c0 = theta0.cos();
+    let expected = Map::<2>::linear([[-1.0, 0.0], [-2.0 * k / c0, -1.0]]); // docs/theory.md, Eq. 26
+    let mirror = Map::<2>::mirror_reflection(theta0, k);
+    assert!(apart(&mirror, &expected) < ROUNDING);
+    assert!((mirror.focus().unwrap() + c0 / (2.0 * k)).abs() < ROUNDING);
+    assert!(Map::<2>::mirror_reflection(theta0, 0.0).focus().is_none());
+    let [[m11, m12], [_, m22]] = SHAPE;
+    let expected = Map::<4>::linear([
+        [-1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [-2.0 * m11 / c0, 2.0 * m12, -1.0, 0.0],
+        [-2.0 * m12, 2.0 * c0 * m22, 0.0, 1.0],
+    ]);
+    assert!(apart(&Map::<4>::mirror_reflection(theta0, SHAPE), &expected) < ROUNDING);
+}
+
+#[test]
+fn lensmaker() {
+    let (r1, r2, thickness, n) = (0.5, 0.8, 0.02, GLASS.after);
+    let lens = |thickness| {
+        // The second surface of a biconvex lens is hollow as seen from inside.
+        Map::<2>::refracting_surface(0.0, 1.0 / r1, &GLASS)
+            .unwrap()
+            .then(&Map::travel(thickness))
+            .then(&Map::<2>::refracting_surface(0.0, -1.0 / r2, &GLASS.reversed()).unwrap())
+    };
+    let power = (n - 1.0) * (1.0 / r1 + 1.0 / r2);
+    assert!(apart(&lens(0.0), &Map::thin_lens(1.0 / power)) < ROUNDING);
+    // Hecht, Optics, Eq. 6.2, with the second radius negative.
+    let thick = power - (n - 1.0).powi(2) * thickness / (n * r1 * r2);
+    assert!((lens(thickness).matrix[1][0] + thick).abs() < ROUNDING);
+    assert!((power - thick).abs() > 0.005); // thickness is seen
+}
+
+#[test]
+fn total_reflection_has_no_refracted_ray() {
+    let out = GLASS.reversed();
+    assert!(Map::<4>::refracting_surface(0.72, SHAPE, &out).is_some());
+    assert!(Map::<4>::refracting_surface(0.74, SHAPE, &out).is_none()); // asin(1/1.5) = 0.7297
+    assert!(Map::<2>::refraction(f64::NAN, &out).is_none());
+}
+
+#[test]
+fn specular_steps_keep_etendue() {
+    let mirror = Map::<4>::mirror_reflection(0.7, SHAPE);
+    let surface = Map::<4>::refracting_surface(0.7, SHAPE, &GLASS).unwrap();
+    let same = Map::<4>::refracting_surface(
+        0.7,
+        SHAPE,
+        &Media {
+            before: 1.5,
+            after: 1.5,
+        },
+    )
+    .unwrap();
+    let path = Map::travel(2.0)
+        .then(&mirror)
+        .then(&Map::rotation(0.4))
+        .then(&Map::travel(0.5))
+        .then(&Map::thin_lens(0.3));
+    for kept in [mirror, same, path] {
+        assert!(kept.symplectic_defect(1.0) < ROUNDING);
+        assert!((kept.det() - 1.0).abs() < ROUNDING);
+    }
+    // Nothing happens where nothing changes, curved or not.
+    assert!(apart(&same, &Map::identity()) < ROUNDING);
+    let ratio = GLASS.index_ratio();
+    assert!(path.then(&surface).symplectic_defect(ratio) < ROUNDING);
+    assert!((surface.det() - ratio * ratio).abs() < ROUNDING);
+    assert!(surface.symplectic_defect(1.0) > 0.3); // 1 − 1/1.5
+    let flat = Map::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
+    assert!(flat.symplectic_defect(ratio) < ROUNDING);
+    assert!((flat.det() - ratio).abs() < ROUNDING);
+    // A surface is no plane across the light; nor is Eq. 19 without its cosine a thing that light does.
+    assert!(Map::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
+    let nan = Map::<2>::travel(f64::NAN);
+    assert!(nan.symplectic_defect(1.0).is_nan());
+}
+
+/// Turns the frame round, (X, Y, D) to (−X, Y, −D), as for light that goes straight back.
+fn turn_round() -> Map<4> {
+    Map::<4>::linear([
+        [-1.0, 0.0, 0.0, 0.0],
+        [0.0, 1.0, 0.0, 0.0],
+        [0.0, 0.0, 1.0, 0.0],
+        [0.0, 0.0, 0.0, -1.0],
+    ])
+}
+
+#[test]
+fn paths_are_reversible() {
+    let (distance, theta0, theta1) = (1.3, 0.7, -0.4);
+    let theta2 = GLASS.refracted(theta1).unwrap();
+    let there = Map::<4>::mirror_reflection(theta0, SHAPE)
+        .then(&Map::travel(distance))
+        .then(&Map::<4>::refracting_surface(theta1, SHAPE, &GLASS).unwrap())
+        .then(&Map::thin_lens(0.7));
+    let [[m11, m12], [m21, m22]] = SHAPE;
+    // From behind, hollow is convex, T points the other way, B does not.
+    let behind = [[-m11, m12], [m21, -m22]];
+    let back = |behind| {
+        Map::<4>::thin_lens(0.7)
+            .then(&Map::<4>::refracting_surface(theta2, behind, &GLASS.reversed()).unwrap())
+            .then(&Map::travel(distance))
+            .then(&Map::<4>::mirror_reflection(-theta0, SHAPE))
+    };
+    let home = |back: Map<4>| there.then(&turn_round()).then(&back).then(&turn_round());
+    assert!(apart(&home(back(behind)), &Map::identity()) < ROUNDING);
+    assert!(apart(&home(back(SHAPE)), &Map::identity()) > 0.1); // the test can fail
+}
+
+#[test]
+fn sections_are_the_plane_of_incidence() {
+    let k = SHAPE[0][0];
+    let mirror = Map::<4>::mirror_reflection(0.7, SHAPE).matrix;
+    let flat = Map::<2>::mirror_reflection(0.7, k).matrix;
+    let surface = Map::<4>::refracting_surface(0.7, SHAPE, &GLASS)
+        .unwrap()
+        .matrix;
+    let line = Map::<2>::refracting_surface(0.7, k, &GLASS).unwrap().matrix;
+    for n in 0..4 {
+        let (i, j) = (n / 2, n % 2);
+        assert!((mirror[2 * i][2 * j] - flat[i][j]).abs() < ROUNDING);
+        assert!((surface[2 * i][2 * j] - line[i][j]).abs() < ROUNDING);
+    }
+}
+
+#[test]
+fn turning_the_axes_turns_what_happens() {
+    // A lens has no axes; a travel neither.
+    let turn = Map::<4>::rotation(0.4);
+    for step in [Map::travel(1.2), Map::thin_lens(0.6)] {
+        assert!(apart(&turn.then(&step), &step.then(&turn)) < ROUNDING);
+    }
+    let full = (0..10).fold(Map::identity(), |all, _| {
+        all.then(&Map::<4>::rotation(std::f64::consts::TAU / 10.0))
+    });
+    assert!(apart(&full, &Map::identity()) < ROUNDING);
+    // A point on the new first axis has no second coordinate.
+    let (sin, cos) = 0.4_f64.sin_cos();
+    let [x, y, ..] = turn.apply([cos, sin, 0.0, 0.0]);
+    assert!((x - 1.0).abs() < ROUNDING && y.abs() < ROUNDING);
+    // A mirror met head on does not care how the axes lie, if its shape operator turns with them.
+    let [[a, b], [_, d]] = SHAPE;
+    let turned = [
+        [
+            cos * cos * a - 2.0 * cos * sin * b + sin * sin * d,
+            cos * sin * a + (cos * cos - sin * sin) * b - cos * sin * d,
+        ],
+        [
+            cos * sin * a + (cos * cos - sin * sin) * b - cos * sin * d,
+            sin * sin * a + 2.0 * cos * sin * b + cos * cos * d,
+        ],
+    ];
+    // T = −X before and X after: the axes of the surface turn the other way.
+    let one = turn.then(&Map::<4>::mirror_reflection(0.0, turned));
+    let other = Map::<4>::mirror_reflection(0.0, SHAPE).then(&Map::rotation(-0.4));
+    assert!(apart(&one, &other) < ROUNDING);
+}

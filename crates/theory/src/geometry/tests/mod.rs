@@ -1,0 +1,36 @@
+//! Laws of the maps, traced rays, and what the misprints of the paper do to them.
+
+mod gaussians;
+mod kernel;
+mod laws;
+mod prints;
+mod rays;
+mod slopes;
+mod trace;
+
+use super::{Map, Matrix, Media};
+
+/// Not symmetric about anything, saddle-shaped.
+const SHAPE: Matrix<2> = [[0.6, 0.25], [0.25, -0.3]];
+const GLASS: Media = Media {
+    before: 1.0,
+    after: 1.5,
+};
+
+/// The largest difference between two maps, entry by entry.
+fn apart<const N: usize>(a: &Map<N>, b: &Map<N>) -> f64 {
+    let offsets = (0..N).map(|i| (a.offset[i] - b.offset[i]).abs());
+    let entries = (0..N * N).map(|n| (a.matrix[n / N][n % N] - b.matrix[n / N][n % N]).abs());
+    offsets.chain(entries).fold(0.0, f64::max)
+}
+
+/// Numbers spread evenly over (−1, 1), and jointly over the coordinates: multiples of roots of primes.
+fn scatter(index: usize, coordinate: usize) -> f64 {
+    let prime: f64 = [2.0, 3.0, 5.0, 7.0][coordinate];
+    2.0 * ((index as f64 + 1.0) * prime.sqrt()).fract() - 1.0
+}
+
+/// Rays spread over a neighbourhood of size e.
+fn bundle<const N: usize>(count: usize, e: f64) -> impl Iterator<Item = [f64; N]> {
+    (0..count).map(move |i| std::array::from_fn(|k| e * scatter(i, k)))
+}

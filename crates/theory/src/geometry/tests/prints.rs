@@ -1,0 +1,146 @@
+//! The misprints of the paper, one by one: none is what rays do, though some hide behind each other.
+
+use super::rays::{circle, error_and_order};
+use super::trace::{Surface, reflected};
+use super::*;
+use crate::geometry::{Print, SpectrumMap};
+use etendue_field::Complex;
+use std::f64::consts::TAU;
+
+const THETA0: f64 = 0.6;
+const K: f64 = 0.5;
+
+/// The map of rays that moves content as a step on spectra does: A is the transpose of its matrix.
+fn rays<const N: usize>(step: &SpectrumMap<N>) -> Map<N> {
+    Map {
+        matrix: crate::geometry::matrix::transpose(&step.matrix),
+        offset: step.phase,
+    }
+}
+
+/// With the 2π that is missing in print.
+fn with_two_pi(mut step: SpectrumMap<2>) -> SpectrumMap<2> {
+    step.phase = step.phase.map(|t| TAU * t);
+    step
+}
+
+/// A mirror chain with the prints of incidence, of curvature and of outgoing angle.
+fn mirror(
+    incidence: &SpectrumMap<2>,
+    curvature: Print,
+    outgoing: &SpectrumMap<2>,
+) -> SpectrumMap<2> {
+    incidence
+        .then(&curvature.curvature(K))
+        .then(&Map::mirror().spectrum_map())
+        .then(&curvature.back(K))
+        .then(outgoing)
+}
+
+#[test]
+fn corrected_is_the_map() {
+    let print = Print::Corrected;
+    let map = Map::<2>::mirror_reflection(THETA0, K).spectrum_map();
+    assert_eq!(print.mirror_reflection(THETA0, K), map);
+    let map = Map::<4>::mirror_reflection(THETA0, SHAPE).spectrum_map();
+    let got = print.mirror_reflection_4d(THETA0, SHAPE);
+    assert!((got.factor - map.factor).abs() < 1e-15); // rounding
+    assert!(apart(&rays(&got), &rays(&map)) < 1e-15); // rounding
+}
+
+#[test]
+fn no_misprint_follows_the_rays() {
+    use Print::{Corrected, Equations, Table};
+    let incidence = |print: Print| print.incidence(THETA0);
+    let outgoing = |print: Print| print.outgoing(-THETA0);
+    let right = [incidence(Corrected), outgoing(Corrected)];
+    let scaled = [with_two_pi(incidence(Table)), with_two_pi(outgoing(Table))];
+    let mut phase = [incidence(Corrected), outgoing(Corrected)];
+    for step in &mut phase {
+        step.phase = step.phase.map(|t| t / TAU);
+    }
+    let chains = [
+        (
+            "scale of incidence",
+            mirror(&scaled[0], Corrected, &right[1]),
+        ),
+        (
+            "scale of outgoing",
+            mirror(&right[0], Corrected, &scaled[1]),
+        ),
+        ("both", mirror(&scaled[0], Corrected, &scaled[1])),
+        ("sign of Eq. 11", mirror(&right[0], Equations, &right[1])),
+        (
+            "all",
+            mirror(&incidence(Equations), Equations, &outgoing(Equations)),
+        ),
+    ];
+    let traced = |z| circle(K, THETA0, z);
+    let (error, order) = error_and_order(&rays(&mirror(&right[0], Corrected, &right[1])), traced);
+    assert!(error < 0.01 && order > 0.9, "{error:e}, order {order}");
+    for (what, chain) in chains {
+        let (error, order) = error_and_order(&rays(&chain), traced);
+        assert!(
+            error > 0.1 && order.abs() < 0.1,
+            "{what}: {error:e}, {order}"
+        );
+    }
+    // Two phases of a mirror cancel; alone, an angle that is off does not get smaller with the neighbourhood.
+    let alone = mirror(&phase[0], Corrected, &right[1]);
+    let (error, order) = error_and_order(&rays(&alone), traced);
+    assert!(error > 100.0 && order < -0.9, "phase: {error:e}, {order}");
+}
+
+#[test]
+fn eq_19_has_no_cosine() {
+    for print in [Print::Equations, Print::Table] {
+        let right = Print::Corrected;
+        let chain = right
+            .incidence_4d(THETA0)
+            .then(&print.curvature_4d(SHAPE, THETA0))
+            .then(&Map::mirror().spectrum_map())
+            .then(&print.back_4d(SHAPE, -THETA0))
+            .then(&right.outgoing_4d(-THETA0));
+        let traced = |z| reflected(Surface::graph(SHAPE), THETA0, z);
+        let (error, order) = error_and_order(&rays(&chain), traced);
+        assert!(error > 0.05 && order.abs() < 0.1, "{error:e}, {order}");
+        assert!(rays(&chain).symplectic_defect(1.0) > 0.05);
+    }
+    let sphere = [[-0.5, 0.0], [0.0, -0.5]];
+    let map = rays(&Print::Table.mirror_reflection_4d(0.7, sphere)).matrix;
+    assert!((map[1][1] / map[3][1] + 1.0).abs() < 1e-15); // the sagittal focus R/2: rounding
+}
+
+#[test]
+fn planar_mirrors_keep_magnitudes() {
+    let before = |[x, t]: [f64; 2]| Complex::new((-x * x - t * t + x * t).exp(), x - t);
+    for omega in [[0.3, 0.2], [-1.0, 0.4], [0.0, 0.0]] {
+        let size = |print: Print| {
+            let mirror = print.mirror_reflection(THETA0, 0.0);
+            mirror.spectrum(omega, &before).norm()
+        };
+        let expected = before([-omega[0], -omega[1]]).norm();
+        let cos = THETA0.cos();
+        let rounding = 1e-14;
+        assert!((size(Print::Corrected) - expected).abs() < rounding);
+        // The two wrong arguments of Table 1 cancel on a plane, the factors of Eq. 9 and 10 do not.
+        assert!((size(Print::Table) - expected).abs() < rounding);
+        assert!((size(Print::Equations) - cos * cos * expected).abs() < rounding);
+    }
+}
+
+#[test]
+fn constant_fields_keep_their_value() {
+    // δ(Ωx) S(Ωθ) with the factor f and Ωx → a Ωx becomes f/|a| of itself.
+    let value = |step: SpectrumMap<2>| step.factor / step.matrix[0][0].abs();
+    let cos = THETA0.cos();
+    let close = |a: f64, b: f64| (a - b).abs() < 1e-15; // rounding
+    assert!(close(value(Print::Corrected.incidence(THETA0)), 1.0));
+    assert!(close(value(Print::Corrected.outgoing(THETA0)), 1.0));
+    assert!(close(value(Print::Equations.incidence(THETA0)), 1.0));
+    assert!(close(
+        value(Print::Table.incidence(THETA0)) * cos * cos,
+        1.0
+    ));
+    assert!(close(value(Print::Table.outgoing(THETA0)), cos * cos));
+}

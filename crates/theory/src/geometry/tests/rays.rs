@@ -1,0 +1,158 @@
+//! Maps against traced rays: the error falls with the neighbourhood's size, as its first or second power.
+
+use super::trace::{Axes, Surface, reflected, refracted};
+use super::*;
+use crate::geometry::plane_sphere::{to_angles, to_slopes};
+
+/// Half of the largest neighbourhood.
+const SIZE: f64 = 1e-3;
+
+/// The largest error of a map over rays of a neighbourhood of size e, relative to e, and the power of e it falls with.
+pub(super) fn error_and_order<const N: usize>(
+    map: &Map<N>,
+    traced: impl Fn([f64; N]) -> [f64; N],
+) -> (f64, f64) {
+    let error = |e: f64| {
+        let errors = bundle(40, e).flat_map(|z| {
+            let (got, expected) = (map.apply(z), traced(z));
+            (0..N).map(move |i| (got[i] - expected[i]).abs() / e)
+        });
+        errors.fold(0.0, f64::max)
+    };
+    let (wide, narrow) = (error(2.0 * SIZE), error(SIZE));
+    (narrow, (wide / narrow).log2())
+}
+
+/// The next term of the error is e times smaller and moves the order by about as much.
+const ORDER: f64 = 0.02;
+
+fn assert_order<const N: usize>(
+    map: &Map<N>,
+    traced: impl Fn([f64; N]) -> [f64; N],
+    expected: f64,
+) {
+    let (error, order) = error_and_order(map, traced);
+    assert!((order - expected).abs() < ORDER, "{error:e}, order {order}");
+    assert!(error < 20.0 * SIZE.powf(expected), "{error:e}");
+}
+
+/// A circle's ray in the plane of incidence.
+pub(super) fn circle(k: f64, theta0: f64, [x, u]: [f64; 2]) -> [f64; 2] {
+    let [x, _, u, _] = reflected(Surface::sphere(k), theta0, [x, 0.0, u, 0.0]);
+    [x, u]
+}
+
+#[test]
+fn circle_mirror() {
+    for k in [0.5, -0.5] {
+        for (theta0, order) in [(0.6, 1.0), (-1.1, 1.0), (0.0, 2.0)] {
+            let map = Map::<2>::mirror_reflection(theta0, k);
+            assert_order(&map, |z| circle(k, theta0, z), order);
+        }
+    }
+}
+
+#[test]
+fn mirrors_in_space() {
+    for (theta0, order) in [(0.7, 1.0), (-0.4, 1.0), (0.0, 2.0)] {
+        for k in [0.5, -0.5] {
+            let map = Map::<4>::mirror_reflection(theta0, [[k, 0.0], [0.0, k]]);
+            assert_order(&map, |z| reflected(Surface::sphere(k), theta0, z), order);
+        }
+        let map = Map::<4>::mirror_reflection(theta0, SHAPE);
+        assert_order(&map, |z| reflected(Surface::graph(SHAPE), theta0, z), order);
+    }
+}
+
+#[test]
+fn refraction_in_space() {
+    for media in [GLASS, GLASS.reversed()] {
+        for (theta0, order) in [(0.6, 1.0), (-0.4, 1.0), (0.0, 2.0)] {
+            for k in [0.5, -0.5] {
+                let map = Map::<4>::refracting_surface(theta0, [[k, 0.0], [0.0, k]], &media);
+                let sphere = |z| refracted(Surface::sphere(k), theta0, &media, z);
+                assert_order(&map.unwrap(), sphere, order);
+            }
+            let map = Map::<4>::refracting_surface(theta0, SHAPE, &media);
+            let graph = |z| refracted(Surface::graph(SHAPE), theta0, &media, z);
+            assert_order(&map.unwrap(), graph, order);
+        }
+    }
+}
+
+#[test]
+fn other_rules_of_refraction_do_not_converge() {
+    let theta0 = 0.6;
+    let theta2 = GLASS.refracted(theta0).unwrap();
+    let traced = |z| refracted(Surface::graph(SHAPE), theta0, &GLASS, z);
+    let in_plane = Map::<2>::refraction(theta0, &GLASS).unwrap();
+    let across = Map::<2>::refraction(0.0, &GLASS).unwrap();
+    let off = Map::<4>::incidence(theta2).inverse().unwrap();
+    // Latitudes refracted by the rule for longitudes; nothing refracted across; the cosine of the way in on the way back.
+    let wrong = [
+        (Map::<2>::linear(in_plane.matrix), theta0, theta2),
+        (Map::identity(), theta0, theta2),
+        (across, theta0, theta0),
+        (across, 0.0, 0.0),
+    ];
+    let chain = |latitude: &Map<2>, before, after| {
+        Map::<4>::incidence(theta0)
+            .then(&Map::<4>::curvature(SHAPE, before))
+            .then(&Map::sections(&in_plane, latitude))
+            .then(&Map::<4>::back(SHAPE, after))
+            .then(&off)
+    };
+    assert_order(&chain(&across, theta0, theta2), traced, 1.0);
+    for (latitude, before, after) in wrong {
+        let (error, order) = error_and_order(&chain(&latitude, before, after), traced);
+        assert!(error > 0.02 && order.abs() < 0.1, "{error:e}, {order}");
+    }
+}
+
+#[test]
+fn foci_of_a_hollow_sphere() {
+    let (radius, theta0) = (2.0, 0.7_f64);
+    // Neighbours of the central ray, parallel to it; the error of the central difference is of the order of e².
+    let e = 1e-4;
+    let crossing = |axis: usize| {
+        let ends = [-e, e].map(|offset| {
+            let mut z = [0.0; 4];
+            z[axis] = offset;
+            reflected(Surface::sphere(-1.0 / radius), theta0, z)
+        });
+        let [low, high] = ends;
+        -(high[axis] - low[axis]) / (high[axis + 2] - low[axis + 2])
+    };
+    let map = Map::<4>::mirror_reflection(theta0, [[-0.5, 0.0], [0.0, -0.5]]).matrix;
+    let expected = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()]; // Coddington
+    for (axis, expected) in expected.into_iter().enumerate() {
+        let traced = crossing(axis);
+        assert!((traced - expected).abs() < 1e-7, "{traced}"); // e² = 1e-8, and a curvature of order one
+        let got = -map[axis][axis] / map[axis + 2][axis];
+        assert!((got - expected).abs() < 1e-14, "{got}"); // rounding
+    }
+    // Without the cosine of the sagittal plane the second would be R/2 = 1.
+    assert!((expected[1] - 1.307_459).abs() < 1e-6); // the number in print has six digits
+}
+
+#[test]
+fn axes_turned_about_the_light() {
+    let axes = Axes::coming(0.6);
+    let map = Map::<4>::rotation(0.8);
+    for z in bundle::<4>(20, 1.0) {
+        let (got, expected) = (map.apply(z), axes.turned(0.8).coordinates(axes.ray(z)));
+        let off = (0..4).map(|i| (got[i] - expected[i]).abs());
+        assert!(off.fold(0.0, f64::max) < 1e-14); // rounding: exact for all slopes
+    }
+}
+
+#[test]
+fn axes_turned_about_a_normal() {
+    // (θ, φ) are turned as a vector of the plane, which they are near the normal and nowhere else.
+    let axes = Axes::leaving(0.0);
+    let turned = |z| to_angles(axes.turned(0.8).coordinates(axes.ray(to_slopes(z))));
+    assert_order(&Map::<4>::rotation(0.8), turned, 2.0);
+    let [_, _, theta, phi] = turned([0.0, 0.0, 0.7, 0.0]);
+    let [_, _, x, y] = Map::<4>::rotation(0.8).apply([0.0, 0.0, 0.7, 0.0]);
+    assert!((theta - x).hypot(phi - y) > 0.03);
+}

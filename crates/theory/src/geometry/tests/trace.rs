@@ -1,0 +1,111 @@
+//! Rays traced in space, by elementary geometry: what the maps are held against.
+
+use super::*;
+
+pub(super) type Vector = [f64; 3];
+
+fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// a + t b.
+fn along(a: Vector, t: f64, b: Vector) -> Vector {
+    [0, 1, 2].map(|i| a[i] + t * b[i])
+}
+
+fn scaled(a: Vector, t: f64) -> Vector {
+    a.map(|x| t * x)
+}
+
+/// The axes (X, Y, D) of a light frame at the origin, in the axes (T, B, N) of the surface.
+#[derive(Clone, Copy)]
+pub(super) struct Axes([Vector; 3]);
+
+impl Axes {
+    /// Light that seems to come from the angle θ: D = −(sin θ T + cos θ N).
+    pub(super) fn coming(theta: f64) -> Self {
+        let (sin, cos) = theta.sin_cos();
+        Self([[-cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, -cos]])
+    }
+
+    /// Light that leaves at the angle θ: D = sin θ T + cos θ N.
+    pub(super) fn leaving(theta: f64) -> Self {
+        let (sin, cos) = theta.sin_cos();
+        Self([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
+    }
+
+    /// X and Y turned about D, from X towards Y.
+    pub(super) fn turned(&self, angle: f64) -> Self {
+        let Self([x, y, d]) = *self;
+        let (sin, cos) = angle.sin_cos();
+        let turned = along(scaled(x, cos), sin, y);
+        Self([turned, along(scaled(y, cos), -sin, x), d])
+    }
+
+    /// Origin and unit direction of a ray.
+    pub(super) fn ray(&self, [x, y, u, v]: [f64; 4]) -> [Vector; 2] {
+        let Self([ex, ey, d]) = *self;
+        let direction = along(along(d, u, ex), v, ey);
+        let length = dot(direction, direction).sqrt();
+        let origin = along(scaled(ex, x), y, ey);
+        [origin, scaled(direction, 1.0 / length)]
+    }
+
+    /// Two-plane coordinates of a ray.
+    pub(super) fn coordinates(&self, [point, direction]: [Vector; 2]) -> [f64; 4] {
+        let Self([ex, ey, d]) = *self;
+        let forward = dot(direction, d);
+        let foot = along(point, -dot(point, d) / forward, direction);
+        let slope = |axis| dot(direction, axis) / forward;
+        [dot(foot, ex), dot(foot, ey), slope(ex), slope(ey)]
+    }
+}
+
+/// The surface 2 N·p + pᵀ Q p = 0 through the origin: a sphere of curvature k for Q = k 1, else a graph with the shape operator M.
+#[derive(Clone, Copy)]
+pub(super) struct Surface([Vector; 3]);
+
+impl Surface {
+    pub(super) fn sphere(k: f64) -> Self {
+        Self([[k, 0.0, 0.0], [0.0, k, 0.0], [0.0, 0.0, k]])
+    }
+
+    pub(super) fn graph([[a, b], [c, d]]: Matrix<2>) -> Self {
+        Self([[a, b, 0.0], [c, d, 0.0], [0.0; 3]])
+    }
+
+    fn quadratic(&self, p: Vector) -> Vector {
+        self.0.map(|row| dot(row, p))
+    }
+
+    /// Where a ray meets the surface near the origin, and the unit normal there.
+    fn hit(&self, [o, d]: [Vector; 2]) -> [Vector; 2] {
+        let a = dot(d, self.quadratic(d));
+        let half_b = dot(o, self.quadratic(d)) + d[2];
+        let c = dot(o, self.quadratic(o)) + 2.0 * o[2];
+        let root = (half_b * half_b - a * c).sqrt().copysign(half_b);
+        let point = along(o, -c / (half_b + root), d);
+        let normal = along([0.0, 0.0, 1.0], 1.0, self.quadratic(point));
+        [point, scaled(normal, 1.0 / dot(normal, normal).sqrt())]
+    }
+}
+
+/// A ray reflected by a surface met at θ₀, in the frames before and after.
+pub(super) fn reflected(surface: Surface, theta0: f64, z: [f64; 4]) -> [f64; 4] {
+    let ray = Axes::coming(theta0).ray(z);
+    let [point, n] = surface.hit(ray);
+    let direction = along(ray[1], -2.0 * dot(ray[1], n), n);
+    Axes::leaving(-theta0).coordinates([point, direction])
+}
+
+/// A ray refracted by a surface met at θ₀, in the frames before and after.
+pub(super) fn refracted(surface: Surface, theta0: f64, media: &Media, z: [f64; 4]) -> [f64; 4] {
+    let ray = Axes::coming(theta0).ray(z);
+    let [point, n] = surface.hit(ray);
+    let ratio = media.before / media.after;
+    let cosine = -dot(ray[1], n);
+    let after = (1.0 - ratio * ratio * (1.0 - cosine * cosine)).sqrt();
+    let direction = along(scaled(ray[1], ratio), ratio * cosine - after, n);
+    let theta2 = (ratio * theta0.sin()).asin();
+    Axes::coming(theta2).coordinates([point, direction])
+}

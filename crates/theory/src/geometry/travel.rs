@@ -1,0 +1,64 @@
+//! Steps in the frame of the central ray.
+
+use super::Map;
+use super::matrix::{diagonal, from_fn};
+use std::array;
+
+impl<const N: usize> Map<N> {
+    /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
+    ///
+    /// Exact for all slopes between parallel planes; never for angles. L'(Ωx, Ωu) = L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the
+    /// slips of Eq. 2 mended: docs/theory.md, section 1).
+    #[must_use]
+    pub fn travel(distance: f64) -> Self {
+        let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
+        Self::linear(from_fn(
+            |i, j| {
+                if i + half == j { distance } else { one[i][j] }
+            },
+        ))
+    }
+
+    /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. Positive f converges.
+    ///
+    /// The ideal lens: it images planes onto planes exactly in slopes (docs/theory.md, Eq. 24). The paper has no lens.
+    #[must_use]
+    pub fn thin_lens(focal_length: f64) -> Self {
+        let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
+        Self::linear(from_fn(|i, j| {
+            if i == j + half {
+                -1.0 / focal_length
+            } else {
+                one[i][j]
+            }
+        }))
+    }
+
+    /// The mirror reflection of local directions, θ' = −θ and φ' = −φ, in the frames of the local normals.
+    ///
+    /// L'(Ωx, Ωθ) = L(Ωx, −Ωθ) (Durand et al. 2005, Eq. 14). An ideal mirror has the BRDF δ/cos θ, so no cosine goes with it;
+    /// the paper's bare Dirac (section 4.2) would leave a factor cos θ₀.
+    #[must_use]
+    pub fn mirror() -> Self {
+        let signs = array::from_fn(|i| if i < N / 2 { 1.0 } else { -1.0 });
+        Self::linear(diagonal(signs))
+    }
+}
+
+impl Map<4> {
+    /// The axes turned by an angle, in radians, from the first to the second: x' = x cos + y sin, y' = −x sin + y cos, and
+    /// alike for directions. A is orthogonal.
+    ///
+    /// Exact for two-plane coordinates turned about the central ray: so the plane of incidence is brought onto X. About a normal it turns
+    /// (s_x, s_y) exactly and (θ, φ) to first order in the angle to the normal (Durand et al. 2005, section 5.2).
+    #[must_use]
+    pub fn rotation(angle: f64) -> Self {
+        let (sin, cos) = angle.sin_cos();
+        Self::linear([
+            [cos, sin, 0.0, 0.0],
+            [-sin, cos, 0.0, 0.0],
+            [0.0, 0.0, cos, sin],
+            [0.0, 0.0, -sin, cos],
+        ])
+    }
+}
