@@ -23,6 +23,8 @@ fn plane() -> VirtualPlane {
         name: "plane".into(),
         distance: 0.0,
         leg: 0,
+        orientation: etendue_field::Orientation::Orthogonal,
+        longitude: 0.0,
         side: Side::After,
         quantity: Quantity::default(),
         frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),

@@ -37,9 +37,23 @@ impl Quantity {
     }
 }
 
-/// Where on the central ray the local light field is looked at, and how.
+/// What the coordinates of a plane's rays are counted from.
 ///
-/// The plane is orthogonal to the central ray and the parameterisation two-plane.
+/// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, those of
+/// light that arrives being turned around. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Orientation {
+    /// The plane across the central ray, two-plane parameterisation.
+    #[default]
+    Orthogonal,
+    /// The tangent plane where the central ray hits: positions along T and B, angles to the normal N there.
+    Tangent,
+    /// The surface itself: positions along T and B of the point hit, angles to the normal at that point, T and B being turned with
+    /// it by the smallest angle.
+    LocalNormals,
+}
+
+/// Where on the central ray the local light field is looked at, and how.
 #[derive(Clone, Debug, PartialEq)]
 pub struct VirtualPlane {
     /// Name: the folder of its results.
@@ -52,7 +66,11 @@ pub struct VirtualPlane {
     pub side: Side,
     /// What is recorded.
     pub quantity: Quantity,
-    /// The frame: O on the central ray, D along it.
+    /// What its coordinates are counted from.
+    pub orientation: Orientation,
+    /// θ of the central ray on a surface, radians; 0 on an orthogonal plane. The coordinates of rays are (x, y, θ − longitude, φ).
+    pub longitude: f64,
+    /// The frame: O on the central ray, D along it; on a surface X = T, Y = B and D = N.
     pub frame: Frame,
     /// The window its light field is multiplied by.
     pub window: Window,

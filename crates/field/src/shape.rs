@@ -1,4 +1,4 @@
-use crate::{Rectangle, TwoPlane};
+use crate::{Image, Rectangle, TwoPlane};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -159,5 +159,19 @@ pub enum Light {
     Point {
         /// Intensity, W sr⁻¹.
         intensity: f64,
+    },
+    /// A slide projector: a point on the central ray whose intensity is a picture over slopes (u, v).
+    Projector {
+        /// Intensity where the picture is 1, W sr⁻¹.
+        intensity: f64,
+        /// The picture.
+        image: Image,
+    },
+    /// A collimated beam along the central ray whose irradiance is a picture over (x, y).
+    Beam {
+        /// Irradiance where the picture is 1, W m⁻².
+        irradiance: f64,
+        /// The picture.
+        image: Image,
     },
 }

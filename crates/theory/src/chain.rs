@@ -125,12 +125,18 @@ impl Chain {
     }
 }
 
+/// Light that goes through pictures is followed ray by ray (`rays`).
+pub(crate) fn no_closed_form() -> ! {
+    panic!("a projector or a beam has no closed form here")
+}
+
 impl Path<'_> {
     /// Shapes of the light: one, or none of a point.
     pub(crate) fn light_shapes(&self) -> &[Shape] {
         match self.light {
             Light::Area { shape, .. } => std::slice::from_ref(shape),
             Light::Point { .. } => &[],
+            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
         }
     }
 
@@ -140,6 +146,7 @@ impl Path<'_> {
         let light = match self.light {
             Light::Area { exponent, .. } => -0.5 * exponent,
             Light::Point { .. } => 0.5,
+            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
         };
         light - 2.0 * f64::from(self.cosines)
     }

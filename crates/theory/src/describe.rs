@@ -1,7 +1,7 @@
 //! Chains in words.
 
 use crate::{Chain, Operator, Source};
-use etendue_field::{Disc, Grating, Light, Mask, Rectangle, Shape};
+use etendue_field::{Disc, Grating, Image, Light, Mask, Rectangle, Shape};
 
 impl Chain {
     /// The chain in words: one line for each step.
@@ -34,7 +34,24 @@ impl Source {
             Light::Point { intensity } => {
                 format!("source  {name}: point, intensity {intensity} W sr⁻¹")
             }
+            Light::Projector { intensity, image } => {
+                let picture = picture(&image, ["u", "v"]);
+                format!("source  {name}: projector, intensity {intensity} W sr⁻¹ × {picture}")
+            }
+            Light::Beam { irradiance, image } => {
+                let picture = picture(&image, ["x", "y"]);
+                format!("source  {name}: beam, irradiance {irradiance} W m⁻² × {picture}")
+            }
         }
+    }
+}
+
+fn picture(image: &Image, [a, b]: [&str; 2]) -> String {
+    let [w, h] = image.width;
+    let envelope = format!("exp(−π({a}²/{w}² + {b}²/{h}²))");
+    match image.grating {
+        Some(grating) => format!("{envelope} {}", formula(&grating)),
+        None => envelope,
     }
 }
 

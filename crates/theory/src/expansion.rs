@@ -1,4 +1,4 @@
-use crate::chain::Path;
+use crate::chain::{Path, no_closed_form};
 use crate::disc::Discs;
 use crate::patch::{Fineness, Patch};
 use crate::polygon::Polygon;
@@ -179,6 +179,7 @@ impl Expansion {
                     section.become_segment(path.distance);
                 }
             }
+            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
         }
     }
 

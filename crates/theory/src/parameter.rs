@@ -50,7 +50,7 @@ impl Chain {
         match (parameter, self.operator(parameter)) {
             (Parameter::SourceSize, _) => match &self.source.light {
                 Light::Area { shape, .. } => format!("{} of {source}", size_word(shape)),
-                Light::Point { .. } => foreign(parameter),
+                _ => foreign(parameter),
             },
             (Parameter::SpotExponent, _) => format!("exponent of {source}"),
             (_, Some(Operator::Travel { from, to, .. })) => format!("travel {from} to {to}"),

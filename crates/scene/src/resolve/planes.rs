@@ -5,7 +5,7 @@ use super::{Resolver, SAME_PLANE, Stop};
 use crate::fault::Fault;
 use crate::file::{AxisFile, FrequenciesFile, Place, SceneFile, WindowFile};
 use crate::scene::CentralRay;
-use etendue_field::{FrequencyAxis, Profile, Side, SliceGrid, VirtualPlane, Window};
+use etendue_field::{FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window};
 
 /// A place on the path.
 struct OnPath {
@@ -47,6 +47,8 @@ impl Resolver<'_> {
                 leg: place.leg,
                 side: place.side,
                 quantity: plane.quantity,
+                orientation: Orientation::Orthogonal,
+                longitude: 0.0,
                 frame: path
                     .frame
                     .compose(&path.frame_at(place.distance, place.leg)),

@@ -82,6 +82,8 @@ pub fn plane(name: &str, window: Window, grid: SliceGrid) -> VirtualPlane {
         name: name.into(),
         distance: 1.0,
         leg: 0,
+        orientation: etendue_field::Orientation::Orthogonal,
+        longitude: 0.0,
         side: Side::Before,
         quantity: Quantity::default(),
         frame: Frame::new(DVec3::ZERO, DVec3::Z, DVec3::X).unwrap(),

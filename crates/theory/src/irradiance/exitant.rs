@@ -2,6 +2,7 @@
 
 use super::Receiver;
 use super::kernel::{Axis, Kernels};
+use crate::chain::no_closed_form;
 use crate::row::Row;
 use etendue_field::{Complex, Light, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2};
@@ -83,6 +84,7 @@ impl Receiver<'_> {
                 Shape::Disc(d) => d.radius,
             },
             Light::Point { .. } => 0.0,
+            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
         };
         let lengths = self.barriers.iter().map(|barrier| {
             let beyond = self.distance - barrier.distance;

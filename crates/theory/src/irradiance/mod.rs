@@ -14,6 +14,7 @@ mod region;
 #[cfg(test)]
 mod tests;
 
+use crate::chain::no_closed_form;
 use density::{Density, Integrator, Sides};
 use etendue_field::{Disc, Grating, Light, Rectangle, Shape};
 use layer::Barrier;
@@ -123,6 +124,7 @@ impl<'a> Receiver<'a> {
             Light::Area { exponent, .. } => (0.5 * exponent, Bundle::At([0.0; 2])),
             // Its radiance is I √(1 + u² + v²) δ(x − D u) δ(y − D v).
             Light::Point { .. } => (-0.5, Bundle::From(distance)),
+            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
         };
         let barriers: Vec<_> = layers.iter().map(Barrier::new).collect();
         let frequency = |axis: usize| {
@@ -165,6 +167,7 @@ impl<'a> Receiver<'a> {
                 let lobe = self.density(&bundle, &[]).value(u, v);
                 through.product::<f64>() * intensity * lobe / self.distance.powi(2)
             }
+            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
         }
     }
 

@@ -73,6 +73,7 @@ pub(super) fn brute_force(
         } => (shape.area(), exponent, radiance),
         // At distance D √(1 + u² + v²).
         Light::Point { intensity } => (1.0, -1.0, intensity),
+        other => panic!("no brute force for {other:?}"),
     };
     for i in 0..rays {
         let [a, b, c, d] = powers.map(|p| (f64::from(i) * p).fract());
@@ -107,6 +108,6 @@ fn start(light: &Light, c: f64, d: f64) -> [f64; 2] {
             let (sin, cos) = (TAU * d).sin_cos();
             [disc.center[0] + radius * cos, disc.center[1] + radius * sin]
         }
-        Light::Point { .. } => [0.0, 0.0],
+        _ => [0.0, 0.0],
     }
 }

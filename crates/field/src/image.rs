@@ -1,0 +1,29 @@
+use crate::Grating;
+use serde::Serialize;
+
+/// A smooth picture over a plane: exp(−π (a²/w₁² + b²/w₂²)), times a cosine grating if there is one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Image {
+    /// w₁ and w₂, in the unit of the coordinates.
+    pub width: [f64; 2],
+    /// The grating.
+    pub grating: Option<Grating>,
+}
+
+impl Image {
+    /// The picture at (a, b).
+    #[inline]
+    #[must_use]
+    pub fn value(&self, a: f64, b: f64) -> f64 {
+        let [p, q] = [a / self.width[0], b / self.width[1]];
+        let envelope = (-std::f64::consts::PI * (p * p + q * q)).exp();
+        let grating = self.grating.map_or(1.0, |g| g.transmittance(a, b));
+        envelope * grating
+    }
+
+    /// The integral of the envelope, w₁ w₂.
+    #[must_use]
+    pub fn area(&self) -> f64 {
+        self.width[0] * self.width[1]
+    }
+}
