@@ -1,7 +1,7 @@
 //! The scene in the plane of the central ray and X: what the plane y = 0 cuts.
 
 use crate::pictures::spaced;
-use etendue_field::{Light, Mask, Shape, VirtualPlane};
+use etendue_field::{Light, Mask, Patch, Shape, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
 use etendue_scene::{BlockerLayer, Leg, MeshObject, Object, Scene};
 use glam::DVec3;
@@ -35,6 +35,16 @@ pub(crate) fn cross_section<'a>(
             start,
             end,
             label: Some(spaced(&surface.name)),
+        }));
+    }
+    for (i, object) in scene.patches.iter().enumerate() {
+        let mut label = Some(spaced(&object.name));
+        let outline = profile(&object.patch, arriving(scene, Object::Patch(i)));
+        segments.extend(outline.windows(2).map(|ends| Segment {
+            kind: SegmentKind::Surface,
+            start: ends[0],
+            end: ends[1],
+            label: label.take(),
         }));
     }
     for (i, object) in scene.meshes.iter().enumerate() {
@@ -76,11 +86,27 @@ fn cut(corners: &[DVec3], leg: &Leg) -> Option<[[f64; 2]; 2]> {
     points.try_into().ok()
 }
 
+/// The curve (z, x) in which the plane y = 0 of a leg cuts a smooth surface through its vertex.
+fn profile(patch: &Patch, leg: &Leg) -> Vec<[f64; 2]> {
+    const STEPS: i32 = 24;
+    let across = leg.frame.y.cross(patch.frame.d).normalize();
+    let [s, t] = [across.dot(patch.frame.x), across.dot(patch.frame.y)];
+    let at = |i: i32| {
+        let r = patch.aperture * f64::from(i) / f64::from(STEPS);
+        let local = leg.frame.to_local(patch.point(r * s, r * t));
+        [leg.start + local.z, local.x]
+    };
+    (-STEPS..=STEPS).map(at).collect()
+}
+
 fn light(scene: &Scene) -> Segment {
     let [low, high] = match scene.light {
         Light::Area { shape, .. } => shape.bounds().extent(0),
         // A dot.
-        Light::Point { .. } => [-0.005, 0.005].map(|x| x * scene.path.first_hit()),
+        Light::Beam { image, .. } => [-0.5, 0.5].map(|half| half * image.width[0]),
+        Light::Point { .. } | Light::Projector { .. } => {
+            [-0.005, 0.005].map(|x| x * scene.path.first_hit())
+        }
     };
     Segment {
         kind: SegmentKind::Light,

@@ -30,7 +30,9 @@ pub(crate) fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
     let reference = |plane: &VirtualPlane| Class::of(scene, plane) == Class::Reference;
     let backward = method == Method::Backward || scene.planes.iter().any(reference);
     match scene.light {
-        Light::Point { .. } if backward => Err(Failure::bad_input(PointLight)),
+        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } if backward => {
+            Err(Failure::bad_input(PointLight))
+        }
         _ => Ok(()),
     }
 }

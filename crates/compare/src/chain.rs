@@ -28,6 +28,7 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
         let albedo = match hit.object {
             Object::Surface(i) => scene.surfaces[i].albedo,
             Object::Mesh(i) => scene.meshes[i].albedo.unwrap_or(0.0),
+            Object::Patch(_) => continue,
         };
         walk.travel(&name, leg.start);
         let cosine = Operator::Cosine { name: name.clone() };

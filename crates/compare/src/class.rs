@@ -1,4 +1,4 @@
-use etendue_field::{Frame, Light, Profile, VirtualPlane};
+use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
@@ -34,13 +34,16 @@ pub(crate) fn without_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String>
         if let Some(Hit { object, normal, .. }) = &leg.leaves {
             let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
                 .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
-            if outgoing > ROUNDING || incidence > ROUNDING {
+            if outgoing > ROUNDING || incidence > ROUNDING || matches!(object, Object::Patch(_)) {
                 let name = scene.name_of(*object);
                 found.push(format!(
                     "incidence on {name} at {incidence:.4}°, outgoing at {outgoing:.4}°"
                 ));
             }
         }
+    }
+    if plane.orientation != Orientation::Orthogonal {
+        found.push(format!("{:?}", plane.orientation));
     }
     if plane.leg > 1 {
         found.push(format!("{} reflections in a row", plane.leg));
@@ -86,6 +89,9 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
+/// Widths at which a Gaussian picture is dark.
+const PICTURE: f64 = 3.0;
+
 /// Whether light for a plane may pass through a box around points, given in the frame at the light.
 fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bool) -> bool {
     let legs = &scene.path.legs;
@@ -98,7 +104,8 @@ fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bo
             let [low, high] = shape.bounds().extent(axis);
             low.abs().max(high.abs())
         }),
-        Light::Point { .. } => [0.0; 2],
+        Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
+        Light::Beam { image, .. } => image.width.map(|w| PICTURE * w),
     };
     let crosses = |leg: usize| {
         let (from, to, end) = if leg < plane.leg {
@@ -150,6 +157,6 @@ fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
 pub(crate) fn reflector<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Surface> {
     match scene.path.legs[plane.leg].leaves?.object {
         Object::Surface(i) => Some(&scene.surfaces[i]),
-        Object::Mesh(_) => None,
+        Object::Mesh(_) | Object::Patch(_) => None,
     }
 }

@@ -33,6 +33,17 @@ pub enum NotInMitsuba {
         /// Name of its layer.
         name: String,
     },
+    /// A projector or a beam.
+    #[error("Mitsuba has no such light as {0}: it cannot be exported")]
+    Picture(&'static str),
+    /// A smooth surface.
+    #[error(
+        "the smooth surface {name:?} cannot be exported: the light field behind it is compared here alone"
+    )]
+    Smooth {
+        /// Its name.
+        name: String,
+    },
     /// A plane after several reflections.
     #[error(
         "Mitsuba sums over paths of all lengths: the plane {name:?}, after {leg} reflections, cannot be exported"
@@ -58,6 +69,10 @@ pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
         meshes: Vec::new(),
     };
     writer.light(&scene.light)?;
+    if let Some(patch) = scene.patches.first() {
+        let name = patch.name.clone();
+        return Err(NotInMitsuba::Smooth { name });
+    }
     if let Some(plane) = scene.planes.iter().find(|plane| plane.leg > 1) {
         let (name, leg) = (plane.name.clone(), plane.leg);
         return Err(NotInMitsuba::Reflections { name, leg });
@@ -125,6 +140,8 @@ impl Writer {
                 self.xml.comment("the light");
                 self.xml.point_light(intensity);
             }
+            Light::Projector { .. } => return Err(NotInMitsuba::Picture("a projector")),
+            Light::Beam { .. } => return Err(NotInMitsuba::Picture("a beam")),
         }
         Ok(())
     }
@@ -202,7 +219,7 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
 fn reach(scene: &Scene) -> f64 {
     let light = match scene.light {
         Light::Area { shape, .. } => shape.bounds().reach(),
-        Light::Point { .. } => 0.0,
+        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => 0.0,
     };
     let windows = scene.planes.iter().filter(|plane| plane.leg == 0);
     let windows = windows.map(|p| p.window.x.half_width().max(p.window.y.half_width()));

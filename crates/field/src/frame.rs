@@ -106,6 +106,17 @@ impl Frame {
         }
     }
 
+    /// A frame of the world, in the coordinates of this one.
+    #[must_use]
+    pub fn decompose(&self, world: &Self) -> Self {
+        Self {
+            origin: self.to_local(world.origin),
+            x: self.vector_to_local(world.x),
+            y: self.vector_to_local(world.y),
+            d: self.vector_to_local(world.d),
+        }
+    }
+
     /// The frame turned, by the smallest angle, until D is along the unit vector `d`.
     #[must_use]
     pub fn turned_to(&self, d: DVec3) -> Self {
@@ -119,6 +130,12 @@ impl Frame {
             y: d.cross(x),
             d,
         }
+    }
+
+    /// The longitude of a direction: its angle from D towards X, radians.
+    #[must_use]
+    pub fn longitude(&self, direction: DVec3) -> f64 {
+        direction.dot(self.x).atan2(direction.dot(self.d))
     }
 
     /// A point of the world in the coordinates (X, Y, D) of this frame.
@@ -148,6 +165,21 @@ impl Frame {
     pub fn vector_to_world(&self, local: DVec3) -> DVec3 {
         self.x * local.x + self.y * local.y + self.d * local.z
     }
+}
+
+/// The corners of the box between two points.
+#[must_use]
+pub fn box_corners(low: DVec3, high: DVec3) -> [DVec3; 8] {
+    std::array::from_fn(|i| {
+        let pick = |axis: usize| {
+            if i >> axis & 1 == 0 {
+                low[axis]
+            } else {
+                high[axis]
+            }
+        };
+        DVec3::new(pick(0), pick(1), pick(2))
+    })
 }
 
 #[cfg(test)]

@@ -26,7 +26,7 @@ mod window;
 
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
 pub use field_grid::{Assignment, FieldGrid};
-pub use frame::{Frame, TwoPlane};
+pub use frame::{Frame, TwoPlane, box_corners};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use image::Image;
 pub use patch::{Patch, Specular};

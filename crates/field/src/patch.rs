@@ -1,4 +1,4 @@
-use crate::Frame;
+use crate::{Frame, box_corners};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -19,6 +19,45 @@ pub struct Patch {
 }
 
 impl Patch {
+    /// The same patch in the coordinates of a frame that is given in those of this one.
+    #[must_use]
+    pub fn seen_from(&self, frame: &Frame) -> Self {
+        Self {
+            frame: frame.decompose(&self.frame),
+            ..*self
+        }
+    }
+
+    /// The point of it over (s, t), in the coordinates its frame is given in; NaN beyond the half that holds the vertex.
+    #[must_use]
+    pub fn point(&self, s: f64, t: f64) -> DVec3 {
+        let [a, b, c] = self.curvature;
+        let bend = a * s * s + b * t * t;
+        let h = -bend / (1.0 + (1.0 - c * bend).sqrt());
+        self.frame.to_world(DVec3::new(s, t, h))
+    }
+
+    /// Corners of a box around it, in the coordinates its frame is given in.
+    #[must_use]
+    pub fn corners(&self) -> [DVec3; 8] {
+        // At distance r across, the half that holds the vertex is at most |k| r² off along the normal.
+        let most = self
+            .curvature
+            .iter()
+            .fold(0.0_f64, |most, k| most.max(k.abs()));
+        let a = self.aperture;
+        let half = DVec3::new(a, a, most * a * a);
+        box_corners(-half, half).map(|p| self.frame.to_world(p))
+    }
+
+    /// The unit normal at a point near it, both in the coordinates its frame is given in; on the side of D at the vertex.
+    #[inline]
+    #[must_use]
+    pub fn normal(&self, point: DVec3) -> DVec3 {
+        let gradient = self.gradient(self.frame.to_local(point));
+        self.frame.vector_to_world(gradient).normalize()
+    }
+
     /// k₁ s² + k₂ t² + k₃ h² + 2 h at a point (s, t, h) of its frame: zero on the surface, positive before it.
     #[inline]
     #[must_use]
@@ -37,12 +76,64 @@ impl Patch {
         DVec3::new(a * point.x, b * point.y, c * point.z + 1.0)
     }
 
+    /// The parameters of the points start + t · direction, in its frame, that lie on the patch, ascending; NaN where there is none.
+    #[inline]
+    #[must_use]
+    pub fn hits(&self, start: DVec3, direction: DVec3) -> [f64; 2] {
+        let curved = DVec3::from(self.curvature) * direction;
+        let (a, b, c) = (
+            curved.dot(direction),
+            curved.dot(start) + direction.z,
+            self.value(start),
+        );
+        // Nothing cancels: the root that would is the constant over the other.
+        let q = -(b + (b * b - a * c).sqrt().copysign(b));
+        let on_patch = |t: f64| {
+            let on = t.is_finite() && self.contains(start + t * direction);
+            if on { t } else { f64::NAN }
+        };
+        let [s, t] = [q / a, c / q].map(on_patch);
+        [s.min(t), s.max(t)]
+    }
+
     /// Whether a point of the quadric, in its frame, belongs to the patch.
     #[inline]
     #[must_use]
     pub fn contains(&self, point: DVec3) -> bool {
         let across = point.x * point.x + point.y * point.y;
         across <= self.aperture * self.aperture && self.gradient(point).z > 0.0
+    }
+}
+
+impl Specular {
+    /// The direction in which a ray goes on that meets `patch` at `point`, all in one frame, the direction in any length;
+    /// `None` when it is totally reflected where it should go through.
+    #[must_use]
+    pub fn turned(&self, patch: &Patch, point: DVec3, direction: DVec3) -> Option<DVec3> {
+        let normal = patch.normal(point);
+        match *self {
+            Self::Mirror => Some(direction - 2.0 * direction.dot(normal) * normal),
+            Self::Refraction { front, back } => {
+                let along = direction.normalize();
+                let from_front = along.dot(normal) < 0.0;
+                let (normal, ratio) = if from_front {
+                    (normal, front / back)
+                } else {
+                    (-normal, back / front)
+                };
+                let cosine = -along.dot(normal);
+                let squared = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
+                (squared > 0.0).then(|| ratio * along + (ratio * cosine - squared.sqrt()) * normal)
+            }
+            Self::ThinLens { focal_length } => {
+                let at = patch.frame.to_local(point);
+                let local = patch.frame.vector_to_local(direction);
+                let ahead = local.z.abs();
+                let bent = |slope: f64, x: f64| slope / ahead - x / focal_length;
+                let turned = DVec3::new(bent(local.x, at.x), bent(local.y, at.y), local.z.signum());
+                Some(patch.frame.vector_to_world(turned))
+            }
+        }
     }
 }
 

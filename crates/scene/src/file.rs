@@ -1,5 +1,5 @@
 use crate::SceneError;
-use etendue_field::{Profile, Quantity};
+use etendue_field::{Orientation, Profile, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// A scene file as written, in RON. Lengths in metres; slopes are tangents of angles.
@@ -25,6 +25,9 @@ pub struct SceneFile {
     pub window: WindowFile,
     /// The frequencies of every plane that does not state its own.
     pub frequencies: FrequenciesFile,
+    /// Whether geometric steps are predicted by the paper's equations as they are printed (9, 10, 11 and 19).
+    #[serde(default)]
+    pub as_printed: bool,
     /// How it is measured.
     #[serde(default)]
     pub run: RunFile,
@@ -74,6 +77,53 @@ pub enum LightFile {
         /// The exponent n.
         exponent: f64,
     },
+    /// A slide projector: a point whose intensity is a picture over slopes.
+    Projector {
+        /// Where it is, world coordinates.
+        center: [f64; 3],
+        /// Intensity where the picture is 1, W sr⁻¹.
+        #[serde(default = "one")]
+        intensity: f64,
+        /// The picture, over slopes along X and along Y.
+        image: ImageFile,
+    },
+    /// A collimated beam along the central ray whose irradiance is a picture.
+    Beam {
+        /// Where the central ray begins, world coordinates.
+        center: [f64; 3],
+        /// Irradiance where the picture is 1, W m⁻².
+        #[serde(default = "one")]
+        irradiance: f64,
+        /// The picture, in metres along X and along Y.
+        image: ImageFile,
+    },
+}
+
+/// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), times a grating ½ (1 + m cos(2π f t + p)) if it has one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ImageFile {
+    /// w₁ and w₂ along X and along Y.
+    pub width: [f64; 2],
+    /// Its grating.
+    #[serde(default)]
+    pub grating: Option<GratingFile>,
+}
+
+/// The grating of a picture.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GratingFile {
+    /// The axis along which it varies.
+    pub axis: AxisName,
+    /// f, cycles per unit of the picture.
+    pub frequency: f64,
+    /// m.
+    #[serde(default = "one")]
+    pub modulation: f64,
+    /// p, radians.
+    #[serde(default)]
+    pub phase: f64,
 }
 
 /// The bulb of a spot, orthogonal to the central ray.
@@ -273,6 +323,25 @@ pub enum SurfaceFile {
         #[serde(default = "half")]
         albedo: f64,
     },
+    /// A smooth piece of a plane, sphere, cylinder or paraboloid that reflects or refracts.
+    Smooth {
+        /// Name.
+        name: String,
+        /// Its vertex, world coordinates.
+        center: [f64; 3],
+        /// Its normal at the vertex, any length.
+        facing: [f64; 3],
+        /// Its form.
+        form: FormFile,
+        /// Direction of the first curvature, any length: the path's X axis unless stated (Y, if it faces along X); its part
+        /// orthogonal to the normal is used.
+        #[serde(default)]
+        along: Option<[f64; 3]>,
+        /// Its radius, seen along the normal.
+        aperture: f64,
+        /// What it does.
+        event: EventFile,
+    },
 }
 
 impl SurfaceFile {
@@ -280,9 +349,41 @@ impl SurfaceFile {
     #[must_use]
     pub fn name(&self) -> &str {
         match self {
-            Self::Rectangle { name, .. } | Self::Mesh { name, .. } => name,
+            Self::Rectangle { name, .. } | Self::Mesh { name, .. } | Self::Smooth { name, .. } => {
+                name
+            }
         }
     }
+}
+
+/// The form of a smooth surface around its vertex; curvatures per metre, positive if it is convex seen from where it faces.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum FormFile {
+    /// Flat.
+    Plane,
+    /// A sphere with this curvature, 1/R.
+    Sphere(f64),
+    /// A circular cylinder with this curvature; its axis is across `along`.
+    Cylinder(f64),
+    /// A paraboloid with these curvatures at its vertex, the first along `along`.
+    Paraboloid(f64, f64),
+}
+
+/// What a smooth surface does to light.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum EventFile {
+    /// Reflects it all.
+    Mirror,
+    /// Lets it through by Snell's law; nothing is reflected.
+    Refraction {
+        /// Index of refraction on the side it faces.
+        front: f64,
+        /// Index on the other side.
+        back: f64,
+    },
+    /// A thin lens, flat, with this focal length.
+    ThinLens(f64),
 }
 
 /// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
@@ -312,6 +413,9 @@ pub struct PlaneFile {
     /// What it records.
     #[serde(default)]
     pub quantity: Quantity,
+    /// What its coordinates are counted from.
+    #[serde(default)]
+    pub orientation: Orientation,
     /// Its own window.
     #[serde(default)]
     pub window: Option<WindowFile>,
@@ -431,7 +535,7 @@ impl SceneFile {
         });
         let surfaces = self.surfaces.iter().filter_map(|s| match s {
             SurfaceFile::Mesh { mesh, .. } => Some(mesh),
-            SurfaceFile::Rectangle { .. } => None,
+            SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
         });
         blockers.chain(surfaces).filter_map(|mesh| match mesh {
             MeshSource::File(path) => Some(path.as_str()),

@@ -26,9 +26,12 @@ mod scene;
 
 pub use fault::{Fault, SceneError};
 pub use file::{
-    AxisFile, AxisName, BlockersFile, BulbFile, Emission, FrequenciesFile, HalfName, LightFile,
-    MeshSource, PathFile, Place, PlaneFile, RunFile, SceneFile, ShapeFile, SurfaceFile, WindowFile,
+    AxisFile, AxisName, BlockersFile, BulbFile, Emission, EventFile, FormFile, FrequenciesFile,
+    GratingFile, HalfName, ImageFile, LightFile, MeshSource, PathFile, Place, PlaneFile, RunFile,
+    SceneFile, ShapeFile, SurfaceFile, WindowFile,
 };
 pub use mesh::{Mesh, MeshError};
 pub use resolve::resolve;
-pub use scene::{BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, Run, Scene, Surface};
+pub use scene::{
+    BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene, Surface,
+};

@@ -3,6 +3,7 @@ mod faults;
 mod jitter;
 mod light;
 mod meshes;
+mod patches;
 mod path;
 mod planes;
 mod surfaces;
@@ -60,11 +61,13 @@ impl Resolver<'_> {
         let checked = frame.unwrap_or(Frame::IDENTITY);
         let surfaces = self.surfaces(&file, &checked);
         let meshes = self.meshes(&file, &checked);
+        let patches = self.patches(&file, &checked);
         let mut blockers = self.blockers(&file, &checked);
         let things = Things {
             blockers: &blockers,
             surfaces: &surfaces,
             meshes: &meshes,
+            patches: &patches,
         };
         let path = self.path(&file, checked, things);
         self.ends(&file, &blockers, path.first_hit());
@@ -83,6 +86,7 @@ impl Resolver<'_> {
             blockers,
             surfaces,
             meshes,
+            patches,
             planes,
             run: Run {
                 photons: file.run.photons,
@@ -220,7 +224,14 @@ fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<Stop<'a>> {
         surface: m.albedo.is_some(),
         ends: ends(Object::Mesh(i)),
     });
-    let mut stops: Vec<Stop<'a>> = blockers.chain(surfaces).chain(meshes).collect();
+    let patches = things.patches.iter().enumerate().map(|(i, p)| Stop {
+        name: &p.name,
+        extent: extent(&p.patch.corners()),
+        surface: true,
+        ends: ends(Object::Patch(i)),
+    });
+    let stops = blockers.chain(surfaces).chain(meshes).chain(patches);
+    let mut stops: Vec<Stop<'a>> = stops.collect();
     stops.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
     stops
 }

@@ -1,5 +1,5 @@
 use crate::{Emission, SceneFile};
-use etendue_field::{Frame, Light, Mask, Rectangle, VirtualPlane};
+use etendue_field::{Frame, Light, Mask, Patch, Rectangle, Specular, VirtualPlane};
 use glam::DVec3;
 
 /// A checked experiment. Distances are along the central ray from the light, blockers lie across its first leg, and
@@ -18,6 +18,8 @@ pub struct Scene {
     pub blockers: Vec<BlockerLayer>,
     /// The rectangular surfaces, in the order of the file.
     pub surfaces: Vec<Surface>,
+    /// The smooth surfaces, in the order of the file.
+    pub patches: Vec<PatchObject>,
     /// The meshes: blockers, then surfaces, in the order of the file.
     pub meshes: Vec<MeshObject>,
     /// Where light is looked at, in the order of the file.
@@ -66,6 +68,31 @@ pub enum Object {
     Surface(usize),
     /// The mesh with this index.
     Mesh(usize),
+    /// The smooth surface with this index.
+    Patch(usize),
+}
+
+impl Hit {
+    /// The frame (T, B, N) at the hit, for light that arrives in a frame, and the longitude θ₀ of where it comes from: T lies in the plane
+    /// of incidence, X turns to −T at normal incidence (docs/conventions.md).
+    #[must_use]
+    pub fn surface_frame(&self, arriving: &Frame) -> (Frame, f64) {
+        let (n, from) = (self.normal, -arriving.d);
+        let across = from - from.dot(n) * n;
+        let t = if across.length() > 1e-9 {
+            let t = across.normalize();
+            if t.dot(arriving.x) > 0.0 { -t } else { t }
+        } else {
+            -(arriving.x - arriving.x.dot(n) * n).normalize()
+        };
+        let frame = Frame {
+            origin: self.point,
+            x: t,
+            y: n.cross(t),
+            d: n,
+        };
+        (frame, frame.longitude(from))
+    }
 }
 
 impl CentralRay {
@@ -131,6 +158,17 @@ pub struct MeshObject {
     pub albedo: Option<f64>,
 }
 
+/// A smooth surface that reflects or refracts.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchObject {
+    /// Name.
+    pub name: String,
+    /// Its form, in the frame at the light.
+    pub patch: Patch,
+    /// What it does.
+    pub event: Specular,
+}
+
 /// A Lambertian rectangle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surface {
@@ -174,6 +212,7 @@ impl Scene {
         match object {
             Object::Surface(i) => &self.surfaces[i].name,
             Object::Mesh(i) => &self.meshes[i].name,
+            Object::Patch(i) => &self.patches[i].name,
         }
     }
 }

@@ -1,15 +1,18 @@
-use crate::bvh::{Target, Targets};
+use crate::bvh::{Form, Target, Targets};
 use crate::emit::{LAMBERTIAN, point, radiance};
 use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
 use crate::proposal::Follower;
 use crate::shares::Shares;
+use crate::station::Station;
 use crate::tracer::rounding;
 use etendue_field::random::{self, Stream};
 use etendue_field::{
-    Crossing, Frame, Ledger, Light, PhotonSource, Shape, Side, TwoPlane, VirtualPlane,
+    Crossing, Frame, Ledger, Light, Orientation, Patch, PhotonSource, Shape, Side, Specular,
+    TwoPlane, VirtualPlane,
 };
-use etendue_scene::{Object, Scene};
+use etendue_scene::{Object, PatchObject, Scene};
 use glam::DVec3;
+use std::f64::consts::TAU;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
@@ -47,13 +50,26 @@ struct Leg {
 #[derive(Debug)]
 struct Leaves {
     object: Object,
-    albedo: f64,
     /// In the frame of the leg.
     targets: Targets<()>,
-    /// In the frame at the light, for points of it to be drawn: parallelograms or triangles with their running share of its area.
-    pieces: Vec<(f64, Piece)>,
-    area: f64,
+    how: How,
     rounding: f64,
+}
+
+/// How light leaves a surface.
+#[derive(Debug)]
+enum How {
+    /// Diffusely, from pieces of which points can be drawn.
+    Diffuse { albedo: f64, pieces: Pieces },
+    /// Turned; the surface in the frame of the leg.
+    Turned { patch: Patch, event: Specular },
+}
+
+/// Parallelograms or triangles in the frame at the light, with their running share of the area.
+#[derive(Debug)]
+struct Pieces {
+    upto: Vec<(f64, Piece)>,
+    area: f64,
 }
 
 /// A corner and two edges, of a parallelogram or of a triangle.
@@ -66,16 +82,14 @@ struct Piece {
 
 /// A backward ray has no chance to hit a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no backward ray hits a point light: it has no radiance that one could find")]
+#[error("no backward ray hits a point light or a beam: they have no radiance that one could find")]
 pub struct PointLight;
 
 /// How rays of one plane are drawn.
 #[derive(Clone, Copy, Debug)]
 struct Looker {
     leg: usize,
-    /// Along the leg.
-    distance: f64,
-    side: Side,
+    station: Station,
     position: [Follower; 2],
     slope: [Follower; 2],
     /// Whether slopes are drawn towards points of the light: where they are the narrower choice.
@@ -91,7 +105,8 @@ impl Backward {
         let Light::Area { shape, .. } = scene.light else {
             return Err(PointLight);
         };
-        let lookers = scene.planes.iter().map(|p| Looker::new(scene, p, &shape));
+        let planes = scene.planes.iter().enumerate();
+        let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &shape));
         Ok(Self {
             light: Area {
                 light: scene.light,
@@ -119,22 +134,22 @@ impl Backward {
         let mut density = looker.position[0].density(x) * looker.position[1].density(y);
         let [u, v] = if looker.to_light {
             let [x0, y0] = point(&self.light.shape, [r[2], r[3]]);
-            density *= looker.distance * looker.distance / self.light.shape.area();
-            [(x - x0) / looker.distance, (y - y0) / looker.distance]
+            density *= looker.station.distance * looker.station.distance / self.light.shape.area();
+            [
+                (x - x0) / looker.station.distance,
+                (y - y0) / looker.station.distance,
+            ]
         } else {
             let slopes = [0, 1].map(|axis| looker.slope[axis].quantile(r[2 + axis]));
             density *= looker.slope[0].density(slopes[0]) * looker.slope[1].density(slopes[1]);
             slopes
         };
         let ray = TwoPlane { x, y, u, v };
-        let found = self.incident(
-            looker.leg,
-            &ray.travelled(-looker.distance),
-            looker.distance,
-            looker.side,
-            1,
-            &words,
-        );
+        let Some(on_leg) = looker.station.leg_ray(&ray) else {
+            return Crossing { ray, weight: 0.0 };
+        };
+        let (distance, side) = (looker.station.distance, looker.station.side);
+        let found = self.incident(looker.leg, &on_leg, distance, side, 1, &words);
         let weight = if density > 0.0 { found / density } else { 0.0 };
         Crossing { ray, weight }
     }
@@ -174,14 +189,32 @@ impl Backward {
         if visible <= 0.0 {
             return 0.0;
         }
-        // It was left on the side it goes away from.
-        let normal = target.form.normal();
-        let normal = this
-            .frame
-            .vector_to_world(normal.dot(direction(ray)).signum() * normal);
-        let point = this.frame.to_world(start(ray) + at * direction(ray));
-        let irradiance = self.irradiance(leg - 1, point, normal, block, words);
-        visible * leaves.albedo / LAMBERTIAN * irradiance
+        let along = direction(ray);
+        let point = start(ray) + at * along;
+        match &leaves.how {
+            How::Diffuse { albedo, .. } => {
+                // It was left on the side it goes away from.
+                let normal = target.form.normal(point);
+                let normal = this
+                    .frame
+                    .vector_to_world(normal.dot(along).signum() * normal);
+                let point = this.frame.to_world(point);
+                visible * albedo / LAMBERTIAN
+                    * self.irradiance(leg - 1, point, normal, block, words)
+            }
+            How::Turned { patch, event } => {
+                let Some(came) = event.turned(patch, point, -along) else {
+                    return 0.0;
+                };
+                let factor = radiance_factor(patch, *event, point, along, came);
+                let before = self.legs[leg - 1].frame.decompose(&this.frame);
+                let end = before.to_world(point);
+                let Some(ray) = ray_through(end, before.vector_to_world(-came)) else {
+                    return 0.0;
+                };
+                visible * factor * self.incident(leg - 1, &ray, end.z, Side::Before, block, words)
+            }
+        }
     }
 
     /// The irradiance at a point, with its normal, at the end of a leg, from one point of what light leaves at its beginning;
@@ -195,15 +228,20 @@ impl Backward {
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
         let r = words(block);
-        let (from, facing, area) = match &self.legs[leg].leaves {
-            None => {
-                let [x, y] = self::point(&self.light.shape, [r[0], r[1]]);
-                (DVec3::new(x, y, 0.0), DVec3::Z, self.light.shape.area())
-            }
-            Some(leaves) => {
-                let (from, facing) = leaves.point([r[0], r[1], r[2]]);
-                (from, facing, leaves.area)
-            }
+        let pieces = match &self.legs[leg].leaves {
+            None => None,
+            Some(Leaves {
+                how: How::Diffuse { pieces, .. },
+                ..
+            }) => Some(pieces),
+            Some(_) => return self.through_turn(leg, point, normal, r, block, words),
+        };
+        let (from, facing, area) = if let Some(pieces) = pieces {
+            let (from, facing) = pieces.point([r[0], r[1], r[2]]);
+            (from, facing, pieces.area)
+        } else {
+            let [x, y] = self::point(&self.light.shape, [r[0], r[1]]);
+            (DVec3::new(x, y, 0.0), DVec3::Z, self.light.shape.area())
         };
         let this = &self.legs[leg];
         let [end, begin] = [point, from].map(|p| this.frame.to_local(p));
@@ -229,6 +267,47 @@ impl Backward {
     }
 }
 
+impl Backward {
+    /// The irradiance at a point behind a mirror, an interface or a lens, from one direction, drawn by the cosine.
+    fn through_turn(
+        &self,
+        leg: usize,
+        point: DVec3,
+        normal: DVec3,
+        r: [f64; 4],
+        block: u32,
+        words: &impl Fn(u32) -> [f64; 4],
+    ) -> f64 {
+        let (sin, cos) = (TAU * r[1]).sin_cos();
+        let [across, up] = [r[0].sqrt(), (1.0 - r[0]).sqrt()];
+        let towards = DVec3::new(across * cos, across * sin, up);
+        let towards = Frame::IDENTITY.turned_to(normal).vector_to_world(towards);
+        let this = &self.legs[leg].frame;
+        let end = this.to_local(point);
+        let Some(ray) = ray_through(end, this.vector_to_local(-towards)) else {
+            return 0.0;
+        };
+        LAMBERTIAN * self.incident(leg, &ray, end.z, Side::Before, block + 1, words)
+    }
+}
+
+/// Radiance after over before a turn at a point, light going along `along` and having come against `came`: (n'/n)² at an interface; at
+/// a lens, which is no thing of optics, what keeps flux in two-plane coordinates.
+fn radiance_factor(patch: &Patch, event: Specular, point: DVec3, along: DVec3, came: DVec3) -> f64 {
+    match event {
+        Specular::Mirror => 1.0,
+        Specular::Refraction { front, back } => {
+            let to_front = along.dot(patch.normal(point)) > 0.0;
+            let ratio = if to_front { front / back } else { back / front };
+            ratio * ratio
+        }
+        Specular::ThinLens { .. } => {
+            let cosine = |v: DVec3| v.dot(patch.frame.d).abs() / v.length();
+            (cosine(came) / cosine(along)).powi(4)
+        }
+    }
+}
+
 impl Leg {
     fn new(scene: &Scene, leg: usize) -> Self {
         let this = &scene.path.legs[leg];
@@ -245,49 +324,63 @@ impl Leaves {
     fn new(scene: &Scene, leg: &etendue_scene::Leg, object: Object) -> Self {
         let around = Around(leg.frame);
         let target = |form| Target { form, tag: () };
-        let (forms, all, albedo): (Vec<_>, Vec<_>, f64) = match object {
+        let diffuse = |albedo, pieces: Vec<Piece>| How::Diffuse {
+            albedo,
+            pieces: Pieces::new(pieces),
+        };
+        let (targets, how) = match object {
             Object::Surface(i) => {
                 let surface = &scene.surfaces[i];
                 let [a, b, _, d] = surface.corners();
+                let piece = Piece::new(a, [b, d], false);
                 (
                     vec![target(around.surface(surface))],
-                    vec![Piece::new(a, [b, d], false)],
-                    surface.albedo,
+                    diffuse(surface.albedo, vec![piece]),
                 )
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
-                let pieces = mesh
-                    .triangles
-                    .iter()
-                    .map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
+                let pieces = mesh.triangles.iter();
+                let pieces = pieces.map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
+                let how = diffuse(mesh.albedo.unwrap_or(0.0), pieces.collect());
+                (around.mesh(mesh).map(target).collect(), how)
+            }
+            Object::Patch(i) => {
+                let PatchObject { patch, event, .. } = &scene.patches[i];
+                let (patch, event) = (patch.seen_from(&leg.frame), *event);
                 (
-                    around.mesh(mesh).map(target).collect(),
-                    pieces.collect(),
-                    mesh.albedo.unwrap_or(0.0),
+                    vec![target(Form::Smooth(patch))],
+                    How::Turned { patch, event },
                 )
             }
         };
+        Self {
+            object,
+            targets: Targets::new(&targets, 0.0),
+            how,
+            rounding: rounding(leg),
+        }
+    }
+}
+
+impl Pieces {
+    fn new(pieces: Vec<Piece>) -> Self {
         let mut area = 0.0;
-        let pieces = all.into_iter().map(|piece| {
+        let upto = pieces.into_iter().map(|piece| {
             area += piece.area();
             (area, piece)
         });
         Self {
-            object,
-            albedo,
-            targets: Targets::new(&forms, 0.0),
-            pieces: pieces.collect(),
+            upto: upto.collect(),
             area,
-            rounding: rounding(leg),
         }
     }
 
     /// A uniform point of it and a normal there, from three numbers in (0, 1).
     fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
         let wanted = r[2] * self.area;
-        let i = self.pieces.partition_point(|(upto, _)| *upto < wanted);
-        let (_, piece) = self.pieces[i.min(self.pieces.len() - 1)];
+        let i = self.upto.partition_point(|(upto, _)| *upto < wanted);
+        let (_, piece) = self.upto[i.min(self.upto.len() - 1)];
         let [a, b] = piece.edges;
         let folded = piece.is_triangle && r[0] + r[1] > 1.0;
         let [s, t] = if folded {
@@ -316,18 +409,17 @@ impl Piece {
 }
 
 impl Looker {
-    fn new(scene: &Scene, plane: &VirtualPlane, shape: &Shape) -> Self {
+    fn new(station: Station, plane: &VirtualPlane, shape: &Shape) -> Self {
         let w = &plane.window;
         let bounds = shape.bounds();
         let slopes = |axis: usize| bounds.size[axis] / plane.distance;
         let narrower = slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width();
         Self {
             leg: plane.leg,
-            distance: scene.path.along(plane),
-            side: plane.side,
+            station,
             position: [Follower::new(&w.x), Follower::new(&w.y)],
             slope: [Follower::new(&w.u), Follower::new(&w.v)],
-            to_light: plane.leg == 0 && narrower,
+            to_light: plane.leg == 0 && narrower && plane.orientation == Orientation::Orthogonal,
         }
     }
 }

@@ -3,7 +3,7 @@
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
 
-use etendue_field::{Frame, Shape, TwoPlane, triangle_distance};
+use etendue_field::{Frame, Patch, Shape, TwoPlane, triangle_distance};
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -29,12 +29,14 @@ pub(crate) enum Form {
     Oblique { frame: Frame, shape: Shape },
     /// A triangle.
     Triangle([DVec3; 3]),
+    /// A smooth surface.
+    Smooth(Patch),
 }
 
 impl Form {
-    /// The distance, along the central ray, at which a ray meets it.
+    /// The distance, along the central ray, at which a ray meets it; where it can meet it twice, the first beyond `from`.
     #[inline]
-    fn meets(&self, ray: &TwoPlane) -> Option<f64> {
+    fn meets(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
         match self {
             Self::Flat { distance, shape } => {
                 let at = ray.travelled(*distance);
@@ -48,15 +50,31 @@ impl Form {
                 (distance.is_finite() && shape.contains(at.x, at.y)).then_some(distance)
             }
             Self::Triangle(corners) => triangle_distance(corners, ray),
+            Self::Smooth(patch) => {
+                let hits = smooth_hits(patch, ray);
+                hits.into_iter().find(|at| *at > from)
+            }
         }
     }
 
-    /// A normal, of unit length.
-    pub(crate) fn normal(&self) -> DVec3 {
+    /// The largest distance at which the line of a ray meets it.
+    fn meets_last(&self, ray: &TwoPlane) -> Option<f64> {
+        match self {
+            Self::Smooth(patch) => smooth_hits(patch, ray)
+                .into_iter()
+                .rev()
+                .find(|at| !at.is_nan()),
+            _ => self.meets(ray, f64::NEG_INFINITY),
+        }
+    }
+
+    /// A normal at a point of it, of unit length.
+    pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         match self {
             Self::Flat { .. } => DVec3::Z,
             Self::Oblique { frame, .. } => frame.d,
             Self::Triangle([a, b, c]) => (b - a).cross(c - a).normalize(),
+            Self::Smooth(patch) => patch.normal(point),
         }
     }
 
@@ -78,8 +96,22 @@ impl Form {
                 [least, most].map(Option::unwrap_or_default)
             }
             Self::Triangle([a, b, c]) => [a.min(*b).min(*c), a.max(*b).max(*c)],
+            Self::Smooth(patch) => {
+                let corners = patch.corners();
+                let least = corners.into_iter().reduce(DVec3::min);
+                let most = corners.into_iter().reduce(DVec3::max);
+                [least, most].map(Option::unwrap_or_default)
+            }
         }
     }
+}
+
+fn smooth_hits(patch: &Patch, ray: &TwoPlane) -> [f64; 2] {
+    let start = patch.frame.to_local(DVec3::new(ray.x, ray.y, 0.0));
+    patch.hits(
+        start,
+        patch.frame.vector_to_local(DVec3::new(ray.u, ray.v, 1.0)),
+    )
 }
 
 /// Targets, and the hierarchy that finds the first one hit.
@@ -144,7 +176,7 @@ impl<T: Copy> Targets<T> {
             &mut RayHit::none(),
             |_, i| {
                 let target = &self.targets[i];
-                match target.form.meets(ray) {
+                match target.form.meets(ray, from) {
                     Some(distance) if distance < nearest && distance > from => {
                         nearest = distance;
                         first = Some(target);
@@ -169,7 +201,7 @@ impl<T: Copy> Targets<T> {
             &mut RayHit::none(),
             |_, i| {
                 let target = &self.targets[i];
-                match target.form.meets(ray) {
+                match target.form.meets_last(ray) {
                     Some(at) if last.is_none_or(|(farthest, _)| at > farthest) => {
                         last = Some((at, target));
                         let back = self.front - at;
@@ -202,7 +234,7 @@ impl<T: Copy> Targets<T> {
             |_, i| {
                 let Target { form, tag } = &self.targets[i];
                 let before = |at: f64| at > from && (at < distance || inclusive && at <= distance);
-                if form.meets(ray).is_some_and(before) && !ignored(tag) {
+                if form.meets(ray, from).is_some_and(before) && !ignored(tag) {
                     blocked = true;
                     // Nothing beyond matters any more.
                     return 0.0;
@@ -311,6 +343,7 @@ mod tests {
                 }
             }
             Form::Triangle(corners) => Form::Triangle(corners.map(|p| p * scale)),
+            Form::Smooth(_) => unreachable!("none here"),
         }
     }
 
@@ -329,7 +362,7 @@ mod tests {
                     u: w[2],
                     v: w[3],
                 };
-                let met = all.iter().filter_map(|t| t.form.meets(&ray));
+                let met = all.iter().filter_map(|t| t.form.meets(&ray, 0.0));
                 let expected = met.fold(f64::INFINITY, f64::min);
                 let first = found.first(&ray, 0.0).map_or(f64::INFINITY, |(at, _)| at);
                 assert!(
@@ -337,7 +370,7 @@ mod tests {
                     "{ray:?} at scale {scale}"
                 );
                 hits += u32::from(first.is_finite());
-                let met = all.iter().filter_map(|t| t.form.meets(&ray));
+                let met = all.iter().filter_map(|t| t.form.meets(&ray, 0.0));
                 let farthest = met.fold(f64::NEG_INFINITY, f64::max);
                 let last = found.last(&ray).map_or(f64::NEG_INFINITY, |(at, _)| at);
                 assert!(last.total_cmp(&farthest).is_eq(), "{ray:?}: last");

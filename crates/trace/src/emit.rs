@@ -1,12 +1,12 @@
 use crate::proposal::{Follower, Proposal};
 use crate::reach::reach;
-use etendue_field::{Light, Profile, Shape, TwoPlane, VirtualPlane, random};
+use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// How rays leave the light: a density over (x, y, u, v) at the light, and a way to sample it. That of a point
-/// is over (u, v) alone.
+/// is over (u, v) alone, that of a beam over (x, y).
 #[derive(Clone, Debug)]
 pub struct Emitter {
     light: Light,
@@ -25,7 +25,7 @@ impl Emitter {
         let light = scene.light;
         let extent = match light {
             Light::Area { shape, .. } => [0, 1].map(|axis| shape.bounds().extent(axis)),
-            Light::Point { .. } => [[0.0; 2]; 2],
+            Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => [[0.0; 2]; 2],
         };
         let [[left, right], [low, high]] = extent;
         let corners = [[left, low], [right, low], [left, high], [right, high]];
@@ -50,9 +50,11 @@ impl Emitter {
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };
+        // Pictures have their own proposal.
+        let is_picture = matches!(light, Light::Projector { .. } | Light::Beam { .. });
         let proposals = match scene.run.emission {
-            Emission::Aimed => scene.planes.iter().filter_map(proposal).collect(),
-            Emission::Plain => Vec::new(),
+            Emission::Aimed if !is_picture => scene.planes.iter().filter_map(proposal).collect(),
+            Emission::Aimed | Emission::Plain => Vec::new(),
         };
         Self { light, proposals }
     }
@@ -90,6 +92,25 @@ impl Emitter {
                 let cos = 1.0 - r[2];
                 ([0.0; 2], (1.0 - cos * cos).sqrt() / cos)
             }
+            // By the picture's envelope: the two normal deviates of Box and Muller (1958).
+            Light::Projector { image, .. } | Light::Beam { image, .. } => {
+                let radius = (-r[2].ln() / PI).sqrt();
+                let [a, b] = [image.width[0] * radius * cos, image.width[1] * radius * sin];
+                return match self.light {
+                    Light::Beam { .. } => TwoPlane {
+                        x: a,
+                        y: b,
+                        u: 0.0,
+                        v: 0.0,
+                    },
+                    _ => TwoPlane {
+                        x: 0.0,
+                        y: 0.0,
+                        u: a,
+                        v: b,
+                    },
+                };
+            }
         };
         TwoPlane {
             x: position[0],
@@ -114,6 +135,8 @@ impl Emitter {
                     lobe / shape.area()
                 }
                 Light::Point { .. } => secant_squared.powf(-1.5) / TAU,
+                Light::Projector { image, .. } => envelope(&image, ray.u, ray.v),
+                Light::Beam { image, .. } => envelope(&image, ray.x, ray.y),
             };
         }
         let sum: f64 = self
@@ -140,7 +163,7 @@ impl Emitter {
     }
 }
 
-/// Radiance on a ray given at the light; for a point, with respect to du dv alone: dω is
+/// Radiance on a ray given at the light; for a point, with respect to du dv alone, for a beam to dx dy: dω is
 /// du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[inline]
 pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
@@ -159,7 +182,17 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
             }
         }
         Light::Point { intensity } => intensity * ray.secant_squared().sqrt(),
+        Light::Projector { intensity, image } => {
+            intensity * image.value(ray.u, ray.v) * ray.secant_squared().sqrt()
+        }
+        Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
     }
+}
+
+/// The envelope of a picture, with an integral of 1.
+fn envelope(image: &Image, a: f64, b: f64) -> f64 {
+    let grating = None;
+    Image { grating, ..*image }.value(a, b) / image.area()
 }
 
 /// A uniform point of a shape, from two numbers in (0, 1).

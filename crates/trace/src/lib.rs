@@ -8,6 +8,7 @@
 //! life does not depend on who traces it.
 
 mod backward;
+mod bounce;
 mod bvh;
 mod emit;
 mod obstacles;
@@ -15,6 +16,7 @@ mod proposal;
 mod reach;
 mod scatter;
 mod shares;
+mod station;
 mod tracer;
 
 pub use backward::{Backward, PointLight};

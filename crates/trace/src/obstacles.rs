@@ -1,5 +1,7 @@
 use crate::bvh::{Form, Target, Targets};
-use etendue_field::{Frame, Grating, HalfPlane, Light, Mask, Rectangle, Shape, Side, TwoPlane};
+use etendue_field::{
+    Frame, Grating, HalfPlane, Light, Mask, Rectangle, Shape, Side, Specular, TwoPlane,
+};
 use etendue_scene::{Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -7,7 +9,14 @@ use glam::DVec3;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Meeting {
     Blocker,
-    Surface { object: Object, albedo: f64 },
+    Surface { object: Object, material: Material },
+}
+
+/// What light does that meets a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Material {
+    Lambertian { albedo: f64 },
+    Specular(Specular),
 }
 
 impl Meeting {
@@ -97,9 +106,20 @@ impl Obstacles {
         for (i, surface) in scene.surfaces.iter().enumerate() {
             let object = Object::Surface(i);
             let albedo = surface.albedo;
+            let material = Material::Lambertian { albedo };
             targets.push(Target {
                 form: around.surface(surface),
-                tag: Meeting::Surface { object, albedo },
+                tag: Meeting::Surface { object, material },
+            });
+        }
+        for (i, object) in scene.patches.iter().enumerate() {
+            let material = Material::Specular(object.event);
+            targets.push(Target {
+                form: Form::Smooth(object.patch.seen_from(&leg.frame)),
+                tag: Meeting::Surface {
+                    object: Object::Patch(i),
+                    material,
+                },
             });
         }
         for (i, mesh) in scene.meshes.iter().enumerate() {
@@ -108,13 +128,14 @@ impl Obstacles {
                 .albedo
                 .map_or(Meeting::Blocker, |albedo| Meeting::Surface {
                     object,
-                    albedo,
+                    material: Material::Lambertian { albedo },
                 });
             targets.extend(around.mesh(mesh).map(|form| Target { form, tag }));
         }
         let origins = match scene.light {
             Light::Area { shape, .. } => shape.bounds().reach(),
-            Light::Point { .. } => 0.0,
+            Light::Point { .. } | Light::Projector { .. } => 0.0,
+            Light::Beam { image, .. } => FARTHEST * image.width[0].max(image.width[1]),
         };
         Self {
             targets: Targets::new(&targets, origins),
@@ -185,6 +206,9 @@ impl Obstacles {
     }
 }
 
+/// Widths of a Gaussian picture beyond which no random number falls.
+const FARTHEST: f64 = 3.0;
+
 /// What a ray meets in a half-plane.
 const HALF_PLANE: Target<Meeting> = Target {
     form: Form::Triangle([DVec3::ZERO; 3]),
@@ -225,19 +249,10 @@ pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
 pub(crate) struct Around(pub(crate) Frame);
 
 impl Around {
-    fn frame(&self, frame: &Frame) -> Frame {
-        Frame {
-            origin: self.0.to_local(frame.origin),
-            x: self.0.vector_to_local(frame.x),
-            y: self.0.vector_to_local(frame.y),
-            d: self.0.vector_to_local(frame.d),
-        }
-    }
-
     /// A shape in the plane of blockers.
     fn layer(&self, distance: f64, shape: &Shape) -> Form {
         let plane = Frame::IDENTITY.travelled(distance);
-        Self::flat(&self.frame(&plane), shape)
+        Self::flat(&self.0.decompose(&plane), shape)
     }
 
     pub(crate) fn surface(&self, surface: &Surface) -> Form {
@@ -245,7 +260,7 @@ impl Around {
             center: [0.0; 2],
             size: surface.size,
         });
-        Self::flat(&self.frame(&surface.frame), &shape)
+        Self::flat(&self.0.decompose(&surface.frame), &shape)
     }
 
     pub(crate) fn mesh(&self, mesh: &MeshObject) -> impl Iterator<Item = Form> {

@@ -1,6 +1,6 @@
 //! Where light that a plane looks at can come from: what emission and scattering are aimed at.
 
-use etendue_field::{Frame, Profile, VirtualPlane};
+use etendue_field::{Frame, Profile, VirtualPlane, box_corners};
 use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
 
@@ -41,16 +41,9 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
             let low = corners.iter().copied().reduce(DVec3::min);
             let high = corners.iter().copied().reduce(DVec3::max);
             let [low, high] = [low, high].map(Option::unwrap_or_default);
-            let pick = |bit: u32, a: f64, b: f64| if bit == 0 { a } else { b };
-            let corner = |i: u32| {
-                DVec3::new(
-                    pick(i & 1, low.x, high.x),
-                    pick(i & 2, low.y, high.y),
-                    pick(i & 4, low.z, high.z),
-                )
-            };
-            (0..8).map(corner).collect()
+            box_corners(low, high).to_vec()
         }
+        Object::Patch(i) => scene.patches[i].patch.corners().to_vec(),
     }
 }
 

@@ -1,8 +1,9 @@
+use crate::bounce::Bounce;
 use crate::bvh::Target;
-use crate::emit::{Emitter, LAMBERTIAN};
-use crate::obstacles::{Meeting, Obstacles, direction, start};
-use crate::scatter::Scatterer;
+use crate::emit::Emitter;
+use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
 use crate::shares::Shares;
+use crate::station::Station;
 use etendue_field::random::{self, Stream};
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane};
 use etendue_scene::{Object, Scene};
@@ -11,8 +12,8 @@ use glam::DVec3;
 /// The forward tracer of a scene.
 ///
 /// A photon leaves the light and crosses the planes in front of what it meets first; gratings on the way take
-/// their share of it. Blockers absorb it, a surface absorbs 1 − albedo of it. What the surface at the end of a leg reflects
-/// crosses the planes on the next one, and so on; anything else it meets ends it.
+/// their share of it. Blockers absorb it, a Lambertian surface absorbs 1 − albedo of it. What the surface at the end of a leg
+/// sends on crosses the planes on the next one, and so on; anything else it meets ends it.
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
@@ -30,7 +31,7 @@ struct Leg {
     obstacles: Obstacles,
     stations: Vec<Station>,
     /// How light begins the leg; `None` for the first.
-    scatterer: Option<Scatterer>,
+    bounce: Option<Bounce>,
     /// What the leg begins and ends on.
     leaves: Option<Object>,
     ends: Option<Object>,
@@ -38,12 +39,25 @@ struct Leg {
     rounding: f64,
 }
 
-/// Where a plane stands on its leg.
+/// A photon on a leg.
 #[derive(Clone, Copy, Debug)]
-struct Station {
-    plane: usize,
-    distance: f64,
-    side: Side,
+pub(crate) struct Flight {
+    pub(crate) ray: TwoPlane,
+    /// Where it begins, along the leg.
+    pub(crate) from: f64,
+    /// What it adds to radiance space.
+    pub(crate) weight: f64,
+}
+
+/// A photon at a point of a surface, in the frame of a leg.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Arrival {
+    pub(crate) point: DVec3,
+    /// The normal on the side it came from.
+    pub(crate) normal: DVec3,
+    /// Where it was going, 1 along D.
+    pub(crate) direction: DVec3,
+    pub(crate) flux: f64,
 }
 
 /// Photons traced between two reports.
@@ -75,162 +89,142 @@ impl Tracer {
         if weight <= 0.0 {
             return;
         }
-        let flux = weight / cosines(&ray);
-        let first = &self.legs[0];
-        let met = first.obstacles.first(&ray, 0.0);
-        first.record(&ray, 0.0, weight, met, crossings);
-
-        ledger.emitted += flux;
-        let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
-        let arrives = flux * first.obstacles.transmittance(&ray, 0.0, end, Side::Before);
-        ledger.absorbed += flux - arrives;
-        match met {
-            None => ledger.escaped += arrives,
-            Some((distance, target)) => match target.tag {
-                Meeting::Blocker => ledger.absorbed += arrives,
-                Meeting::Surface { albedo, .. } => {
-                    ledger.stopped += albedo * arrives;
-                    ledger.absorbed += (1.0 - albedo) * arrives;
-                    let arrival = Arrival {
-                        ray,
-                        distance,
-                        target,
-                        flux: arrives,
-                    };
-                    self.onwards(arrival, words, crossings);
-                }
-            },
-        }
-    }
-
-    /// The later legs of a photon that meets something on the first.
-    fn onwards<'a>(
-        &'a self,
-        mut arrival: Arrival<'a>,
-        words: impl Fn(u32) -> [u32; 4],
-        crossings: &mut [Vec<Crossing>],
-    ) {
-        for (legs, block) in self.legs.windows(2).zip(2..) {
-            let [this, next] = legs else { return };
-            let Meeting::Surface { albedo, .. } = arrival.target.tag else {
-                return;
-            };
-            let Some(scatterer) = &next.scatterer else {
-                return;
-            };
-            if albedo <= 0.0 || !arrival.target.tag.is(this.ends) {
+        ledger.emitted += weight / cosines(&ray);
+        let from = 0.0;
+        let mut flight = Flight { ray, from, weight };
+        // Diffuse light is aimed at windows: what becomes of it is in no account.
+        let mut beyond = Ledger::default();
+        let mut account = ledger;
+        let mut legs = self.legs.iter().zip(1..).peekable();
+        while let Some((this, block)) = legs.next() {
+            let Flight { ray, from, weight } = flight;
+            let met = this.obstacles.first(&ray, from);
+            if met.is_some_and(|(_, target)| target.tag.is(this.leaves)) {
+                account.stopped += weight / cosines(&ray);
                 return;
             }
-            let (point, normal) = next.hit(this, &arrival);
-            let Some((ray, density)) = scatterer.sample(point, normal, words(block)) else {
-                return;
-            };
-            // Radiance albedo/π · E, and a photon's flux is E at its point.
-            let weight = albedo * arrival.flux / (LAMBERTIAN * density);
-            let from = point.z + next.rounding;
-            let met = next.obstacles.first(&ray, from);
-            if met.is_some_and(|(_, target)| target.tag.is(next.leaves)) {
-                return;
-            }
-            next.record(&ray, from, weight, met, crossings);
+            this.record(&flight, met, crossings);
+            let flux = weight / cosines(&ray);
+            let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
+            let arrives = flux * this.obstacles.transmittance(&ray, from, end, Side::Before);
+            account.absorbed += flux - arrives;
             let Some((distance, target)) = met else {
+                account.escaped += arrives;
                 return;
             };
-            let passes = next
-                .obstacles
-                .transmittance(&ray, from, distance, Side::Before);
-            let flux = weight / cosines(&ray) * passes;
-            arrival = Arrival {
-                ray,
-                distance,
-                target,
-                flux,
+            let Meeting::Surface { material, .. } = target.tag else {
+                account.absorbed += arrives;
+                return;
             };
+            let next = legs
+                .peek()
+                .map(|(next, _)| *next)
+                .filter(|_| target.tag.is(this.ends));
+            if let Material::Lambertian { albedo } = material {
+                account.stopped += albedo * arrives;
+                account.absorbed += (1.0 - albedo) * arrives;
+                account = &mut beyond;
+            }
+            let arrival = Arrival::new(&ray, distance, target, arrives);
+            let onwards = next.and_then(|next| next.begin(this, &arrival, words(block + 1)));
+            let Some(next) = onwards else {
+                if let Material::Specular(_) = material {
+                    account.stopped += arrives;
+                }
+                return;
+            };
+            flight = next;
         }
     }
-}
-
-/// A photon at the end of a leg.
-struct Arrival<'a> {
-    ray: TwoPlane,
-    distance: f64,
-    target: &'a Target<Meeting>,
-    flux: f64,
 }
 
 /// (1 + u² + v²)² = 1/cos⁴θ: radiance space over flux.
-fn cosines(ray: &TwoPlane) -> f64 {
+pub(crate) fn cosines(ray: &TwoPlane) -> f64 {
     let secant_squared = ray.secant_squared();
     secant_squared * secant_squared
+}
+
+impl Arrival {
+    fn new(ray: &TwoPlane, distance: f64, target: &Target<Meeting>, flux: f64) -> Self {
+        let direction = direction(ray);
+        let point = start(ray) + distance * direction;
+        let normal = target.form.normal(point);
+        Self {
+            point,
+            normal: -normal.dot(direction).signum() * normal,
+            direction,
+            flux,
+        }
+    }
+
+    /// In the frame of another leg; both frames are in the frame at the light.
+    fn moved(&self, from: &Frame, to: &Frame) -> Self {
+        let vector = |v: DVec3| to.vector_to_local(from.vector_to_world(v));
+        Self {
+            point: to.to_local(from.to_world(self.point)),
+            normal: vector(self.normal),
+            direction: vector(self.direction),
+            flux: self.flux,
+        }
+    }
 }
 
 impl Leg {
     fn new(scene: &Scene, leg: usize) -> Self {
         let this = &scene.path.legs[leg];
         let planes = scene.planes.iter().enumerate();
-        let stations = planes.filter(|(_, p)| p.leg == leg).map(|(i, p)| Station {
-            plane: i,
-            distance: scene.path.along(p),
-            side: p.side,
-        });
+        let stations = planes.filter(|(_, plane)| plane.leg == leg);
         Self {
             frame: this.frame,
             obstacles: Obstacles::new(scene, this),
-            stations: stations.collect(),
-            scatterer: Scatterer::new(scene, leg),
+            stations: stations
+                .map(|(i, plane)| Station::new(scene, i, plane))
+                .collect(),
+            bounce: Bounce::new(scene, leg),
             leaves: this.leaves.map(|hit| hit.object),
             ends: scene.path.ends_at(leg).map(|hit| hit.object),
             rounding: rounding(this),
         }
     }
 
-    /// Where a photon that arrives on the leg before begins this one, and the normal there on the side it came from.
-    fn hit(&self, before: &Self, arrival: &Arrival<'_>) -> (DVec3, DVec3) {
-        let (from, along) = (start(&arrival.ray), direction(&arrival.ray));
-        let normal = arrival.target.form.normal();
-        let normal = -normal.dot(along).signum() * normal;
-        let point = before.frame.to_world(from + arrival.distance * along);
-        let normal = before.frame.vector_to_world(normal);
-        (
-            self.frame.to_local(point),
-            self.frame.vector_to_local(normal),
-        )
+    /// How a photon that arrives at the end of the leg before begins this one; `None` when it does not.
+    #[inline]
+    fn begin(&self, before: &Self, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
+        let arrival = arrival.moved(&before.frame, &self.frame);
+        let (ray, weight) = self.bounce.as_ref()?.sample(&arrival, words)?;
+        let from = arrival.point.z + self.rounding;
+        Some(Flight { ray, from, weight })
     }
 
     /// The planes a photon crosses before what it meets.
     #[inline]
     fn record(
         &self,
-        ray: &TwoPlane,
-        from: f64,
-        weight: f64,
+        flight: &Flight,
         met: Option<(f64, &Target<Meeting>)>,
         crossings: &mut [Vec<Crossing>],
     ) {
+        let Flight { ray, from, weight } = *flight;
         let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
         let on_path = met.is_some_and(|(_, target)| target.tag.is(self.ends));
-        for &Station {
-            plane,
-            distance,
-            side,
-        } in &self.stations
-        {
+        for station in &self.stations {
+            let (distance, side) = (station.distance, station.side);
             // A plane beside something is at the very same distance: no rounding can come between.
             let crossed = match side {
                 Side::Before => distance <= end,
                 Side::After => distance < end,
             };
             // A surface that is not flat, or not across the leg, begins before the plane that looks at what it receives.
+            let ends = |what: &Meeting| what.is(self.ends);
             let crossed = crossed
-                || on_path
-                    && self
-                        .obstacles
-                        .visibility(ray, from, distance, side, |what| what.is(self.ends))
-                        > 0.0;
-            if crossed {
-                crossings[plane].push(Crossing {
-                    ray: ray.travelled(distance),
-                    weight: weight * self.obstacles.transmittance(ray, from, distance, side),
+                || on_path && self.obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
+            if crossed && let Some((ray, weight)) = station.look(&ray, weight) {
+                let passes = self
+                    .obstacles
+                    .transmittance(&flight.ray, from, distance, side);
+                crossings[station.plane].push(Crossing {
+                    ray,
+                    weight: weight * passes,
                 });
             }
         }

@@ -157,3 +157,71 @@ fn light_that_left_an_oblique_wall_is_what_a_plain_sum_says() {
         "{mean} ± {error}, {sum}"
     );
 }
+
+/// Surfaces that reflect and refract, the path through them, and its planes.
+const SMOOTH: &[(&str, &str, &[&str], &str)] = &[
+    (
+        "a concave mirror, with planes of every orientation on it, and a floor that what it reflects falls on",
+        r#"Smooth(name: "mirror", center: (0, 0, 1), facing: (0.64, 0.1, -0.76), form: Sphere(-0.5), aperture: 0.3, event: Mirror),
+           Rectangle(name: "floor", center: (0.9, 0.16, 0.8), size: (1, 1), facing: (-1, 0, 0.2), albedo: 0.7)"#,
+        &["mirror", "floor"],
+        r#"(name: "a", at: Before("mirror"), orientation: Tangent), (name: "b", at: Before("mirror"), orientation: LocalNormals),
+           (name: "c", at: After("mirror"), orientation: LocalNormals), (name: "d", at: After("mirror"), orientation: Tangent),
+           (name: "e", at: Before("floor")), (name: "f", at: After("floor"))"#,
+    ),
+    (
+        "a ball lens",
+        r#"Smooth(name: "front", center: (0.02, 0, 1), facing: (0, 0, -1), form: Sphere(2.5), aperture: 0.35, event: Refraction(front: 1, back: 1.5)),
+           Smooth(name: "back", center: (0.02, 0, 1.8), facing: (0, 0, 1), form: Sphere(2.5), aperture: 0.35, event: Refraction(front: 1, back: 1.5))"#,
+        &["front", "back"],
+        r#"(name: "a", at: Before("front"), orientation: LocalNormals), (name: "b", at: After("front")), (name: "c", at: Before("back")),
+           (name: "d", at: After("back")), (name: "e", at: Distance(2.3))"#,
+    ),
+    (
+        "a thin lens, a twisted saddle and a cylinder",
+        r#"Smooth(name: "lens", center: (0, 0, 0.7), facing: (0, 0, -1), form: Plane, aperture: 0.4, event: ThinLens(0.6)),
+           Smooth(name: "saddle", center: (0, 0, 1.2), facing: (0.6, 0, -1), along: (1, 0.5, 0.3), form: Paraboloid(0.8, -0.5), aperture: 0.4, event: Mirror),
+           Smooth(name: "cylinder", center: (0.7, 0, 0.867), facing: (-1, 0.3, 0), along: (0, 0.3, 1), form: Cylinder(0.7), aperture: 0.5, event: Mirror)"#,
+        &["lens", "saddle", "cylinder"],
+        r#"(name: "a", at: After("lens")), (name: "b", at: After("saddle")), (name: "c", at: Before("cylinder"), orientation: LocalNormals),
+           (name: "d", at: After("cylinder"))"#,
+    ),
+];
+
+#[test]
+fn both_ways_agree_behind_smooth_surfaces() {
+    for (what, surfaces, visits, planes) in SMOOTH {
+        let text = format!(
+            r#"(
+                light: Disc(center: (0, 0, 0), radius: 0.1, radiance: 2),
+                blockers: [Shapes(name: "b", center: (0, 0, 0.5), shapes: [Rectangle(center: (0.05, 0.02), size: (0.08, 0.1))])],
+                surfaces: [{surfaces}],
+                path: (direction: (0, 0, 1), x_axis: (1, 0.3, 0), visits: {visits:?}),
+                planes: [{planes}],
+                window: (x: Hann(0.15), u: Hann(0.2), v: Hann(0.25)),
+                frequencies: (rho: (max: 4), nu: (max: 4)),
+                run: (photons: 1_000_000),
+            )"#
+        );
+        let file = SceneFile::parse(&text).unwrap();
+        let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
+        let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
+        let (photons, ledger) = estimates(&Tracer::new(&scene), &scene);
+        // Rounding of some 10^5 additions.
+        assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
+        for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
+            let name = &scene.planes[plane].name;
+            for (a, b) in a.iter().zip(b) {
+                let z = (a[0] - b[0]) / a[1].hypot(b[1]);
+                // Some 50 tests: 4 standard errors are passed in one run of 300.
+                assert!(z.abs() < 4.0, "{what}: {name}: {a:?} and {b:?}");
+            }
+            for [mean, error] in [a[0], b[0]] {
+                assert!(
+                    error < 0.03 * mean,
+                    "{what}: {name}: {a:?}, {b:?}: too noisy"
+                );
+            }
+        }
+    }
+}

@@ -39,7 +39,7 @@ pub(super) fn json(scene: &Scene) -> Vec<u8> {
         leg: plane.leg,
         leaves: scene.path.legs[plane.leg]
             .leaves
-            .map(|hit| shape_id(hit.object)),
+            .and_then(|hit| shape_id(hit.object)),
         quantity: plane.quantity,
         window: plane.window,
         frequencies: plane.grid,
@@ -55,9 +55,10 @@ pub(super) fn json(scene: &Scene) -> Vec<u8> {
     bytes
 }
 
-fn shape_id(object: Object) -> String {
+fn shape_id(object: Object) -> Option<String> {
     match object {
-        Object::Surface(i) => surface_id(i),
-        Object::Mesh(i) => mesh_id(i),
+        Object::Surface(i) => Some(surface_id(i)),
+        Object::Mesh(i) => Some(mesh_id(i)),
+        Object::Patch(_) => None,
     }
 }

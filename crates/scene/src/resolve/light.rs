@@ -1,6 +1,6 @@
 use super::Resolver;
-use crate::file::{BulbFile, LightFile};
-use etendue_field::{Disc, Light, Rectangle, Shape};
+use crate::file::{BulbFile, ImageFile, LightFile};
+use etendue_field::{Disc, Grating, Image, Light, Rectangle, Shape};
 
 impl LightFile {
     /// Where the central ray leaves it, world coordinates.
@@ -9,7 +9,9 @@ impl LightFile {
             Self::Rectangle { center, .. }
             | Self::Disc { center, .. }
             | Self::Point { center, .. }
-            | Self::Spot { center, .. } => *center,
+            | Self::Spot { center, .. }
+            | Self::Projector { center, .. }
+            | Self::Beam { center, .. } => *center,
         }
     }
 }
@@ -43,6 +45,24 @@ impl Resolver<'_> {
                 self.faults.positive("light.intensity", intensity);
                 Light::Point { intensity }
             }
+            LightFile::Projector {
+                intensity,
+                ref image,
+                ..
+            } => {
+                self.faults.positive("light.intensity", intensity);
+                let image = self.image(image);
+                Light::Projector { intensity, image }
+            }
+            LightFile::Beam {
+                irradiance,
+                ref image,
+                ..
+            } => {
+                self.faults.positive("light.irradiance", irradiance);
+                let image = self.image(image);
+                Light::Beam { irradiance, image }
+            }
             LightFile::Spot {
                 bulb,
                 radiance,
@@ -59,6 +79,31 @@ impl Resolver<'_> {
                     BulbFile::Disc(radius) => area(disc(radius), radiance, exponent),
                 }
             }
+        }
+    }
+}
+
+impl Resolver<'_> {
+    fn image(&mut self, file: &ImageFile) -> Image {
+        for (i, width) in file.width.iter().enumerate() {
+            self.faults
+                .positive(format!("light.image.width[{i}]"), *width);
+        }
+        if let Some(g) = &file.grating {
+            let of = "light.image.grating";
+            self.faults.positive(format!("{of}.frequency"), g.frequency);
+            self.faults
+                .within(format!("{of}.modulation"), g.modulation, 0.0..=1.0);
+            self.faults.coordinates(&format!("{of}.phase"), &[g.phase]);
+        }
+        Image {
+            width: file.width,
+            grating: file.grating.map(|g| Grating {
+                axis: g.axis.index(),
+                frequency: g.frequency,
+                modulation: g.modulation,
+                phase: g.phase,
+            }),
         }
     }
 }

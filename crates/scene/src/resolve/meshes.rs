@@ -59,7 +59,7 @@ impl Resolver<'_> {
                     scale: *scale,
                     albedo: Some(*albedo),
                 }),
-                SurfaceFile::Rectangle { .. } => None,
+                SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
             });
         let placed: Vec<_> = blockers.chain(surfaces).collect();
         let objects = placed.into_iter().filter_map(|p| self.mesh(&p, frame));

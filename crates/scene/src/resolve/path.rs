@@ -3,7 +3,7 @@
 use super::Resolver;
 use super::faults::show;
 use crate::file::SceneFile;
-use crate::scene::{BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, Surface};
+use crate::scene::{BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, PatchObject, Surface};
 use etendue_field::{Frame, TwoPlane, triangle_distance};
 use glam::DVec3;
 
@@ -16,6 +16,7 @@ pub(super) struct Things<'a> {
     pub(super) blockers: &'a [BlockerLayer],
     pub(super) surfaces: &'a [Surface],
     pub(super) meshes: &'a [MeshObject],
+    pub(super) patches: &'a [PatchObject],
 }
 
 impl Resolver<'_> {
@@ -47,7 +48,7 @@ impl Resolver<'_> {
                 return CentralRay { frame, legs };
             };
             leg = Leg {
-                frame: leaving(&leg.frame, &hit, d),
+                frame: leaving(&leg.frame, &hit, d, things.is_left_behind(&hit, d)),
                 start: leg.start + length,
                 length: f64::NAN,
                 leaves: Some(hit),
@@ -118,6 +119,16 @@ impl Resolver<'_> {
         things: Things<'_>,
     ) -> Option<DVec3> {
         let path = &file.path;
+        if let Object::Patch(at) = hit.object {
+            let PatchObject { patch, event, name } = &things.patches[at];
+            let d = event.turned(patch, hit.point, leg.d).map(DVec3::normalize);
+            if d.is_none() {
+                let allowed = format!("an angle at which {} does not reflect it all", show(name));
+                self.faults
+                    .add(format!("path.visits[{i}]"), show(name), allowed);
+            }
+            return d;
+        }
         let (of, value, d) = if let Some(next) = path.visits.get(i + 1) {
             let known = things.objects();
             let Some((object, _)) = known.iter().find(|(_, name)| name == next) else {
@@ -146,8 +157,22 @@ impl Resolver<'_> {
 /// The frame in which light leaves a hit along `d`: that of a mirror, (−X, Y) reflected, turned by the smallest
 /// angle until it looks along `d`. Straight back at normal incidence it is (−X, Y, −D) (Durand et al. 2005,
 /// section 4.1, steps 1 and 7, at θ = 0); in the plane of incidence it is that of docs/conventions.md.
-fn leaving(arriving: &Frame, hit: &Hit, d: DVec3) -> Frame {
+///
+/// Light that goes through has the frame in which it arrived, turned in the same way.
+fn leaving(arriving: &Frame, hit: &Hit, d: DVec3, through: bool) -> Frame {
     let n = hit.normal;
+    if through {
+        let origin = hit.point;
+        let arriving = Frame {
+            origin,
+            ..*arriving
+        };
+        return if arriving.d == d {
+            arriving
+        } else {
+            arriving.turned_to(d)
+        };
+    }
     let reflected = |v: DVec3| v - 2.0 * v.dot(n) * n;
     let mirrored = Frame {
         origin: hit.point,
@@ -170,7 +195,14 @@ impl Things<'_> {
         let meshes = self.meshes.iter().enumerate();
         let meshes = meshes.filter(|(_, m)| m.albedo.is_some());
         let meshes = meshes.map(|(i, m)| (Object::Mesh(i), m.name.as_str()));
-        surfaces.chain(meshes).collect()
+        let patches = self.patches.iter().enumerate();
+        let patches = patches.map(|(i, p)| (Object::Patch(i), p.name.as_str()));
+        surfaces.chain(meshes).chain(patches).collect()
+    }
+
+    /// Whether light that leaves a hit along `d` has gone through.
+    fn is_left_behind(&self, hit: &Hit, d: DVec3) -> bool {
+        matches!(hit.object, Object::Patch(_)) && d.dot(hit.normal) < 0.0
     }
 
     /// Where the axis of a frame meets an object first: distance, point and the normal on this side.
@@ -186,6 +218,13 @@ impl Things<'_> {
                 (t > LEFT && inside).then_some((t, n))
             }
             Object::Mesh(i) => self.meshes[i].first_on(frame),
+            Object::Patch(i) => {
+                let patch = &self.patches[i].patch;
+                let local = patch.frame.decompose(frame);
+                let hits = patch.hits(local.origin, local.d);
+                let t = hits.into_iter().find(|t| *t > LEFT);
+                t.map(|t| (t, patch.normal(frame.origin + t * frame.d)))
+            }
         };
         let (t, n) = found?;
         let normal = if n.dot(frame.d) > 0.0 { -n } else { n };
@@ -195,7 +234,7 @@ impl Things<'_> {
     fn is_finite(&self, object: Object) -> bool {
         match object {
             Object::Surface(i) => self.surfaces[i].frame.origin.is_finite(),
-            Object::Mesh(_) => true,
+            Object::Mesh(_) | Object::Patch(_) => true,
         }
     }
 
@@ -203,6 +242,7 @@ impl Things<'_> {
         match object {
             Object::Surface(i) => self.surfaces[i].frame.origin,
             Object::Mesh(i) => self.meshes[i].center,
+            Object::Patch(i) => self.patches[i].patch.frame.origin,
         }
     }
 

@@ -3,11 +3,14 @@
 use super::faults::show;
 use super::{Resolver, SAME_PLANE, Stop};
 use crate::fault::Fault;
-use crate::file::{AxisFile, FrequenciesFile, Place, SceneFile, WindowFile};
+use crate::file::{AxisFile, FrequenciesFile, Place, PlaneFile, SceneFile, WindowFile};
 use crate::scene::CentralRay;
-use etendue_field::{FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window};
+use etendue_field::{
+    Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
+};
 
 /// A place on the path.
+#[derive(Clone, Copy)]
 struct OnPath {
     distance: f64,
     side: Side,
@@ -41,17 +44,16 @@ impl Resolver<'_> {
             let (Some(place), Some(grid)) = (place, grid) else {
                 continue;
             };
+            let (frame, longitude) = self.view(&of, plane, place, path);
             planes.push(VirtualPlane {
                 name: plane.name.clone(),
                 distance: place.distance,
                 leg: place.leg,
                 side: place.side,
                 quantity: plane.quantity,
-                orientation: Orientation::Orthogonal,
-                longitude: 0.0,
-                frame: path
-                    .frame
-                    .compose(&path.frame_at(place.distance, place.leg)),
+                orientation: plane.orientation,
+                longitude,
+                frame: path.frame.compose(&frame),
                 window,
                 grid,
             });
@@ -64,6 +66,44 @@ impl Resolver<'_> {
             new
         });
         planes
+    }
+
+    /// The frame of a plane, in the frame at the light, and the longitude of the central ray in it.
+    fn view(
+        &mut self,
+        of: &str,
+        plane: &PlaneFile,
+        place: OnPath,
+        path: &CentralRay,
+    ) -> (Frame, f64) {
+        let across = (path.frame_at(place.distance, place.leg), 0.0);
+        if plane.orientation == Orientation::Orthogonal {
+            return across;
+        }
+        let of = format!("{of}.orientation");
+        if plane.quantity != Quantity::Radiance {
+            let allowed = "Orthogonal: on a surface only radiance is recorded";
+            self.faults.add(&of, show(plane.orientation), allowed);
+        }
+        let hit = match place.side {
+            Side::Before => path.ends_at(place.leg).map(|hit| (hit, place.leg)),
+            Side::After => path.legs[place.leg]
+                .leaves
+                .as_ref()
+                .map(|hit| (hit, place.leg - 1)),
+        };
+        let at_hit = matches!(plane.at, Place::Before(_) | Place::After(_));
+        let Some((hit, arriving)) = hit.filter(|_| at_hit) else {
+            let allowed =
+                "Orthogonal, or a place Before(…) or After(…) a surface that the path visits";
+            self.faults.add(&of, show(plane.orientation), allowed);
+            return across;
+        };
+        let (frame, arrives) = hit.surface_frame(&path.legs[arriving].frame);
+        match place.side {
+            Side::Before => (frame, arrives),
+            Side::After => (frame, frame.longitude(path.legs[place.leg].frame.d)),
+        }
     }
 
     fn place(

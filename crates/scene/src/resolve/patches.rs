@@ -1,0 +1,99 @@
+use super::Resolver;
+use super::faults::show;
+use crate::file::{EventFile, FormFile, SceneFile, SurfaceFile};
+use crate::scene::PatchObject;
+use etendue_field::{Frame, Patch, Specular};
+use glam::DVec3;
+
+impl Resolver<'_> {
+    /// The smooth surfaces.
+    pub(super) fn patches(&mut self, file: &SceneFile, light: &Frame) -> Vec<PatchObject> {
+        let surfaces = file.surfaces.iter().enumerate();
+        surfaces
+            .filter_map(|(i, surface)| self.patch(&format!("surfaces[{i}]"), surface, light))
+            .collect()
+    }
+
+    fn patch(&mut self, of: &str, surface: &SurfaceFile, light: &Frame) -> Option<PatchObject> {
+        let SurfaceFile::Smooth {
+            name,
+            center,
+            facing,
+            form,
+            along,
+            aperture,
+            event,
+        } = surface
+        else {
+            return None;
+        };
+        self.faults.coordinates(&format!("{of}.center"), center);
+        self.faults.coordinates(&format!("{of}.facing"), facing);
+        if let Some(along) = along {
+            self.faults.coordinates(&format!("{of}.along"), along);
+        }
+        self.faults.positive(format!("{of}.aperture"), *aperture);
+        let curvature = match *form {
+            FormFile::Plane => [0.0; 3],
+            FormFile::Sphere(k) => [k; 3],
+            FormFile::Cylinder(k) => [k, 0.0, k],
+            FormFile::Paraboloid(k, l) => [k, l, 0.0],
+        };
+        self.faults.coordinates(&format!("{of}.form"), &curvature);
+        // Beyond the half that holds the vertex there is nothing of a sphere or a cylinder.
+        if curvature[2] != 0.0 && *aperture > 1.0 / curvature[2].abs() {
+            let allowed = format!(
+                "at most the radius of curvature, {} m",
+                1.0 / curvature[2].abs()
+            );
+            self.faults
+                .add(format!("{of}.aperture"), show(aperture), allowed);
+        }
+        let event = self.event(&format!("{of}.event"), *event, *form);
+        let origin = light.to_local(DVec3::from(*center));
+        let d = light.vector_to_local(DVec3::from(*facing));
+        let frame = match along {
+            Some(along) => Frame::new(origin, d, light.vector_to_local(DVec3::from(*along))),
+            None => Frame::new(origin, d, DVec3::X).or_else(|| Frame::new(origin, d, DVec3::Y)),
+        };
+        if frame.is_none() && d.is_finite() {
+            let allowed = "a direction, with `along` not parallel to it";
+            self.faults
+                .add(format!("{of}.facing"), show(facing), allowed);
+        }
+        Some(PatchObject {
+            name: name.clone(),
+            patch: Patch {
+                frame: frame?,
+                curvature,
+                aperture: *aperture,
+            },
+            event,
+        })
+    }
+
+    fn event(&mut self, of: &str, event: EventFile, form: FormFile) -> Specular {
+        match event {
+            EventFile::Mirror => Specular::Mirror,
+            EventFile::Refraction { front, back } => {
+                for (side, index) in [("front", front), ("back", back)] {
+                    self.faults
+                        .within(format!("{of}.{side}"), index, 0.1..=10.0);
+                }
+                Specular::Refraction { front, back }
+            }
+            EventFile::ThinLens(focal_length) => {
+                self.faults
+                    .positive(format!("{of} (its size)"), focal_length.abs());
+                if form != FormFile::Plane {
+                    self.faults.add(
+                        of,
+                        show(event),
+                        "ThinLens(…) on a Plane: it has no form of its own",
+                    );
+                }
+                Specular::ThinLens { focal_length }
+            }
+        }
+    }
+}

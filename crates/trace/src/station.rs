@@ -1,0 +1,146 @@
+use crate::obstacles::{direction, ray_through, start};
+use etendue_field::{Frame, Orientation, Patch, Side, TwoPlane, VirtualPlane};
+use etendue_scene::{Object, Scene};
+use glam::DVec3;
+
+/// Where a plane stands on its leg, and how it looks at rays of the leg.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Station {
+    pub(crate) plane: usize,
+    /// Along the leg.
+    pub(crate) distance: f64,
+    pub(crate) side: Side,
+    /// `None` across the leg.
+    surface: Option<OnSurface>,
+}
+
+/// A plane on a surface.
+#[derive(Clone, Copy, Debug)]
+struct OnSurface {
+    /// (T, B, N) at the central hit, in the frame of the leg.
+    frame: Frame,
+    longitude: f64,
+    /// Directions are turned around: light arrives.
+    arriving: bool,
+    /// The surface itself, in the frame of the leg, where rays are counted from its local normals.
+    patch: Option<Patch>,
+}
+
+/// The point of a line on a patch that is nearest to another point.
+fn nearest(patch: &Patch, start: DVec3, along: DVec3, to: DVec3) -> Option<DVec3> {
+    let hits = patch.hits(
+        patch.frame.to_local(start),
+        patch.frame.vector_to_local(along),
+    );
+    let points = hits
+        .into_iter()
+        .filter(|t| !t.is_nan())
+        .map(|t| start + t * along);
+    points.min_by(|a, b| a.distance(to).total_cmp(&b.distance(to)))
+}
+
+impl Station {
+    /// The ray of the leg, where it begins, that the plane has as `seen`; `None` if there is none.
+    pub(crate) fn leg_ray(&self, seen: &TwoPlane) -> Option<TwoPlane> {
+        match &self.surface {
+            None => Some(seen.travelled(-self.distance)),
+            Some(surface) => surface.leg_ray(seen),
+        }
+    }
+
+    pub(crate) fn new(scene: &Scene, index: usize, plane: &VirtualPlane) -> Self {
+        let path = &scene.path;
+        let arriving = plane.side == Side::Before;
+        let leg = &path.legs[plane.leg];
+        let hit = if arriving {
+            path.ends_at(plane.leg)
+        } else {
+            leg.leaves.as_ref()
+        };
+        let patch = match hit.map(|hit| hit.object) {
+            Some(Object::Patch(i)) if plane.orientation == Orientation::LocalNormals => {
+                Some(scene.patches[i].patch.seen_from(&leg.frame))
+            }
+            _ => None,
+        };
+        let surface = (plane.orientation != Orientation::Orthogonal).then(|| OnSurface {
+            frame: leg.frame.decompose(&path.frame.decompose(&plane.frame)),
+            longitude: plane.longitude,
+            arriving,
+            patch,
+        });
+        Self {
+            plane: index,
+            distance: path.along(plane),
+            side: plane.side,
+            surface,
+        }
+    }
+
+    /// A ray of the leg as the plane has it, with what it adds there; `None` when it does not meet the surface.
+    #[inline]
+    pub(crate) fn look(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
+        match &self.surface {
+            None => Some((ray.travelled(self.distance), weight)),
+            Some(surface) => surface.look(ray, weight),
+        }
+    }
+}
+
+impl OnSurface {
+    /// The frame of the local normal at a point, on the side of the one at the central hit.
+    fn local(&self, patch: &Patch, point: DVec3) -> Frame {
+        let normal = patch.normal(point);
+        self.frame
+            .turned_to(normal.dot(self.frame.d).signum() * normal)
+    }
+
+    /// The inverse of [`Self::look`].
+    fn leg_ray(&self, seen: &TwoPlane) -> Option<TwoPlane> {
+        let foot = self.frame.to_world(DVec3::new(seen.x, seen.y, 0.0));
+        let (point, frame) = match &self.patch {
+            None => (foot, self.frame),
+            Some(patch) => {
+                let point = nearest(patch, foot, self.frame.d, foot)?;
+                (point, self.local(patch, point))
+            }
+        };
+        let (sin, cos) = (seen.u + self.longitude).sin_cos();
+        let (up, across) = seen.v.sin_cos();
+        let away = frame.vector_to_world(DVec3::new(across * sin, up, across * cos));
+        let along = if self.arriving { -away } else { away };
+        ray_through(point, along).filter(|_| across > 0.0 && cos > 0.0)
+    }
+
+    fn look(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
+        let along = direction(ray);
+        let (point, frame) = match &self.patch {
+            None => {
+                let t =
+                    (self.frame.origin - start(ray)).dot(self.frame.d) / along.dot(self.frame.d);
+                (start(ray) + t * along, self.frame)
+            }
+            Some(patch) => {
+                let point = nearest(patch, start(ray), along, self.frame.origin)?;
+                (point, self.local(patch, point))
+            }
+        };
+        let away = if self.arriving { -along } else { along };
+        let DVec3 { x: t, y: b, z: n } = frame.vector_to_local(away.normalize());
+        let (longitude, sine) = (t.atan2(n), b);
+        let latitude = sine.asin();
+        // The angle to the normal has the cosine cos θ cos φ = n, and the solid angle is cos φ dθ dφ.
+        let measure = n * latitude.cos();
+        let at = self.frame.to_local(point);
+        let secant_squared = ray.secant_squared();
+        (n > 0.0).then(|| {
+            let ray = TwoPlane {
+                x: at.x,
+                y: at.y,
+                u: longitude - self.longitude,
+                v: latitude,
+            };
+            (ray, weight / (secant_squared * secant_squared * measure))
+        })
+    }
+}
