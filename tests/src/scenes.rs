@@ -81,7 +81,7 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
     let planes = scene.planes.iter().enumerate();
     planes
         .map(|(i, plane)| match Class::of(scene, plane) {
-            Class::Exact => Prediction::new(scene, plane),
+            Class::Exact | Class::FirstOrder => Prediction::new(scene, plane),
             Class::Reference => referred(scene, i, reference.expect("a reference")),
         })
         .collect()

@@ -94,6 +94,7 @@ fn cells(scene: &Scene, report: &PlaneReport, backward: Option<f64>) -> Vec<Stri
     let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.4}"));
     let class = match report.class {
         Class::Exact => "exact",
+        Class::FirstOrder => "first-order",
         Class::Reference => "reference",
     };
     vec![

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::npz::Npz;
 use crate::results::Results;
 use crate::stored::Stored;
-use etendue_compare::{Class, PredictedParameter, Prediction};
+use etendue_compare::{Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction};
 use etendue_field::{Complex, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
@@ -24,6 +24,8 @@ pub(crate) struct PredictedPlane {
     class: Class,
     chain: Vec<String>,
     quadrature_error: Option<f64>,
+    /// Of the chain of affine maps, whose slices are in the arrays.
+    first_order: Option<FirstOrderChain>,
     /// Names and units of the parameters, in the order of the arrays.
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
@@ -49,6 +51,7 @@ pub(crate) fn write(
             steps,
             slices,
             quadrature_error,
+            first_order,
             replicates,
             unblocked,
             projection,
@@ -65,8 +68,14 @@ pub(crate) fn write(
         for (mut row, batch) in batches.outer_iter_mut().zip(replicates) {
             row.assign(&batch.half);
         }
+        let mut linear =
+            Array4::<Complex>::zeros([usize::from(first_order.is_some()), azimuths, rho, nu]);
+        for (mut row, first_order) in linear.outer_iter_mut().zip(first_order) {
+            row.assign(&first_order.slices.half);
+        }
         let bytes = Npz::new()
             .add("slices", &slices.half)?
+            .add("first_order", &linear)?
             .add("projection", &projection.values)?
             .add("unblocked", &arr0(*unblocked))?
             .add("values", &values)?
@@ -80,6 +89,7 @@ pub(crate) fn write(
             class: *class,
             chain: steps.clone(),
             quadrature_error: *quadrature_error,
+            first_order: first_order.as_ref().map(|f| f.chain.clone()),
             parameters: parameters
                 .iter()
                 .map(|p| [p.name.clone(), p.unit.clone()])
@@ -134,6 +144,10 @@ fn read_plane(
     let unblocked: Array0<f64> = file.array("unblocked", ())?;
     let values: Array1<f64> = file.array("values", [count])?;
     let derivatives: Array4<Complex> = file.array("derivatives", [count, azimuths, rho, nu])?;
+    let shape = [usize::from(words.first_order.is_some()), azimuths, rho, nu];
+    let linear: Array4<Complex> = file.array("first_order", shape)?;
+    let linear = linear.outer_iter().map(|half| slices(half.to_owned()));
+    let first_order = linear.zip(&words.first_order).next();
     let shape = [words.replicates, azimuths, rho, nu];
     let batches: Array4<Complex> = file.array("replicates", shape)?;
     let parameters = words.parameters.iter().enumerate();
@@ -142,6 +156,10 @@ fn read_plane(
         steps: words.chain.clone(),
         slices: slices(half),
         quadrature_error: words.quadrature_error,
+        first_order: first_order.map(|(slices, chain)| FirstOrder {
+            slices,
+            chain: chain.clone(),
+        }),
         replicates: batches.outer_iter().map(|b| slices(b.to_owned())).collect(),
         cuts: words.cuts.clone(),
         unblocked: unblocked.into_scalar(),

@@ -1,3 +1,4 @@
+use crate::system::follows_rays;
 use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
@@ -9,16 +10,20 @@ use serde::{Deserialize, Serialize};
 pub enum Class {
     /// Equals the expectation of the measurement, in closed form or by quadrature.
     Exact,
+    /// The paper's linearised chain, its error computed beside it: first order minus the exact ray-space prediction.
+    FirstOrder,
     /// There is no theory: the other tracer's measurement takes its place.
     Reference,
 }
 
 impl Class {
     /// The kind of prediction a plane has: what stands in planes across the path has closed forms or quadratures, and so has
-    /// a reflection straight back; everything else has not.
+    /// a reflection straight back; mirrors, interfaces and lenses have their affine maps; everything else has not.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if without_theory(scene, plane).is_empty() {
+        if follows_rays(scene, plane) {
+            Self::FirstOrder
+        } else if without_theory(scene, plane).is_empty() {
             Self::Exact
         } else {
             Self::Reference

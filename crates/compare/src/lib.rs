@@ -8,16 +8,20 @@
 
 mod chain;
 mod class;
+mod first_order;
 mod plane;
 mod prediction;
 mod report;
 mod residuals;
 mod score;
+mod system;
 
 pub use chain::{chain, stands_before};
 pub use class::Class;
+pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use plane::{PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction, steps};
 pub use report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
 pub use residuals::Residuals;
 pub use score::ParameterReport;
+pub use system::system;

@@ -1,3 +1,4 @@
+use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
 use crate::report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
@@ -73,7 +74,13 @@ pub fn compare(
     };
     let agreement = Agreement::new(&residuals, &variance, &predicted);
     let p_value = residuals.p_value(seed);
+    let first_order = prediction.first_order.as_ref();
+    let first_order = first_order.map(|f| f.report(measurement, index, &residuals, seed));
     let verdict = verdict(&predicted, &tally, p_value, level, agreement.noise_limit());
+    // The worse of the two: what rays do, and what the first-order chain makes of it.
+    let verdict = first_order
+        .as_ref()
+        .map_or(verdict, |f| verdict.and(f.verdict));
     let grid = &plane.grid;
     let quadrature = prediction.quadrature_error.zip(agreement.noise_limit());
     let pair =
@@ -115,13 +122,13 @@ pub fn compare(
                 share: pair(&|p| high_frequency_share(p, grid, cut)),
             })
             .collect(),
-        verdict,
         photons_needed: (verdict == Verdict::Undecided).then(|| {
-            photons_needed(
-                measurement.emitted(),
-                agreement.noise_limit().unwrap_or_default(),
-            )
+            let noise = agreement.noise_limit().unwrap_or_default();
+            let enough = first_order.as_ref().map_or(1.0, FirstOrderReport::more);
+            photons_needed(measurement.emitted(), noise).max(measurement.emitted() as f64 * enough)
         }),
+        verdict,
+        first_order,
         warnings: warnings(&predicted_radial, grid, quadrature),
     };
     Ok(PlaneComparison {
@@ -232,8 +239,7 @@ impl Agreement {
             difference,
             noise,
             predicted,
-            excess_squared_error: (predicted > 0.0)
-                .then(|| cross_power_error(&residuals.products(false)) / predicted),
+            excess_squared_error: (predicted > 0.0).then(|| residuals.squared_error() / predicted),
             noise_floor_db: (peak > 0.0 && noise > 0.0).then(|| 10.0 * (mean_noise / peak).log10()),
         }
     }
@@ -253,15 +259,6 @@ impl Agreement {
     fn excess(&self) -> Option<f64> {
         self.relative(self.difference - self.noise)
     }
-}
-
-/// Standard error, if the prediction is true, of U = Σ_{b≠c} H_bc / (R (R − 1)), the unbiased power of the
-/// residuals: its terms are then uncorrelated, each pair coming twice.
-fn cross_power_error(products: &Array2<f64>) -> f64 {
-    let r = products.nrows() as f64;
-    let all: f64 = products.iter().map(|h| h * h).sum();
-    let diagonal: f64 = products.diag().iter().map(|h| h * h).sum();
-    (2.0 * (all - diagonal)).max(0.0).sqrt() / (r * (r - 1.0))
 }
 
 /// The largest error of a quadrature that goes without a warning, as a share of the noise.

@@ -1,9 +1,12 @@
 use crate::chain::chain;
 use crate::class::{Class, without_theory};
+use crate::first_order::{FirstOrder, print};
+use crate::system::system;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
+use etendue_theory::rays::{self, Plane, System};
 use etendue_theory::{Chain, Operator};
 
 /// Everything a measurement of a plane is held against.
@@ -17,6 +20,8 @@ pub struct Prediction {
     pub slices: Slices,
     /// ‖error‖/‖slices‖ of a quadrature, estimated; `None` for a closed form.
     pub quadrature_error: Option<f64>,
+    /// The first-order chain; `slices` and all else are then those of the exact ray-space prediction.
+    pub first_order: Option<FirstOrder>,
     /// For a reference, its independent batches, of which `slices` is the mean; theory has none.
     pub replicates: Vec<Slices>,
     /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against; zero for a reference.
@@ -46,22 +51,35 @@ pub struct PredictedParameter {
 #[must_use]
 pub fn steps(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let Window { x, y, u, v } = &plane.window;
-    let mut steps = chain(scene, plane).describe();
-    steps.extend(
-        without_theory(scene, plane)
-            .iter()
-            .map(|step| format!("without theory  {step}")),
-    );
+    let mut steps = match system(scene, plane) {
+        Some((system, at)) if Class::of(scene, plane) == Class::FirstOrder => {
+            rays::chain(&system, &at, print(scene)).map_or_else(Vec::new, |chain| chain.steps)
+        }
+        _ => chain(scene, plane).describe(),
+    };
+    let unknown = match Class::of(scene, plane) {
+        Class::FirstOrder => Vec::new(),
+        Class::Exact | Class::Reference => without_theory(scene, plane),
+    };
+    steps.extend(unknown.iter().map(|step| format!("without theory  {step}")));
     steps.push(format!(
         "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
     ));
     steps
 }
 
+/// Metres, and whatever else parameters are in, that rounding leaves of zero.
+const NOTHING: f64 = 1e-9;
+
 impl Prediction {
     /// What theory predicts for a plane of a scene; for a plane behind a mesh see [`Self::reference`].
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
+        if Class::of(scene, plane) == Class::FirstOrder
+            && let Some((system, at)) = system(scene, plane)
+        {
+            return Self::by_rays(scene, plane, &system, &at);
+        }
         let chain = chain(scene, plane);
         let (window, grid) = (&plane.window, &plane.grid);
         let slices = etendue_theory::slices(&chain, window, grid);
@@ -80,12 +98,46 @@ impl Prediction {
             class: Class::of(scene, plane),
             steps: steps(scene, plane),
             quadrature_error: etendue_theory::quadrature_error(&chain, window, grid, &slices),
+            first_order: None,
             replicates: Vec::new(),
             unblocked: unblocked(chain.clone(), window),
             projection: etendue_theory::projection(&chain, window, &cells),
             slices,
             parameters,
             cuts: cuts(scene, plane),
+        }
+    }
+
+    /// What rays followed through the real geometry say, and the first-order chain.
+    fn by_rays(scene: &Scene, plane: &VirtualPlane, system: &System, at: &Plane) -> Self {
+        let (window, grid) = (&plane.window, &plane.grid);
+        let exact = rays::exact(system, at, window, grid);
+        let first_order = FirstOrder::new(scene, plane, system, at, &exact.slices);
+        let cells = ProjectionGrid::new(window, PROJECTION_BINS);
+        let parameters = system.parameters(at).into_iter().filter_map(|parameter| {
+            // A plane at its surface has no travel to it.
+            let value = system
+                .value(at, parameter)
+                .filter(|value| value.abs() > NOTHING)?;
+            let derivative = rays::derivative(system, at, parameter, window, grid, &exact)?;
+            Some(PredictedParameter {
+                name: system.name(parameter),
+                unit: system.unit(parameter).to_owned(),
+                value,
+                derivative,
+            })
+        });
+        Self {
+            class: Class::FirstOrder,
+            steps: steps(scene, plane),
+            quadrature_error: Some(exact.quadrature_error),
+            first_order,
+            replicates: Vec::new(),
+            unblocked: 0.0,
+            projection: rays::projection(system, at, window, &cells),
+            parameters: parameters.collect(),
+            slices: exact.slices,
+            cuts: Vec::new(),
         }
     }
 
@@ -105,6 +157,7 @@ impl Prediction {
             steps: steps(scene, plane),
             slices: estimate::slices(measurement, at)?.mean,
             quadrature_error: None,
+            first_order: None,
             replicates: measurement
                 .at_plane(at)
                 .map(|batch| batch.slices.clone())

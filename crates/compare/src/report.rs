@@ -1,4 +1,5 @@
 use crate::class::Class;
+use crate::first_order::FirstOrderReport;
 use crate::score::ParameterReport;
 use etendue_field::Frame;
 use serde::Serialize;
@@ -13,6 +14,18 @@ pub enum Verdict {
     Fail,
     /// No disagreement was seen, but noise would have hidden one: the plane needs more photons.
     Undecided,
+}
+
+impl Verdict {
+    /// The worse of two: fail before undecided before pass.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        match (self, other) {
+            (Self::Fail, _) | (_, Self::Fail) => Self::Fail,
+            (Self::Undecided, _) | (_, Self::Undecided) => Self::Undecided,
+            (Self::Pass, Self::Pass) => Self::Pass,
+        }
+    }
 }
 
 /// Measured and predicted values of one number.
@@ -87,6 +100,8 @@ pub struct PlaneReport {
     pub bandwidth_95: Bandwidth,
     /// H at two cuts, on a plane that light leaves diffusely; empty elsewhere.
     pub high_frequency_share: Vec<HighFrequencyShare>,
+    /// The photons held against the first-order chain, on a plane of that class; all numbers above are of the exact ray-space prediction.
+    pub first_order: Option<FirstOrderReport>,
     /// What it comes to.
     pub verdict: Verdict,
     /// Photons that would decide an undecided plane.

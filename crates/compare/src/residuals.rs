@@ -188,6 +188,33 @@ impl Residuals {
         products
     }
 
+    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife error (docs/theory.md, Eq. 15).
+    pub(crate) fn squared(&self) -> (f64, f64) {
+        let products = self.products(false);
+        let r = self.count() as f64;
+        let rows: Vec<f64> = products
+            .outer_iter()
+            .enumerate()
+            .map(|(b, row)| row.sum() - row[b])
+            .collect();
+        let total: f64 = rows.iter().sum();
+        let without = rows
+            .iter()
+            .map(|row| (total - 2.0 * row) / ((r - 1.0) * (r - 2.0)));
+        let mean = without.clone().sum::<f64>() / r;
+        let spread: f64 = without.map(|u| (u - mean).powi(2)).sum();
+        (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
+    }
+
+    /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then uncorrelated, each pair coming twice.
+    pub(crate) fn squared_error(&self) -> f64 {
+        let products = self.products(false);
+        let r = self.count() as f64;
+        let all: f64 = products.iter().map(|h| h * h).sum();
+        let diagonal: f64 = products.diag().iter().map(|h| h * h).sum();
+        (2.0 * (all - diagonal)).max(0.0).sqrt() / (r * (r - 1.0))
+    }
+
     /// Real and imaginary parts of the independent cells of azimuth `k`, over the root of `scale`.
     fn row(&self, residual: &Array3<Complex>, scale: &Array3<f64>, k: usize) -> Vec<f64> {
         let plane = residual.index_axis(Axis(0), k);

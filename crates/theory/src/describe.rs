@@ -96,7 +96,7 @@ fn in_words(shape: &Shape) -> String {
 }
 
 /// E.g. "4 opaque rectangles, 1 half-plane".
-fn opaque(shapes: &[Shape], half_planes: usize) -> String {
+pub(crate) fn opaque(shapes: &[Shape], half_planes: usize) -> String {
     let discs = shapes
         .iter()
         .filter(|s| matches!(s, Shape::Disc(_)))
@@ -118,7 +118,7 @@ fn opaque(shapes: &[Shape], half_planes: usize) -> String {
 }
 
 /// E.g. "½(1 + 0.9 cos(2π 5 x + 0.3))".
-fn formula(grating: &Grating) -> String {
+pub(crate) fn formula(grating: &Grating) -> String {
     let Grating {
         axis,
         frequency,

@@ -39,7 +39,7 @@ pub fn quadrature_error(
 }
 
 /// ‖a − b‖/‖b‖; 0 if both are dark.
-fn distance(a: &Slices, b: &Slices) -> f64 {
+pub(crate) fn distance(a: &Slices, b: &Slices) -> f64 {
     let (mut error, mut size) = (0.0, 0.0);
     for (a, b) in a.half.iter().zip(&b.half) {
         error += (a - b).norm_sqr();

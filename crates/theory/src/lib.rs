@@ -61,6 +61,7 @@ mod plain;
 mod polygon;
 mod projection;
 mod quadrature;
+pub mod rays;
 #[cfg(test)]
 mod reference;
 mod reflection;

@@ -1,0 +1,74 @@
+use crate::chain::stands_before;
+use etendue_field::{Light, Orientation, Side, VirtualPlane};
+use etendue_scene::{Hit, Object, Scene};
+use etendue_theory::rays::{Element, Plane, System};
+
+/// The light, masks and specular surfaces that lead to a plane, and the plane, for theory to follow rays through; `None` where light
+/// is reflected diffusely, or may meet what is neither on the path nor in a plane across its first leg.
+#[must_use]
+pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
+    let path = &scene.path;
+    let hits = path.legs[..=plane.leg].iter().filter_map(|leg| leg.leaves);
+    let elements: Option<Vec<Element>> = hits
+        .map(|hit| match hit.object {
+            Object::Patch(i) => {
+                let object = &scene.patches[i];
+                Some(Element {
+                    name: object.name.clone(),
+                    patch: object.patch,
+                    event: object.event,
+                })
+            }
+            Object::Surface(_) | Object::Mesh(_) => None,
+        })
+        .collect();
+    let layers = scene.blockers.iter();
+    let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
+    let system = System {
+        light: scene.light,
+        layers: layers.map(|l| (l.distance, l.mask.clone())).collect(),
+        elements: elements?,
+    };
+    let hit = surface(scene, plane);
+    let patch = match hit.map(|hit| hit.object) {
+        Some(Object::Patch(i)) if plane.orientation == Orientation::LocalNormals => {
+            Some(scene.patches[i].patch)
+        }
+        _ => None,
+    };
+    let plane = Plane {
+        frame: path.frame.decompose(&plane.frame),
+        orientation: plane.orientation,
+        longitude: plane.longitude,
+        patch,
+        arriving: plane.side == Side::Before && plane.orientation != Orientation::Orthogonal,
+        quantity: plane.quantity,
+    };
+    is_free(scene).then_some((system, plane))
+}
+
+/// Whether a plane is predicted by following rays: behind a specular surface or on one, or in light that goes through pictures.
+pub(crate) fn follows_rays(scene: &Scene, plane: &VirtualPlane) -> bool {
+    let picture = matches!(scene.light, Light::Projector { .. } | Light::Beam { .. });
+    let goes = picture || plane.leg > 0 || plane.orientation != Orientation::Orthogonal;
+    goes && system(scene, plane).is_some()
+}
+
+/// The hit on whose surface a plane is.
+fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
+    match plane.side {
+        Side::Before => scene.path.ends_at(plane.leg),
+        Side::After => scene.path.legs[plane.leg].leaves.as_ref(),
+    }
+}
+
+/// Whether nothing stands beside the path.
+fn is_free(scene: &Scene) -> bool {
+    let visited = |object| {
+        let mut hits = scene.path.legs.iter().filter_map(|leg| leg.leaves);
+        hits.any(|hit| hit.object == object)
+    };
+    let surfaces = (0..scene.surfaces.len()).all(|i| visited(Object::Surface(i)));
+    let patches = (0..scene.patches.len()).all(|i| visited(Object::Patch(i)));
+    surfaces && patches && scene.meshes.is_empty()
+}

@@ -1,0 +1,125 @@
+//! The central ray, and how it meets each surface.
+
+use super::trace::Ray;
+use super::{Element, System};
+use crate::geometry::{Matrix, Media};
+use etendue_field::{Frame, Patch, Specular};
+use glam::DVec3;
+
+/// Below this sine light comes along the normal and any plane is one of incidence.
+const NORMAL: f64 = 1e-9;
+
+/// How the central ray meets a surface (docs/theory.md, section 7).
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Incidence {
+    /// The normal on the side light comes from.
+    pub(super) n: DVec3,
+    pub(super) t: DVec3,
+    pub(super) b: DVec3,
+    pub(super) theta0: f64,
+    /// The angle about D by which the leg's frame is turned so that X lies in the plane of incidence, within ± π/2.
+    pub(super) turn: f64,
+}
+
+impl Incidence {
+    /// `frame` is that of the leg, `normal` on either side.
+    pub(super) fn new(frame: &Frame, normal: DVec3) -> Self {
+        let n = normal * -normal.dot(frame.d).signum();
+        // With X and Y = B turned into place, N + c₀ D = sin θ₀ X.
+        let across = n + frame.d * -n.dot(frame.d);
+        let (x, theta0) = if across.length() < NORMAL {
+            (frame.x, 0.0)
+        } else {
+            let [along, aside] = [across.dot(frame.x), across.dot(frame.y)];
+            let ahead = along > 0.0 || (along.abs() < NORMAL && aside > 0.0);
+            let sign = if ahead { 1.0 } else { -1.0 };
+            let x = across.normalize() * sign;
+            (x, sign * across.length().atan2(-n.dot(frame.d)))
+        };
+        let t = -x * theta0.cos() - frame.d * theta0.sin();
+        Self {
+            n,
+            t,
+            b: n.cross(t),
+            theta0,
+            turn: x.dot(frame.y).atan2(x.dot(frame.x)),
+        }
+    }
+
+    /// The derivative of the normal along (T, B) at a point of a patch: its shape operator, per metre, convex positive as seen along N.
+    pub(super) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
+        let gradient = patch.gradient(patch.frame.to_local(point));
+        let side = patch.frame.vector_to_world(gradient).dot(self.n).signum();
+        let curvature = DVec3::from(patch.curvature) * (side / gradient.length());
+        let axes = [self.t, self.b].map(|axis| patch.frame.vector_to_local(axis));
+        axes.map(|a| axes.map(|b| a.dot(curvature * b)))
+    }
+}
+
+/// The central ray at an element.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Hit {
+    /// The frame of the leg before, at the point hit.
+    pub(super) arriving: Frame,
+    /// The frame of the leg after it.
+    pub(super) leaving: Frame,
+    /// Length of the leg before, metres.
+    pub(super) distance: f64,
+    pub(super) incidence: Incidence,
+}
+
+impl System {
+    /// What the central ray meets. `None` where it misses an element or does not go on from it.
+    pub(super) fn hits(&self) -> Option<Vec<Hit>> {
+        let mut frame = Frame::IDENTITY;
+        let mut hits = Vec::new();
+        for element in &self.elements {
+            let ray = Ray {
+                point: frame.origin,
+                direction: frame.d,
+            };
+            let (distance, normal) = ray.met(&element.patch)?;
+            let arriving = frame.travelled(distance);
+            let after = element.follow(&ray)?;
+            frame = element.leaving(&arriving, normal, after.direction);
+            hits.push(Hit {
+                arriving,
+                leaving: frame,
+                distance,
+                incidence: Incidence::new(&arriving, normal),
+            });
+        }
+        Some(hits)
+    }
+}
+
+impl Element {
+    /// The frame of the next leg: mirrored, (−X, Y, D), at a mirror; else turned to the new direction by the smallest angle.
+    fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
+        if !matches!(self.event, Specular::Mirror) {
+            return arriving.turned_to(direction);
+        }
+        let mirrored = |v: DVec3| v - normal * (2.0 * v.dot(normal));
+        let y = mirrored(arriving.y);
+        Frame {
+            x: -mirrored(arriving.x),
+            y,
+            d: direction,
+            ..*arriving
+        }
+    }
+
+    /// The indices before and after a refraction, for light along D of a frame.
+    pub(super) fn media(&self, incidence: &Incidence) -> Option<Media> {
+        let Specular::Refraction { front, back } = self.event else {
+            return None;
+        };
+        let from_front = self.patch.frame.d.dot(incidence.n) > 0.0;
+        let (before, after) = if from_front {
+            (front, back)
+        } else {
+            (back, front)
+        };
+        Some(Media { before, after })
+    }
+}

@@ -1,0 +1,313 @@
+//! The first-order chain of a system.
+
+use super::central::{Hit, Incidence};
+use super::words::{self, degrees, number};
+use super::{Element, Plane, System};
+use crate::geometry::{Map, Matrix, Print, SpectrumMap};
+use etendue_field::{Frame, Orientation, Specular};
+use glam::DVec3;
+
+/// The chain of first-order maps from the light to a plane.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FirstOrder {
+    /// What it does to spectra of radiance. Beside the |det A| of its maps its factor has (n₂/n₁)² of each refraction, by which radiance grows.
+    pub map: SpectrumMap<4>,
+    /// The steps in words, in the order of light; what is within the plane's surface or the light is not among them.
+    pub steps: Vec<String>,
+    /// Distances on the last leg, in metres from the last surface, at which rays meet that left the light parallel; ascending, negative if behind.
+    /// At most two: in the plane of incidence and across it, where these are its principal planes.
+    pub foci: Vec<f64>,
+}
+
+impl FirstOrder {
+    /// A of the rays, z' = A z + t: the transpose of the map's matrix.
+    #[must_use]
+    pub fn rays(&self) -> Map<4> {
+        Map {
+            matrix: crate::geometry::transpose(&self.map.matrix),
+            offset: self.map.phase,
+        }
+    }
+}
+
+/// The chain read off the geometry: distances, angles and curvatures where the central ray goes. `None` where it misses an element or is
+/// totally reflected.
+///
+/// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and no lens.
+#[must_use]
+pub fn chain(system: &System, plane: &Plane, print: Print) -> Option<FirstOrder> {
+    let hits = system.hits()?;
+    let mut walk = Walk {
+        print,
+        map: identity(),
+        steps: Vec::new(),
+        frame: Frame::IDENTITY,
+        at: "light".into(),
+    };
+    let mut layers = system.layers.clone();
+    let on_last = plane.orientation != Orientation::Orthogonal && !plane.arriving;
+    let mut travelled = 0.0;
+    let mut foci = Vec::new();
+    for (i, (element, hit)) in system.elements.iter().zip(&hits).enumerate() {
+        for (distance, mask) in layers.drain(..) {
+            walk.travel(distance - travelled, "mask");
+            walk.steps.push(words::mask(&mask));
+            travelled = distance;
+        }
+        walk.travel(hit.distance - travelled, &element.name);
+        travelled = 0.0;
+        let ends_here = on_last && i + 1 == hits.len();
+        let across = walk.clone().after(element, hit)?;
+        foci = across.foci();
+        if ends_here {
+            walk.leaving_surface(element, hit, plane)?;
+        } else {
+            walk = across;
+        }
+    }
+    for (distance, mask) in layers {
+        walk.travel(distance - travelled, "mask");
+        walk.steps.push(words::mask(&mask));
+        travelled = distance;
+    }
+    if !on_last {
+        let distance = (plane.frame.origin - walk.frame.origin).dot(walk.frame.d);
+        walk.travel(distance - travelled, "plane");
+        walk.frame = walk.frame.travelled(distance);
+        match plane.orientation {
+            Orientation::Orthogonal => walk.into_frame(&plane.frame),
+            Orientation::Tangent | Orientation::LocalNormals => walk.arriving_surface(plane),
+        }
+    }
+    Some(FirstOrder {
+        map: walk.map,
+        steps: walk.steps,
+        foci,
+    })
+}
+
+/// A chain on its way.
+#[derive(Clone)]
+struct Walk {
+    print: Print,
+    map: SpectrumMap<4>,
+    steps: Vec<String>,
+    /// Of the leg, at its start, or where light is.
+    frame: Frame,
+    /// What light left last.
+    at: String,
+}
+
+impl Walk {
+    fn step(&mut self, map: &SpectrumMap<4>, words: String) {
+        self.map = self.map.then(map);
+        self.steps.push(words);
+    }
+
+    fn travel(&mut self, distance: f64, to: &str) {
+        if distance != 0.0 {
+            let words = words::travel(distance, &self.at, to);
+            self.step(&Map::travel(distance).spectrum_map(), words);
+        }
+        self.at = to.into();
+    }
+
+    fn turn(&mut self, angle: f64, into: &str) {
+        // Rounding of a frame is no turn.
+        if angle.abs() > 1e-12 {
+            self.step(
+                &Map::rotation(angle).spectrum_map(),
+                words::turn(angle, into),
+            );
+        }
+    }
+
+    /// Up to the light frame after a surface.
+    fn after(mut self, element: &Element, hit: &Hit) -> Option<Self> {
+        if let Specular::ThinLens { focal_length } = element.event {
+            let map = lens(&element.patch.frame, hit, focal_length)?;
+            let name = &element.name;
+            let f = number(focal_length);
+            let words = format!("map  lens {name}, focal length {f} m: ℓ̂(Ωx − Ωu/f, Ωu)");
+            self.step(&map.spectrum_map(), words);
+            self.frame = hit.leaving;
+            return Some(self);
+        }
+        let (shape, theta1) = self.event(element, hit)?;
+        self.back(shape, theta1);
+        let Incidence { n, t, b, .. } = hit.incidence;
+        let (sin, cos) = theta1.sin_cos();
+        let x = if let Specular::Mirror = element.event {
+            let words = format!("map  outgoing angle {}", degrees(theta1));
+            self.step(&self.print.outgoing_4d(theta1), words);
+            t * cos - n * sin
+        } else {
+            let words = format!("map  off the other side at {}", degrees(theta1));
+            let off = Map::<4>::incidence(theta1).inverse()?;
+            self.step(&off.spectrum_map(), words);
+            -t * cos + n * sin
+        };
+        let turn = hit.leaving.x.dot(b).atan2(hit.leaving.x.dot(x));
+        self.turn(turn, "the frame of the next leg");
+        self.frame = hit.leaving;
+        Some(self)
+    }
+
+    /// Onto a surface, into its local normals, and the event there. The shape operator, and the longitude of the central ray afterwards
+    /// (directions of refracted light stay flipped).
+    fn event(&mut self, element: &Element, hit: &Hit) -> Option<(Matrix<2>, f64)> {
+        let incidence = &hit.incidence;
+        let theta0 = incidence.theta0;
+        self.turn(incidence.turn, "the plane of incidence");
+        self.incidence(theta0, &element.name);
+        let shape = incidence.shape(&element.patch, hit.arriving.origin);
+        self.curvature(shape, theta0);
+        if let Some(media) = element.media(incidence) {
+            let mut map = Map::<4>::refraction(theta0, &media)?.spectrum_map();
+            // Étendue keeps flux; radiance grows as the square of the index (Nicodemus 1963).
+            map.factor /= media.index_ratio().powi(2);
+            let theta2 = media.refracted(theta0)?;
+            let (before, after) = (number(media.before), number(media.after));
+            let words = format!(
+                "map  refraction from index {before} to {after}, θ₂ = {}",
+                degrees(theta2)
+            );
+            self.step(&map, words);
+            Some((shape, theta2))
+        } else {
+            self.step(
+                &Map::mirror().spectrum_map(),
+                "map  mirror: ℓ̂(Ωx, −Ωθ)".into(),
+            );
+            Some((shape, -theta0))
+        }
+    }
+
+    fn incidence(&mut self, theta0: f64, name: &str) {
+        let words = format!("map  incidence {} onto {name}", degrees(theta0));
+        self.step(&self.print.incidence_4d(theta0), words);
+    }
+
+    fn curvature(&mut self, shape: Matrix<2>, theta0: f64) {
+        let words = format!("map  curvature {}", words::curvature(shape));
+        self.step(&self.print.curvature_4d(shape, theta0), words);
+    }
+
+    fn back(&mut self, shape: Matrix<2>, theta1: f64) {
+        let words = format!("map  back from local normals, {}", words::curvature(shape));
+        self.step(&self.print.back_4d(shape, theta1), words);
+    }
+
+    /// On the surface of the last element, light leaving it.
+    fn leaving_surface(&mut self, element: &Element, hit: &Hit, plane: &Plane) -> Option<()> {
+        let (shape, theta1) = self.event(element, hit)?;
+        if plane.orientation == Orientation::Tangent {
+            self.back(shape, theta1);
+        }
+        let Incidence { n, mut t, b, .. } = hit.incidence;
+        if plane.frame.d.dot(n) < 0.0 {
+            // Seen from the other side: −T, B and −N, and directions are not flipped any more.
+            t = -t;
+            let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
+            self.step(
+                &Map::linear(other).spectrum_map(),
+                "map  seen from the other side".into(),
+            );
+        }
+        self.onto_surface(t, b, plane);
+        Some(())
+    }
+
+    /// On the surface where the leg ends.
+    fn arriving_surface(&mut self, plane: &Plane) {
+        let incidence = Incidence::new(&self.frame, plane.frame.d);
+        self.turn(incidence.turn, "the plane of incidence");
+        self.incidence(incidence.theta0, "surface");
+        if let (Orientation::LocalNormals, Some(patch)) = (plane.orientation, &plane.patch) {
+            let shape = incidence.shape(patch, plane.frame.origin);
+            self.curvature(shape, incidence.theta0);
+        }
+        self.onto_surface(incidence.t, incidence.b, plane);
+    }
+
+    /// From axes (T, B) to those of the plane, angles counted from its longitude.
+    fn onto_surface(&mut self, t: DVec3, b: DVec3, plane: &Plane) {
+        let axis = plane.frame.x;
+        let turn = axis.dot(b).atan2(axis.dot(t));
+        self.turn(turn, "the plane's axes");
+        if plane.longitude != 0.0 {
+            let mut map = Map::identity();
+            map.offset[2] = -plane.longitude;
+            let words = format!("map  angles from {}", degrees(plane.longitude));
+            self.step(&map.spectrum_map(), words);
+        }
+    }
+
+    /// From the leg's frame to that of a plane across it, which may be turned about D and moved across.
+    fn into_frame(&mut self, plane: &Frame) {
+        debug_assert!(
+            (plane.d - self.frame.d).length() < 1e-9,
+            "a plane lies across the central ray"
+        );
+        let turn = plane.x.dot(self.frame.y).atan2(plane.x.dot(self.frame.x));
+        self.turn(turn, "the plane's axes");
+        let moved = plane.to_local(self.frame.origin);
+        if moved.x.abs().max(moved.y.abs()) > 1e-9 {
+            let mut map = Map::identity();
+            map.offset = [moved.x, moved.y, 0.0, 0.0];
+            self.step(&map.spectrum_map(), "map  origin of the plane".into());
+        }
+    }
+
+    /// d with det(P + d Q) = 0, x = P x₀ and u = Q x₀ being a parallel bundle.
+    fn foci(&self) -> Vec<f64> {
+        let at = |i: usize, j: usize| self.map.matrix[j][i];
+        let p = [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]];
+        let q = [[at(2, 0), at(2, 1)], [at(3, 0), at(3, 1)]];
+        let det = |m: [[f64; 2]; 2]| m[0][0] * m[1][1] - m[0][1] * m[1][0];
+        let (a, c) = (det(q), det(p));
+        let b = p[0][0] * q[1][1] + p[1][1] * q[0][0] - p[0][1] * q[1][0] - p[1][0] * q[0][1];
+        let size = q.as_flattened().iter().map(|x| x * x).sum::<f64>();
+        let mut roots = if a.abs() <= 1e-12 * size {
+            vec![-c / b]
+        } else {
+            let root = (b * b - 4.0 * a * c).max(0.0).sqrt();
+            let sum = -0.5 * (b + root.copysign(b));
+            vec![sum / a, c / sum]
+        };
+        roots.retain(|d| d.is_finite() && d.abs() < 1e9);
+        roots.sort_by(f64::total_cmp);
+        roots
+    }
+}
+
+/// A thin lens, from the frame of one leg to that of the next, to first order about a central ray that may cross it anywhere at any slope.
+///
+/// In the lens's own frame positions stay and slopes fall by position over focal length; at its centre along its axis that is [`Map::thin_lens`].
+fn lens(frame: &Frame, hit: &Hit, focal_length: f64) -> Option<Map<4>> {
+    let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| on_lens(frame, leg));
+    let power = Map::<4>::thin_lens(focal_length);
+    let map = Map::linear(before).then(&power);
+    Some(map.then(&Map::linear(after).inverse()?))
+}
+
+/// How positions and slopes on a flat lens change with those in the frame of a leg there.
+fn on_lens(lens: &Frame, leg: &Frame) -> Matrix<4> {
+    let towards = lens.vector_to_local(leg.d);
+    let axes = [leg.x, leg.y].map(|axis| lens.vector_to_local(axis));
+    let slopes = [towards.x, towards.y].map(|s| s / towards.z);
+    let mut matrix = [[0.0; 4]; 4];
+    for (column, axis) in axes.iter().enumerate() {
+        for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
+            // To the plane of the lens along the ray; the slope of D + u X.
+            let moved = across - slope * axis.z;
+            matrix[row][column] = moved;
+            matrix[row + 2][column + 2] = moved / towards.z.abs();
+        }
+    }
+    matrix
+}
+
+fn identity() -> SpectrumMap<4> {
+    Map::identity().spectrum_map()
+}

@@ -1,0 +1,88 @@
+//! A ray in the coordinates of a plane.
+
+use super::Plane;
+use super::trace::Ray;
+use etendue_field::{Frame, Orientation, Quantity, TwoPlane};
+use glam::DVec3;
+
+impl Plane {
+    /// The coordinates of a ray that is on its last leg, and the quantity in ray space per flux. `None` if it does not pass.
+    pub(super) fn coordinates(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
+        match self.orientation {
+            Orientation::Orthogonal => self.across(ray),
+            Orientation::Tangent => {
+                let (s, t) = crossing(&self.frame, ray)?;
+                self.on_surface([s, t], ray.direction, &self.frame)
+            }
+            Orientation::LocalNormals => {
+                let (point, normal) = self.hit(ray)?;
+                let at = self.frame.to_local(point);
+                self.on_surface([at.x, at.y], ray.direction, &self.frame.turned_to(normal))
+            }
+        }
+    }
+
+    /// What the quantity multiplies radiance by at a ray in the plane's coordinates.
+    pub(super) fn factor(&self, [x, y, u, v]: [f64; 4]) -> f64 {
+        match (self.orientation, self.quantity) {
+            (_, Quantity::Radiance) => 1.0,
+            (Orientation::Orthogonal, quantity) => quantity.factor(&TwoPlane { x, y, u, v }),
+            (_, Quantity::DifferentialIrradiance) => (u + self.longitude).cos() * v.cos() * v.cos(),
+        }
+    }
+
+    fn across(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
+        let (x, y) = crossing(&self.frame, ray)?;
+        let towards = self.frame.vector_to_local(ray.direction);
+        let (u, v) = (towards.x / towards.z, towards.y / towards.z);
+        let secant_squared = TwoPlane { x, y, u, v }.secant_squared();
+        let z = [x, y, u, v];
+        let passes = towards.z > 0.0;
+        passes.then(|| (z, secant_squared * secant_squared * self.factor(z)))
+    }
+
+    /// Where light leaves the surface it met last, or meets this one; and the unit normal there, on the side of the plane's D.
+    fn hit(&self, ray: &Ray) -> Option<(DVec3, DVec3)> {
+        let Some(patch) = &self.patch else {
+            let (s, t) = crossing(&self.frame, ray)?;
+            let point = self.frame.to_world(DVec3::new(s, t, 0.0));
+            return Some((point, self.frame.d));
+        };
+        let (point, normal) = if self.arriving {
+            let (distance, normal) = ray.met(patch)?;
+            (ray.point + ray.direction * distance, normal)
+        } else {
+            let gradient = patch.gradient(patch.frame.to_local(ray.point));
+            let normal = patch.frame.vector_to_world(gradient.try_normalize()?);
+            (ray.point, normal)
+        };
+        let side = normal.dot(self.frame.d).signum();
+        Some((point, normal * side))
+    }
+
+    /// Angles to the D of `local`; `None` if the direction points into the surface.
+    fn on_surface(
+        &self,
+        [s, t]: [f64; 2],
+        direction: DVec3,
+        local: &Frame,
+    ) -> Option<([f64; 4], f64)> {
+        let away = if self.arriving { -direction } else { direction };
+        let away = local.vector_to_local(away);
+        let (theta, phi) = (away.x.atan2(away.z), away.y.asin());
+        let z = [s, t, theta - self.longitude, phi];
+        let projected = theta.cos() * phi.cos() * phi.cos();
+        (away.z > 0.0).then(|| (z, self.factor(z) / projected))
+    }
+}
+
+/// Where the line of a ray crosses the plane (X, Y) of a frame.
+fn crossing(frame: &Frame, ray: &Ray) -> Option<(f64, f64)> {
+    let (at, towards) = (
+        frame.to_local(ray.point),
+        frame.vector_to_local(ray.direction),
+    );
+    let t = -at.z / towards.z;
+    t.is_finite()
+        .then(|| (at.x + t * towards.x, at.y + t * towards.y))
+}

@@ -1,0 +1,89 @@
+//! Windowed spectra behind specular surfaces, by following rays: no photons, no random numbers.
+//!
+//! In goes a [`System`], a light, masks across its first leg and the mirrors, refracting surfaces and lenses that the central ray
+//! visits, and a [`Plane`]. Out come the [`exact`] slices of the windowed spectrum: rays are followed through the real geometry, and a
+//! quadrature over the light sums them, with its error stated. Beside them is the [`chain`] of first-order maps
+//! ([`geometry`](crate::geometry)) read off the same system, and the [`linear`] prediction it makes by the same quadrature. So a measured
+//! difference from the first-order chain splits into noise, linearisation, and faults.
+//!
+//! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and (x, y) are along X and Y. A ray
+//! carries flux:
+//!
+//! | light | flux |
+//! |---|---|
+//! | projector | I · image(u, v) · (1 + u² + v²)^(−3/2) du dv |
+//! | point | the same with a white image |
+//! | beam | E · image(x, y) dx dy |
+//! | area light | L₀ (1 + u² + v²)^(−2 − n/2) dx dy du dv |
+//!
+//! Flux is kept at every surface. A ray that misses a patch, is totally reflected, or would have to go back is lost. At a plane across the
+//! central ray flux Φ stands for Φ (1 + u² + v²)² in radiance space, on a surface for Φ/(cos θ cos² φ): docs/theory.md, section 8.
+//!
+//! This module shares no intersection, no sampling and no transform with the tracers.
+
+mod central;
+mod chain;
+mod coordinates;
+mod covariance;
+mod derivative;
+mod emission;
+mod parameter;
+mod predict;
+mod projection;
+mod quadrature;
+mod region;
+mod sums;
+#[cfg(test)]
+mod tests;
+mod trace;
+mod words;
+
+pub use chain::{FirstOrder, chain};
+pub use covariance::covariance;
+pub use derivative::derivative;
+pub use parameter::Parameter;
+pub use predict::{RaySlices, exact, linear};
+pub use projection::projection;
+
+use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};
+
+/// A light and the specular surfaces its central ray visits, in the frame at the light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct System {
+    /// What shines from the plane z = 0, along Z.
+    pub light: Light,
+    /// Masks across the first leg and their distances from the light, metres. What is opaque has edges, and the quadrature converges slowly.
+    pub layers: Vec<(f64, Mask)>,
+    /// The surfaces, in the order of light.
+    pub elements: Vec<Element>,
+}
+
+/// A specular surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Element {
+    /// Name, for texts.
+    pub name: String,
+    /// Where it is.
+    pub patch: Patch,
+    /// What it does. Refraction goes from the side the ray comes from. A thin lens is flat; its slopes are those in the patch's frame
+    /// (X, Y and the side light goes to).
+    pub event: Specular,
+}
+
+/// Where the light field is looked at, after all elements of a [`System`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    /// Its frame in coordinates of the frame at the light: O on the central ray, D along it; on a surface T, B and the normal there, on the side
+    /// to which directions point.
+    pub frame: Frame,
+    /// What its coordinates are counted from.
+    pub orientation: Orientation,
+    /// θ of the central ray on a surface, radians: coordinates are (s, t, θ − longitude, φ) there.
+    pub longitude: f64,
+    /// The surface, for local normals; without it they are all along D.
+    pub patch: Option<Patch>,
+    /// On a surface: light that arrives at it, directions turned around. The surface is then not among the elements; else it is the last.
+    pub arriving: bool,
+    /// What is recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
+    pub quantity: Quantity,
+}

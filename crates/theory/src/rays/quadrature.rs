@@ -1,0 +1,130 @@
+//! Rays from the light with their shares of emission coordinates.
+
+use super::emission::point_of;
+use super::region::{Field, Finder};
+use super::sums::Node;
+use crate::quadrature::gauss_legendre;
+use etendue_field::{Shape, SliceGrid};
+use rayon::prelude::*;
+
+/// How many nodes along each coordinate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Rule {
+    /// Over an area light: Gauss rules, exact for polynomials of degree 2 `outer` − 1; 1 for other lights.
+    pub(super) outer: usize,
+    /// Over the inner coordinates: a midpoint rule over the region, at whose border nothing is left.
+    pub(super) inner: usize,
+}
+
+/// Most nodes of a rule.
+pub(super) const MOST_NODES: usize = 4_000_000;
+/// Fewest nodes along an inner coordinate.
+const FEWEST: f64 = 24.0;
+
+impl Rule {
+    /// The number of nodes, those outside the window included.
+    pub(super) fn nodes(&self) -> usize {
+        self.outer * self.outer * self.inner * self.inner
+    }
+}
+
+impl<F: Field> Finder<'_, F> {
+    /// All rays that land in the window. Always in the same order.
+    pub(super) fn nodes(&self, rule: Rule) -> Vec<Node> {
+        let points = match &self.emission.shape {
+            None => vec![([0.0; 2], 1.0)],
+            Some(shape) => points(shape, rule.outer),
+        };
+        let nested: Vec<Vec<Node>> = points
+            .into_par_iter()
+            .map(|(from, share)| self.nodes_from(from, share, rule.inner))
+            .collect();
+        nested.into_iter().flatten().collect()
+    }
+
+    fn nodes_from(&self, from: [f64; 2], share: f64, count: usize) -> Vec<Node> {
+        let Some([a, b]) = self.region(from) else {
+            return Vec::new();
+        };
+        let [da, db] = [a, b].map(|[low, high]| (high - low) / count as f64);
+        let row = |i: usize| {
+            let at = a[0] + (i as f64 + 0.5) * da;
+            let ray = move |j: usize| self.ray(from, [at, b[0] + (j as f64 + 0.5) * db]);
+            let nodes = (0..count).map(move |j| self.node(ray(j), share * da * db));
+            nodes.filter(|node| node.weight != 0.0)
+        };
+        (0..count).into_par_iter().flat_map_iter(row).collect()
+    }
+
+    /// A rule that should do for a grid: a midpoint rule integrates exactly what has fewer cycles than nodes.
+    pub(super) fn rule(&self, grid: &SliceGrid) -> Rule {
+        let largest = [grid.rho.max(), grid.rho.max(), grid.nu.max(), grid.nu.max()];
+        let window = [self.window.x, self.window.y, self.window.u, self.window.v];
+        // Cycles per unit of a coordinate at the light, in phases and in the window.
+        let cycles = |k: usize| {
+            let parts = (0..4).map(|i| {
+                let frequency = largest[i] + 1.0 / window[i].half_width();
+                self.jacobian[i][k].abs() * frequency
+            });
+            parts.fold(0.0, f64::max)
+        };
+        let inner = self.region([0.0; 2]).map_or(FEWEST, |region| {
+            let along = |axis: usize| {
+                let [low, high] = region[axis];
+                let frequency = cycles(self.emission.inner[axis]) + self.emission.cycles[axis];
+                (high - low) * frequency
+            };
+            FEWEST + along(0).max(along(1))
+        });
+        let outer = self.emission.shape.map_or(1.0, |shape| {
+            let [w, h] = shape.bounds().size;
+            // π nodes for each cycle, and some for what is not a wave.
+            4.0 + 1.6 * (w * cycles(0)).max(h * cycles(1))
+        });
+        let whole = |x: f64| num_whole(x).max(1);
+        let mut rule = Rule {
+            outer: whole(outer),
+            inner: whole(inner),
+        };
+        while rule.nodes() > MOST_NODES / 3 {
+            rule = Rule {
+                outer: (rule.outer * 7 / 8).max(1),
+                inner: rule.inner * 7 / 8,
+            };
+        }
+        rule
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "not negative; beyond 10⁴ it is cut down"
+)]
+fn num_whole(x: f64) -> usize {
+    x.ceil().min(1e4) as usize
+}
+
+/// A Gauss rule over a shape. Over a disc: in r², and equal angles.
+fn points(shape: &Shape, count: usize) -> Vec<([f64; 2], f64)> {
+    let unit = |n: usize| {
+        let nodes = gauss_legendre(n).into_iter();
+        nodes.map(|(x, weight)| (0.5 * (x + 1.0), 0.5 * weight))
+    };
+    let second: Vec<(f64, f64)> = match shape {
+        Shape::Rectangle(_) => unit(count).collect(),
+        Shape::Disc(_) => {
+            let angles = 2 * count;
+            let share = 1.0 / angles as f64;
+            (0..angles).map(|i| (i as f64 * share, share)).collect()
+        }
+    };
+    let first = match shape {
+        Shape::Rectangle(_) => count,
+        Shape::Disc(_) => count.div_ceil(2),
+    };
+    let pairs = unit(first).flat_map(|(a, p)| second.iter().map(move |&(b, q)| ([a, b], p * q)));
+    pairs
+        .map(|(at, share)| (point_of(shape, at), share * shape.area()))
+        .collect()
+}

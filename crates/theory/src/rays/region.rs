@@ -1,0 +1,210 @@
+//! Where in the emission's inner coordinates the rays are that land in a window.
+
+use super::emission::Emission;
+use etendue_field::{TwoPlane, Window};
+
+/// A box in two coordinates: lowest and highest along each.
+pub(super) type Region = [[f64; 2]; 2];
+
+/// A light field as its rays: from a ray at the light (x, y, u, v) to its coordinates at the plane and what it adds to ray space there per
+/// unit of the emission's coordinates. `None` if it does not arrive.
+pub(super) trait Field: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
+impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> Field for F {}
+
+/// Cells along each side of the box in which rays are looked for.
+const CELLS: usize = 32;
+/// Rays below this share of the strongest carry nothing.
+const NOTHING: f64 = 1e-13;
+/// Boxes tried before the last is taken.
+const ROUNDS: usize = 24;
+/// How much wider than the window the first box is.
+const MARGIN: f64 = 1.5;
+
+/// Finds regions.
+pub(super) struct Finder<'a, F> {
+    pub(super) field: &'a F,
+    pub(super) window: &'a Window,
+    pub(super) emission: Emission,
+    /// Coordinates at the plane of the light's central ray, and how they change with those of rays at the light, [at plane, at light].
+    pub(super) center: [f64; 4],
+    pub(super) jacobian: [[f64; 4]; 4],
+}
+
+impl<'a, F: Field> Finder<'a, F> {
+    /// `None` if the central ray, or one beside it, does not arrive.
+    pub(super) fn new(field: &'a F, window: &'a Window, emission: Emission) -> Option<Self> {
+        const STEP: f64 = 1e-6;
+        let (center, _) = field([0.0; 4])?;
+        let mut jacobian = [[0.0; 4]; 4];
+        for column in 0..4 {
+            let beside = |side: f64| {
+                let mut ray = [0.0; 4];
+                ray[column] = side * STEP;
+                Some(field(ray)?.0)
+            };
+            let (above, below) = (beside(1.0)?, beside(-1.0)?);
+            for row in 0..4 {
+                jacobian[row][column] = (above[row] - below[row]) / (2.0 * STEP);
+            }
+        }
+        Some(Self {
+            field,
+            window,
+            emission,
+            center,
+            jacobian,
+        })
+    }
+
+    /// The ray at inner coordinates (a, b) from a point of the light.
+    pub(super) fn ray(&self, [x, y]: [f64; 2], inner: [f64; 2]) -> [f64; 4] {
+        let mut ray = [x, y, 0.0, 0.0];
+        ray[self.emission.inner[0]] = inner[0];
+        ray[self.emission.inner[1]] = inner[1];
+        ray
+    }
+
+    /// A ray at the plane, the window and all, times its share of emission coordinates.
+    pub(super) fn node(&self, ray: [f64; 4], share: f64) -> super::sums::Node {
+        let (z, weight) = (self.field)(ray).unwrap_or(([0.0; 4], 0.0));
+        let [x, y, u, v] = z;
+        let weight = share * weight * self.window.value(&TwoPlane { x, y, u, v });
+        super::sums::Node { z, weight }
+    }
+
+    /// The region for rays from a point of the light: the box about the parallelogram that a linear map gives, then moved, widened and narrowed
+    /// until all that arrives lies within it. `None` if nothing arrives.
+    pub(super) fn region(&self, from: [f64; 2]) -> Option<Region> {
+        let mut region = self.linear_region(from)?;
+        let reach = self.emission.reach;
+        for _ in 0..ROUNDS {
+            let Some(lit) = self.lit(from, &region) else {
+                let grown = widened(&region, [[1.0; 2]; 2], reach);
+                if grown == region {
+                    return None;
+                }
+                region = grown;
+                continue;
+            };
+            let touches = |axis: usize| {
+                let [low, high] = lit[axis];
+                let [least, most] = region[axis];
+                let limit = reach[axis] * (1.0 - 1e-9);
+                [
+                    low == 0 && least > -limit,
+                    high + 1 == CELLS && most < limit,
+                ]
+            };
+            let growth =
+                [touches(0), touches(1)].map(|sides| sides.map(|t| f64::from(u8::from(t)) * 0.5));
+            let grows = growth.as_flattened().iter().any(|g| *g > 0.0);
+            let next = if grows {
+                widened(&region, growth, reach)
+            } else {
+                narrowed(&region, &lit)
+            };
+            let tight = lit.iter().all(|[low, high]| 2 * (high - low + 3) >= CELLS);
+            region = next;
+            if !grows && tight {
+                return Some(region);
+            }
+        }
+        Some(region)
+    }
+
+    /// First and last cell along each axis with light in them.
+    fn lit(&self, from: [f64; 2], region: &Region) -> Option<[[usize; 2]; 2]> {
+        let at = |axis: usize, i: usize| {
+            let [low, high] = region[axis];
+            low + (high - low) * (i as f64 + 0.5) / CELLS as f64
+        };
+        let cells = || (0..CELLS * CELLS).map(|i| (i / CELLS, i % CELLS));
+        let strengths: Vec<f64> = cells()
+            .map(|(i, j)| {
+                self.node(self.ray(from, [at(0, i), at(1, j)]), 1.0)
+                    .weight
+                    .abs()
+            })
+            .collect();
+        let most = strengths.iter().copied().fold(0.0, f64::max);
+        let mut found: Option<[[usize; 2]; 2]> = None;
+        for ((i, j), strength) in cells().zip(strengths) {
+            if strength > NOTHING * most {
+                let [a, b] = found.unwrap_or([[i, i], [j, j]]);
+                found = Some([[a[0].min(i), a[1].max(i)], [b[0].min(j), b[1].max(j)]]);
+            }
+        }
+        found
+    }
+
+    /// The box about what the linear map takes into a somewhat wider window.
+    fn linear_region(&self, [x, y]: [f64; 2]) -> Option<Region> {
+        let [a, b] = self.emission.reach;
+        let mut corners = vec![[-a, -b], [a, -b], [a, b], [-a, b]];
+        let profiles = [self.window.x, self.window.y, self.window.u, self.window.v];
+        for (i, profile) in profiles.iter().enumerate() {
+            let row = self.jacobian[i];
+            let inner = self.emission.inner.map(|k| row[k]);
+            // A beam has its positions among the inner coordinates, and no others.
+            let outer = if self.emission.shape.is_some() {
+                row[0] * x + row[1] * y
+            } else {
+                0.0
+            };
+            let offset = self.center[i] + outer;
+            let most = MARGIN * profile.half_width();
+            corners = clipped(&corners, inner, most - offset);
+            corners = clipped(&corners, inner.map(|c| -c), most + offset);
+        }
+        let along = |axis: usize| {
+            let ends = corners.iter().map(|c| c[axis]);
+            [
+                ends.clone().fold(f64::INFINITY, f64::min),
+                ends.fold(f64::NEG_INFINITY, f64::max),
+            ]
+        };
+        (!corners.is_empty()).then(|| [along(0), along(1)])
+    }
+}
+
+/// The part of a convex polygon with n·p ≤ c.
+fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
+    let height = |p: [f64; 2]| n[0] * p[0] + n[1] * p[1] - c;
+    let mut kept = Vec::new();
+    for (i, &p) in corners.iter().enumerate() {
+        let q = corners[(i + 1) % corners.len()];
+        let (here, there) = (height(p), height(q));
+        if here <= 0.0 {
+            kept.push(p);
+        }
+        if (here < 0.0) != (there < 0.0) && here != there {
+            let t = here / (here - there);
+            kept.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]);
+        }
+    }
+    kept
+}
+
+/// Sides moved out by shares of the box's width, within reach.
+fn widened(region: &Region, growth: [[f64; 2]; 2], reach: [f64; 2]) -> Region {
+    std::array::from_fn(|axis| {
+        let [low, high] = region[axis];
+        let width = high - low;
+        [
+            (low - growth[axis][0] * width).max(-reach[axis]),
+            (high + growth[axis][1] * width).min(reach[axis]),
+        ]
+    })
+}
+
+/// The lit cells and one more around them.
+fn narrowed(region: &Region, lit: &[[usize; 2]; 2]) -> Region {
+    std::array::from_fn(|axis| {
+        let [low, high] = region[axis];
+        let cell = (high - low) / CELLS as f64;
+        [
+            (low + cell * (lit[axis][0] as f64 - 1.0)).max(low),
+            (low + cell * (lit[axis][1] as f64 + 2.0)).min(high),
+        ]
+    })
+}

@@ -1,0 +1,91 @@
+//! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
+//!
+//! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) a product of one factor along ρ and one along ν. Summed over
+//! rays that is a matrix product of their real and imaginary parts; ± ν share it.
+
+use etendue_field::{Complex, SliceGrid, Slices};
+use ndarray::linalg::general_mat_mul;
+use ndarray::{Array2, Axis};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// A ray at a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Node {
+    /// (x, y, u, v), or what stands for them.
+    pub(super) z: [f64; 4],
+    /// What it adds to the windowed radiance space.
+    pub(super) weight: f64,
+}
+
+/// Rays of one matrix product.
+const BLOCK: usize = 256;
+/// Most parts of a sum over rays that are made in parallel and added in order.
+const PARTS: usize = 16;
+/// Powers of a factor before it is computed anew: each step adds a rounding.
+const POWERS: usize = 32;
+
+/// The sums on all slices. The same bytes on any number of threads; rounding below 10⁻¹² of Σ |w|.
+pub(super) fn sums(nodes: &[Node], grid: &SliceGrid) -> Slices {
+    let part = nodes.len().div_ceil(PARTS).max(BLOCK);
+    let parts: Vec<_> = nodes.chunks(part).collect();
+    let tasks = grid.azimuths * parts.len();
+    let products: Vec<Array2<f64>> = (0..tasks)
+        .into_par_iter()
+        .map(|i| product(parts[i % parts.len()], grid, i / parts.len()))
+        .collect();
+    let mut slices = Slices::zeros(*grid);
+    for (i, product) in products.iter().enumerate() {
+        let mut slice = slices.half.index_axis_mut(Axis(0), i / parts.len());
+        let zero = grid.nu.half;
+        for m in 0..=grid.rho.half {
+            for n in 0..=zero {
+                let [rr, ri] = [product[[2 * m, 2 * n]], product[[2 * m, 2 * n + 1]]];
+                let [ir, ii] = [product[[2 * m + 1, 2 * n]], product[[2 * m + 1, 2 * n + 1]]];
+                slice[[m, zero + n]] += Complex::new(rr - ii, ri + ir);
+                if n > 0 {
+                    slice[[m, zero - n]] += Complex::new(rr + ii, ir - ri);
+                }
+            }
+        }
+    }
+    slices
+}
+
+/// Sums of the products of the parts of both factors over some rays, [2m + part, 2n + part].
+fn product(nodes: &[Node], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
+    let (sin, cos) = grid.azimuth(azimuth).sin_cos();
+    let [along_rho, along_nu] = [grid.rho.half, grid.nu.half].map(|half| 2 * (half + 1));
+    let mut sum = Array2::zeros((along_rho, along_nu));
+    let mut rho = Array2::zeros((BLOCK, along_rho));
+    let mut nu = Array2::zeros((BLOCK, along_nu));
+    for block in nodes.chunks(BLOCK) {
+        for (i, node) in block.iter().enumerate() {
+            let [x, y, u, v] = node.z;
+            let position = -TAU * grid.rho.spacing * (x * cos + y * sin);
+            let slope = -TAU * grid.nu.spacing * (u * cos + v * sin);
+            powers(position, node.weight, rho.row_mut(i).into_slice());
+            powers(slope, 1.0, nu.row_mut(i).into_slice());
+        }
+        let (rho, _) = rho.view().split_at(Axis(0), block.len());
+        let (nu, _) = nu.view().split_at(Axis(0), block.len());
+        general_mat_mul(1.0, &rho.t(), &nu, 1.0, &mut sum);
+    }
+    sum
+}
+
+/// scale · e^(i n angle) for n = 0, 1, …, real and imaginary parts by turns.
+fn powers(angle: f64, scale: f64, row: Option<&mut [f64]>) {
+    let step = Complex::cis(angle);
+    for (part, to) in row
+        .into_iter()
+        .flat_map(|row| row.chunks_mut(2 * POWERS).enumerate())
+    {
+        let mut value = Complex::from_polar(scale, angle * (part * POWERS) as f64);
+        for pair in to.chunks_exact_mut(2) {
+            pair[0] = value.re;
+            pair[1] = value.im;
+            value *= step;
+        }
+    }
+}

@@ -1,0 +1,189 @@
+//! Known answers.
+
+use super::*;
+use crate::quadrature::integrate;
+use crate::testing::{chain_of, disc, lambertian, spot, square};
+use etendue_field::{Grating, Mask};
+use std::f64::consts::{PI, TAU};
+
+/// What is asked of the quadrature: ten times better than where it stops, since it reports more than is left.
+const GOOD: f64 = 1e-4;
+
+/// Slices of a function of the frequency.
+fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
+    let mut slices = Slices::zeros(*grid);
+    for ((k, m, n), to) in slices.half.indexed_iter_mut() {
+        *to = value(grid.frequency(k, m as f64 * grid.rho.spacing, grid.nu.value(n)));
+    }
+    slices
+}
+
+/// ∫∫ f g e^(−2πi(…)) over slopes, f and g being functions of one slope: a projector's field at distance d, separable up to √(1 + u² + v²),
+/// which is left to `root`.
+fn at_distance(d: f64, width: f64, window: &Window, omega: [f64; 4], root: bool) -> Complex {
+    let [ox, oy, ou, ov] = omega;
+    let most = (window.x.half_width() / d).min(window.u.half_width());
+    integrate(60, [-most, most], |u: f64| {
+        integrate(60, [-most, most], |v: f64| {
+            let image = (-PI * (u * u + v * v) / (width * width)).exp();
+            let w = window.x.value(d * u)
+                * window.y.value(d * v)
+                * window.u.value(u)
+                * window.v.value(v);
+            let power = if root {
+                (1.0 + u * u + v * v).sqrt()
+            } else {
+                1.0
+            };
+            let phase = (ox * d + ou) * u + (oy * d + ov) * v;
+            Complex::from_polar(image * w * power, -TAU * phase)
+        })
+    })
+}
+
+#[test]
+fn projector_over_a_distance() {
+    let d = 1.5;
+    let gaussian = |width, cut| Profile::Gaussian { width, cut };
+    let windows = [
+        window(Profile::Hann(0.3), Profile::Hann(0.25)),
+        window(gaussian(0.2, 0.9), gaussian(0.2, 0.6)),
+    ];
+    for window in windows {
+        let system = system(projector([0.3, 0.3]), vec![]);
+        let grid = grid(3, [0.3, 0.25]);
+        let got = exact(&system, &after(&system, d), &window, &grid);
+        // √(1 + u² + v²): the point's light is farther away aside (docs/theory.md, section 2).
+        let expected = slices_of(&grid, |o| at_distance(d, 0.3, &window, o, true));
+        let off = distance(&got.slices, &expected);
+        assert!(off < GOOD && got.quadrature_error < GOOD, "{off:e}");
+        // The test sees that factor.
+        let without = slices_of(&grid, |o| at_distance(d, 0.3, &window, o, false));
+        assert!(distance(&got.slices, &without) > 20.0 * GOOD);
+    }
+}
+
+#[test]
+fn beam_over_a_distance() {
+    // A beam stays what it is: its spectrum is constant in Ωu, Ωv.
+    let (width, cut) = (0.2, 0.7);
+    let system = system(beam([width, 0.3]), vec![]);
+    let window = window(Profile::Gaussian { width: 0.4, cut }, Profile::Hann(0.1));
+    let grid = grid(4, [0.3, 0.1]);
+    let got = exact(&system, &after(&system, 2.0), &window, &grid);
+    let narrowed = |w: f64| 1.0 / (1.0 / (w * w) + 1.0 / 0.16_f64).sqrt();
+    let [a, b] = [width, 0.3].map(narrowed);
+    let expected = slices_of(&grid, |[x, y, ..]| {
+        Complex::from(a * b * (-PI * (a * a * x * x + b * b * y * y)).exp())
+    });
+    // The cut leaves exp(−π (0.49/0.16 + 0.49/0.09)) outside.
+    let off = distance(&got.slices, &expected);
+    assert!(off < 1e-9, "{off:e}");
+}
+
+#[test]
+fn area_lights_agree_with_polygons() {
+    let steps = || {
+        let grating = Grating {
+            axis: 0,
+            frequency: 3.0,
+            modulation: 0.8,
+            phase: 0.4,
+        };
+        vec![(0.6, Some(Mask::Grating(grating))), (0.9, None)]
+    };
+    let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
+    let grid = grid(2, [0.3, 0.3]);
+    let lights = [
+        lambertian(square([0.02, 0.0], 0.2)),
+        spot(disc([0.0, 0.03], 0.1), 0.0),
+        spot(disc([0.0, 0.03], 0.1), 20.0),
+    ];
+    for light in lights {
+        let expected = crate::slices(&chain_of(light, steps()), &window, &grid);
+        let mut system = system(light, vec![]);
+        let Some(Mask::Grating(grating)) = steps()[0].1 else {
+            unreachable!()
+        };
+        system.layers = vec![(0.6, Mask::Grating(grating))];
+        let got = exact(&system, &after(&system, 1.5), &window, &grid);
+        let off = distance(&got.slices, &expected);
+        let said = got.quadrature_error;
+        assert!(
+            off < GOOD && off < 2.0 * said.max(1e-8),
+            "{off:e}, said {said:e}"
+        );
+        // A grating a centimetre farther is told apart.
+        system.layers = vec![(0.61, Mask::Grating(grating))];
+        let moved = exact(&system, &after(&system, 1.5), &window, &grid);
+        assert!(distance(&moved.slices, &expected) > 30.0 * GOOD);
+    }
+}
+
+#[test]
+fn plane_mirror_is_a_travel() {
+    let window = window(Profile::Hann(0.3), Profile::Hann(0.25));
+    let grid = grid(4, [0.3, 0.25]);
+    let light = Light::Projector {
+        intensity: 1.0,
+        image: Image {
+            width: [0.3, 0.2],
+            grating: Some(Grating {
+                axis: 0,
+                frequency: 4.0,
+                modulation: 1.0,
+                phase: 0.7,
+            }),
+        },
+    };
+    let folded = mirror(light, std::f64::consts::FRAC_PI_4, [0.0, 0.0], [0.0; 3]);
+    let straight = system(light, vec![]);
+    let got = exact(&folded, &after(&folded, 0.5), &window, &grid);
+    // The frame turns over: x' = −x, so azimuths φ become π − φ and (ρ, ν) their negatives; y' = y.
+    let expected = exact(&straight, &after(&straight, 1.5), &window, &grid);
+    let full = expected.slices.full();
+    let mut turned = Slices::zeros(grid);
+    let [last_rho, last_nu] = [grid.rho.count() - 1, grid.nu.count() - 1];
+    for ((k, m, n), to) in turned.half.indexed_iter_mut() {
+        let i = grid.rho.half + m;
+        *to = if k == 0 {
+            full[[0, last_rho - i, last_nu - n]]
+        } else {
+            full[[grid.azimuths - k, i, n]]
+        };
+    }
+    let off = distance(&got.slices, &turned);
+    assert!(off < 1e-9, "{off:e}"); // the same lattice of rays, turned over
+    assert!(distance(&got.slices, &expected.slices) > 0.01);
+}
+
+#[test]
+fn lens_images_a_slide() {
+    // A slide: a Lambertian light of 1 cm² with a grating right at it, at a = 0.5 m from a lens of f = 0.3 m; its image is at b = 0.75 m.
+    let (a, f) = (0.5, 0.3);
+    let b = 1.0 / (1.0 / f - 1.0 / a);
+    let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);
+    let lens = Specular::ThinLens { focal_length: f };
+    let mut system = system(
+        lambertian(square([0.0; 2], 0.02)),
+        vec![element("lens", patch, lens)],
+    );
+    system.layers = vec![(0.0, crate::testing::grating(0, 200.0, 0.0))];
+    let window = window(Profile::Hann(0.02), Profile::Hann(0.05));
+    let rho = 200.0 * a / b;
+    let axis = |spacing| FrequencyAxis { half: 1, spacing };
+    let grid = SliceGrid {
+        azimuths: 1,
+        rho: axis(rho),
+        nu: axis(1.0),
+    };
+    let contrast = |distance: f64| {
+        let slices = exact(&system, &after(&system, distance), &window, &grid).slices;
+        slices.half[[0, 1, 1]].norm() / slices.at_zero()
+    };
+    let sharp = contrast(b);
+    // m/2 = 0.45 of a grating where it is sharp; the window of a few of its periods leaves all of it but a few in a hundred.
+    assert!((sharp - 0.45).abs() < 0.02, "{sharp}");
+    // 5 cm beside, slopes of ± 0.05 smear ± 2.5 mm, a third of a period of 7.5 mm.
+    assert!(contrast(b + 0.05) < 0.9 * sharp && contrast(b - 0.05) < 0.9 * sharp);
+}

@@ -1,0 +1,115 @@
+use super::*;
+use crate::error::distance;
+use crate::geometry::Print;
+use etendue_field::{Complex, FrequencyAxis, Image, Profile, SliceGrid, Slices, Window};
+use glam::DVec3;
+
+mod kernel;
+mod known;
+mod order;
+mod read_off;
+mod surfaces;
+
+/// Windows as wide along both axes.
+fn window(position: Profile, slope: Profile) -> Window {
+    crate::testing::window(position, slope)
+}
+
+/// Frequencies up to four cycles over windows of half-widths `h`.
+fn grid(azimuths: usize, h: [f64; 2]) -> SliceGrid {
+    let axis = |h: f64| FrequencyAxis {
+        half: 8,
+        spacing: 0.5 / h,
+    };
+    SliceGrid {
+        azimuths,
+        rho: axis(h[0]),
+        nu: axis(h[1]),
+    }
+}
+
+fn picture(width: [f64; 2]) -> Image {
+    Image {
+        width,
+        grating: None,
+    }
+}
+
+fn beam(width: [f64; 2]) -> Light {
+    Light::Beam {
+        irradiance: 1.0,
+        image: picture(width),
+    }
+}
+
+fn projector(width: [f64; 2]) -> Light {
+    Light::Projector {
+        intensity: 1.0,
+        image: picture(width),
+    }
+}
+
+fn across(frame: Frame) -> Plane {
+    Plane {
+        frame,
+        orientation: Orientation::Orthogonal,
+        longitude: 0.0,
+        patch: None,
+        arriving: false,
+        quantity: Quantity::Radiance,
+    }
+}
+
+fn element(name: &str, patch: Patch, event: Specular) -> Element {
+    Element {
+        name: name.into(),
+        patch,
+        event,
+    }
+}
+
+/// The plane at the end of the last leg.
+fn after(system: &System, distance: f64) -> Plane {
+    let last = system
+        .hits()
+        .unwrap()
+        .last()
+        .map_or(Frame::IDENTITY, |hit| hit.leaving);
+    across(last.travelled(distance))
+}
+
+/// A surface across a leg: its normal is −D turned by θ₀ within the plane at the angle `azimuth` about D, its principal axes by `twist` about it.
+fn placed(
+    leg: &Frame,
+    distance: f64,
+    theta0: f64,
+    [azimuth, twist]: [f64; 2],
+    curvature: [f64; 3],
+) -> Patch {
+    let (sin, cos) = azimuth.sin_cos();
+    let x = leg.x * cos + leg.y * sin;
+    let d = -leg.d * theta0.cos() + x * theta0.sin();
+    let origin = leg.origin + leg.d * distance;
+    let untwisted = Frame::new(origin, d, leg.x).unwrap();
+    let (sin, cos) = twist.sin_cos();
+    let axis = untwisted.x * cos + untwisted.y * sin;
+    Patch {
+        frame: Frame::new(origin, d, axis).unwrap(),
+        curvature,
+        aperture: 1e3,
+    }
+}
+
+fn system(light: Light, elements: Vec<Element>) -> System {
+    System {
+        light,
+        layers: vec![],
+        elements,
+    }
+}
+
+/// One mirror a metre from the light.
+fn mirror(light: Light, theta0: f64, turns: [f64; 2], curvature: [f64; 3]) -> System {
+    let patch = placed(&Frame::IDENTITY, 1.0, theta0, turns, curvature);
+    system(light, vec![element("mirror", patch, Specular::Mirror)])
+}

@@ -1,0 +1,278 @@
+//! The chain read off, against derivatives of the traced rays, and known foci.
+
+use super::*;
+use crate::rays::predict::exact_field;
+
+/// ∂z'/∂z of the traced rays by central differences.
+fn traced(system: &System, plane: &Plane) -> [[f64; 4]; 4] {
+    const STEP: f64 = 1e-5;
+    let field = exact_field(system, plane);
+    let mut rows = [[0.0; 4]; 4];
+    for column in 0..4 {
+        let at = |side: f64| {
+            let mut ray = [0.0; 4];
+            ray[column] = side * STEP;
+            field(ray).unwrap().0
+        };
+        let (above, below) = (at(1.0), at(-1.0));
+        for row in 0..4 {
+            rows[row][column] = (above[row] - below[row]) / (2.0 * STEP);
+        }
+    }
+    rows
+}
+
+/// Largest difference between the chain's rays and the traced ones, the offset included.
+fn off(system: &System, plane: &Plane, print: Print) -> f64 {
+    let first = chain(system, plane, print).unwrap();
+    let (center, _) = exact_field(system, plane)([0.0; 4]).unwrap();
+    let rays = first.rays();
+    let offsets = rays.offset.iter().zip(center).map(|(a, b)| (a - b).abs());
+    let traced = traced(system, plane);
+    let entries = (0..16).map(|i| (rays.matrix[i / 4][i % 4] - traced[i / 4][i % 4]).abs());
+    offsets.chain(entries).fold(0.0, f64::max)
+}
+
+/// Central differences of rays: a step of 10⁻⁵ squared, and rounding over it.
+const CLOSE: f64 = 1e-8;
+
+/// A point with a narrow picture; only its geometry counts here.
+fn light() -> Light {
+    projector([0.1, 0.1])
+}
+
+/// The frame of leg `i`, at its start.
+fn leg(system: &System) -> Frame {
+    system
+        .hits()
+        .unwrap()
+        .last()
+        .map_or(Frame::IDENTITY, |hit| hit.leaving)
+}
+
+fn with(mut system: System, name: &str, patch: Patch, event: Specular) -> System {
+    system.elements.push(element(name, patch, event));
+    system
+}
+
+fn systems() -> Vec<System> {
+    let glass = |front, back| Specular::Refraction { front, back };
+    let shapes = [
+        [-0.5; 3],         // hollow sphere
+        [0.4, 0.0, 0.4],   // cylinder
+        [-0.5, -0.2, 0.0], // paraboloid
+        [0.6, -0.3, 0.0],  // saddle
+        [0.0; 3],          // plane
+    ];
+    let mut all = vec![];
+    for shape in shapes {
+        for theta0 in [0.0, 0.7, -0.4] {
+            for turns in [[0.0, 0.0], [0.0, 0.5], [0.6, 0.5], [1.9, -0.3]] {
+                all.push(mirror(light(), theta0, turns, shape));
+                let patch = placed(&Frame::IDENTITY, 0.8, theta0, turns, shape);
+                all.push(system(
+                    light(),
+                    vec![element("glass", patch, glass(1.0, 1.5))],
+                ));
+                // Into glass by its back, normal along the light.
+                let flipped = Frame::new(patch.frame.origin, -patch.frame.d, patch.frame.x);
+                let patch = Patch {
+                    frame: flipped.unwrap(),
+                    ..patch
+                };
+                all.push(system(
+                    light(),
+                    vec![element("glass", patch, glass(1.3, 1.1))],
+                ));
+            }
+        }
+    }
+    // Two mirrors whose planes of incidence differ, then a lens that is met aside and askew.
+    let first = mirror(light(), 0.5, [0.3, 0.2], [-0.5, 0.3, 0.0]);
+    let patch = placed(&leg(&first), 0.7, -0.6, [1.2, 0.4], [0.4, 0.1, 0.0]);
+    let second = with(first, "second", patch, Specular::Mirror);
+    all.push(second.clone());
+    let mut patch = placed(&leg(&second), 0.6, 0.3, [0.4, 0.0], [0.0; 3]);
+    for aside in [0.0, 0.1] {
+        patch.frame.origin += patch.frame.x * aside;
+        let event = Specular::ThinLens { focal_length: 0.4 };
+        all.push(with(second.clone(), "lens", patch, event));
+    }
+    // A sphere met beside its vertex.
+    let mut aside = mirror(light(), 0.3, [0.2, 0.0], [-0.7; 3]);
+    let x = aside.elements[0].patch.frame.x;
+    aside.elements[0].patch.frame.origin += x * 0.2;
+    all.push(aside);
+    all
+}
+
+#[test]
+fn chain_is_the_derivative_of_the_rays() {
+    let systems = systems();
+    assert!(systems.len() > 180);
+    for system in systems {
+        let mut plane = after(&system, 0.65);
+        let off_by = off(&system, &plane, Print::Corrected);
+        assert!(off_by < CLOSE, "{off_by:e} {:?}", system.elements);
+        // A plane turned about the ray, its origin aside.
+        let x = plane.frame.x * 0.8 + plane.frame.y * 0.6;
+        let origin = plane.frame.origin + x * 0.01;
+        plane.frame = Frame::new(origin, plane.frame.d, x).unwrap();
+        let off_by = off(&system, &plane, Print::Corrected);
+        assert!(off_by < CLOSE, "turned: {off_by:e}");
+    }
+}
+
+#[test]
+fn printed_chains_are_not() {
+    // Onto a surface none is right; behind a mirror curvature tells.
+    let system = mirror(light(), 0.7, [0.0, 0.0], [-0.5, -0.2, 0.0]);
+    let plane = after(&system, 0.65);
+    for print in [Print::Equations, Print::Table] {
+        assert!(off(&system, &plane, print) > 0.1);
+    }
+}
+
+/// A plane on a surface that light meets or leaves: frame (T, B, N) turned about N.
+fn on_surface(
+    frame: Frame,
+    orientation: Orientation,
+    patch: Patch,
+    direction: DVec3,
+    arriving: bool,
+) -> Plane {
+    let away = if arriving { -direction } else { direction };
+    Plane {
+        frame,
+        orientation,
+        longitude: away.dot(frame.x).atan2(away.dot(frame.d)),
+        patch: Some(patch),
+        arriving,
+        quantity: Quantity::Radiance,
+    }
+}
+
+pub(super) fn surface_planes() -> Vec<(System, Plane)> {
+    let glass = Specular::Refraction {
+        front: 1.0,
+        back: 1.5,
+    };
+    let mut all = vec![];
+    for event in [Specular::Mirror, glass] {
+        for (theta0, curvature) in [
+            (0.7, [-0.5, 0.3, 0.0]),
+            (-0.5, [0.6; 3]),
+            (0.0, [0.4, 0.1, 0.0]),
+        ] {
+            for orientation in [Orientation::Tangent, Orientation::LocalNormals] {
+                let patch = placed(&Frame::IDENTITY, 0.8, theta0, [0.4, 0.5], curvature);
+                let onto = system(projector([0.1, 0.1]), vec![]);
+                let hit = Incidence::new(&Frame::IDENTITY.travelled(0.8), patch.frame.d);
+                let frame = |t: DVec3, d: DVec3| Frame::new(patch.frame.origin, d, t).unwrap();
+                for t in [hit.t, -hit.t] {
+                    let plane = on_surface(frame(t, hit.n), orientation, patch, DVec3::Z, true);
+                    all.push((onto.clone(), plane));
+                    let off = with(onto.clone(), "surface", patch, event);
+                    let leaving = off.hits().unwrap()[0].leaving.d;
+                    let side = if leaving.dot(hit.n) > 0.0 {
+                        hit.n
+                    } else {
+                        -hit.n
+                    };
+                    let plane = on_surface(frame(t, side), orientation, patch, leaving, false);
+                    all.push((off, plane));
+                }
+            }
+        }
+    }
+    all
+}
+
+use super::super::central::Incidence;
+
+#[test]
+fn surface_planes_are_read_off() {
+    for (system, plane) in surface_planes() {
+        let off_by = off(&system, &plane, Print::Corrected);
+        assert!(off_by < CLOSE, "{off_by:e} {plane:?}");
+        for print in [Print::Equations, Print::Table] {
+            let oblique = plane.longitude.abs() > 0.1;
+            assert!(!oblique || off(&system, &plane, print) > 0.1, "{print:?}");
+        }
+    }
+}
+
+#[test]
+fn foci_of_a_hollow_sphere() {
+    let (theta0, radius) = (0.7_f64, 2.0);
+    let system = mirror(beam([0.1, 0.1]), theta0, [0.0; 2], [-1.0 / radius; 3]);
+    let first = chain(&system, &after(&system, 0.5), Print::Corrected).unwrap();
+    // Coddington's equations: R/2 · cos θ₀ and R/(2 cos θ₀).
+    let expected = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()];
+    assert!((expected[0] - 0.764_842).abs() < 1e-6 && (expected[1] - 1.307_459).abs() < 1e-6);
+    for (got, expected) in first.foci.iter().zip(expected) {
+        assert!((got - expected).abs() < 1e-12); // rounding
+    }
+    // Rays a micrometre aside cross the central ray there, X being in the plane of incidence.
+    for axis in 0..2 {
+        let plane = after(&system, expected[axis]);
+        let mut ray = [0.0; 4];
+        ray[axis] = 1e-6;
+        let (z, _) = exact_field(&system, &plane)(ray).unwrap();
+        assert!(z[axis].abs() < 1e-11); // coma: the square of 10⁻⁶
+    }
+}
+
+#[test]
+fn focus_of_a_ball_lens() {
+    let (radius, n) = (0.1, 1.5);
+    let frame = |z| Frame::new(DVec3::Z * z, -DVec3::Z, DVec3::X).unwrap();
+    let half = |z, k: f64| Patch {
+        frame: frame(z),
+        curvature: [k; 3],
+        aperture: radius,
+    };
+    let entering = Specular::Refraction {
+        front: 1.0,
+        back: n,
+    };
+    let out = Specular::Refraction {
+        front: n,
+        back: 1.0,
+    };
+    let ball = system(
+        beam([0.001, 0.001]),
+        vec![
+            element("front", half(1.0, 1.0 / radius), entering),
+            element("back", half(1.0 + 2.0 * radius, -1.0 / radius), out),
+        ],
+    );
+    let first = chain(&ball, &after(&ball, 0.1), Print::Corrected).unwrap();
+    // The focal length n R/(2(n − 1)) counts from the centre (Hecht, Optics).
+    let expected = n * radius / (2.0 * (n - 1.0)) - radius;
+    for focus in &first.foci {
+        assert!((focus - expected).abs() < 1e-12, "{focus}"); // rounding
+    }
+    assert_eq!(first.foci.len(), 2);
+    let plane = after(&ball, expected);
+    let (z, _) = exact_field(&ball, &plane)([1e-5, 0.0, 0.0, 0.0]).unwrap();
+    assert!(z[0].abs() < 1e-11); // spherical aberration: (10⁻⁵/0.1)³ of 0.1 m
+}
+
+#[test]
+fn steps_read_like_a_figure() {
+    let system = mirror(projector([0.1, 0.1]), 0.6, [0.0; 2], [-0.5; 3]);
+    let first = chain(&system, &after(&system, 0.7), Print::Corrected).unwrap();
+    assert_eq!(
+        first.steps,
+        [
+            "map  travel 1 m, light to mirror: ℓ̂(Ωx, Ωu + 1 Ωx)",
+            "map  incidence 34.377° onto mirror",
+            "map  curvature κ = diag(−0.5, −0.5) m⁻¹",
+            "map  mirror: ℓ̂(Ωx, −Ωθ)",
+            "map  back from local normals, κ = diag(−0.5, −0.5) m⁻¹",
+            "map  outgoing angle −34.377°",
+            "map  travel 0.7 m, mirror to plane: ℓ̂(Ωx, Ωu + 0.7 Ωx)",
+        ]
+    );
+}

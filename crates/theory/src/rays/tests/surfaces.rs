@@ -1,0 +1,139 @@
+//! What else is read from rays: pictures, covariances, derivatives, and rays that are lost.
+
+use super::*;
+use etendue_field::ProjectionGrid;
+
+#[test]
+fn covariance_of_a_gaussian_beam() {
+    // exp(−π x²/w²) has the variance w²/2π; no window narrows it.
+    let w = 0.1;
+    let oblique = mirror(beam([w, w]), 0.0, [0.0; 2], [-0.01; 3]);
+    let plane = after(&oblique, 0.5);
+    let wide = window(Profile::Box(2.0), Profile::Box(1.0));
+    let got = covariance(&oblique, &plane, &wide).unwrap();
+    let map = chain(&oblique, &plane, Print::Corrected).unwrap().rays();
+    let variance = w * w / std::f64::consts::TAU;
+    let mut before = [[0.0; 4]; 4];
+    before[0][0] = variance;
+    before[1][1] = variance;
+    let expected = map.covariance(&before);
+    for i in 0..16 {
+        let off = (got[i / 4][i % 4] - expected[i / 4][i % 4]).abs();
+        // A mirror of 100 m bends it little: the order of (x/R)² of slopes 2x/R.
+        assert!(off < 1e-5 * variance, "{i}: {off:e}");
+    }
+    assert!((got[0][2] - expected[0][0] * 0.0).abs() > 1e-4 * variance); // slopes follow positions
+}
+
+#[test]
+fn projection_holds_the_flux() {
+    let system = mirror(projector([0.2, 0.2]), 0.5, [0.2, 0.0], [-0.5; 3]);
+    let plane = after(&system, 0.5);
+    let window = window(Profile::Hann(0.2), Profile::Hann(0.2));
+    let total = exact(&system, &plane, &window, &grid(1, [0.2, 0.2]))
+        .slices
+        .at_zero();
+    let cells = ProjectionGrid::new(&window, 32);
+    let picture = projection(&system, &plane, &window, &cells);
+    let sum = picture.values.sum() * cells.cell_area();
+    assert!((sum / total - 1.0).abs() < 1e-4); // two million points of a lattice
+}
+
+#[test]
+fn projection_of_an_area_light() {
+    let light = crate::testing::lambertian(crate::testing::square([0.0; 2], 0.2));
+    let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
+    let cells = ProjectionGrid::new(&window, 32);
+    let straight = system(light, vec![]);
+    let got = projection(&straight, &after(&straight, 1.0), &window, &cells);
+    let chain = crate::testing::chain_of(light, [(1.0, None)]);
+    let expected = crate::projection(&chain, &window, &cells);
+    let most = expected.values.iter().copied().fold(0.0, f64::max);
+    let worst = got
+        .values
+        .iter()
+        .zip(&expected.values)
+        .map(|(a, b)| (a - b).abs())
+        .fold(0.0, f64::max);
+    assert!(worst < 0.02 * most, "{}", worst / most); // as stated
+}
+
+#[test]
+fn derivatives_by_every_parameter() {
+    let lens = Specular::ThinLens { focal_length: 0.6 };
+    let glass = Specular::Refraction {
+        front: 1.0,
+        back: 1.5,
+    };
+    let mut system = mirror(projector([0.2, 0.2]), 0.5, [0.2, 0.1], [-0.5, -0.3, 0.0]);
+    for (event, theta0, shape) in [(glass, 0.3, [0.4; 3]), (lens, 0.0, [0.0; 3])] {
+        let patch = placed(&after(&system, 0.0).frame, 0.3, theta0, [0.0; 2], shape);
+        system.elements.push(element("next", patch, event));
+    }
+    let plane = after(&system, 0.2);
+    let window = window(Profile::Hann(0.1), Profile::Hann(0.1));
+    let grid = grid(2, [0.1, 0.1]);
+    let prediction = exact(&system, &plane, &window, &grid);
+    let parameters = system.parameters(&plane);
+    assert_eq!(parameters.len(), 12);
+    for parameter in parameters {
+        let slope = derivative(&system, &plane, parameter, &window, &grid, &prediction).unwrap();
+        let value = system.value(&plane, parameter).unwrap();
+        let name = system.name(parameter);
+        let other = system.with(&plane, parameter, value + 1e-4).unwrap();
+        let read = other.0.value(&other.1, parameter).unwrap();
+        assert!((read - value - 1e-4).abs() < 1e-12, "{name}"); // rounding
+        // A forward difference with another step, of converged predictions.
+        let moved = exact(&other.0, &other.1, &window, &grid);
+        let mut forward = moved.slices.clone();
+        forward.half -= &prediction.slices.half;
+        forward.half /= Complex::from(1e-4);
+        let off = distance(&forward, &slope);
+        // Half the second derivative times 10⁻⁴; what quadratures leave does not cancel.
+        assert!(off < 0.02, "{name}: {off}");
+        assert!(
+            slope
+                .half
+                .iter()
+                .any(|s| s.norm() > 0.01 * prediction.slices.at_zero()),
+            "{name}"
+        );
+    }
+}
+
+#[test]
+fn rays_are_lost() {
+    let system = mirror(beam([0.1, 0.1]), 0.0, [0.0; 2], [-2.0; 3]);
+    let plane = after(&system, 0.1);
+    let arrives = |ray| predict::exact_field(&system, &plane)(ray).is_some();
+    assert!(arrives([0.4, 0.0, 0.0, 0.0]));
+    assert!(!arrives([0.6, 0.0, 0.0, 0.0])); // beside a sphere of radius 0.5
+    let mut small = system.clone();
+    small.elements[0].patch.aperture = 0.3;
+    assert!(predict::exact_field(&small, &plane)([0.4, 0.0, 0.0, 0.0]).is_none());
+    // Total reflection at 0.73 rad.
+    let glass = Specular::Refraction {
+        front: 1.5,
+        back: 1.0,
+    };
+    for (theta0, passes) in [(0.72, true), (0.74, false)] {
+        let mut system = mirror(beam([0.1, 0.1]), theta0, [0.0; 2], [0.0; 3]);
+        system.elements[0].event = glass;
+        assert_eq!(system.follow([0.0; 4]).is_some(), passes);
+        assert_eq!(system.hits().is_some(), passes);
+    }
+    // Behind the light.
+    let patch = placed(&Frame::IDENTITY, -1.0, 0.0, [0.0; 2], [0.0; 3]);
+    let behind = self::system(
+        beam([0.1, 0.1]),
+        vec![element("behind", patch, Specular::Mirror)],
+    );
+    assert!(behind.hits().is_none());
+    let dark = exact(
+        &behind,
+        &plane,
+        &window(Profile::Hann(0.1), Profile::Hann(0.1)),
+        &grid(1, [0.1; 2]),
+    );
+    assert!(dark.slices.half.iter().all(|s| s.norm() == 0.0));
+}

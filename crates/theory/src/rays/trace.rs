@@ -1,0 +1,105 @@
+//! One ray through the system.
+
+use super::{Element, System};
+use etendue_field::{Patch, Specular};
+use glam::DVec3;
+
+/// A straight leg of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    /// Where it starts.
+    pub(super) point: DVec3,
+    /// A unit vector.
+    pub(super) direction: DVec3,
+}
+
+impl Ray {
+    /// The ray (x, y, u, v) of the light's plane.
+    pub(super) fn new([x, y, u, v]: [f64; 4]) -> Self {
+        Self {
+            point: DVec3::new(x, y, 0.0),
+            direction: DVec3::new(u, v, 1.0).normalize(),
+        }
+    }
+
+    /// The distance to a patch, and the unit normal there on the side of the patch's D. `None` if the patch is missed or behind.
+    ///
+    /// By Newton's method from the tangent plane at the vertex. Along a ray the quadric is a polynomial of degree two, so there is one root on
+    /// either side of its extremum, and the nearer to the tangent plane is found.
+    pub(super) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
+        let point = patch.frame.to_local(self.point);
+        let direction = patch.frame.vector_to_local(self.direction);
+        let mut t = if direction.z.abs() > 1e-3 {
+            -point.z / direction.z
+        } else {
+            -point.dot(direction)
+        };
+        for _ in 0..MOST_STEPS {
+            let here = point + direction * t;
+            let slope = 2.0 * patch.gradient(here).dot(direction);
+            let step = patch.value(here) / slope;
+            t -= step;
+            // Its error squares with each step, so the next would be below rounding.
+            if step.abs() <= 1e-11 * (t.abs() + point.length()) {
+                let here = point + direction * t;
+                let normal = patch.gradient(here).try_normalize()?;
+                let found = t > 0.0 && patch.contains(here);
+                return found.then(|| (t, patch.frame.vector_to_world(normal)));
+            }
+        }
+        None
+    }
+}
+
+/// Newton steps before a ray counts as a miss. Near misses of a surface wander.
+const MOST_STEPS: u32 = 40;
+
+impl Element {
+    /// The ray that goes on.
+    pub(super) fn follow(&self, ray: &Ray) -> Option<Ray> {
+        let (distance, normal) = ray.met(&self.patch)?;
+        let point = ray.point + ray.direction * distance;
+        let direction = self.bend(ray.direction, point, normal)?;
+        Some(Ray { point, direction })
+    }
+
+    /// The direction after the event, for light along `direction` that hits `point`; `normal` is on the side of the patch's D.
+    fn bend(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<DVec3> {
+        match self.event {
+            Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),
+            Specular::Refraction { front, back } => {
+                let cos = -direction.dot(normal);
+                // Seen from where light comes.
+                let (normal, cos, ratio) = if cos > 0.0 {
+                    (normal, cos, front / back)
+                } else {
+                    (-normal, -cos, back / front)
+                };
+                let tangential = (direction + normal * cos) * ratio;
+                let kept = 1.0 - tangential.length_squared();
+                (kept > 0.0).then(|| tangential - normal * kept.sqrt())
+            }
+            Specular::ThinLens { focal_length } => {
+                let frame = &self.patch.frame;
+                let (at, towards) = (frame.to_local(point), frame.vector_to_local(direction));
+                let slopes = towards / towards.z.abs();
+                let bent = DVec3::new(
+                    slopes.x - at.x / focal_length,
+                    slopes.y - at.y / focal_length,
+                    slopes.z,
+                );
+                Some(frame.vector_to_world(bent.normalize()))
+            }
+        }
+    }
+}
+
+impl System {
+    /// The last leg of the ray (x, y, u, v) of the light's plane; masks are not looked at.
+    pub(super) fn follow(&self, emission: [f64; 4]) -> Option<Ray> {
+        let start = Ray::new(emission);
+        self.elements
+            .iter()
+            .try_fold(start, |ray, element| element.follow(&ray))
+    }
+}
