@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Compare(CompareArgs),
     /// Validate a scene; print the chain read off it and the class of each plane; with --draw, draw it.
     Check(CheckArgs),
+    /// Shrink the neighbourhood of the central ray: how fast the first-order chain comes to the exact prediction.
+    Converge(ConvergeArgs),
     /// Write a scene for another program, which then can be asked for the same light field.
     Export(ExportArgs),
 }
@@ -158,6 +160,20 @@ pub(crate) struct CompareArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue converge scenes/table1/concave.ron
+  etendue converge scenes/table1/concave.ron --set as_printed=true      the paper's printed formulas stay off
+
+Widths of light and windows times e, frequencies over e: the error of first-order maps falls as e, and as e² at normal incidence.")]
+pub(crate) struct ConvergeArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
 }
 
 /// How a scene is measured, where it is not as the scene says.

@@ -8,6 +8,7 @@ mod batches;
 mod check;
 mod compare;
 mod conclude;
+mod converge;
 mod drawing;
 mod export;
 mod failure;
@@ -43,6 +44,7 @@ fn main() -> ExitCode {
         Command::Predict(args) => predict::predict(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
+        Command::Converge(args) => converge::converge(&args),
         Command::Export(args) => export::export(&args),
     };
     match outcome {

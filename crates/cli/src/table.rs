@@ -126,7 +126,7 @@ fn detectable(parameter: &ParameterReport) -> String {
 }
 
 /// Columns as wide as their widest cell, two spaces apart; text to the left, numbers to the right.
-fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
+pub(crate) fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     let width = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
         cells.max().unwrap_or(0)

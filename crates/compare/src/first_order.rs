@@ -143,7 +143,7 @@ impl FirstOrder {
 }
 
 /// ‖a − b‖/‖b‖ over the independent frequencies, with those on the border of the half-plane counted alike.
-fn distance(a: &Slices, b: &Slices) -> f64 {
+pub(crate) fn distance(a: &Slices, b: &Slices) -> f64 {
     let norm = |array: &Array3<etendue_field::Complex>| -> f64 {
         let grid = b.grid;
         let cells = array.indexed_iter();

@@ -8,6 +8,7 @@
 
 mod chain;
 mod class;
+mod converge;
 mod first_order;
 mod plane;
 mod prediction;
@@ -18,6 +19,7 @@ mod system;
 
 pub use chain::{chain, stands_before};
 pub use class::Class;
+pub use converge::{Convergence, converge};
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use plane::{PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction, steps};

@@ -1,0 +1,53 @@
+use crate::args::ConvergeArgs;
+use crate::failure::Failure;
+use crate::table::aligned;
+use crate::threads::on_threads;
+use crate::{load, progress, say};
+use etendue_compare::{Class, Convergence, converge as shrink};
+use etendue_scene::Scene;
+
+/// `etendue converge`: returns the exit code.
+pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
+    let scene = load::scene(&args.scene, |_| ())?;
+    let planes = on_threads(&args.threads, || Ok(shrunk(&scene)))?;
+    if planes.is_empty() {
+        return Err(Failure::bad_input(
+            "no plane of this scene has a first-order prediction: its path meets no mirror, interface or lens",
+        ));
+    }
+    say(&format!(
+        "{}: ‖first order − exact‖/‖exact‖ with widths × e and frequencies / e\n",
+        scene.name
+    ));
+    say(&aligned(rows(&planes)).join("\n"));
+    Ok(0)
+}
+
+fn shrunk(scene: &Scene) -> Vec<Convergence> {
+    let stage = progress::stage("predicting", false);
+    let planes = scene.planes.iter();
+    let planes = planes.filter(|plane| Class::of(scene, plane) == Class::FirstOrder);
+    let found = planes.filter_map(|plane| {
+        stage.set_message(format!("predicting {}", plane.name));
+        shrink(scene, plane)
+    });
+    let found = found.collect();
+    stage.finish_and_clear();
+    found
+}
+
+fn rows(planes: &[Convergence]) -> Vec<Vec<String>> {
+    let shares = planes[0].steps.iter().map(|[e, _]| format!("e = {e}"));
+    let mut header = vec!["plane".to_owned()];
+    header.extend(shares);
+    header.push("order".to_owned());
+    let row = |plane: &Convergence| {
+        let mut row = vec![plane.plane.clone()];
+        row.extend(plane.steps.iter().map(|[_, error]| format!("{error:.2e}")));
+        row.push(plane.order.map_or("–".to_owned(), |n| format!("{n:.2}")));
+        row
+    };
+    std::iter::once(header)
+        .chain(planes.iter().map(row))
+        .collect()
+}

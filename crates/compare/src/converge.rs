@@ -1,0 +1,67 @@
+use crate::first_order::{distance, print};
+use crate::system::system;
+use etendue_field::{FrequencyAxis, SliceGrid, VirtualPlane, Window};
+use etendue_scene::Scene;
+use etendue_theory::rays;
+use serde::Serialize;
+
+/// How the first-order chain of a plane comes closer to the exact ray-space prediction as the neighbourhood of the central ray shrinks.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Convergence {
+    /// Name of the plane.
+    pub plane: String,
+    /// Share e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ there.
+    pub steps: Vec<[f64; 2]>,
+    /// n in error ∝ eⁿ, by least squares over the last three steps; `None` where the error is down to that of the quadrature.
+    pub order: Option<f64>,
+}
+
+/// Shares of the widths.
+const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
+/// Errors below this many times that of the quadrature say nothing of the chain.
+const CLEAR: f64 = 5.0;
+
+/// Shrinks light and windows of a first-order plane and widens its frequencies alike; `None` for a plane of another class. Quadrature
+/// alone: nothing is traced by photons.
+#[must_use]
+pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
+    let (whole, at) = system(scene, plane)?;
+    let mut steps = Vec::new();
+    let mut clear = true;
+    for e in SHARES {
+        let system = whole.shrunk(e);
+        let Window { x, y, u, v } = plane.window;
+        let [x, y, u, v] = [x, y, u, v].map(|profile| profile.scaled(e));
+        let window = Window { x, y, u, v };
+        let wider = |axis: FrequencyAxis| FrequencyAxis {
+            spacing: axis.spacing / e,
+            ..axis
+        };
+        let grid = SliceGrid {
+            rho: wider(plane.grid.rho),
+            nu: wider(plane.grid.nu),
+            ..plane.grid
+        };
+        let chain = rays::chain(&system, &at, print(scene))?;
+        let exact = rays::exact(&system, &at, &window, &grid);
+        let linear = rays::linear(&system, &at, &window, &grid, &chain.map);
+        let error = distance(&linear.slices, &exact.slices);
+        clear &= error > CLEAR * exact.quadrature_error.max(linear.quadrature_error);
+        steps.push([e, error]);
+    }
+    Some(Convergence {
+        plane: plane.name.clone(),
+        order: clear.then(|| order(&steps[SHARES.len() - 3..])),
+        steps,
+    })
+}
+
+/// Slope of ln error over ln e.
+fn order(steps: &[[f64; 2]]) -> f64 {
+    let logs: Vec<[f64; 2]> = steps.iter().map(|step| step.map(f64::ln)).collect();
+    let n = logs.len() as f64;
+    let mean = [0, 1].map(|i| logs.iter().map(|l| l[i]).sum::<f64>() / n);
+    let sum = |f: &dyn Fn(&[f64; 2]) -> f64| logs.iter().map(f).sum::<f64>();
+    let along = sum(&|l| (l[0] - mean[0]) * (l[1] - mean[1]));
+    along / sum(&|l| (l[0] - mean[0]).powi(2))
+}
