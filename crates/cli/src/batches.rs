@@ -6,7 +6,7 @@ use crate::npz::{Npz, NpzFile};
 use crate::results::Results;
 use crate::stored::Stored;
 use etendue_field::{Ledger, PlaneTally, Projection, ProjectionGrid, Slices, VirtualPlane};
-use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
+use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments};
 use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, RemoveAxis, stack};
 use ndarray_npy::WritableElement;
 use serde::{Deserialize, Serialize};
@@ -75,7 +75,9 @@ fn at_plane(measurement: &Measurement, index: usize) -> Result<Vec<u8>, Failure>
         "projection",
         each().map(|b| b.projection.values.view()),
     )?;
-    npz.add_half_axes(&grid)?.bytes()
+    let moments = each().map(|batch| batch.moments.0);
+    let moments = Array2::from(moments.collect::<Vec<_>>());
+    npz.add("moments", &moments)?.add_half_axes(&grid)?.bytes()
 }
 
 /// Adds arrays of one shape as one, with an axis before theirs.
@@ -164,9 +166,10 @@ fn plane_batches(
     let tallies: Array2<u64> = file.array("tally", [count, 3])?;
     let slices: Array4<_> = file.array("slices", [count, azimuths, rho, nu])?;
     let projections: Array3<f64> = file.array("projection", [count, cells.bins, cells.bins])?;
+    let moments: Array2<f64> = file.array("moments", [count, RayMoments::COUNT])?;
     let rows = tallies.outer_iter().zip(slices.outer_iter());
-    rows.zip(projections.outer_iter())
-        .map(|((tally, half), values)| {
+    rows.zip(projections.outer_iter().zip(moments.outer_iter()))
+        .map(|((tally, half), (values, moments))| {
             let tally = PlaneTally {
                 crossed: tally[0],
                 inside: tally[1],
@@ -185,6 +188,7 @@ fn plane_batches(
                     grid: cells,
                     values: values.to_owned(),
                 },
+                moments: RayMoments(std::array::from_fn(|i| moments[i])),
             })
         })
         .collect()

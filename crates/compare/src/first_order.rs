@@ -2,13 +2,14 @@
 
 use crate::report::Verdict;
 use crate::residuals::Residuals;
-use etendue_field::{Slices, VirtualPlane};
+use etendue_field::{Light, Profile, Shape, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::geometry::{Matrix, Print};
+use etendue_theory::geometry::{Map, Matrix, Print};
 use etendue_theory::rays::{self, Plane, System};
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
 
 /// What the chain of affine maps predicts.
 #[derive(Clone, Debug)]
@@ -26,6 +27,8 @@ pub struct FirstOrderChain {
     pub error: f64,
     /// A of the rays from the light to the plane, z' = A z; of the corrected formulas.
     pub matrix: Matrix<4>,
+    /// Covariance of the windowed light field by rays, and propagated by the chain: see [`Covariance`](crate::Covariance).
+    pub covariance: [Option<Matrix<4>>; 2],
     /// Distances from the last surface, metres, at which rays meet that left the light parallel.
     pub foci: Vec<f64>,
     /// Whether `slices` are those of the paper's printed formulas.
@@ -95,6 +98,10 @@ impl FirstOrder {
         let chain = FirstOrderChain {
             error: distance(&linear, exact),
             matrix: corrected.rays().matrix,
+            covariance: [
+                rays::covariance(system, at, window),
+                propagated(system, &corrected.rays().matrix, window),
+            ],
             foci: corrected.foci.clone(),
             as_printed: scene.file.as_printed,
         };
@@ -140,6 +147,51 @@ impl FirstOrder {
             },
         }
     }
+}
+
+/// The covariance of the light, as wide as its Gaussian or its shape, after the chain and the window: inverses of covariances add up in a
+/// product of Gaussians, and go as A⁻ᵀ S⁻¹ A⁻¹ through a map.
+fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
+    let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
+    // What has no width gets one that is narrow beside the window; what has no end adds no inverse.
+    let narrow = window.map(|v| 1e8 / v);
+    let picture = |w: f64| TAU / (w * w);
+    let inverse = match system.light {
+        Light::Projector { image, .. } => {
+            let [u, v] = image.width.map(picture);
+            [narrow[0], narrow[1], u, v]
+        }
+        Light::Beam { image, .. } => {
+            let [x, y] = image.width.map(picture);
+            [x, y, narrow[2], narrow[3]]
+        }
+        Light::Point { .. } => [narrow[0], narrow[1], 0.0, 0.0],
+        Light::Area { shape, .. } => {
+            let [x, y] = match shape {
+                Shape::Rectangle(r) => r.size.map(|side| 12.0 / (side * side)),
+                Shape::Disc(disc) => [4.0 / (disc.radius * disc.radius); 2],
+            };
+            [x, y, 0.0, 0.0]
+        }
+    };
+    let mut inverse = Map::linear(*chain).spectral_covariance(&diagonal(inverse))?;
+    for (row, v) in window.iter().enumerate() {
+        inverse[row][row] += 1.0 / v;
+    }
+    Some(Map::linear(inverse).inverse()?.matrix)
+}
+
+/// Of a Gaussian with the profile's curvature at its centre; of a box, its own.
+fn variance(profile: &Profile) -> f64 {
+    match *profile {
+        Profile::Hann(h) => 2.0 * (h / PI).powi(2),
+        Profile::Box(h) => h * h / 3.0,
+        Profile::Gaussian { width, .. } => width * width / TAU,
+    }
+}
+
+fn diagonal(entries: [f64; 4]) -> Matrix<4> {
+    std::array::from_fn(|i| std::array::from_fn(|j| if i == j { entries[i] } else { 0.0 }))
 }
 
 /// ‖a − b‖/‖b‖ over the independent frequencies, with those on the border of the half-plane counted alike.

@@ -23,7 +23,7 @@ pub use converge::{Convergence, converge};
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use plane::{PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction, steps};
-pub use report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
+pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
 pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::system;

@@ -1,6 +1,6 @@
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
-use crate::report::{Bandwidth, HighFrequencyShare, Pair, PlaneReport, Verdict};
+use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
 use crate::score::score;
 use etendue_field::{Complex, PlaneTally, SliceGrid, Slices};
@@ -114,6 +114,7 @@ pub fn compare(
             rho: pair(&|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
             nu: pair(&|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
         },
+        covariance: covariance(measurement, index, prediction)?,
         high_frequency_share: prediction
             .cuts
             .iter()
@@ -141,6 +142,25 @@ pub fn compare(
         predicted,
         projection: estimate::projection(measurement, index)?,
     })
+}
+
+/// The second moments of the photons, and those predicted.
+fn covariance(
+    measurement: &Measurement,
+    index: usize,
+    prediction: &Prediction,
+) -> Result<Option<Covariance>, TooFewBatches> {
+    let matrix =
+        |array: &Array2<f64>| std::array::from_fn(|i| std::array::from_fn(|j| array[[i, j]]));
+    let chain = prediction.first_order.as_ref().map(|f| f.chain.covariance);
+    let [predicted, propagated] = chain.unwrap_or_default();
+    let measured = etendue_spectrum::covariance(measurement, index)?;
+    Ok(measured.map(|measured| Covariance {
+        measured: matrix(&measured.value),
+        error: matrix(&measured.error),
+        predicted,
+        propagated,
+    }))
 }
 
 /// The radial power of a reference from its batches, without their noise (docs/theory.md, Eq. 13), [ρ, ν].

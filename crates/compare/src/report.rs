@@ -2,6 +2,7 @@ use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::score::ParameterReport;
 use etendue_field::Frame;
+use etendue_theory::geometry::Matrix;
 use serde::Serialize;
 
 /// What a plane or a run comes to.
@@ -46,6 +47,22 @@ pub struct Bandwidth {
     pub rho: Pair,
     /// Along ν, cycles per unit slope.
     pub nu: Pair,
+}
+
+/// Second central moments of a windowed light field, [4, 4], in the units of its coordinates.
+///
+/// They exist because the window ends. Those of the spectrum need not: of an edge in the field they grow without end as the grid does,
+/// which is why a percentile stands beside them as bandwidth.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Covariance {
+    /// From the photons.
+    pub measured: Matrix<4>,
+    /// Standard errors, by the jackknife.
+    pub error: Matrix<4>,
+    /// By rays through the real geometry, where that is the prediction.
+    pub predicted: Option<Matrix<4>>,
+    /// Propagated, A S Aᵀ by the first-order chain, from a Gaussian as wide as the light, through a window taken to be Gaussian; masks left out.
+    pub propagated: Option<Matrix<4>>,
 }
 
 /// The share of energy above a cut in the spectrum of the windowed irradiance.
@@ -98,6 +115,8 @@ pub struct PlaneReport {
     pub slope: Pair,
     /// 95 % bandwidth of the radial spectrum.
     pub bandwidth_95: Bandwidth,
+    /// Second central moments of the windowed light field over (x, y, u, v) or what stands for them; none where no light came.
+    pub covariance: Option<Covariance>,
     /// H at two cuts, on a plane that light leaves diffusely; empty elsewhere.
     pub high_frequency_share: Vec<HighFrequencyShare>,
     /// The photons held against the first-order chain, on a plane of that class; all numbers above are of the exact ray-space prediction.

@@ -83,6 +83,7 @@ fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
                 inside,
                 outside: 100 - inside,
             },
+            moments: etendue_spectrum::RayMoments::default(),
             slices,
             projection: Projection { grid, values },
         };

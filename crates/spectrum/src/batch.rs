@@ -1,3 +1,4 @@
+use crate::ray_moments::RayMoments;
 use etendue_field::{Ledger, PlaneTally, Projection, Slices};
 
 /// What one batch of photons measured at one plane.
@@ -11,6 +12,8 @@ pub struct PlaneBatch {
     pub slices: Slices,
     /// The windowed field over (x, u).
     pub projection: Projection,
+    /// Its second moments, likewise.
+    pub moments: RayMoments,
 }
 
 /// What one batch of photons measured: a replicate, independent of all others.

@@ -41,6 +41,7 @@ mod measurement;
 pub mod moments;
 mod quadrature;
 mod radial;
+mod ray_moments;
 mod spread;
 mod transform;
 
@@ -50,4 +51,5 @@ pub use jackknife::Uncertain;
 pub use measure::{PROJECTION_BINS, measure};
 pub use measurement::{Measurement, MergeError};
 pub use radial::{CrossPower, RadialPower};
+pub use ray_moments::{CovarianceEstimate, RayMoments, covariance};
 pub use transform::{Accumulator, SliceTransform};

@@ -1,6 +1,7 @@
 use crate::batch::{Batch, PlaneBatch};
 use crate::histogram::ProjectionHistogram;
 use crate::measurement::Measurement;
+use crate::ray_moments::RayMoments;
 use crate::transform::{Accumulator, SliceTransform};
 use etendue_field::{
     Crossing, PhotonSource, PlaneTally, ProjectionGrid, Quantity, VirtualPlane, Window,
@@ -71,6 +72,7 @@ struct Recorder<'plan> {
     tally: PlaneTally,
     slices: Accumulator<'plan>,
     projection: ProjectionHistogram,
+    moments: RayMoments,
 }
 
 impl<'plan> Recorder<'plan> {
@@ -82,6 +84,7 @@ impl<'plan> Recorder<'plan> {
             tally: PlaneTally::default(),
             slices: plan.accumulator(),
             projection: ProjectionHistogram::new(cells),
+            moments: RayMoments::default(),
         }
     }
 
@@ -96,6 +99,7 @@ impl<'plan> Recorder<'plan> {
             let weight = weight * self.window.value(ray) * self.quantity.factor(ray);
             self.slices.deposit(ray, weight);
             self.projection.deposit(ray, weight);
+            self.moments.deposit(ray, weight);
         }
     }
 
@@ -105,6 +109,7 @@ impl<'plan> Recorder<'plan> {
             tally: std::mem::take(&mut self.tally),
             slices: self.slices.finish(scale),
             projection: self.projection.finish(scale),
+            moments: self.moments.finish(scale),
         }
     }
 }

@@ -97,6 +97,7 @@ fn measurement(values: &[Complex]) -> Measurement {
         let tally = PlaneTally::default();
         let planes = vec![PlaneBatch {
             tally,
+            moments: etendue_spectrum::RayMoments::default(),
             slices,
             projection,
         }];

@@ -1,0 +1,125 @@
+use crate::estimate::TooFewBatches;
+use crate::jackknife::Jackknife;
+use crate::measurement::Measurement;
+use etendue_field::TwoPlane;
+use ndarray::Array2;
+
+/// Sums of the windowed light field over rays, to second order: ∫ ℓW, ∫ ℓW zᵢ and ∫ ℓW zᵢ zⱼ for i ≤ j, z = (x, y, u, v), in this order.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct RayMoments(pub [f64; RayMoments::COUNT]);
+
+impl RayMoments {
+    /// Number of sums.
+    pub const COUNT: usize = 15;
+
+    /// Adds a ray.
+    #[inline]
+    pub(crate) fn deposit(&mut self, ray: &TwoPlane, weight: f64) {
+        let z = [ray.x, ray.y, ray.u, ray.v];
+        self.0[0] += weight;
+        let mut next = 5;
+        for i in 0..4 {
+            let first = weight * z[i];
+            self.0[1 + i] += first;
+            for other in &z[i..] {
+                self.0[next] += first * other;
+                next += 1;
+            }
+        }
+    }
+
+    /// The sums so far times `scale`; ready for the next batch.
+    pub(crate) fn finish(&mut self, scale: f64) -> Self {
+        let sums = std::mem::take(self);
+        Self(sums.0.map(|s| s * scale))
+    }
+
+    /// The central second moments, [4, 4]; `None` if no light came.
+    fn covariance(&self) -> Option<Array2<f64>> {
+        let [total, sums @ ..] = self.0;
+        if total <= 0.0 {
+            return None;
+        }
+        let (first, second) = sums.split_at(4);
+        let mut covariance = Array2::zeros((4, 4));
+        let pairs = (0..4).flat_map(|i| (i..4).map(move |j| (i, j)));
+        for ((i, j), sum) in pairs.zip(second) {
+            let value = sum / total - first[i] * first[j] / (total * total);
+            covariance[[i, j]] = value;
+            covariance[[j, i]] = value;
+        }
+        Some(covariance)
+    }
+}
+
+/// The covariance of a windowed light field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CovarianceEstimate {
+    /// Central second moments over (x, y, u, v), [4, 4].
+    pub value: Array2<f64>,
+    /// Their standard errors, by the delete-one jackknife.
+    pub error: Array2<f64>,
+}
+
+/// The covariance of the windowed light field at plane `plane`; `None` where no light came.
+///
+/// # Errors
+///
+/// With fewer than two batches.
+pub fn covariance(
+    measurement: &Measurement,
+    plane: usize,
+) -> Result<Option<CovarianceEstimate>, TooFewBatches> {
+    TooFewBatches::check(measurement, 2)?;
+    let batches = || measurement.at_plane(plane).map(|batch| batch.moments.0);
+    let mut total = [0.0; RayMoments::COUNT];
+    for batch in batches() {
+        total.iter_mut().zip(batch).for_each(|(sum, s)| *sum += s);
+    }
+    let Some(value) = RayMoments(total).covariance() else {
+        return Ok(None);
+    };
+    let mut jackknife = Jackknife::new(value.raw_dim());
+    for batch in batches() {
+        let mut without = total;
+        without.iter_mut().zip(batch).for_each(|(sum, s)| *sum -= s);
+        if let Some(covariance) = RayMoments(without).covariance() {
+            jackknife.add(&covariance);
+        }
+    }
+    let error = jackknife.variance().mapv(f64::sqrt);
+    Ok(Some(CovarianceEstimate { value, error }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn moments_of_four_rays_are_what_a_hand_makes_of_them() {
+        let mut moments = RayMoments::default();
+        let ray = |x, y, u, v| TwoPlane { x, y, u, v };
+        for (ray, weight) in [
+            (ray(1.0, 0.0, 2.0, 0.0), 1.0),
+            (ray(-1.0, 0.0, -2.0, 0.5), 1.0),
+            (ray(3.0, 1.0, 0.0, 0.0), 2.0),
+        ] {
+            moments.deposit(&ray, weight);
+        }
+        let covariance = moments.finish(0.25).covariance().unwrap_or_default();
+        // Means 1.5, 0.5, 0, 0.125.
+        let expected = [
+            (0, 0, 2.75),
+            (0, 1, 0.75),
+            (0, 2, 1.0),
+            (1, 1, 0.25),
+            (2, 2, 2.0),
+            (2, 3, -0.25),
+            (3, 3, 0.046875),
+        ];
+        for (i, j, value) in expected {
+            assert!((covariance[[i, j]] - value).abs() < 1e-15, "{i} {j}"); // rounding
+        }
+        assert!(RayMoments::default().covariance().is_none());
+    }
+}
