@@ -75,7 +75,7 @@ pub fn chain(system: &System, plane: &Plane, print: Print) -> Option<FirstOrder>
         walk.travel(distance - travelled, "plane");
         walk.frame = walk.frame.travelled(distance);
         match plane.orientation {
-            Orientation::Orthogonal => walk.into_frame(&plane.frame),
+            Orientation::Orthogonal => walk.reach_frame(&plane.frame),
             Orientation::Tangent | Orientation::LocalNormals => walk.arriving_surface(plane),
         }
     }
@@ -244,7 +244,7 @@ impl Walk {
     }
 
     /// From the leg's frame to that of a plane across it, which may be turned about D and moved across.
-    fn into_frame(&mut self, plane: &Frame) {
+    fn reach_frame(&mut self, plane: &Frame) {
         debug_assert!(
             (plane.d - self.frame.d).length() < 1e-9,
             "a plane lies across the central ray"

@@ -84,5 +84,5 @@ fn crossing(frame: &Frame, ray: &Ray) -> Option<(f64, f64)> {
     );
     let t = -at.z / towards.z;
     t.is_finite()
-        .then(|| (at.x + t * towards.x, at.y + t * towards.y))
+        .then_some((at.x + t * towards.x, at.y + t * towards.y))
 }

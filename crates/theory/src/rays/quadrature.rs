@@ -19,7 +19,9 @@ pub(super) struct Rule {
 /// Most nodes of a rule.
 pub(super) const MOST_NODES: usize = 4_000_000;
 /// Fewest nodes along an inner coordinate.
-const FEWEST: f64 = 24.0;
+const FEWEST: f64 = 16.0;
+/// Fewest along a side of an area light.
+const FEWEST_OUTSIDE: f64 = 4.0;
 
 impl Rule {
     /// The number of nodes, those outside the window included.
@@ -58,15 +60,15 @@ impl<F: Field> Finder<'_, F> {
 
     /// A rule that should do for a grid: a midpoint rule integrates exactly what has fewer cycles than nodes.
     pub(super) fn rule(&self, grid: &SliceGrid) -> Rule {
-        let largest = [grid.rho.max(), grid.rho.max(), grid.nu.max(), grid.nu.max()];
+        let [rho, nu] = [grid.rho.max(), grid.nu.max()];
         let window = [self.window.x, self.window.y, self.window.u, self.window.v];
         // Cycles per unit of a coordinate at the light, in phases and in the window.
         let cycles = |k: usize| {
-            let parts = (0..4).map(|i| {
-                let frequency = largest[i] + 1.0 / window[i].half_width();
-                self.jacobian[i][k].abs() * frequency
-            });
-            parts.fold(0.0, f64::max)
+            let column = self.jacobian.map(|row| row[k]);
+            let phase = rho * column[0].hypot(column[1]) + nu * column[2].hypot(column[3]);
+            let widths = column.iter().zip(window);
+            let window = widths.map(|(c, profile)| c.abs() / profile.half_width());
+            phase + window.fold(0.0, f64::max)
         };
         let inner = self.region([0.0; 2]).map_or(FEWEST, |region| {
             let along = |axis: usize| {
@@ -78,15 +80,15 @@ impl<F: Field> Finder<'_, F> {
         });
         let outer = self.emission.shape.map_or(1.0, |shape| {
             let [w, h] = shape.bounds().size;
-            // π nodes for each cycle, and some for what is not a wave.
-            4.0 + 1.6 * (w * cycles(0)).max(h * cycles(1))
+            // A Gauss rule needs π/2 nodes for a cycle, and then a few.
+            FEWEST_OUTSIDE + 1.6 * (w * cycles(0)).max(h * cycles(1))
         });
         let whole = |x: f64| num_whole(x).max(1);
         let mut rule = Rule {
             outer: whole(outer),
             inner: whole(inner),
         };
-        while rule.nodes() > MOST_NODES / 3 {
+        while rule.nodes() > MOST_NODES {
             rule = Rule {
                 outer: (rule.outer * 7 / 8).max(1),
                 inner: rule.inner * 7 / 8,

@@ -177,7 +177,7 @@ fn clipped(corners: &[[f64; 2]], n: [f64; 2], c: f64) -> Vec<[f64; 2]> {
         if here <= 0.0 {
             kept.push(p);
         }
-        if (here < 0.0) != (there < 0.0) && here != there {
+        if (here < 0.0) != (there < 0.0) {
             let t = here / (here - there);
             kept.push([p[0] + t * (q[0] - p[0]), p[1] + t * (q[1] - p[1])]);
         }

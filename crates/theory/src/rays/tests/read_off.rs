@@ -1,6 +1,7 @@
 //! The chain read off, against derivatives of the traced rays, and known foci.
 
 use super::*;
+use crate::rays::central::Incidence;
 use crate::rays::predict::exact_field;
 
 /// ∂z'/∂z of the traced rays by central differences.
@@ -187,8 +188,6 @@ pub(super) fn surface_planes() -> Vec<(System, Plane)> {
     }
     all
 }
-
-use super::super::central::Incidence;
 
 #[test]
 fn surface_planes_are_read_off() {

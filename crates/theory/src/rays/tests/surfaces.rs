@@ -22,7 +22,7 @@ fn covariance_of_a_gaussian_beam() {
         // A mirror of 100 m bends it little: the order of (x/R)² of slopes 2x/R.
         assert!(off < 1e-5 * variance, "{i}: {off:e}");
     }
-    assert!((got[0][2] - expected[0][0] * 0.0).abs() > 1e-4 * variance); // slopes follow positions
+    assert!(got[0][2].abs() > 1e-4 * variance); // slopes follow positions
 }
 
 #[test]
@@ -106,11 +106,11 @@ fn rays_are_lost() {
     let system = mirror(beam([0.1, 0.1]), 0.0, [0.0; 2], [-2.0; 3]);
     let plane = after(&system, 0.1);
     let arrives = |ray| predict::exact_field(&system, &plane)(ray).is_some();
-    assert!(arrives([0.4, 0.0, 0.0, 0.0]));
+    assert!(arrives([0.3, 0.0, 0.0, 0.0]));
     assert!(!arrives([0.6, 0.0, 0.0, 0.0])); // beside a sphere of radius 0.5
     let mut small = system.clone();
-    small.elements[0].patch.aperture = 0.3;
-    assert!(predict::exact_field(&small, &plane)([0.4, 0.0, 0.0, 0.0]).is_none());
+    small.elements[0].patch.aperture = 0.2;
+    assert!(predict::exact_field(&small, &plane)([0.3, 0.0, 0.0, 0.0]).is_none());
     // Total reflection at 0.73 rad.
     let glass = Specular::Refraction {
         front: 1.5,
