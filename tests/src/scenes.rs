@@ -30,6 +30,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("mesh_blocker"),
     scene!("furnace"),
     scene!("diffuse"),
+    scene!("two_bounces"),
 ];
 
 /// A scene of the suite, with the photons and the seed of its file unless others are given.

@@ -2,6 +2,7 @@ use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::{load, pictures, say};
 use etendue_compare::{Class, steps};
+use etendue_field::tidy;
 use etendue_scene::Scene;
 
 /// `etendue check`: returns the exit code.
@@ -20,7 +21,7 @@ fn length(scene: &Scene) -> String {
     let legs = scene.path.legs.iter().enumerate();
     let ends = legs.filter_map(|(i, leg)| {
         let name = scene.name_of(scene.path.ends_at(i)?.object);
-        Some(format!("{} m to {name}", leg.length))
+        Some(format!("{} m to {name}", tidy(leg.length)))
     });
     ends.collect::<Vec<_>>().join(", ")
 }
@@ -43,14 +44,14 @@ fn description(scene: &Scene) -> String {
         lines.push(format!(
             "\n{}: {} m along the central ray, prediction: {:?}",
             plane.name,
-            plane.distance,
+            tidy(plane.distance),
             Class::of(scene, plane)
         ));
         lines.extend(steps(scene, plane).iter().map(|step| format!("  {step}")));
         lines.push(format!(
             "  looked at in {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per unit slope",
-            plane.grid.rho.max(),
-            plane.grid.nu.max()
+            tidy(plane.grid.rho.max()),
+            tidy(plane.grid.nu.max())
         ));
     }
     lines.join("\n")

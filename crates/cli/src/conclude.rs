@@ -3,7 +3,7 @@ use crate::failure::Failure;
 use crate::method::Method;
 use crate::results::Results;
 use crate::summary::{Stopwatch, Summary};
-use crate::{field, files, photons, pictures, progress, table};
+use crate::{field, files, photons, pictures, progress, say, table};
 use etendue_compare::{PlaneComparison, Prediction, Verdict, compare, sidak};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -39,10 +39,18 @@ pub(crate) fn conclude(
     watch.lap("compare");
     stage.set_message("writing results");
     let summary = Summary::new(case, &planes);
+    let mut removed = results.begin()?;
     let folder = written(case, ending, results, &summary, &planes, watch)?;
     stage.finish_and_clear();
     if !ending.quiet {
         table::print(&summary, &folder);
+        removed.retain(|name| name.ends_with(".npy") && !folder.join(name).exists());
+        if !removed.is_empty() {
+            let names = removed.join(", ");
+            say(&format!(
+                "removed with the earlier result, not saved again: {names}"
+            ));
+        }
     }
     let wanted = match ending.expect {
         Some(Expect::Disagreement) => Verdict::Fail,
@@ -72,7 +80,6 @@ fn written(
     planes: &[PlaneComparison],
     mut watch: Stopwatch,
 ) -> Result<PathBuf, Failure> {
-    results.begin()?;
     for (prediction, plane) in case.predictions.iter().zip(planes) {
         files::write(&mut results, summary, plane)?;
         pictures::plane(&mut results, summary, prediction, plane)?;

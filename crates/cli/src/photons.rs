@@ -6,6 +6,7 @@ use crate::method::source;
 use crate::results::Results;
 use crate::summary::json;
 use etendue_field::{Crossing, PhotonSource};
+use etendue_scene::Scene;
 use serde::Serialize;
 use std::io::{self, Write};
 
@@ -17,6 +18,26 @@ struct Index {
     batch_offsets: Vec<u64>,
     /// Photons emitted in each batch.
     emitted: Vec<u64>,
+}
+
+/// Bytes of a photon in the file: five numbers.
+const ROW: u64 = 40;
+
+/// How large the files will be at most: if every photon crosses every plane.
+pub(crate) fn announcement(scene: &Scene) -> String {
+    let planes = scene.planes.len();
+    let each = ROW * scene.run.photons;
+    let [all, each] = [each * planes as u64, each].map(size);
+    format!("--save photons: at most {all} on disk, {each} for each of {planes} planes")
+}
+
+fn size(bytes: u64) -> String {
+    let megabytes = bytes as f64 / 1e6;
+    if megabytes < 1000.0 {
+        format!("{megabytes:.1} MB")
+    } else {
+        format!("{:.1} GB", megabytes / 1000.0)
+    }
 }
 
 /// Traces the photons again, one plane after the other, and streams them to disk: they are the same ones,

@@ -6,7 +6,7 @@ use crate::files::{radial_z, z};
 use crate::results::Results;
 use crate::summary::Summary;
 use crate::table::word;
-use etendue_compare::{PlaneComparison, Prediction, stands_before};
+use etendue_compare::{Class, PlaneComparison, Prediction, stands_before};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Side, SliceGrid, VirtualPlane};
 use etendue_figures::{
     Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
@@ -96,14 +96,24 @@ pub(crate) fn path(
     let columns = along
         .iter()
         .map(|(plane, compared)| column(scene, plane, compared));
+    let columns: Vec<Column<'_>> = columns.collect();
+    let guided = |more: usize| columns.iter().any(|column| column.guides.len() > more);
+    let dashed = match (guided(0), guided(1)) {
+        (true, true) => " Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
+        (true, false) => " Dashed: predicted, *ν* = −*d* *ρ*.",
+        _ => "",
+    };
     let figure = strip(&Strip {
-        title: &format!("{}: the light field along the path, and its spectrum", scene.name),
+        title: &format!(
+            "{}: the light field along the path, and its spectrum",
+            scene.name
+        ),
         note: &format!(
-            "{:e} photons, seed {}; spectra are means over azimuths. Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
+            "{:e} photons, seed {}; spectra are means over azimuths.{dashed}",
             summary.photons as f64, summary.seed
         ),
         section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),
-        columns: columns.collect(),
+        columns,
         light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
         floor: FLOOR,
@@ -129,7 +139,7 @@ fn column<'a>(scene: &Scene, plane: &VirtualPlane, compared: &'a PlaneComparison
             values: compared.radial.power.view(),
         },
         verdict: verdict_line(compared),
-        guides: if compared.report.in_window > 0 {
+        guides: if compared.report.in_window > 0 && compared.report.class != Class::Reference {
             guides(scene, plane)
         } else {
             Vec::new()
@@ -146,7 +156,7 @@ fn made_from(summary: &Summary) -> String {
 }
 
 /// Where theory puts the light: along ν = −d ρ after travel d, and, at a distance h behind blockers of
-/// frequency f, the same line through (± f, ∓ h f). A diffuse surface leaves what lies at ν = 0, and travel begins anew.
+/// frequency f that the window and the frequencies can tell from a single one, the same line through (± f, ∓ h f). A diffuse surface leaves what lies at ν = 0, and travel begins anew.
 fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
     let reflected = plane.leg > 0;
     let through = |through| Guide {
@@ -159,7 +169,9 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .filter(|layer| !reflected && stands_before(layer.distance, scene, plane));
     let replicas = behind.flat_map(|layer| {
         let h = plane.distance - layer.distance;
-        let frequency = layer.pitch.map(|pitch| 1.0 / pitch);
+        let (period, most) = (2.0 * plane.window.x.half_width(), plane.grid.rho.max());
+        let seen = |pitch: &f64| *pitch < period && *pitch * most >= 1.0;
+        let frequency = layer.pitch.filter(seen).map(|pitch| 1.0 / pitch);
         frequency.map_or(Vec::new(), |f| vec![[f, -h * f], [-f, h * f]])
     });
     std::iter::once([0.0, 0.0])

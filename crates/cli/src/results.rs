@@ -35,11 +35,11 @@ impl Results {
     }
 
     /// Takes away an earlier result in this folder: first its index, then the files that lists, so that none
-    /// of them stays beside those to come.
-    pub(crate) fn begin(&self) -> Result<(), Failure> {
+    /// of them stays beside those to come. Returns the names of those files.
+    pub(crate) fn begin(&self) -> Result<Vec<String>, Failure> {
         let index = self.folder.join(self.index);
         let Ok(text) = fs::read(&index) else {
-            return Ok(());
+            return Ok(Vec::new());
         };
         let earlier: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
         if earlier.get("scene_hash").is_none() {
@@ -49,6 +49,7 @@ impl Results {
             ));
         }
         fs::remove_file(&index).map_err(|e| Failure::write(&index, e))?;
+        let mut removed = Vec::new();
         for (name, hash) in earlier["files"].as_object().into_iter().flatten() {
             let path = self.folder.join(name);
             let inside = Path::new(name)
@@ -59,9 +60,10 @@ impl Results {
                 || fs::read(&path).is_ok_and(|b| *hash == blake3::hash(&b).to_hex().as_str());
             if inside && unchanged() {
                 fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
+                removed.push(name.clone());
             }
         }
-        Ok(())
+        Ok(removed)
     }
 
     /// Writes a file that the index lists; `name` is relative to the folder, with `/`.

@@ -6,7 +6,7 @@ use crate::predict::predicted;
 use crate::results::{Results, SUMMARY};
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
-use crate::{field, load, method};
+use crate::{field, load, method, photons, say};
 use etendue_scene::Scene;
 use std::path::Path;
 
@@ -26,6 +26,9 @@ fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure>
     let mut watch = Stopwatch::start();
     if args.save.contains(&Save::Field) {
         field::check_memory(&scene)?;
+    }
+    if args.save.contains(&Save::Photons) && !args.quiet {
+        say(&photons::announcement(&scene));
     }
     let method = args.photons.method;
     let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;

@@ -3,6 +3,7 @@
 use crate::say;
 use crate::summary::Summary;
 use etendue_compare::{ParameterReport, PlaneReport, Verdict};
+use etendue_field::tidy;
 use std::path::Path;
 
 pub(crate) fn print(summary: &Summary, folder: &Path) {
@@ -45,6 +46,7 @@ fn text(summary: &Summary) -> String {
 fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
+        "class",
         "in window",
         "χ²/dof",
         "p",
@@ -57,6 +59,7 @@ fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let row = |plane: &PlaneReport| {
         vec![
             plane.name.clone(),
+            format!("{:?}", plane.class).to_lowercase(),
             grouped(plane.in_window),
             number(plane.chi2_per_dof, 3),
             number(plane.p_value, 5),
@@ -87,12 +90,13 @@ fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     let mut rows = vec![header.map(str::to_owned).to_vec()];
     for plane in &summary.planes {
         for parameter in &plane.parameters {
+            let [measured, change] = measured(parameter);
             rows.push(vec![
                 plane.name.clone(),
                 with_unit(&parameter.name, &parameter.unit),
                 tidy(parameter.scene),
-                uncertain(parameter.measured, parameter.error),
-                detectable(parameter),
+                measured,
+                change,
             ]);
         }
     }
@@ -107,21 +111,23 @@ fn with_unit(name: &str, unit: &str) -> String {
     }
 }
 
-/// A number as the scene file may have it, without the last digits that arithmetic leaves.
-fn tidy(x: f64) -> String {
-    let rounded = (x * 1e12).round() / 1e12;
-    rounded.to_string()
-}
-
-/// As a share of the parameter, if it has a size.
-fn detectable(parameter: &ParameterReport) -> String {
+/// Measured value and smallest detectable change, this as a share of the parameter if it has a size. Where all of the
+/// parameter would go unnoticed, or its error is larger than what was measured, nothing was measured.
+fn measured(parameter: &ParameterReport) -> [String; 2] {
+    let value = uncertain(parameter.measured, parameter.error);
     if parameter.scene.abs() < 1e-12 {
-        format!("{:.1e}", parameter.detectable)
+        return [value, format!("{:.1e}", parameter.detectable)];
+    }
+    let share = (parameter.detectable / parameter.scene).abs();
+    let change = if share > 1.0 {
+        number(None, 0)
     } else {
-        format!(
-            "{:.2} %",
-            100.0 * (parameter.detectable / parameter.scene).abs()
-        )
+        format!("{:.2} %", 100.0 * share)
+    };
+    if share > 1.0 || parameter.error > parameter.measured.abs() {
+        [number(None, 0), change]
+    } else {
+        [value, change]
     }
 }
 
@@ -192,12 +198,7 @@ fn rounded_up(x: f64) -> f64 {
 /// The predicted slope to as many digits as the measured one has.
 fn predicted(plane: &PlaneReport) -> String {
     match (plane.slope.predicted, plane.slope.error) {
-        (Some(value), Some(error)) if error > 0.0 => {
-            let digits = decimals(error);
-            // Adding 0 turns a rounded −0 into 0.
-            let unit = 10f64.powi(i32::try_from(digits).unwrap_or(0));
-            format!("{:.digits$}", (value * unit).round() / unit + 0.0)
-        }
+        (Some(value), Some(error)) if error > 0.0 => fixed(value, decimals(error)),
         (value, _) => number(value, 4),
     }
 }
@@ -221,7 +222,14 @@ pub(crate) fn word(verdict: Verdict) -> &'static str {
 }
 
 fn number(value: Option<f64>, digits: usize) -> String {
-    value.map_or("–".to_owned(), |v| format!("{v:.digits$}"))
+    value.map_or("–".to_owned(), |v| fixed(v, digits))
+}
+
+/// With so many decimals, and never −0.
+fn fixed(value: f64, digits: usize) -> String {
+    let text = format!("{value:.digits$}");
+    let zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
+    if zero { text.replace('-', "") } else { text }
 }
 
 fn percent(value: Option<f64>) -> String {
@@ -234,7 +242,7 @@ fn uncertain(value: f64, error: f64) -> String {
         return format!("{value}");
     }
     let digits = decimals(error);
-    format!("{value:.digits$} ± {error:.digits$}")
+    format!("{} ± {error:.digits$}", fixed(value, digits))
 }
 
 /// 10000000 as 10 000 000.
@@ -247,4 +255,34 @@ pub(crate) fn grouped(n: u64) -> String {
         .map(|group| std::str::from_utf8(group).unwrap_or_default())
         .collect();
     groups.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_photons_cannot_tell_is_not_shown() {
+        let shown = |scene: f64, value: f64, error: f64| {
+            measured(&ParameterReport {
+                name: "side".to_owned(),
+                unit: "m".to_owned(),
+                scene,
+                measured: value,
+                error,
+                detectable: 3.86 * error,
+            })
+        };
+        assert_eq!(shown(0.2, 0.21, 0.01), ["0.210 ± 0.010", "19.30 %"]);
+        assert_eq!(shown(2.0, -113.0, 41.0), ["–", "–"]);
+        assert_eq!(shown(2.0, 0.1, 0.2), ["–", "38.60 %"]);
+        assert_eq!(shown(0.0, 0.1, 0.2), ["0.10 ± 0.20", "7.7e-1"]);
+    }
+
+    #[test]
+    fn nothing_is_minus_zero() {
+        assert_eq!(fixed(-0.004, 2), "0.00");
+        assert_eq!(fixed(-0.006, 2), "-0.01");
+        assert_eq!(uncertain(-0.04, 1.5), "0.0 ± 1.5");
+    }
 }

@@ -103,7 +103,12 @@ fn expecting_disagreement_turns_the_exit_code() {
 #[test]
 fn saved_photons_are_the_ones_measured() {
     let folder = tempfile::tempdir().unwrap();
-    run(folder.path(), &["--save", "photons", "--quiet"]);
+    let output = run(folder.path(), &["--save", "photons"]);
+    let told = String::from_utf8(output.stdout).unwrap();
+    // 20,000 photons at five planes, 40 bytes for each.
+    assert!(
+        told.starts_with("--save photons: at most 4.0 MB on disk, 0.8 MB for each of 5 planes\n")
+    );
     let bytes = fs::read(folder.path().join("light/photons.npy")).unwrap();
     let header = String::from_utf8_lossy(&bytes[10..128]).into_owned();
     assert!(header.contains("'shape': (20000, 5)"), "{header}");
@@ -135,6 +140,11 @@ fn saved_photons_are_the_ones_measured() {
         (integral / exact - 1.0).abs() < 0.03,
         "{integral}, exact {exact}"
     ); // 20,000 photons: 4 σ is 3 %
+
+    let output = run(folder.path(), &[]);
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("not saved again: after_blockers/photons.npy, "));
+    assert!(!folder.path().join("light/photons.npy").exists());
 }
 
 /// Bad input: one clear message, the right exit code, nothing written, no panic.

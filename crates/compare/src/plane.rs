@@ -3,7 +3,7 @@ use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict};
 use crate::residuals::Residuals;
 use crate::score::score;
-use etendue_field::{Complex, PlaneTally, SliceGrid, Slices};
+use etendue_field::{Complex, PlaneTally, SliceGrid, Slices, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
     BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, shear_slope,
@@ -316,9 +316,10 @@ fn warnings(
         let border = at(axis);
         if border > BORDER * peak {
             warnings.push(format!(
-                "the spectrum goes on beyond |{name}| = {max}, where it is {:.0} dB below its peak; bandwidths \
+                "the spectrum goes on beyond |{name}| = {}, where it is {:.0} dB below its peak; bandwidths \
                  count what is inside",
-                -10.0 * (border / peak).log10()
+                tidy(max),
+                10.0 * (peak / border).log10()
             ));
         }
     }

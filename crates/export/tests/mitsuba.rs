@@ -136,6 +136,7 @@ fn planes_are_those_of_the_scene() {
     assert_eq!(plane["frame"]["D"], serde_json::json!([-0.0, -0.0, -1.0]));
     assert_eq!(plane["frame"]["X"], serde_json::json!([-1.0, -0.0, -0.0]));
     assert_eq!(plane["leaves"], "surface_0");
+    assert_eq!(plane["leg"], 1);
     assert_eq!(plane["quantity"], "DifferentialIrradiance");
 }
 
@@ -152,6 +153,9 @@ fn points_and_meshes_are_said() {
         String::from_utf8_lossy(file(&export, "mesh_0.ply"))
             .contains(&format!("element face {faces}\n"))
     );
+    let mut wall = stored("two_bounces");
+    wall.planes.retain(|plane| plane.leg < 2);
+    assert!(counts(&mitsuba(&wall).unwrap(), "surface_0.ply", [4, 2]));
 }
 
 #[test]
@@ -165,4 +169,7 @@ fn what_mitsuba_cannot_say_is_refused() {
     let grating = r#"Grating(name: "bars", center: (0, 1, 0), axis: X, frequency: 5)"#;
     let error = mitsuba(&of(SQUARE, grating)).unwrap_err();
     assert!(error.to_string().contains("grating \"bars\" cannot"));
+    let name = "leaving_floor".to_owned();
+    let error = mitsuba(&stored("two_bounces")).unwrap_err();
+    assert_eq!(error, NotInMitsuba::Reflections { name, leg: 2 });
 }

@@ -7,10 +7,10 @@ use crate::section::{Section, SegmentKind};
 use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
-use place::{Name, names, plane_places, x_range};
+use place::{Name, names, plane_places};
 
 const LIGHT: &str = "#f0a000";
-const CONE: &str = "#fdf0cf";
+const BODY: &str = "#b9b9b9";
 const PLANE: &str = "#1f5fa8";
 
 /// Space left and right of the central ray's ends.
@@ -43,11 +43,12 @@ impl<'a> Cut<'a> {
     pub(crate) const HEADING: f64 = 56.0;
 
     pub(crate) fn new(section: &'a Section, area: Area) -> Self {
-        let z = Axis::edges(
-            "distance along the central ray *z*",
-            "m",
-            [0.0, section.length],
-        );
+        let along = if section.unfolded {
+            "distance along the unfolded central ray *z*"
+        } else {
+            "distance along the central ray *z*"
+        };
+        let z = Axis::edges(along, "m", [0.0, section.length]);
         let across =
             |distance: f64| area.x + MARGIN + z.fraction(distance) * (area.width - 2.0 * MARGIN);
         let names = names(&section.segments, area, across);
@@ -60,7 +61,7 @@ impl<'a> Cut<'a> {
         };
         Self {
             planes: plane_places(section, across),
-            x: Axis::edges("*x*", "m", x_range(section)),
+            x: Axis::edges("*x*", "m", [-section.half_width, section.half_width]),
             section,
             area,
             plot,
@@ -72,9 +73,9 @@ impl<'a> Cut<'a> {
     /// The whole cut, with its axes and the numbers of its planes.
     pub(crate) fn draw(&self, svg: &mut Svg) {
         svg.clipped(self.plot, |svg| {
-            for cone in &self.section.cones {
-                let corners: Vec<_> = cone.iter().map(|corner| self.point(*corner)).collect();
-                svg.polygon(&corners, CONE);
+            for body in &self.section.bodies {
+                let corners: Vec<_> = body.iter().map(|corner| self.point(*corner)).collect();
+                svg.polygon(&corners, BODY);
             }
             self.segments(svg, SegmentKind::Surface);
         });
@@ -126,8 +127,14 @@ impl<'a> Cut<'a> {
         );
     }
 
-    /// The place of a point (z, x).
+    /// The place of a point (z, x); what is endless ends at the border.
     fn point(&self, [z, x]: [f64; 2]) -> [f64; 2] {
+        let [low, high] = self.x.range();
+        let x = if x.is_infinite() {
+            x.clamp(low, high)
+        } else {
+            x
+        };
         [
             self.area.x + MARGIN + self.z.fraction(z) * (self.area.width - 2.0 * MARGIN),
             self.plot.bottom() - self.x.fraction(x) * self.plot.height,
@@ -142,13 +149,33 @@ impl<'a> Cut<'a> {
         };
         for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
             let (start, end) = (self.point(segment.start), self.point(segment.end));
-            if kind == SegmentKind::Surface {
+            // A body is filled: it has no other side.
+            let bits = |point: &[f64; 2]| point.map(f64::to_bits);
+            let mut edges = self.section.bodies.iter().flatten();
+            let is_flat = edges.all(|edge| bits(edge) != bits(&segment.start));
+            if kind == SegmentKind::Surface && is_flat {
                 let [start, end] = self.visible(start, end);
                 hatch(svg, start, end);
             }
             let stroke = Stroke::solid(color, thickness);
             svg.line(start, end, stroke);
+            for x in [segment.start[1], segment.end[1]] {
+                if x.is_infinite() {
+                    self.goes_on(svg, start[0], x.signum(), color);
+                }
+            }
         }
+    }
+
+    /// An arrow at the border, to which something endless is drawn.
+    fn goes_on(&self, svg: &mut Svg, at: f64, up: f64, color: &str) {
+        let border = if up > 0.0 {
+            self.plot.y
+        } else {
+            self.plot.bottom()
+        };
+        let wings = [-6.0, 6.0].map(|wing| [at + wing, border + 11.0 * up]);
+        svg.polygon(&[[at, border], wings[0], wings[1]], color);
     }
 
     /// The part of a line between heights just above and below the plot; all of a level one.

@@ -16,7 +16,7 @@ pub enum SegmentKind {
     Surface,
 }
 
-/// A straight piece of something the cut passes through; points are (z, x), metres.
+/// A straight piece of something the cut passes through; points are (z, x), metres. An infinite x goes on beyond the picture.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Segment {
     /// What it is.
@@ -40,24 +40,28 @@ pub struct PlaneMark {
     pub side: Side,
 }
 
-/// The plane of z, the distance along the (unfolded) central ray, and x, both in metres.
+/// The plane of z, the distance along the central ray, and x, both in metres.
 ///
-/// Not to scale: z fills the width, and x reaches just beyond the lights and blockers. What sticks out is cut off.
+/// Not to scale: z fills the width. What sticks out is cut off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
     /// Length of the central ray, metres.
     pub length: f64,
+    /// Whether the central ray has turned on the way.
+    pub unfolded: bool,
+    /// Largest x shown, metres.
+    pub half_width: f64,
     /// Lights, blockers and surfaces.
     pub segments: Vec<Segment>,
     /// The virtual planes, in the order of their numbers.
     pub planes: Vec<PlaneMark>,
-    /// Outlines (z, x) of bundles of rays, filled faintly; may be empty.
-    pub cones: Vec<Vec<[f64; 2]>>,
+    /// Outlines (z, x) of bodies, filled; segments draw their edges.
+    pub bodies: Vec<Vec<[f64; 2]>>,
 }
 
 /// Draws the cut alone, with the names of its planes.
 ///
-/// The CSV has a row for each segment, plane and corner of a cone.
+/// The CSV has a row for each segment, plane and corner of a body.
 ///
 /// # Errors
 /// When the numbers cannot be written.
@@ -119,9 +123,9 @@ fn numbers(section: &Section) -> Result<String, Error> {
     for plane in &section.planes {
         row("plane", &plane.name, &[plane.distance]);
     }
-    for (number, cone) in section.cones.iter().enumerate() {
-        for corner in cone {
-            row("cone", &(number + 1).to_string(), corner);
+    for (number, body) in section.bodies.iter().enumerate() {
+        for corner in body {
+            row("body", &(number + 1).to_string(), corner);
         }
     }
     csv_text(&header, rows)

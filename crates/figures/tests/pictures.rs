@@ -165,12 +165,24 @@ fn empty_tiny_and_flat_arrays_are_drawn() {
     }
     let nothing = Section {
         length: 0.0,
+        unfolded: false,
+        half_width: 0.0,
         segments: Vec::new(),
         planes: Vec::new(),
-        cones: Vec::new(),
+        bodies: Vec::new(),
     };
     section(&nothing, "", "").unwrap().png().unwrap();
     path(&nothing, corner().view()).png().unwrap();
+}
+
+#[test]
+fn what_is_endless_ends_in_an_arrow_at_the_border() {
+    let mut cut = scene(2);
+    let polygons = |cut: &Section| section(cut, "", "").unwrap().svg.matches("Z\"").count();
+    let before = polygons(&cut);
+    cut.segments[1].end[1] = f64::INFINITY;
+    cut.segments[2].start[1] = f64::NEG_INFINITY;
+    assert_eq!(polygons(&cut), before + 2);
 }
 
 #[test]

@@ -11,7 +11,7 @@ mod surfaces;
 use crate::fault::SceneError;
 use crate::file::{RunFile, SceneFile};
 use crate::scene::{CentralRay, Object, Run, Scene};
-use etendue_field::Frame;
+use etendue_field::{Frame, tidy};
 use faults::{Faults, show};
 use glam::DVec3;
 use path::Things;
@@ -150,7 +150,7 @@ impl Resolver<'_> {
             if (distance - pair[0].extent[0]).abs() <= SAME_PLANE * distance.abs() {
                 self.faults.add(
                     format!("{} and {}", pair[0].name, pair[1].name),
-                    format!("both at distance {distance} m"),
+                    format!("both at distance {} m", tidy(distance)),
                     "planes at different distances",
                 );
             }

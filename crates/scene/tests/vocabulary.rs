@@ -37,7 +37,7 @@ fn text() -> String {
 }
 
 fn resolved(text: &str) -> Result<Scene, SceneError> {
-    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests/meshes");
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/tests");
     resolve("test", SceneFile::parse(text)?, folder.as_ref(), u64::MAX)
 }
 
@@ -166,10 +166,48 @@ const BAD: &[(&str, &str, &str)] = &[
     ("albedo: 0.5", "albedo: 1.1", "surfaces[0].albedo"),
 ];
 
+/// The same of a path over an oblique wall to a floor.
+const BAD_PATHS: &[(&str, &str, &str)] = &[
+    (FACING, "facing: (0, 0, 0)", "surfaces[0].facing"),
+    (FACING, "facing: (1, NaN, -1)", "surfaces[0].facing[1]"),
+    ("size: (2, 2)", "size: (2, 0)", "surfaces[0].size[1]"),
+    (VISITS, "visits: []", "path.visits"),
+    (VISITS, "visits: [\"floor\"]", "path.visits[0]"),
+    (VISITS, "visits: [\"wall\", \"roof\"]", "path.visits[1]"),
+    // Behind the floor, along it, nowhere.
+    (VISITS, LEAVES[0], "path.leaves"),
+    (VISITS, LEAVES[1], "path.leaves"),
+    (VISITS, LEAVES[2], "path.leaves"),
+    (VISITS, LEAVES[3], "path.leaves[2]"),
+    // Behind the wall; behind a card.
+    (
+        "center: (1.5, 0, 2)",
+        "center: (-1.5, 0, 2)",
+        "path.visits[1]",
+    ),
+    ("surfaces: [", CARD, "path.visits[1]"),
+    // The last leg goes straight back, and meets the wall at 5 m.
+    ("Distance(4)", "Distance(5)", "planes[5].at"),
+    ("Distance(4)", "Distance(3.5)", "planes[5].at"),
+    ("After(\"wall\")", "After(\"roof\")", "planes[1].at"),
+];
+const TWO_BOUNCES: &str = include_str!("../../../scenes/two_bounces.ron");
+const FACING: &str = "facing: (1, 0, -1)";
+const VISITS: &str = "visits: [\"wall\", \"floor\"]";
+const LEAVES: [&str; 4] = [
+    "visits: [\"wall\", \"floor\"], leaves: (1, 0, 0)",
+    "visits: [\"wall\", \"floor\"], leaves: (0, 1, 0)",
+    "visits: [\"wall\", \"floor\"], leaves: (0, 0, 0)",
+    "visits: [\"wall\", \"floor\"], leaves: (-1, 0, inf)",
+];
+const CARD: &str =
+    r#"surfaces: [Rectangle(name: "card", center: (0.7, 0, 2), size: (1, 1), facing: (-1, 0, 0)),"#;
+
 #[test]
 fn each_bad_value_is_named() {
-    for (from, to, field) in BAD {
-        let text = text();
+    let scenes = BAD.iter().map(|case| (text(), case));
+    let paths = BAD_PATHS.iter().map(|case| (TWO_BOUNCES.to_owned(), case));
+    for (text, (from, to, field)) in scenes.chain(paths) {
         assert!(text.contains(from), "{from} is not in the scene");
         match resolved(&text.replacen(from, to, 1)) {
             Err(SceneError::Values(faults)) => {
@@ -184,17 +222,33 @@ fn each_bad_value_is_named() {
 
 #[test]
 fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
-    let text = text().replacen(
-        "Star(radius: 0.2, relief: 0.1, lobes: 3, rings: 10)",
-        "File(\"nowhere.ply\")",
-        1,
-    );
-    match resolved(&text) {
-        Err(SceneError::Values(faults)) => {
-            assert_eq!(faults[0].field, "blockers[2].mesh");
-            assert!(faults[0].allowed.contains("nowhere.ply"), "{faults:?}");
-        }
-        other => panic!("{:?}", other.map(|_| ())),
+    let star = "Star(radius: 0.2, relief: 0.1, lobes: 3, rings: 10)";
+    let hill = r#"Mesh(name: "floor", center: (0, 0, 2), mesh: File("nowhere.ply"))"#;
+    for (from, to, told) in [
+        (
+            star,
+            "File(\"nowhere.ply\")",
+            "blockers[2].mesh is \"nowhere.ply\"; allowed: a mesh file; ",
+        ),
+        (
+            star,
+            "File(\"vocabulary.rs\")",
+            "blockers[2].mesh, \"vocabulary.rs\": the extension is `rs`; allowed: obj, ply",
+        ),
+        (
+            SURFACES,
+            hill,
+            "surfaces[0].mesh is \"nowhere.ply\"; allowed: a mesh file; ",
+        ),
+    ] {
+        let error = resolved(&text().replacen(from, to, 1))
+            .unwrap_err()
+            .to_string();
+        // Planes and visits that name it are not at fault too.
+        assert!(
+            error.starts_with(told) && error.lines().count() == 1,
+            "{error}"
+        );
     }
 }
 

@@ -1,7 +1,7 @@
 //! Chains in words.
 
 use crate::{Chain, Operator, Source};
-use etendue_field::{Disc, Grating, Image, Light, Mask, Rectangle, Shape};
+use etendue_field::{Disc, Grating, Image, Light, Mask, Rectangle, Shape, tidy};
 
 impl Chain {
     /// The chain in words: one line for each step.
@@ -60,7 +60,7 @@ impl Operator {
         match self {
             Self::Travel { from, to, distance } => {
                 let sign = if *distance < 0.0 { '−' } else { '+' };
-                let size = distance.abs();
+                let (distance, size) = (tidy(*distance), tidy(distance.abs()));
                 format!("map  travel {distance} m, {from} to {to}: ℓ̂(Ωx, Ωu {sign} {size} Ωx)")
             }
             Self::Visibility { name, mask } => match mask {
@@ -126,6 +126,6 @@ pub(crate) fn formula(grating: &Grating) -> String {
         phase,
     } = grating;
     let t = if *axis == 0 { 'x' } else { 'y' };
-    let (sign, size) = (if *phase < 0.0 { '−' } else { '+' }, phase.abs());
+    let (sign, size) = (if *phase < 0.0 { '−' } else { '+' }, tidy(phase.abs()));
     format!("½(1 + {modulation} cos(2π {frequency} {t} {sign} {size}))")
 }

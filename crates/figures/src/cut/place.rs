@@ -8,6 +8,8 @@ use etendue_field::Side;
 
 /// Distance of a plane's line from what stands at its place, and half that of two lines.
 const ASIDE: f64 = 9.0;
+/// The same of a plane behind a surface, beyond its hatching.
+const BEHIND: f64 = 16.0;
 /// Where a segment's name is written.
 #[derive(Debug)]
 pub(super) struct Name {
@@ -16,47 +18,34 @@ pub(super) struct Name {
     pub(super) row: usize,
 }
 
-/// The x shown: just beyond lights and blockers; lights alone get more room, surfaces alone all they have.
-pub(super) fn x_range(section: &Section) -> [f64; 2] {
-    let reach = |kind: SegmentKind| {
-        let of_kind = section.segments.iter().filter(|s| s.kind == kind);
-        let ends = of_kind.flat_map(|s| [s.start[1].abs(), s.end[1].abs()]);
-        ends.filter(|x| x.is_finite()).fold(0.0, f64::max)
-    };
-    let (light, blocker) = (reach(SegmentKind::Light), reach(SegmentKind::Blocker));
-    let half = if blocker > 0.0 {
-        1.12 * light.max(blocker)
-    } else if light > 0.0 {
-        3.0 * light
-    } else {
-        1.12 * reach(SegmentKind::Surface)
-    };
-    if half > 0.0 {
-        [-half, half]
-    } else {
-        [-1.0, 1.0]
-    }
-}
-
 /// Places of the planes' lines: to their side of what stands there, if anything does, and apart from each other.
 pub(super) fn plane_places(section: &Section, across: impl Fn(f64) -> f64) -> Vec<f64> {
-    let occupied = |place: f64| {
+    // What stands within reach of a place.
+    let there = |place: f64, kind: Option<SegmentKind>| {
         section.segments.iter().any(|s| {
             let ends = [across(s.start[0]), across(s.end[0])];
-            (ends[0].min(ends[1]) - ASIDE..ends[0].max(ends[1]) + ASIDE).contains(&place)
+            let reach = ends[0].min(ends[1]) - ASIDE..ends[0].max(ends[1]) + ASIDE;
+            kind.is_none_or(|kind| s.kind == kind) && reach.contains(&place)
         })
     };
     let aside = |plane: &PlaneMark| {
         let place = across(plane.distance);
         match plane.side {
-            _ if !occupied(place) => place,
+            _ if !there(place, None) => place,
             Side::Before => place - ASIDE,
+            Side::After if there(place, Some(SegmentKind::Surface)) => place + BEHIND,
             Side::After => place + ASIDE,
         }
     };
     let mut places: Vec<f64> = section.planes.iter().map(aside).collect();
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
+    // Those before something make room in front of it, the others behind.
+    for pair in order.windows(2).rev() {
+        if section.planes[pair[0]].side == Side::Before {
+            places[pair[0]] = places[pair[0]].min(places[pair[1]] - 2.0 * ASIDE);
+        }
+    }
     for pair in order.windows(2) {
         places[pair[1]] = places[pair[1]].max(places[pair[0]] + 2.0 * ASIDE);
     }

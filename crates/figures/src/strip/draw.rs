@@ -16,12 +16,20 @@ pub(super) const ROW_GAP: f64 = LABEL_BASELINE + 24.0;
 /// From the left edge of the first picture to the row name.
 const ROW_NAME: f64 = 68.0;
 
-/// The dashed lines.
-const GUIDE: Stroke = Stroke {
-    color: "#7fe0ff",
-    width: 1.0,
-    dash: "3 5",
-};
+/// The dashed lines: on dark colors by themselves, on pale ones by what is under them.
+const GUIDE: [Stroke; 2] = [
+    Stroke {
+        color: "#10304a",
+        width: 2.6,
+        dash: GUIDE_DASH,
+    },
+    Stroke {
+        color: "#7fe0ff",
+        width: 1.0,
+        dash: GUIDE_DASH,
+    },
+];
+const GUIDE_DASH: &str = "4 5";
 
 /// Horizontal measures.
 #[derive(Debug)]
@@ -140,7 +148,9 @@ fn guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
                 let nu = guide.through[1] + guide.slope * (rho - guide.through[0]);
                 panel.point(rho, nu)
             });
-            svg.line(ends[0], ends[1], GUIDE);
+            for stroke in GUIDE {
+                svg.line(ends[0], ends[1], stroke);
+            }
         }
     });
 }
@@ -185,7 +195,9 @@ fn guide_key(svg: &mut Svg, [x, y]: [f64; 2]) {
         height: 12.0,
     };
     svg.fill(swatch, &hex(Colors::Sequential.at(0.0)));
-    svg.line([x, y - 4.0], [swatch.right(), y - 4.0], GUIDE);
+    for stroke in GUIDE {
+        svg.line([x, y - 4.0], [swatch.right(), y - 4.0], stroke);
+    }
     let style = Text::new([swatch.right() + 7.0, y], TICK_TEXT, Anchor::Start).fill(SOFT);
     svg.text(style, "predicted shear");
 }

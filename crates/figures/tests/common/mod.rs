@@ -91,6 +91,8 @@ pub fn scene(count: usize) -> Section {
     };
     Section {
         length: 2.0,
+        unfolded: false,
+        half_width: 0.6,
         segments: vec![
             segment(SegmentKind::Light, 0.0, [-0.1, 0.1], "light"),
             segment(SegmentKind::Blocker, 1.0, [0.2, 0.5], "blockers"),
@@ -108,7 +110,7 @@ pub fn scene(count: usize) -> Section {
                 },
             })
             .collect(),
-        cones: vec![vec![[0.0, 0.1], [2.0, 0.5], [2.0, -0.5], [0.0, -0.1]]],
+        bodies: vec![vec![[0.4, 0.0], [0.5, 0.1], [0.6, 0.0], [0.5, -0.1]]],
     }
 }
 

@@ -3,7 +3,7 @@ use super::faults::show;
 use super::jitter::jittered_squares;
 use crate::file::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
 use crate::scene::BlockerLayer;
-use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape};
+use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape, tidy};
 use glam::DVec3;
 
 /// Shapes a layer may hold: the prediction of more that are seen takes many minutes.
@@ -29,8 +29,11 @@ impl Resolver<'_> {
             if let Some(layer) = layer.filter(|layer| layer.distance >= length) {
                 self.faults.add(
                     format!("blockers[{i}].center"),
-                    format!("at distance {} m from the light", layer.distance),
-                    format!("a place before the first surface of the path, at {length} m"),
+                    format!("at distance {} m from the light", tidy(layer.distance)),
+                    format!(
+                        "a place before the first surface of the path, at {} m",
+                        tidy(length)
+                    ),
                 );
             }
         }

@@ -1,8 +1,8 @@
 use super::Resolver;
 use super::faults::show;
-use crate::Mesh;
 use crate::file::{BlockersFile, MeshSource, SceneFile, SurfaceFile};
 use crate::scene::MeshObject;
+use crate::{Mesh, MeshError};
 use etendue_field::Frame;
 use glam::DVec3;
 use std::path::{Component, Path};
@@ -103,9 +103,14 @@ impl Resolver<'_> {
             }
             MeshSource::File(path) => match Mesh::load(&self.folder.join(path)) {
                 Ok(mesh) => Some(mesh),
-                Err(error) => {
-                    self.faults
-                        .add(format!("{of}.mesh"), show(path), error.to_string());
+                Err(MeshError::Value { fault, .. }) => {
+                    let field = format!("{of}.mesh, {path:?}: {}", fault.field);
+                    self.faults.add(field, fault.value, fault.allowed);
+                    None
+                }
+                Err(unreadable @ MeshError::Unreadable { .. }) => {
+                    let allowed = format!("a mesh file; {unreadable}");
+                    self.faults.add(format!("{of}.mesh"), show(path), allowed);
                     None
                 }
             },

@@ -3,10 +3,13 @@
 use super::faults::show;
 use super::{Resolver, SAME_PLANE, Stop};
 use crate::fault::Fault;
-use crate::file::{AxisFile, FrequenciesFile, Place, PlaneFile, SceneFile, WindowFile};
+use crate::file::{
+    AxisFile, BlockersFile, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
+};
 use crate::scene::CentralRay;
 use etendue_field::{
     Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
+    tidy,
 };
 
 /// A place on the path.
@@ -121,7 +124,7 @@ impl Resolver<'_> {
                 leg: 0,
             }),
             Place::Before(name) => {
-                let stop = self.stop(of, place, name, path, stops)?;
+                let stop = self.stop(of, place, name, file, path, stops)?;
                 Some(OnPath {
                     distance: match stop.ends {
                         Some(leg) => path.legs[leg + 1].start,
@@ -132,7 +135,7 @@ impl Resolver<'_> {
                 })
             }
             Place::After(name) => {
-                let stop = self.stop(of, place, name, path, stops)?;
+                let stop = self.stop(of, place, name, file, path, stops)?;
                 let visited = stop.ends.is_some() || file.path.visits.contains(name);
                 if stop.surface && !visited {
                     let allowed = "After(…) of a surface that the path visits";
@@ -159,18 +162,27 @@ impl Resolver<'_> {
         of: &str,
         place: &Place,
         name: &str,
+        file: &SceneFile,
         path: &CentralRay,
         stops: &'a [Stop<'a>],
     ) -> Option<&'a Stop<'a>> {
         let Some(stop) = stops.iter().find(|s| s.name == name) else {
-            let names: Vec<&str> = stops.iter().map(|s| s.name).collect();
-            self.faults
-                .add(of, show(place), format!("one of {}", names.join(", ")));
+            let surfaces = file.surfaces.iter().map(SurfaceFile::name);
+            let mut written = surfaces.chain(file.blockers.iter().map(BlockersFile::name));
+            // What is at fault itself has been named already.
+            if !written.any(|written| written == name) {
+                let names: Vec<&str> = stops.iter().map(|s| s.name).collect();
+                let allowed = format!("one of {}", names.join(", "));
+                self.faults.add(of, show(place), allowed);
+            }
             return None;
         };
         let length = path.first_hit();
         if stop.ends.is_none() && stop.extent[0] > length {
-            let allowed = format!("a place on the path, whose first surface is at {length} m");
+            let allowed = format!(
+                "a place on the path, whose first surface is at {} m",
+                tidy(length)
+            );
             self.faults.add(of, show(place), allowed);
         }
         Some(stop)
@@ -191,8 +203,9 @@ impl Resolver<'_> {
         let end = last.start + last.length;
         if !end.is_nan() && !(0.0..end).contains(&distance) {
             let allowed = format!(
-                "0 to {} m on the way to the last surface, up to {end} m on the way from it, where something stands",
-                last.start
+                "0 to {} m on the way to the last surface, up to {} m on the way from it, where something stands",
+                tidy(last.start),
+                tidy(end)
             );
             self.faults.add(of, value(), allowed);
         }

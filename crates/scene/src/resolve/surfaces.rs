@@ -2,7 +2,7 @@ use super::Resolver;
 use super::faults::show;
 use crate::file::{SceneFile, SurfaceFile};
 use crate::scene::Surface;
-use etendue_field::Frame;
+use etendue_field::{Frame, tidy};
 use glam::DVec3;
 
 impl Resolver<'_> {
@@ -80,7 +80,7 @@ impl Resolver<'_> {
             let allowed = "a place in front of the light, along path.direction";
             self.faults.add(
                 format!("{of}.center"),
-                format!("at distance {distance} m from the light"),
+                format!("at distance {} m from the light", tidy(distance)),
                 allowed,
             );
         }
