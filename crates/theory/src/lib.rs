@@ -11,7 +11,8 @@
 //! weighted sum of rectangles, a factor of slope a sum of products of cosine series; both converge exponentially.
 //!
 //! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors, refraction, lenses) as affine
-//! maps of rays, with what they do to spectra and covariances; a chain does not use them.
+//! maps of rays, with what they do to spectra and covariances; a chain does not use them. [`rays`] predicts what is behind mirrors,
+//! refracting surfaces and lenses: exactly, by following rays, and to first order, by a chain of those maps read off the same surfaces.
 //!
 //! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no evidence.
 //!
