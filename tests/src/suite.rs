@@ -2,7 +2,7 @@
 
 use crate::report::Section;
 use crate::scenes::{SUITE, compared, named, predicted, referred, traced, traced_backwards};
-use etendue_compare::{Class, PlaneComparison, PlaneReport, Verdict, sidak};
+use etendue_compare::{PlaneComparison, PlaneReport, Verdict, sidak};
 use etendue_scene::Scene;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -92,15 +92,10 @@ fn table(outcomes: &[Outcome], planes: usize, level: f64) -> Section {
 fn cells(scene: &Scene, report: &PlaneReport, backward: Option<f64>) -> Vec<String> {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));
     let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.4}"));
-    let class = match report.class {
-        Class::Exact => "exact",
-        Class::FirstOrder => "first-order",
-        Class::Reference => "reference",
-    };
     vec![
         scene.name.clone(),
         report.name.clone(),
-        class.to_owned(),
+        report.class.to_string(),
         format!("{:.0e}", scene.run.photons as f64),
         report.in_window.to_string(),
         percent(report.relative_error),

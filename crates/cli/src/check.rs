@@ -1,9 +1,10 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::{load, pictures, say};
-use etendue_compare::{Class, steps};
+use etendue_compare::{Class, affine_chain, steps};
 use etendue_field::tidy;
 use etendue_scene::Scene;
+use etendue_theory::rays::FirstOrder;
 
 /// `etendue check`: returns the exit code.
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
@@ -26,6 +27,29 @@ fn length(scene: &Scene) -> String {
     ends.collect::<Vec<_>>().join(", ")
 }
 
+/// Where the rays of the light go, z' = A z, and where parallel ones meet.
+fn rays(chain: &FirstOrder) -> Vec<String> {
+    let matrix = chain.rays().matrix;
+    let row = |(name, row): (&str, &[f64; 4])| {
+        let entries = row
+            .iter()
+            .map(|entry| format!("{:>10}", tidy((entry * 1e6).round() / 1e6)));
+        let entries: Vec<String> = entries.collect();
+        format!("  rays  {name} = [{}] (x, y, u, v)", entries.join(" "))
+    };
+    let names = ["x'", "y'", "u'", "v'"];
+    let mut lines: Vec<String> = names.into_iter().zip(&matrix).map(row).collect();
+    if !chain.foci.is_empty() {
+        let foci = chain.foci.iter().map(|f| format!("{f:.6}"));
+        let foci: Vec<String> = foci.collect();
+        lines.push(format!(
+            "  foci  {} m from the last surface",
+            foci.join(" and ")
+        ));
+    }
+    lines
+}
+
 fn description(scene: &Scene) -> String {
     let run = &scene.run;
     let mut lines = vec![
@@ -42,12 +66,15 @@ fn description(scene: &Scene) -> String {
     for plane in &scene.planes {
         let [k, rho, nu] = plane.grid.full_shape();
         lines.push(format!(
-            "\n{}: {} m along the central ray, prediction: {:?}",
+            "\n{}: {} m along the central ray, prediction: {}",
             plane.name,
             tidy(plane.distance),
             Class::of(scene, plane)
         ));
         lines.extend(steps(scene, plane).iter().map(|step| format!("  {step}")));
+        if let Some(chain) = affine_chain(scene, plane) {
+            lines.extend(rays(&chain));
+        }
         lines.push(format!(
             "  looked at in {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per unit slope",
             tidy(plane.grid.rho.max()),

@@ -7,7 +7,7 @@ use crate::results::Results;
 use crate::summary::Summary;
 use crate::table::word;
 use etendue_compare::{Class, PlaneComparison, Prediction, stands_before};
-use etendue_field::{FrequencyAxis, ProjectionGrid, Side, SliceGrid, VirtualPlane};
+use etendue_field::{FrequencyAxis, Light, ProjectionGrid, Side, SliceGrid, VirtualPlane};
 use etendue_figures::{
     Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
     strip,
@@ -139,10 +139,10 @@ fn column<'a>(scene: &Scene, plane: &VirtualPlane, compared: &'a PlaneComparison
             values: compared.radial.power.view(),
         },
         verdict: verdict_line(compared),
-        guides: if compared.report.in_window > 0 && compared.report.class != Class::Reference {
-            guides(scene, plane)
-        } else {
-            Vec::new()
+        guides: match (compared.report.class, &compared.report.first_order) {
+            (Class::Exact, _) if compared.report.in_window > 0 => guides(scene, plane),
+            (Class::FirstOrder, Some(first_order)) => ridges(scene, &first_order.chain.matrix),
+            _ => Vec::new(),
         },
     }
 }
@@ -179,6 +179,25 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
         .map(through)
         .collect()
 }
+
+/// Where the chain puts the light of a picture, in the plane of incidence and across it: a projector's lies along ρ where it begins, a
+/// beam's along ν, and content at Ω goes to A⁻ᵀ Ω.
+fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
+    let slope = |i: usize| {
+        let [position, slope] = [matrix[i], matrix[i + 2]];
+        match scene.light {
+            Light::Beam { .. } => -position[i] / slope[i],
+            _ => -position[i + 2] / slope[i + 2],
+        }
+    };
+    let through = [0.0, 0.0];
+    let slopes = [0, 1].map(slope).into_iter();
+    let guides = slopes.filter(|slope| slope.abs() < STEEPEST);
+    guides.map(|slope| Guide { through, slope }).collect()
+}
+
+/// Metres beyond which a line is upright in any picture.
+const STEEPEST: f64 = 1e6;
 
 /// Draws the scene with its central ray and planes into a PNG or SVG file.
 pub(crate) fn draw_scene(scene: &Scene, path: &Path) -> Result<(), Failure> {

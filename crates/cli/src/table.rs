@@ -59,7 +59,7 @@ fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let row = |plane: &PlaneReport| {
         vec![
             plane.name.clone(),
-            format!("{:?}", plane.class).to_lowercase(),
+            plane.class.to_string(),
             grouped(plane.in_window),
             number(plane.chi2_per_dof, 3),
             number(plane.p_value, 5),

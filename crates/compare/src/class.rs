@@ -3,6 +3,7 @@ use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 /// What kind of prediction a plane has.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -14,6 +15,16 @@ pub enum Class {
     FirstOrder,
     /// There is no theory: the other tracer's measurement takes its place.
     Reference,
+}
+
+impl fmt::Display for Class {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Exact => "exact",
+            Self::FirstOrder => "first-order",
+            Self::Reference => "reference",
+        })
+    }
 }
 
 impl Class {

@@ -2,6 +2,7 @@
 
 use crate::report::Verdict;
 use crate::residuals::Residuals;
+use crate::system::{follows_rays, system};
 use etendue_field::{Light, Profile, Shape, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -60,6 +61,13 @@ const FLOOR: f64 = 0.01;
 /// One-sided 95 % of a normal distribution.
 const NINETY_FIVE: f64 = 1.645;
 
+/// The chain of affine maps that leads to a plane of class first-order, by the paper's printed formulas where the scene asks for them.
+#[must_use]
+pub fn affine_chain(scene: &Scene, plane: &VirtualPlane) -> Option<rays::FirstOrder> {
+    let (system, at) = system(scene, plane).filter(|_| follows_rays(scene, plane))?;
+    rays::chain(&system, &at, print(scene))
+}
+
 /// The formulas a scene asks for.
 pub(crate) fn print(scene: &Scene) -> Print {
     if scene.file.as_printed {
@@ -102,7 +110,7 @@ impl FirstOrder {
                 rays::covariance(system, at, window),
                 propagated(system, &corrected.rays().matrix, window),
             ],
-            foci: corrected.foci.clone(),
+            foci: corrected.foci,
             as_printed: scene.file.as_printed,
         };
         let slices = if scene.file.as_printed {

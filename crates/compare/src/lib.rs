@@ -20,7 +20,7 @@ mod system;
 pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};
-pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
+pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport, affine_chain};
 pub use plane::{PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction, steps};
 pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};

@@ -1,6 +1,6 @@
 use crate::chain::chain;
 use crate::class::{Class, without_theory};
-use crate::first_order::{FirstOrder, print};
+use crate::first_order::{FirstOrder, affine_chain};
 use crate::system::system;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -51,12 +51,12 @@ pub struct PredictedParameter {
 #[must_use]
 pub fn steps(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let Window { x, y, u, v } = &plane.window;
-    let mut steps = match system(scene, plane) {
-        Some((system, at)) if Class::of(scene, plane) == Class::FirstOrder => {
-            rays::chain(&system, &at, print(scene)).map_or_else(Vec::new, |chain| chain.steps)
-        }
-        _ => chain(scene, plane).describe(),
-    };
+    let mut steps = chain(scene, plane).describe();
+    if let Some(chain) = affine_chain(scene, plane) {
+        // What shines is said alike; how it travels, by the maps.
+        steps.truncate(1);
+        steps.extend(chain.steps);
+    }
     let unknown = match Class::of(scene, plane) {
         Class::FirstOrder => Vec::new(),
         Class::Exact | Class::Reference => without_theory(scene, plane),

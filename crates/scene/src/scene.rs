@@ -122,14 +122,6 @@ impl CentralRay {
     }
 }
 
-impl Leg {
-    /// Whether it runs along the first leg or straight back: what lies across that one lies across this one.
-    #[must_use]
-    pub fn is_straight(&self) -> bool {
-        self.frame.d.x == 0.0 && self.frame.d.y == 0.0
-    }
-}
-
 /// What stands in one plane and multiplies radiance.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BlockerLayer {
@@ -185,6 +177,10 @@ pub struct Surface {
 impl Surface {
     /// Distance and rectangle, if it lies across the first leg with its edges along X and Y.
     #[must_use]
+    #[expect(
+        clippy::float_cmp,
+        reason = "the very numbers of a rectangle that does not say where it faces"
+    )]
     pub fn across(&self) -> Option<(f64, Rectangle)> {
         let Frame { origin, x, d, .. } = &self.frame;
         (d.z == -1.0 && x.x == 1.0).then_some((

@@ -6,7 +6,7 @@ use ndarray::Array2;
 
 /// Sums of the windowed light field over rays, to second order: ∫ ℓW, ∫ ℓW zᵢ and ∫ ℓW zᵢ zⱼ for i ≤ j, z = (x, y, u, v), in this order.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct RayMoments(pub [f64; RayMoments::COUNT]);
+pub struct RayMoments(pub [f64; Self::COUNT]);
 
 impl RayMoments {
     /// Number of sums.

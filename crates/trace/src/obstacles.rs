@@ -269,6 +269,7 @@ impl Around {
     }
 
     /// A shape in the plane of a frame; across the leg, with axes along its own, distances are exact.
+    #[expect(clippy::float_cmp, reason = "rounding would only take the exact way from it")]
     fn flat(frame: &Frame, shape: &Shape) -> Form {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;
         if !across {
