@@ -81,7 +81,7 @@ fn half_width(scene: &Scene, planes: &[&VirtualPlane]) -> f64 {
         let halves = half_planes.iter().filter(|half| half.axis == 0);
         shapes.chain(halves.map(|half| half.edge))
     });
-    let black = scene.meshes.iter().filter(|mesh| mesh.albedo.is_none());
+    let black = scene.meshes.iter().filter(|mesh| mesh.is_black());
     let corners = black.flat_map(|mesh| mesh.triangles.as_flattened());
     let windows = planes.iter().map(|plane| plane.window.x.half_width());
     let reach = ends

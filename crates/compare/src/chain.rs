@@ -26,10 +26,11 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
         let Some(hit) = leg.leaves else { continue };
         let name = scene.name_of(hit.object).to_owned();
         let albedo = match hit.object {
-            Object::Surface(i) => scene.surfaces[i].albedo,
-            Object::Mesh(i) => scene.meshes[i].albedo.unwrap_or(0.0),
-            Object::Patch(_) => continue,
+            Object::Surface(i) => Some(scene.surfaces[i].albedo),
+            Object::Mesh(i) => scene.meshes[i].albedo,
+            Object::Patch(_) => None,
         };
+        let Some(albedo) = albedo else { continue };
         walk.travel(&name, leg.start);
         let cosine = Operator::Cosine { name: name.clone() };
         walk.operators

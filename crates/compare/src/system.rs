@@ -19,7 +19,12 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
                     event: object.event,
                 })
             }
-            Object::Surface(_) | Object::Mesh(_) => None,
+            Object::Mesh(i) => Some(Element {
+                name: scene.meshes[i].name.clone(),
+                patch: scene.meshes[i].osculating(&hit)?,
+                event: scene.meshes[i].smooth.as_ref()?.event,
+            }),
+            Object::Surface(_) => None,
         })
         .collect();
     let layers = scene.blockers.iter();
@@ -70,5 +75,6 @@ fn is_free(scene: &Scene) -> bool {
     };
     let surfaces = (0..scene.surfaces.len()).all(|i| visited(Object::Surface(i)));
     let patches = (0..scene.patches.len()).all(|i| visited(Object::Patch(i)));
-    surfaces && patches && scene.meshes.is_empty()
+    let meshes = (0..scene.meshes.len()).all(|i| visited(Object::Mesh(i)));
+    surfaces && patches && meshes
 }

@@ -35,7 +35,9 @@ pub use patch::{Patch, Specular};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
 pub use projection::{Projection, ProjectionGrid};
 pub use rectangle::Rectangle;
-pub use shape::{Disc, Grating, HalfPlane, Light, Mask, Shape, triangle_distance};
+pub use shape::{
+    Disc, Grating, HalfPlane, Light, Mask, Shape, interpolated_normal, triangle_distance,
+};
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};
 

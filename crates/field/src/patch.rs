@@ -106,11 +106,16 @@ impl Patch {
 }
 
 impl Specular {
-    /// The direction in which a ray goes on that meets `patch` at `point`, all in one frame, the direction in any length;
-    /// `None` when it is totally reflected where it should go through.
+    /// The direction in which a ray goes on that meets a surface at `point`, where it has this unit normal on the side it faces; all in one
+    /// frame, the direction in any length. `lens` is the frame of a lens. `None` when the ray is totally reflected where it should go through.
     #[must_use]
-    pub fn turned(&self, patch: &Patch, point: DVec3, direction: DVec3) -> Option<DVec3> {
-        let normal = patch.normal(point);
+    pub fn turned(
+        &self,
+        lens: &Frame,
+        normal: DVec3,
+        point: DVec3,
+        direction: DVec3,
+    ) -> Option<DVec3> {
         match *self {
             Self::Mirror => Some(direction - 2.0 * direction.dot(normal) * normal),
             Self::Refraction { front, back } => {
@@ -126,12 +131,12 @@ impl Specular {
                 (squared > 0.0).then(|| ratio * along + (ratio * cosine - squared.sqrt()) * normal)
             }
             Self::ThinLens { focal_length } => {
-                let at = patch.frame.to_local(point);
-                let local = patch.frame.vector_to_local(direction);
+                let at = lens.to_local(point);
+                let local = lens.vector_to_local(direction);
                 let ahead = local.z.abs();
                 let bent = |slope: f64, x: f64| slope / ahead - x / focal_length;
                 let turned = DVec3::new(bent(local.x, at.x), bent(local.y, at.y), local.z.signum());
-                Some(patch.frame.vector_to_world(turned))
+                Some(lens.vector_to_world(turned))
             }
         }
     }

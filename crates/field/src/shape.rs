@@ -80,6 +80,16 @@ pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
     (inside && sum != 0.0).then(|| depth / sum)
 }
 
+/// The unit normal at a point of a triangle, interpolated between those at its corners.
+#[must_use]
+pub fn interpolated_normal(corners: &[DVec3; 3], normals: &[DVec3; 3], point: DVec3) -> DVec3 {
+    let [a, b, c] = corners;
+    let whole = (b - a).cross(c - a);
+    let share = |p: &DVec3, q: &DVec3| (p - point).cross(q - point).dot(whole);
+    let [p, q, r] = normals;
+    (p * share(b, c) + q * share(c, a) + r * share(a, b)).normalize()
+}
+
 /// The points of a plane on one side of a line along X or Y.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct HalfPlane {

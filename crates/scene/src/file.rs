@@ -275,6 +275,16 @@ pub enum HalfName {
 pub enum MeshSource {
     /// An OBJ or PLY file; the path is relative to the scene file, and stays inside its folder.
     File(String),
+    /// A generated piece of the paraboloid z = −(k₁ x² + k₂ y²)/2 around the origin, facing along z: see
+    /// [`Mesh::paraboloid`](crate::Mesh::paraboloid).
+    Paraboloid {
+        /// k₁ and k₂, per metre: positive if it is convex.
+        curvatures: [f64; 2],
+        /// It reaches to ± this along x and along y.
+        half: f64,
+        /// Cells along a side, of two triangles each.
+        cells: u32,
+    },
     /// A generated closed surface around the origin: see [`Mesh::star`](crate::Mesh::star).
     Star {
         /// Mean radius.
@@ -319,9 +329,12 @@ pub enum SurfaceFile {
         /// Factor on the mesh's coordinates.
         #[serde(default = "one")]
         scale: f64,
-        /// Reflected over incident flux.
+        /// Reflected over incident flux, if it is Lambertian.
         #[serde(default = "half")]
         albedo: f64,
+        /// What it does to light as a smooth surface, with normals interpolated between its vertices.
+        #[serde(default)]
+        event: Option<EventFile>,
     },
     /// A smooth piece of a plane, sphere, cylinder or paraboloid that reflects or refracts.
     Smooth {
@@ -539,7 +552,7 @@ impl SceneFile {
         });
         blockers.chain(surfaces).filter_map(|mesh| match mesh {
             MeshSource::File(path) => Some(path.as_str()),
-            MeshSource::Star { .. } => None,
+            MeshSource::Star { .. } | MeshSource::Paraboloid { .. } => None,
         })
     }
 

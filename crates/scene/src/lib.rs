@@ -17,6 +17,7 @@
 //! assert_eq!(scene.planes[0].distance, 2.0);
 //! ```
 
+mod curvature;
 mod fault;
 mod file;
 mod mesh;
@@ -33,5 +34,6 @@ pub use file::{
 pub use mesh::{Mesh, MeshError};
 pub use resolve::resolve;
 pub use scene::{
-    BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene, Surface,
+    BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene, SmoothMesh,
+    Surface,
 };

@@ -8,6 +8,7 @@
 
 mod error;
 mod obj;
+mod paraboloid;
 mod ply;
 mod star;
 mod text;

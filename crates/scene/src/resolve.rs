@@ -221,7 +221,7 @@ fn stops<'a>(path: &CentralRay, things: Things<'a>) -> Vec<Stop<'a>> {
     let meshes = things.meshes.iter().enumerate().map(|(i, m)| Stop {
         name: &m.name,
         extent: m.extent,
-        surface: m.albedo.is_some(),
+        surface: !m.is_black(),
         ends: ends(Object::Mesh(i)),
     });
     let patches = things.patches.iter().enumerate().map(|(i, p)| Stop {

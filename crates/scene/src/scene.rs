@@ -146,8 +146,27 @@ pub struct MeshObject {
     pub triangles: Vec<[DVec3; 3]>,
     /// Nearest and farthest distance of its corners.
     pub extent: [f64; 2],
-    /// Reflected over incident flux; `None` for a black blocker.
+    /// Reflected over incident flux, if it is Lambertian.
     pub albedo: Option<f64>,
+    /// If it is a smooth surface, what it is then.
+    pub smooth: Option<SmoothMesh>,
+}
+
+/// A mesh as a smooth surface.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SmoothMesh {
+    /// What it does to light.
+    pub event: Specular,
+    /// Unit normals at the corners of the triangles, outward as they are wound, in the frame at the light.
+    pub normals: Vec<[DVec3; 3]>,
+}
+
+impl MeshObject {
+    /// Whether it is neither Lambertian nor smooth.
+    #[must_use]
+    pub fn is_black(&self) -> bool {
+        self.albedo.is_none() && self.smooth.is_none()
+    }
 }
 
 /// A smooth surface that reflects or refracts.

@@ -7,8 +7,8 @@ use crate::station::Station;
 use crate::tracer::rounding;
 use etendue_field::random::{self, Stream};
 use etendue_field::{
-    Crossing, Frame, Ledger, Light, Orientation, Patch, PhotonSource, Shape, Side, Specular,
-    TwoPlane, VirtualPlane,
+    Crossing, Frame, Ledger, Light, Orientation, PhotonSource, Shape, Side, Specular, TwoPlane,
+    VirtualPlane,
 };
 use etendue_scene::{Object, PatchObject, Scene};
 use glam::DVec3;
@@ -61,8 +61,8 @@ struct Leaves {
 enum How {
     /// Diffusely, from pieces of which points can be drawn.
     Diffuse { albedo: f64, pieces: Pieces },
-    /// Turned; the surface in the frame of the leg.
-    Turned { patch: Patch, event: Specular },
+    /// Turned; the lens's frame, in the frame of the leg.
+    Turned { lens: Frame, event: Specular },
 }
 
 /// Parallelograms or triangles in the frame at the light, with their running share of the area.
@@ -202,11 +202,13 @@ impl Backward {
                 visible * albedo / LAMBERTIAN
                     * self.irradiance(leg - 1, point, normal, block, words)
             }
-            How::Turned { patch, event } => {
-                let Some(came) = event.turned(patch, point, -along) else {
+            How::Turned { lens, event } => {
+                let facing = target.form.normal(point);
+                let Some(came) = event.turned(lens, facing, point, -along) else {
                     return 0.0;
                 };
-                let factor = radiance_factor(patch, *event, point, along, came);
+                let to_front = along.dot(facing) > 0.0;
+                let factor = radiance_factor(lens, *event, to_front, along, came);
                 let before = self.legs[leg - 1].frame.decompose(&this.frame);
                 let end = before.to_world(point);
                 let Some(ray) = ray_through(end, before.vector_to_world(-came)) else {
@@ -293,16 +295,21 @@ impl Backward {
 
 /// Radiance after over before a turn at a point, light going along `along` and having come against `came`: (n'/n)² at an interface; at
 /// a lens, which is no thing of optics, what keeps flux in two-plane coordinates.
-fn radiance_factor(patch: &Patch, event: Specular, point: DVec3, along: DVec3, came: DVec3) -> f64 {
+fn radiance_factor(
+    lens: &Frame,
+    event: Specular,
+    to_front: bool,
+    along: DVec3,
+    came: DVec3,
+) -> f64 {
     match event {
         Specular::Mirror => 1.0,
         Specular::Refraction { front, back } => {
-            let to_front = along.dot(patch.normal(point)) > 0.0;
             let ratio = if to_front { front / back } else { back / front };
             ratio * ratio
         }
         Specular::ThinLens { .. } => {
-            let cosine = |v: DVec3| v.dot(patch.frame.d).abs() / v.length();
+            let cosine = |v: DVec3| v.dot(lens.d).abs() / v.length();
             (cosine(came) / cosine(along)).powi(4)
         }
     }
@@ -340,17 +347,23 @@ impl Leaves {
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
-                let pieces = mesh.triangles.iter();
-                let pieces = pieces.map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
-                let how = diffuse(mesh.albedo.unwrap_or(0.0), pieces.collect());
+                let how = if let Some(smooth) = &mesh.smooth {
+                    let (lens, event) = (Frame::IDENTITY, smooth.event);
+                    How::Turned { lens, event }
+                } else {
+                    let pieces = mesh.triangles.iter();
+                    let pieces = pieces.map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
+                    diffuse(mesh.albedo.unwrap_or(0.0), pieces.collect())
+                };
                 (around.mesh(mesh).map(target).collect(), how)
             }
             Object::Patch(i) => {
                 let PatchObject { patch, event, .. } = &scene.patches[i];
                 let (patch, event) = (patch.seen_from(&leg.frame), *event);
+                let lens = patch.frame;
                 (
                     vec![target(Form::Smooth(patch))],
-                    How::Turned { patch, event },
+                    How::Turned { lens, event },
                 )
             }
         };

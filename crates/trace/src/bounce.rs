@@ -2,7 +2,7 @@ use crate::emit::LAMBERTIAN;
 use crate::obstacles::ray_through;
 use crate::scatter::Scatterer;
 use crate::tracer::{Arrival, cosines};
-use etendue_field::{Patch, Specular, TwoPlane};
+use etendue_field::{Frame, Specular, TwoPlane};
 use etendue_scene::{Object, Scene};
 
 /// How light begins a leg, at the surface that ended the one before.
@@ -10,8 +10,8 @@ use etendue_scene::{Object, Scene};
 pub(crate) enum Bounce {
     /// Diffusely; the albedo, and `None` when no plane looks at light that has come so far.
     Diffuse(f64, Option<Scatterer>),
-    /// By reflection, refraction or a lens; the surface in the frame of the leg.
-    Specular(Patch, Specular),
+    /// By reflection, refraction or a lens; the lens's frame, in the frame of the leg.
+    Specular(Frame, Specular),
 }
 
 impl Bounce {
@@ -21,10 +21,13 @@ impl Bounce {
         let diffuse = |albedo| Self::Diffuse(albedo, Scatterer::new(scene, leg));
         Some(match this.leaves?.object {
             Object::Surface(i) => diffuse(scene.surfaces[i].albedo),
-            Object::Mesh(i) => diffuse(scene.meshes[i].albedo?),
+            Object::Mesh(i) => match &scene.meshes[i].smooth {
+                Some(smooth) => Self::Specular(Frame::IDENTITY, smooth.event),
+                None => diffuse(scene.meshes[i].albedo?),
+            },
             Object::Patch(i) => {
                 let object = &scene.patches[i];
-                Self::Specular(object.patch.seen_from(&this.frame), object.event)
+                Self::Specular(this.frame.decompose(&object.patch.frame), object.event)
             }
         })
     }
@@ -42,8 +45,9 @@ impl Bounce {
                 // Radiance albedo/π · E, and a photon's flux is E at its point.
                 Some((ray, albedo * arrival.flux / (LAMBERTIAN * density)))
             }
-            Self::Specular(patch, event) => {
-                let onwards = event.turned(patch, arrival.point, arrival.direction)?;
+            Self::Specular(lens, event) => {
+                let Arrival { point, facing, .. } = *arrival;
+                let onwards = event.turned(lens, facing, point, arrival.direction)?;
                 let ray = ray_through(arrival.point, onwards)?;
                 Some((ray, arrival.flux * cosines(&ray)))
             }

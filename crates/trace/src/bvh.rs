@@ -3,7 +3,7 @@
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
 
-use etendue_field::{Frame, Patch, Shape, TwoPlane, triangle_distance};
+use etendue_field::{Frame, Patch, Shape, TwoPlane, interpolated_normal, triangle_distance};
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -29,6 +29,11 @@ pub(crate) enum Form {
     Oblique { frame: Frame, shape: Shape },
     /// A triangle.
     Triangle([DVec3; 3]),
+    /// A triangle of a smooth mesh, with the normals at its corners.
+    Shaded {
+        corners: [DVec3; 3],
+        normals: [DVec3; 3],
+    },
     /// A smooth surface.
     Smooth(Patch),
 }
@@ -49,7 +54,9 @@ impl Form {
                 let at = frame.to_local(start + distance * direction);
                 (distance.is_finite() && shape.contains(at.x, at.y)).then_some(distance)
             }
-            Self::Triangle(corners) => triangle_distance(corners, ray),
+            Self::Triangle(corners) | Self::Shaded { corners, .. } => {
+                triangle_distance(corners, ray)
+            }
             Self::Smooth(patch) => {
                 let hits = smooth_hits(patch, ray);
                 hits.into_iter().find(|at| *at > from)
@@ -74,6 +81,7 @@ impl Form {
             Self::Flat { .. } => DVec3::Z,
             Self::Oblique { frame, .. } => frame.d,
             Self::Triangle([a, b, c]) => (b - a).cross(c - a).normalize(),
+            Self::Shaded { corners, normals } => interpolated_normal(corners, normals, point),
             Self::Smooth(patch) => patch.normal(point),
         }
     }
@@ -95,7 +103,10 @@ impl Form {
                 let most = corners.into_iter().reduce(DVec3::max);
                 [least, most].map(Option::unwrap_or_default)
             }
-            Self::Triangle([a, b, c]) => [a.min(*b).min(*c), a.max(*b).max(*c)],
+            Self::Triangle([a, b, c])
+            | Self::Shaded {
+                corners: [a, b, c], ..
+            } => [a.min(*b).min(*c), a.max(*b).max(*c)],
             Self::Smooth(patch) => {
                 let corners = patch.corners();
                 let least = corners.into_iter().reduce(DVec3::min);
@@ -343,7 +354,7 @@ mod tests {
                 }
             }
             Form::Triangle(corners) => Form::Triangle(corners.map(|p| p * scale)),
-            Form::Smooth(_) => unreachable!("none here"),
+            Form::Shaded { .. } | Form::Smooth(_) => unreachable!("none here"),
         }
     }
 

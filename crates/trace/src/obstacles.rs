@@ -124,12 +124,12 @@ impl Obstacles {
         }
         for (i, mesh) in scene.meshes.iter().enumerate() {
             let object = Object::Mesh(i);
-            let tag = mesh
-                .albedo
-                .map_or(Meeting::Blocker, |albedo| Meeting::Surface {
-                    object,
-                    material: Material::Lambertian { albedo },
-                });
+            let material = match (&mesh.smooth, mesh.albedo) {
+                (Some(smooth), _) => Some(Material::Specular(smooth.event)),
+                (None, albedo) => albedo.map(|albedo| Material::Lambertian { albedo }),
+            };
+            let surface = |material| Meeting::Surface { object, material };
+            let tag = material.map_or(Meeting::Blocker, surface);
             targets.extend(around.mesh(mesh).map(|form| Target { form, tag }));
         }
         let origins = match scene.light {
@@ -264,12 +264,23 @@ impl Around {
     }
 
     pub(crate) fn mesh(&self, mesh: &MeshObject) -> impl Iterator<Item = Form> {
-        let corners = mesh.triangles.iter();
-        corners.map(|corners| Form::Triangle(corners.map(|p| self.0.to_local(p))))
+        mesh.triangles.iter().enumerate().map(|(i, corners)| {
+            let corners = corners.map(|p| self.0.to_local(p));
+            match &mesh.smooth {
+                None => Form::Triangle(corners),
+                Some(smooth) => Form::Shaded {
+                    corners,
+                    normals: smooth.normals[i].map(|n| self.0.vector_to_local(n)),
+                },
+            }
+        })
     }
 
     /// A shape in the plane of a frame; across the leg, with axes along its own, distances are exact.
-    #[expect(clippy::float_cmp, reason = "rounding would only take the exact way from it")]
+    #[expect(
+        clippy::float_cmp,
+        reason = "rounding would only take the exact way from it"
+    )]
     fn flat(frame: &Frame, shape: &Shape) -> Form {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;
         if !across {

@@ -55,6 +55,8 @@ pub(crate) struct Arrival {
     pub(crate) point: DVec3,
     /// The normal on the side it came from.
     pub(crate) normal: DVec3,
+    /// The normal on the side that the surface faces.
+    pub(crate) facing: DVec3,
     /// Where it was going, 1 along D.
     pub(crate) direction: DVec3,
     pub(crate) flux: f64,
@@ -148,10 +150,11 @@ impl Arrival {
     fn new(ray: &TwoPlane, distance: f64, target: &Target<Meeting>, flux: f64) -> Self {
         let direction = direction(ray);
         let point = start(ray) + distance * direction;
-        let normal = target.form.normal(point);
+        let facing = target.form.normal(point);
         Self {
             point,
-            normal: -normal.dot(direction).signum() * normal,
+            normal: -facing.dot(direction).signum() * facing,
+            facing,
             direction,
             flux,
         }
@@ -163,6 +166,7 @@ impl Arrival {
         Self {
             point: to.to_local(from.to_world(self.point)),
             normal: vector(self.normal),
+            facing: vector(self.facing),
             direction: vector(self.direction),
             flux: self.flux,
         }

@@ -1,7 +1,7 @@
 use super::Resolver;
 use super::faults::show;
-use crate::file::{BlockersFile, MeshSource, SceneFile, SurfaceFile};
-use crate::scene::MeshObject;
+use crate::file::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
+use crate::scene::{MeshObject, SmoothMesh};
 use crate::{Mesh, MeshError};
 use etendue_field::Frame;
 use glam::DVec3;
@@ -15,6 +15,7 @@ struct Placed<'a> {
     mesh: &'a MeshSource,
     scale: f64,
     albedo: Option<f64>,
+    event: Option<EventFile>,
 }
 
 impl Resolver<'_> {
@@ -37,6 +38,7 @@ impl Resolver<'_> {
                     mesh,
                     scale: *scale,
                     albedo: None,
+                    event: None,
                 }),
                 _ => None,
             });
@@ -51,13 +53,15 @@ impl Resolver<'_> {
                     mesh,
                     scale,
                     albedo,
+                    event,
                 } => Some(Placed {
                     of: format!("surfaces[{i}]"),
                     name,
                     center,
                     mesh,
                     scale: *scale,
-                    albedo: Some(*albedo),
+                    albedo: event.is_none().then_some(*albedo),
+                    event: *event,
                 }),
                 SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
             });
@@ -91,6 +95,39 @@ impl Resolver<'_> {
             triangles,
             extent,
             albedo: placed.albedo,
+            smooth: placed
+                .event
+                .and_then(|event| self.smooth(of, event, &mesh, frame)),
+        })
+    }
+
+    /// A mesh with the normals of its vertices: the mean of the triangles around each, by area.
+    fn smooth(
+        &mut self,
+        of: &str,
+        event: EventFile,
+        mesh: &Mesh,
+        frame: &Frame,
+    ) -> Option<SmoothMesh> {
+        let of = format!("{of}.event");
+        if let EventFile::ThinLens(_) = event {
+            self.faults.add(of, show(event), "Mirror or Refraction(…)");
+            return None;
+        }
+        let event = self.event(&of, event, FormFile::Plane);
+        let mut normals = vec![DVec3::ZERO; mesh.vertices().len()];
+        for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
+            let [a, b, c] = corners;
+            for i in indices {
+                normals[*i as usize] += (b - a).cross(c - a);
+            }
+        }
+        let local = |i: &u32| frame.vector_to_local(normals[*i as usize].normalize());
+        let normals = mesh.triangles().iter();
+        let normals = normals.map(|corners| corners.each_ref().map(local));
+        Some(SmoothMesh {
+            event,
+            normals: normals.collect(),
         })
     }
 
@@ -111,6 +148,21 @@ impl Resolver<'_> {
                 Err(unreadable @ MeshError::Unreadable { .. }) => {
                     let allowed = format!("a mesh file; {unreadable}");
                     self.faults.add(format!("{of}.mesh"), show(path), allowed);
+                    None
+                }
+            },
+            &MeshSource::Paraboloid {
+                curvatures,
+                half,
+                cells,
+            } => match Mesh::paraboloid(curvatures, half, cells) {
+                Ok(mesh) => Some(mesh),
+                Err(fault) => {
+                    self.faults.add(
+                        format!("{of}.mesh.{}", fault.field),
+                        fault.value,
+                        fault.allowed,
+                    );
                     None
                 }
             },

@@ -72,7 +72,7 @@ impl Resolver<'_> {
         })
     }
 
-    fn event(&mut self, of: &str, event: EventFile, form: FormFile) -> Specular {
+    pub(super) fn event(&mut self, of: &str, event: EventFile, form: FormFile) -> Specular {
         match event {
             EventFile::Mirror => Specular::Mirror,
             EventFile::Refraction { front, back } => {

@@ -4,7 +4,7 @@ use super::Resolver;
 use super::faults::show;
 use crate::file::SceneFile;
 use crate::scene::{BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, PatchObject, Surface};
-use etendue_field::{Frame, TwoPlane, triangle_distance};
+use etendue_field::{Frame, Specular, TwoPlane, interpolated_normal, triangle_distance};
 use glam::DVec3;
 
 /// Share of a leg within which it does not meet again what it has just left.
@@ -119,9 +119,11 @@ impl Resolver<'_> {
         things: Things<'_>,
     ) -> Option<DVec3> {
         let path = &file.path;
-        if let Object::Patch(at) = hit.object {
-            let PatchObject { patch, event, name } = &things.patches[at];
-            let d = event.turned(patch, hit.point, leg.d).map(DVec3::normalize);
+        if let Some((event, lens, facing)) = things.specular(hit) {
+            let name = &path.visits[i];
+            let d = event
+                .turned(&lens, facing, hit.point, leg.d)
+                .map(DVec3::normalize);
             if d.is_none() {
                 let allowed = format!("an angle at which {} does not reflect it all", show(name));
                 self.faults
@@ -193,16 +195,32 @@ impl Things<'_> {
         let surfaces = self.surfaces.iter().enumerate();
         let surfaces = surfaces.map(|(i, s)| (Object::Surface(i), s.name.as_str()));
         let meshes = self.meshes.iter().enumerate();
-        let meshes = meshes.filter(|(_, m)| m.albedo.is_some());
+        let meshes = meshes.filter(|(_, m)| !m.is_black());
         let meshes = meshes.map(|(i, m)| (Object::Mesh(i), m.name.as_str()));
         let patches = self.patches.iter().enumerate();
         let patches = patches.map(|(i, p)| (Object::Patch(i), p.name.as_str()));
         surfaces.chain(meshes).chain(patches).collect()
     }
 
+    /// What a smooth surface does, its frame as a lens, and its normal at a hit on the side it faces.
+    fn specular(&self, hit: &Hit) -> Option<(Specular, Frame, DVec3)> {
+        match hit.object {
+            Object::Surface(_) => None,
+            Object::Patch(i) => {
+                let PatchObject { patch, event, .. } = &self.patches[i];
+                Some((*event, patch.frame, patch.normal(hit.point)))
+            }
+            Object::Mesh(i) => {
+                let mesh = &self.meshes[i];
+                let facing = mesh.facing(hit)?;
+                Some((mesh.smooth.as_ref()?.event, Frame::IDENTITY, facing))
+            }
+        }
+    }
+
     /// Whether light that leaves a hit along `d` has gone through.
     fn is_left_behind(&self, hit: &Hit, d: DVec3) -> bool {
-        matches!(hit.object, Object::Patch(_)) && d.dot(hit.normal) < 0.0
+        self.specular(hit).is_some() && d.dot(hit.normal) < 0.0
     }
 
     /// Where the axis of a frame meets an object first: distance, point and the normal on this side.
@@ -252,7 +270,7 @@ impl Things<'_> {
         let objects = objects
             .iter()
             .filter_map(|(o, _)| Some(self.hit(*o, frame)?.0));
-        let black = self.meshes.iter().filter(|m| m.albedo.is_none());
+        let black = self.meshes.iter().filter(|m| m.is_black());
         let black = black.filter_map(|mesh| Some(mesh.first_on(frame)?.0));
         let planes = self.blockers.iter().map(|layer| layer.distance);
         let crossed = planes
@@ -267,14 +285,42 @@ impl Things<'_> {
 }
 
 impl MeshObject {
-    /// Where the axis of a frame meets it first, and the normal of the triangle.
+    /// Where the axis of a frame meets it first, and the normal there: of the triangle, or interpolated.
     fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
         let central = TwoPlane::default();
-        let hits = self.triangles.iter().filter_map(|corners| {
-            let t = triangle_distance(&corners.map(|p| frame.to_local(p)), &central)?;
-            let [a, b, c] = *corners;
-            (t > LEFT).then_some((t, (b - a).cross(c - a).normalize()))
-        });
-        hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
+        let hits = self
+            .triangles
+            .iter()
+            .enumerate()
+            .filter_map(|(i, corners)| {
+                let t = triangle_distance(&corners.map(|p| frame.to_local(p)), &central)?;
+                (t > LEFT).then_some((t, i))
+            });
+        let (t, i) = hits.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
+        Some((t, self.normal(i, frame.origin + t * frame.d)))
+    }
+
+    /// The normal at a point of a triangle, outward as it is wound.
+    fn normal(&self, triangle: usize, point: DVec3) -> DVec3 {
+        let corners = &self.triangles[triangle];
+        match &self.smooth {
+            Some(smooth) => interpolated_normal(corners, &smooth.normals[triangle], point),
+            None => {
+                let [a, b, c] = corners;
+                (b - a).cross(c - a).normalize()
+            }
+        }
+    }
+
+    /// The outward normal at the hit of a path.
+    fn facing(&self, hit: &Hit) -> Option<DVec3> {
+        // The normal of a hit is this one, or turned over.
+        let along = Frame::new(
+            hit.point + hit.normal,
+            -hit.normal,
+            hit.normal.any_orthonormal_vector(),
+        )?;
+        let (_, outward) = self.first_on(&along)?;
+        Some(outward.dot(hit.normal).signum() * hit.normal)
     }
 }

@@ -6,7 +6,7 @@ use crate::fault::Fault;
 use crate::file::{
     AxisFile, BlockersFile, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
 };
-use crate::scene::CentralRay;
+use crate::scene::{CentralRay, Object};
 use etendue_field::{
     Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
     tidy,
@@ -102,6 +102,12 @@ impl Resolver<'_> {
             self.faults.add(&of, show(plane.orientation), allowed);
             return across;
         };
+        let on_mesh = matches!(hit.object, Object::Mesh(_));
+        if on_mesh && plane.orientation == Orientation::LocalNormals {
+            let allowed =
+                "Orthogonal or Tangent: the normals of a mesh are known between its vertices only";
+            self.faults.add(&of, show(plane.orientation), allowed);
+        }
         let (frame, arrives) = hit.surface_frame(&path.legs[arriving].frame);
         match place.side {
             Side::Before => (frame, arrives),

@@ -1,0 +1,87 @@
+//! Curvatures of a mesh.
+
+use crate::scene::{Hit, MeshObject};
+use etendue_field::{Frame, Patch};
+use glam::DVec3;
+
+/// Longest edges of the triangle hit within which vertices count.
+const EDGES: f64 = 6.0;
+
+impl MeshObject {
+    /// The paraboloid that lies closest, by least squares, to the vertices around a hit: its frame has the principal directions there, its
+    /// curvatures are the principal ones, and it is on the side the light comes from. `None` where there are too few vertices.
+    #[must_use]
+    pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
+        let distance = |corners: &[DVec3; 3]| {
+            let middle: DVec3 = corners.iter().sum::<DVec3>() / 3.0;
+            middle.distance_squared(hit.point)
+        };
+        let nearest = self
+            .triangles
+            .iter()
+            .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let [a, b, c] = *nearest;
+        let edge = a.distance(b).max(b.distance(c)).max(c.distance(a));
+        let corners = self.triangles.as_flattened();
+        let near = corners
+            .iter()
+            .filter(|p| p.distance(hit.point) < EDGES * edge);
+        let near: Vec<DVec3> = near.copied().collect();
+        let mut frame = Frame::new(hit.point, hit.normal, hit.normal.any_orthonormal_vector())?;
+        // The plane of the interpolated normal leans against the tangent plane a little: once more in that one.
+        for _ in 0..2 {
+            let [_, s, t, ..] = quadric(&frame, &near, edge)?;
+            frame = frame.turned_to((frame.d - s * frame.x - t * frame.y).normalize());
+        }
+        let [h, _, _, ss, st, tt] = quadric(&frame, &near, edge)?;
+        // h = … + ½ (ss s² + 2 st s t + tt t²): the principal axes of that form, turned over, since convex is positive.
+        let angle = 0.5 * (2.0 * st).atan2(ss - tt);
+        let (sin, cos) = angle.sin_cos();
+        let along = cos * frame.x + sin * frame.y;
+        let curvature = |c: f64, s: f64| -(ss * c * c + 2.0 * st * c * s + tt * s * s);
+        let far = corners
+            .iter()
+            .map(|p| p.distance(hit.point))
+            .fold(0.0, f64::max);
+        Some(Patch {
+            frame: Frame::new(hit.point + h * frame.d, frame.d, along)?,
+            curvature: [curvature(cos, sin), curvature(-sin, cos), 0.0],
+            aperture: far,
+        })
+    }
+}
+
+/// h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, of the quadratic in (s, t) closest to points (s, t, h).
+fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
+    // Normal equations, bordered by their right side.
+    let mut m = [[0.0; 7]; 6];
+    for point in points {
+        let DVec3 { x, y, z } = frame.to_local(*point) / unit;
+        let row = [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y, z];
+        for (i, line) in m.iter_mut().enumerate() {
+            for (entry, value) in line.iter_mut().zip(row) {
+                *entry += row[i] * value;
+            }
+        }
+    }
+    // Elimination; the matrix is symmetric and positive, so no pivot is looked for.
+    for i in 0..6 {
+        let pivot = m[i][i];
+        if pivot <= 1e-9 {
+            return None;
+        }
+        let line = m[i].map(|entry| entry / pivot);
+        for (k, other) in m.iter_mut().enumerate() {
+            let factor = other[i];
+            if k != i {
+                other
+                    .iter_mut()
+                    .zip(line)
+                    .for_each(|(entry, value)| *entry -= factor * value);
+            }
+        }
+        m[i] = line;
+    }
+    let [h, s, t, ss, st, tt] = m.map(|line| line[6]);
+    Some([h * unit, s, t, ss / unit, st / unit, tt / unit])
+}
