@@ -111,7 +111,20 @@ impl Resolver<'_> {
         let (frame, arrives) = hit.surface_frame(&path.legs[arriving].frame);
         match place.side {
             Side::Before => (frame, arrives),
-            Side::After => (frame, frame.longitude(path.legs[place.leg].frame.d)),
+            Side::After => {
+                let d = path.legs[place.leg].frame.d;
+                // Light that goes through leaves on the other side: N is there, and B = N × T with it.
+                let frame = if d.dot(frame.d) < 0.0 {
+                    Frame {
+                        y: -frame.y,
+                        d: -frame.d,
+                        ..frame
+                    }
+                } else {
+                    frame
+                };
+                (frame, frame.longitude(d))
+            }
         }
     }
 
