@@ -50,13 +50,17 @@ pub(crate) fn without_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String>
         if let Some(Hit { object, normal, .. }) = &leg.leaves {
             let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
                 .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
-            if outgoing > ROUNDING || incidence > ROUNDING || matches!(object, Object::Patch(_)) {
+            let is_flat = matches!(object, Object::Surface(_));
+            if outgoing > ROUNDING || incidence > ROUNDING || !is_flat {
                 let name = scene.name_of(*object);
                 found.push(format!(
                     "incidence on {name} at {incidence:.4}°, outgoing at {outgoing:.4}°"
                 ));
             }
         }
+    }
+    if matches!(scene.light, Light::Projector { .. } | Light::Beam { .. }) {
+        found.push("light of a picture, but for a path of smooth surfaces alone".to_owned());
     }
     if plane.orientation != Orientation::Orthogonal {
         found.push(format!("{:?}", plane.orientation));
@@ -91,6 +95,12 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
             if passes(scene, plane, &surface.corners(), on_way_back) {
                 found.push(format!("visibility of {name}"));
             }
+        }
+    }
+    for (i, object) in scene.patches.iter().enumerate() {
+        let own = visited(Object::Patch(i));
+        if !own && passes(scene, plane, &object.patch.corners(), false) {
+            found.push(format!("visibility of {}", object.name));
         }
     }
     for (i, mesh) in scene.meshes.iter().enumerate() {

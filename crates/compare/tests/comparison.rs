@@ -249,3 +249,35 @@ fn sidak_keeps_the_level_of_the_run() {
     assert!((1.0 - (1.0 - level).powi(4) - 0.01).abs() < 1e-15); // rounding
     assert!((sidak(0.01, 1) - 0.01).abs() < 1e-15); // rounding
 }
+
+/// Theory has no word for what leaves a mesh, be it met head on, nor for a smooth surface that only stands in the way.
+#[test]
+fn what_has_no_theory_is_a_reference() {
+    let class = |surfaces: &str, visits: &str| {
+        let text = format!(
+            r#"(
+                light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2)),
+                surfaces: [{surfaces}],
+                path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
+                planes: [(name: "before", at: Distance(0.9)), (name: "after", at: After({visits}))],
+                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 10), nu: (max: 10)), run: (photons: 100),
+            )"#
+        );
+        let file = etendue_scene::SceneFile::parse(&text).expect("a scene");
+        let scene =
+            etendue_scene::resolve("t", file, ".".as_ref(), u64::MAX).expect("a sound scene");
+        [0, 1].map(|i| Class::of(&scene, &scene.planes[i]))
+    };
+    let floor = r#"Rectangle(name: "floor", center: (0, 0, 2), size: (4, 4))"#;
+    let star = r#"Mesh(name: "star", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
+    let beside = |x: f64| {
+        format!(
+            r#"Smooth(name: "m", center: ({x}, 0, 0.5), facing: (1, 0, 0), form: Sphere(0.1), aperture: 0.1, event: Mirror), {floor}"#
+        )
+    };
+    let reference = Class::Reference;
+    assert_eq!(class(floor, "\"floor\""), [Class::Exact; 2]);
+    assert_eq!(class(star, "\"star\""), [Class::Exact, reference]);
+    assert_eq!(class(&beside(0.08), "\"floor\""), [reference; 2]);
+    assert_eq!(class(&beside(2.0), "\"floor\""), [Class::Exact; 2]);
+}
