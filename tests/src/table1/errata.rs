@@ -168,11 +168,16 @@ fn rows(outcome: &Outcome) -> (Vec<Vec<String>>, bool) {
             continue;
         }
         let index = outcome.plane(plane);
-        let sound = bench.judged(index, &bench.sound());
+        let Some(sound) = &outcome.planes[index].report.first_order else {
+            continue;
+        };
         let mut steps = bench.sound();
         misprint(&mut steps, bench.theta0, bench.shape);
         let printed = bench.judged(index, &steps);
-        let well = printed.verdict == Verdict::Fail
+        // On a plane mirror Table 1's two scales cancel, and so do its two phases (docs/theory.md, section 7).
+        let hidden = flat && name == "Table 1 as printed";
+        let due = if hidden { Verdict::Pass } else { Verdict::Fail };
+        let well = printed.verdict == due
             && sound.verdict == Verdict::Pass
             && bench.apart(index) < SAME;
         passed &= well;
@@ -205,7 +210,7 @@ fn section(outcomes: &[&Outcome]) -> Section {
         title: "Errata: each misprint alone".to_owned(),
         text: "One step of the chain as the paper prints it, all others as they should be, held against the photons of the file by the rule for first-order \
                chains; and the corrected chain. Excess: disagreement with the photons beyond noise, of what is predicted; where a missing 2π moves all \
-               light out of the window nothing is predicted. Required: printed rejected, corrected accepted, and the corrected chain the one theory reads off the \
+               light out of the window nothing is predicted. Required: printed rejected, but for all of Table 1 on a plane mirror, where its slips cancel; corrected accepted, and the corrected chain the one theory reads off the \
                scene."
             .to_owned(),
         header: vec![

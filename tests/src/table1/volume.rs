@@ -59,7 +59,8 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
         text: format!(
             "Rays followed through the real surfaces, 16 about the central ray, from the light's plane to the last plane across the path, in positions and \
              index times direction cosines. Volume: |det J| − 1 of their Jacobian J by differences; invariant: largest entry of Jᵀ Ω J − Ω, the Lagrange \
-             invariant of any two neighbours; both of the chain of affine maps with slopes: chain. Back: how far a ray sent back arrives from where it came. \
+             invariant of any two neighbours; both of the chain of affine maps with slopes: chain. Behind a thin lens both are of positions and slopes: the ideal lens, \
+             u' = u − x/f, keeps those, and étendue only to second order. Back: how far a ray sent back arrives from where it came. \
              Required: below {ROUNDING:.0e}."
         ),
         header: vec!["scene", "to plane", "chain", "volume", "invariant", "back", "verdict"],
@@ -105,9 +106,13 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
 
 /// Of volume, of the invariant, and of the way back.
 fn defects(system: &System, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
+    let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {
-        let arrived = through(&system.elements, &start(z))?;
+        let arrived = through(&system.elements, &start(if slopes { with_cosines(z) } else { z }))?;
         let mut z = coordinates(plane, &arrived)?;
+        if slopes {
+            z = with_slopes(z);
+        }
         // n at the light is taken as one.
         z[2] /= ratio;
         z[3] /= ratio;
@@ -143,6 +148,24 @@ fn defects(system: &System, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[
         rays.symplectic_defect(1.0),
         off.iter().fold(0.0, |most: f64, d| most.max(d.abs())),
     ])
+}
+
+/// An ideal lens bends slopes, and keeps the volume of positions and slopes; no real lens does.
+fn has_lens(system: &System) -> bool {
+    let events = system.elements.iter().map(|e| e.event);
+    events
+        .into_iter()
+        .any(|e| matches!(e, etendue_field::Specular::ThinLens { .. }))
+}
+
+fn with_slopes([x, y, p, q]: [f64; 4]) -> [f64; 4] {
+    let along = (1.0 - p * p - q * q).sqrt();
+    [x, y, p / along, q / along]
+}
+
+fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
+    let length = (1.0 + u * u + v * v).sqrt();
+    [x, y, u / length, v / length]
 }
 
 /// From a point of the light's plane with direction cosines.
