@@ -65,7 +65,15 @@ pub(super) fn foci(outcome: &Outcome) -> Section {
              R/(2 cos θ₀), for an infinitely narrow beam. Required: predicted within {MOST} errors, and with the narrow beam Coddington's too."
         ),
         header: vec![
-            "beam [m]", "focus", "measured [m]", "predicted", "", "Coddington", "off", "", "verdict",
+            "beam [m]",
+            "focus",
+            "measured [m]",
+            "predicted",
+            "",
+            "Coddington",
+            "off",
+            "",
+            "verdict",
         ],
         rows,
         passed,

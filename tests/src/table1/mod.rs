@@ -1,11 +1,14 @@
 //! Table 1 of Durand et al. 2005, line by line: theory against quadrature in 2D, photons against theory in 4D.
 
+mod bench;
 mod errata;
 mod foci;
 mod operators;
 mod order;
+mod path;
 mod planar;
 mod planted;
+mod quadrature;
 mod scenes;
 mod steps;
 mod volume;
@@ -67,8 +70,17 @@ pub(crate) fn table1(photons: Option<u64>) -> Vec<Section> {
         errata::as_printed(&printed, level),
         foci::foci(named("solar_oven")),
     ];
-    sections.push(planted::first_order(named("concave_oblique"), named("convex_normal")));
-    let exact = ["concave_oblique", "solar_oven", "refraction_in", "refraction_out"].map(named);
+    sections.push(planted::first_order(
+        named("concave_oblique"),
+        named("convex_normal"),
+    ));
+    let exact = [
+        "concave_oblique",
+        "solar_oven",
+        "refraction_in",
+        "refraction_out",
+    ]
+    .map(named);
     sections.push(planted::exact(&exact, level));
     sections.push(volume::volume(&sound));
     sections

@@ -1,7 +1,7 @@
 //! Every plane of the table.
 
-use super::planar::{Path, Stage};
 use super::order::{Fall, Order, fall};
+use super::path::{Path, Stage};
 use super::{Outcome, number, percent};
 use crate::report::Section;
 use etendue_compare::Verdict;
@@ -26,7 +26,11 @@ pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Sec
         }
     }
     Section {
-        title: format!("Operators in 4D: {} scenes, {} planes", outcomes.len(), rows.len()),
+        title: format!(
+            "Operators in 4D: {} scenes, {} planes",
+            outcomes.len(),
+            rows.len()
+        ),
         text: format!(
             "Photons against the exact ray-space prediction and against the chain of affine maps. Error: of the chain, computed from the exact \
              prediction. Excess: its disagreement with the photons beyond noise, and the upper 95 % bound of it. Resolvable: the excess that noise \

@@ -1,7 +1,7 @@
 //! How fast the error of the first-order chain falls with the size of the neighbourhood.
 
 use super::Outcome;
-use etendue_field::{FrequencyAxis, Orientation, Slices, SliceGrid, Specular, Window};
+use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
 use etendue_theory::geometry::Print;
 use etendue_theory::rays::{self, Parameter, Plane, System};
 

@@ -1,7 +1,8 @@
 //! Faults planted in the predictions, which the photons must reject.
 
 use super::Outcome;
-use super::errata::{Bench, percent_or_dark, word};
+use super::bench::Bench;
+use super::errata::{percent_or_dark, word};
 use super::steps::Steps;
 use crate::report::Section;
 use etendue_compare::{Residuals, Verdict};
@@ -25,7 +26,9 @@ fn faults() -> Vec<(&'static str, Change)> {
         ("none", |_, _| ()),
         ("sign of travel", |s, _| s.distance = -s.distance),
         ("incidence: sign of x", |s, _| turned(&mut s.incidence, 0)),
-        ("incidence: φ not flipped", |s, _| turned(&mut s.incidence, 3)),
+        ("incidence: φ not flipped", |s, _| {
+            turned(&mut s.incidence, 3)
+        }),
         ("incidence: sign of θ₀", |s, _| {
             s.incidence.phase[2] = -s.incidence.phase[2];
         }),
@@ -52,7 +55,9 @@ fn faults() -> Vec<(&'static str, Change)> {
         ("outgoing: 1/cos for cos in front", |s, b| {
             s.outgoing.factor *= b.theta0.cos().powi(-2);
         }),
-        ("mirror: times cos θ₀", |s, b| s.mirror.factor *= b.theta0.cos()),
+        ("mirror: times cos θ₀", |s, b| {
+            s.mirror.factor *= b.theta0.cos()
+        }),
         ("curvature: cos θ₀ on the row of θ", |s, b| {
             // diag(c₀, 1) M for diag(1, c₀) M.
             s.curvature = swapped(b, -1.0).spectrum_map();
@@ -93,7 +98,12 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                     let place = &outcome.scene.planes[*i];
                     name == "none" || steps.chain(place) != bench.sound().chain(place)
                 })
-                .map(|i| (outcome.planes[i].report.name.as_str(), bench.judged(i, &steps)))
+                .map(|i| {
+                    (
+                        outcome.planes[i].report.name.as_str(),
+                        bench.judged(i, &steps),
+                    )
+                })
                 .collect();
             let rejected = judged.iter().any(|(_, r)| r.verdict == Verdict::Fail);
             let accepted = judged.iter().all(|(_, r)| r.verdict == Verdict::Pass);
@@ -102,7 +112,8 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                 .iter()
                 .max_by(|a, b| {
                     let size = |r: &etendue_compare::FirstOrderReport| {
-                        r.excess.map_or(f64::INFINITY, |e| e / r.chain.error.max(0.01))
+                        r.excess
+                            .map_or(f64::INFINITY, |e| e / r.chain.error.max(0.01))
                     };
                     size(&a.1).total_cmp(&size(&b.1))
                 })
@@ -119,7 +130,12 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                 decisive.0.to_owned(),
                 decisive.1,
                 format!("{count} of {}", judged.len()),
-                if name == "none" && accepted { "accepted" } else { decisive.2 }.to_owned(),
+                if name == "none" && accepted {
+                    "accepted"
+                } else {
+                    decisive.2
+                }
+                .to_owned(),
             ]);
         }
     }
@@ -147,8 +163,12 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
     }
     vec![
         ("none", |s, p| Some((s.clone(), *p))),
-        ("k + 2 %", |s, p| scaled(s, p, Parameter::Curvature(0, 0), 1.02)),
-        ("k − 2 %", |s, p| scaled(s, p, Parameter::Curvature(0, 0), 0.98)),
+        ("k + 2 %", |s, p| {
+            scaled(s, p, Parameter::Curvature(0, 0), 1.02)
+        }),
+        ("k − 2 %", |s, p| {
+            scaled(s, p, Parameter::Curvature(0, 0), 0.98)
+        }),
         ("θ₀ + 1°", |s, p| turned(s, p, 1.0)),
         ("θ₀ − 1°", |s, p| turned(s, p, -1.0)),
         ("indices of the wrong sides", |s, p| {
@@ -159,7 +179,9 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
             std::mem::swap(front, back);
             Some((system, *p))
         }),
-        ("index + 2 %", |s, p| scaled(s, p, Parameter::Index(0), 1.02)),
+        ("index + 2 %", |s, p| {
+            scaled(s, p, Parameter::Index(0), 1.02)
+        }),
     ]
 }
 

@@ -44,7 +44,9 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
             }
         }
         let [volume, invariant, back] = most;
-        let well = [linear, volume, invariant, back].iter().all(|d| *d < ROUNDING);
+        let well = [linear, volume, invariant, back]
+            .iter()
+            .all(|d| *d < ROUNDING);
         passed &= well;
         let mut row = vec![
             outcome.scene.name.clone(),
@@ -63,7 +65,15 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
              u' = u − x/f, keeps those, and étendue only to second order. Back: how far a ray sent back arrives from where it came. \
              Required: below {ROUNDING:.0e}."
         ),
-        header: vec!["scene", "to plane", "chain", "volume", "invariant", "back", "verdict"],
+        header: vec![
+            "scene",
+            "to plane",
+            "chain",
+            "volume",
+            "invariant",
+            "back",
+            "verdict",
+        ],
         rows,
         passed,
     }
@@ -108,7 +118,10 @@ fn bundle() -> impl Iterator<Item = [f64; 4]> {
 fn defects(system: &System, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
     let slopes = has_lens(system);
     let map = |z: [f64; 4]| -> Option<[f64; 4]> {
-        let arrived = through(&system.elements, &start(if slopes { with_cosines(z) } else { z }))?;
+        let arrived = through(
+            &system.elements,
+            &start(if slopes { with_cosines(z) } else { z }),
+        )?;
         let mut z = coordinates(plane, &arrived)?;
         if slopes {
             z = with_slopes(z);
