@@ -27,7 +27,8 @@ impl Order {
     pub(super) fn expected(system: &System, plane: &Plane) -> Self {
         let across = plane.orientation == Orientation::Orthogonal;
         let flat = |e: &rays::Element| {
-            e.patch.curvature == [0.0; 3] && matches!(e.event, Specular::Mirror)
+            let flat = e.patch.curvature.iter().all(|k| k.abs() <= 0.0);
+            flat && matches!(e.event, Specular::Mirror)
         };
         if across && system.elements.iter().all(flat) {
             return Self::Exact;

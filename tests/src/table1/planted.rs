@@ -27,7 +27,7 @@ fn faults() -> Vec<(&'static str, Change)> {
         ("sign of travel", |s, _| s.distance = -s.distance),
         ("incidence: sign of x", |s, _| turned(&mut s.incidence, 0)),
         ("incidence: φ not flipped", |s, _| {
-            turned(&mut s.incidence, 3)
+            turned(&mut s.incidence, 3);
         }),
         ("incidence: sign of θ₀", |s, _| {
             s.incidence.phase[2] = -s.incidence.phase[2];
@@ -56,7 +56,7 @@ fn faults() -> Vec<(&'static str, Change)> {
             s.outgoing.factor *= b.theta0.cos().powi(-2);
         }),
         ("mirror: times cos θ₀", |s, b| {
-            s.mirror.factor *= b.theta0.cos()
+            s.mirror.factor *= b.theta0.cos();
         }),
         ("curvature: cos θ₀ on the row of θ", |s, b| {
             // diag(c₀, 1) M for diag(1, c₀) M.
@@ -130,10 +130,10 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                 decisive.0.to_owned(),
                 decisive.1,
                 format!("{count} of {}", judged.len()),
-                if name == "none" && accepted {
-                    "accepted"
-                } else {
-                    decisive.2
+                match name {
+                    "none" if accepted => "accepted",
+                    "none" => "not accepted",
+                    _ => decisive.2,
                 }
                 .to_owned(),
             ]);
