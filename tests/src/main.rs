@@ -1,7 +1,7 @@
 //! Statistical validation of Étendue.
 //!
-//! `short` is a few minutes, for every change; `suite` goes through all scenes and writes `docs/suite.md`; `all` is the
-//! full account of the main scene and writes `docs/validation.md`.
+//! `short` is a few minutes, for every change; `suite` goes through all scenes and writes `docs/suite.md`; `table1` through the
+//! operators of the paper and writes `docs/table1.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
 
 mod calibration;
 mod faults;
@@ -10,6 +10,7 @@ mod report;
 mod scenes;
 mod statistics;
 mod suite;
+mod table1;
 
 use clap::{Parser, Subcommand};
 use report::Section;
@@ -21,6 +22,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- short
   cargo run --release -p etendue-validation -- faults --photons 10000000
   cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
+  cargo run --release -p etendue-validation -- table1       writes docs/table1.md
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -58,6 +60,12 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
+    /// Table 1 of the paper, every operator in 2D and in 4D, misprints and planted faults; into docs/table1.md.
+    Table1 {
+        /// Photons for each scene, instead of those in the files.
+        #[arg(long)]
+        photons: Option<u64>,
+    },
     /// Everything, into docs/validation.md.
     All,
 }
@@ -84,6 +92,12 @@ fn main() -> ExitCode {
             "The suite",
             "suite",
             "Scenes: all of `scenes/`",
+        )),
+        Command::Table1 { photons: None } => Some((
+            "docs/table1.md",
+            "Table 1",
+            "table1",
+            "Scenes: all of `scenes/table1/`, photons as in the files",
         )),
         _ => None,
     };
@@ -123,6 +137,7 @@ fn sections(command: &Command) -> Vec<Section> {
             ));
             sections
         }
+        Command::Table1 { photons } => table1::table1(photons),
         Command::Noise { most } => noise(most),
         Command::All => {
             let mut sections = noise(1_000_000_000);

@@ -1,0 +1,81 @@
+//! A scene with one mirror whose steps can be had wrong, and held against its photons.
+
+use super::Outcome;
+use super::steps::Steps;
+use crate::scenes::compared;
+use etendue_compare::{FirstOrder, FirstOrderReport, Prediction};
+use etendue_theory::geometry::{Matrix, Print, SpectrumMap};
+use etendue_theory::rays::{self, Parameter};
+
+/// Of the exact prediction, which is not asked here.
+const LEVEL: f64 = 0.01;
+
+/// A scene with one mirror, and its steps.
+pub(super) struct Bench<'a> {
+    pub(super) outcome: &'a Outcome,
+    pub(super) distance: f64,
+    pub(super) theta0: f64,
+    pub(super) shape: Matrix<2>,
+}
+
+impl<'a> Bench<'a> {
+    /// # Panics
+    /// When the scene is not one sphere or plane.
+    pub(super) fn new(outcome: &'a Outcome) -> Self {
+        let (system, plane) = outcome.system(outcome.planes.len() - 1);
+        let value = |p: Parameter| system.value(&plane, p).expect("one mirror");
+        let k = value(Parameter::Curvature(0, 0));
+        Self {
+            outcome,
+            distance: value(Parameter::Travel(0)),
+            theta0: value(Parameter::Incidence(0)),
+            shape: [[k, 0.0], [0.0, k]],
+        }
+    }
+
+    pub(super) fn sound(&self) -> Steps {
+        Steps::sound(self.distance, self.theta0, self.shape)
+    }
+
+    /// How far the steps are from the chain that theory reads off the scene.
+    pub(super) fn apart(&self, plane: usize) -> f64 {
+        let (system, at) = self.outcome.system(plane);
+        let Some(read) = rays::chain(&system, &at, Print::Corrected) else {
+            return f64::NAN;
+        };
+        let put = self.sound().chain(&self.outcome.scene.planes[plane]);
+        let entries = |m: &SpectrumMap<4>| {
+            let mut all = m.matrix.as_flattened().to_vec();
+            all.extend(m.phase);
+            all.push(m.factor);
+            all
+        };
+        let pairs = entries(&read.map).into_iter().zip(entries(&put));
+        pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    }
+
+    /// Holds the photons of a plane against the chain of some steps, by the first-order rule.
+    pub(super) fn judged(&self, plane: usize, steps: &Steps) -> FirstOrderReport {
+        let Outcome {
+            scene,
+            measurement,
+            predictions,
+            ..
+        } = self.outcome;
+        let (system, at) = self.outcome.system(plane);
+        let place = &scene.planes[plane];
+        let map = steps.chain(place);
+        let prediction = &predictions[plane];
+        let sound = prediction.first_order.as_ref().expect("a chain");
+        let tried = Prediction {
+            first_order: Some(FirstOrder {
+                slices: rays::linear(&system, &at, &place.window, &place.grid, &map).slices,
+                chain: sound.chain.clone(),
+            }),
+            parameters: Vec::new(),
+            ..prediction.clone()
+        };
+        let compared = compared(scene, measurement, plane, &tried, LEVEL);
+        compared.report.first_order.expect("a chain was given")
+    }
+}

@@ -1,0 +1,108 @@
+//! Table 1 of Durand et al. 2005, line by line: theory against quadrature in 2D, photons against theory in 4D.
+
+mod bench;
+mod errata;
+mod foci;
+mod operators;
+mod order;
+mod path;
+mod planar;
+mod planted;
+mod quadrature;
+mod scenes;
+mod steps;
+mod volume;
+
+use crate::report::Section;
+use crate::scenes::{compared, predicted, traced};
+use etendue_compare::{PlaneComparison, Prediction, sidak, system};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use etendue_theory::rays::{Plane, System};
+
+/// Share of true tables that may be rejected, over all planes.
+const ALPHA: f64 = 0.01;
+
+/// A scene of the table, run.
+struct Outcome {
+    scene: Scene,
+    measurement: Measurement,
+    predictions: Vec<Prediction>,
+    planes: Vec<PlaneComparison>,
+}
+
+impl Outcome {
+    /// What theory sees of a plane.
+    ///
+    /// # Panics
+    /// When the plane is not one that theory follows rays to.
+    fn system(&self, plane: usize) -> (System, Plane) {
+        system(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
+    }
+
+    /// The index of a plane.
+    ///
+    /// # Panics
+    /// When there is none of that name.
+    fn plane(&self, name: &str) -> usize {
+        let planes = &self.scene.planes;
+        let found = planes.iter().position(|p| p.name == name);
+        found.expect("a plane of the scene")
+    }
+}
+
+/// All sections, with the photons of the files or with `photons` for each scene.
+pub(crate) fn table1(photons: Option<u64>) -> Vec<Section> {
+    let all: Vec<Scene> = scenes::all(photons);
+    let planes = all.iter().map(|scene| scene.planes.len()).sum();
+    let level = sidak(ALPHA, planes);
+    let outcomes: Vec<Outcome> = all.into_iter().map(|scene| run(scene, level)).collect();
+    let named = |name: &str| {
+        let found = outcomes.iter().find(|o| o.scene.name == name);
+        found.expect("a scene of the table")
+    };
+    let (sound, printed): (Vec<&Outcome>, Vec<&Outcome>) =
+        outcomes.iter().partition(|o| !o.scene.file.as_printed);
+    let mut sections = vec![
+        planar::planar(),
+        operators::operators(&sound, planes, level),
+        errata::misprints(named("concave_oblique"), named("incidence")),
+        errata::as_printed(&printed, level),
+        foci::foci(named("solar_oven")),
+    ];
+    sections.push(planted::first_order(
+        named("concave_oblique"),
+        named("convex_normal"),
+    ));
+    let exact = [
+        "concave_oblique",
+        "solar_oven",
+        "refraction_in",
+        "refraction_out",
+    ]
+    .map(named);
+    sections.push(planted::exact(&exact, level));
+    sections.push(volume::volume(&sound));
+    sections
+}
+
+fn run(scene: Scene, level: f64) -> Outcome {
+    let measurement = traced(&scene);
+    let predictions = predicted(&scene, None);
+    let each = predictions.iter().enumerate();
+    let planes = each.map(|(i, p)| compared(&scene, &measurement, i, p, level));
+    Outcome {
+        planes: planes.collect(),
+        scene,
+        measurement,
+        predictions,
+    }
+}
+
+fn percent(x: Option<f64>) -> String {
+    x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x))
+}
+
+fn number(x: Option<f64>) -> String {
+    x.map_or("–".to_owned(), |x| format!("{x:.5}"))
+}

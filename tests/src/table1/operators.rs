@@ -1,0 +1,215 @@
+//! Every plane of the table.
+
+use super::order::{Fall, Order, fall};
+use super::path::{Path, Stage};
+use super::{Outcome, number, percent};
+use crate::report::Section;
+use etendue_compare::Verdict;
+use etendue_field::{Orientation, Specular};
+use etendue_theory::geometry::Media;
+use etendue_theory::rays::{Parameter, Plane, System};
+
+/// How far a fitted order may be from what is known beforehand.
+const ORDER: f64 = 0.15;
+/// What two quadratures, each good to 10⁻⁴, may differ by where first order is exact.
+const QUADRATURE: f64 = 2e-4;
+
+/// The 4D half of the table.
+pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Section {
+    let mut rows = Vec::new();
+    let mut passed = true;
+    for outcome in outcomes {
+        for index in 0..outcome.planes.len() {
+            let (row, well) = row(outcome, index, level);
+            passed &= well;
+            rows.push(row);
+        }
+    }
+    Section {
+        title: format!(
+            "Operators in 4D: {} scenes, {} planes",
+            outcomes.len(),
+            rows.len()
+        ),
+        text: format!(
+            "Photons against the exact ray-space prediction and against the chain of affine maps. Error: of the chain, computed from the exact \
+             prediction. Excess: its disagreement with the photons beyond noise, and the upper 95 % bound of it. Resolvable: the excess that noise \
+             lets one see. Order: exponent with which the error falls on neighbourhoods 1, 1/2, 1/4 and 1/8 as large, by least squares; last: from 1/4 \
+             to 1/8. 2D: the section in the plane of incidence as in the table above, for one surface whose principal axes lie in it. Required of every plane: light; p exact ≥ {level:.6}, α = 0.01 over all {planes} planes (scenes with the same light are lit by the same photons, so \
+             that their p are alike, and the level is on the safe side); bound ≤ 1.1 errors or 1 %; order \
+             within {ORDER} of 1 where light comes at an angle, of 2 where it comes along normals, no error where nothing is left out; p first \
+             order < {level:.6} wherever the error is above twice the resolvable excess."
+        ),
+        header: vec![
+            "scene",
+            "plane",
+            "operator",
+            "2D map",
+            "2D order",
+            "in window",
+            "noise",
+            "p exact",
+            "error",
+            "excess",
+            "bound",
+            "resolvable",
+            "p first order",
+            "order",
+            "last",
+            "known",
+            "verdict",
+        ],
+        rows,
+        passed,
+    }
+}
+
+fn row(outcome: &Outcome, index: usize, level: f64) -> (Vec<String>, bool) {
+    let report = &outcome.planes[index].report;
+    let (system, plane) = outcome.system(index);
+    let known = Order::expected(&system, &plane);
+    let fall = fall(outcome, index);
+    let first = report.first_order.as_ref();
+    let error = first.map_or(f64::NAN, |f| f.chain.error);
+    let resolvable = first.and_then(|f| f.resolvable);
+    let p_first = first.and_then(|f| f.p_value);
+    let mut failures = Vec::new();
+    let mut require = |what: &str, holds: bool| {
+        if !holds {
+            failures.push(what.to_owned());
+        }
+    };
+    require("dark", report.in_window > 0);
+    require("exact", report.p_value.is_some_and(|p| p >= level));
+    require("excess", first.is_some_and(|f| f.verdict == Verdict::Pass));
+    require("order", follows(&fall, known));
+    if resolvable.is_some_and(|r| error > 2.0 * r) {
+        require("not told apart", p_first.is_some_and(|p| p < level));
+    }
+    let planar = section(&system, &plane).map(|(path, stage)| path.check(stage));
+    require("2D", planar.is_none_or(|c| c.holds()));
+    let [.., before, last] = fall.errors;
+    let exponent = known.exponent();
+    let order = |x: f64| match exponent {
+        Some(_) => format!("{x:.3}"),
+        None => "–".to_owned(),
+    };
+    let passed = failures.is_empty();
+    let cells = vec![
+        outcome.scene.name.clone(),
+        report.name.clone(),
+        operator(&system, &plane).to_owned(),
+        planar.map_or("–".to_owned(), |c| format!("{:.0e}", c.map)),
+        planar.map_or("–".to_owned(), |c| format!("{:.2}", c.order)),
+        report.in_window.to_string(),
+        percent(report.noise_limit),
+        number(report.p_value),
+        percent(first.map(|f| f.chain.error)),
+        percent(first.and_then(|f| f.excess)),
+        percent(first.and_then(|f| f.excess_bound)),
+        percent(resolvable),
+        number(p_first),
+        order(fall.order),
+        order((before / last).log2()),
+        exponent.map_or("exact".to_owned(), |n| format!("{n:.0}")),
+        if passed {
+            "pass".to_owned()
+        } else {
+            format!("FAIL: {}", failures.join(", "))
+        },
+    ];
+    (cells, passed)
+}
+
+fn follows(fall: &Fall, known: Order) -> bool {
+    match known.exponent() {
+        Some(order) => (fall.order - order).abs() <= ORDER,
+        None => fall.errors.iter().all(|e| *e < QUADRATURE),
+    }
+}
+
+/// The last step on the way to a plane.
+fn operator(system: &System, plane: &Plane) -> &'static str {
+    let last = system.elements.last();
+    if plane.arriving {
+        return match plane.orientation {
+            Orientation::LocalNormals => "curvature",
+            _ => "incidence",
+        };
+    }
+    let Some(element) = last else {
+        return "travel";
+    };
+    let refracts = matches!(element.event, Specular::Refraction { .. });
+    match plane.orientation {
+        Orientation::LocalNormals if refracts => "refraction",
+        Orientation::LocalNormals => "mirror",
+        Orientation::Tangent => "back",
+        Orientation::Orthogonal => {
+            let far = (plane.frame.origin - element.patch.frame.origin).length();
+            match element.event {
+                _ if far > 1e-6 => "travel",
+                Specular::ThinLens { .. } => "lens",
+                _ => "outgoing",
+            }
+        }
+    }
+}
+
+/// What the plane of incidence cuts out of a scene with one surface, whose principal axes lie along it.
+fn section(system: &System, plane: &Plane) -> Option<(Path, Stage)> {
+    let value = |p: Parameter| system.value(plane, p);
+    let arriving = plane.arriving || system.elements.is_empty();
+    let before = value(Parameter::Travel(0))?;
+    if arriving && plane.orientation == Orientation::Orthogonal {
+        let path = Path {
+            travels: [before, 0.0],
+            theta0: 0.0,
+            k: 0.0,
+            media: None,
+        };
+        return Some((path, Stage::Travel));
+    }
+    if arriving != system.elements.is_empty() || system.elements.len() > 1 {
+        return None;
+    }
+    let patch = match system.elements.first() {
+        Some(element) => Some(element.patch),
+        None => plane.patch,
+    };
+    let [k1, k2, _] = patch.map_or([0.0; 3], |patch| patch.curvature);
+    // Principal axes elsewhere are no matter where there is one curvature.
+    let across = patch.is_some_and(|p| p.frame.x.y.abs() > 1e-9);
+    if across && (k1 - k2).abs() > 1e-12 {
+        return None;
+    }
+    let media = match system.elements.first().map(|e| e.event) {
+        Some(Specular::ThinLens { .. }) => return None,
+        Some(Specular::Refraction { front, back }) => Some(Media {
+            before: front,
+            after: back,
+        }),
+        _ => None,
+    };
+    let theta0 = if arriving {
+        plane.longitude
+    } else {
+        value(Parameter::Incidence(0))?
+    };
+    let after = value(Parameter::Travel(1)).unwrap_or(0.0);
+    let path = Path {
+        travels: [before, after],
+        theta0,
+        k: k1,
+        media,
+    };
+    let stage = match plane.orientation {
+        Orientation::Tangent if arriving => Stage::Incidence,
+        Orientation::LocalNormals if arriving => Stage::Curvature,
+        Orientation::LocalNormals => Stage::Event,
+        Orientation::Tangent => Stage::Back,
+        Orientation::Orthogonal if after.abs() < 1e-9 => Stage::Outgoing,
+        Orientation::Orthogonal => Stage::Beyond,
+    };
+    Some((path, stage))
+}

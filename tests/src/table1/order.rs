@@ -1,0 +1,127 @@
+//! How fast the error of the first-order chain falls with the size of the neighbourhood.
+
+use super::Outcome;
+use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
+use etendue_theory::geometry::Print;
+use etendue_theory::rays::{self, Parameter, Plane, System};
+
+/// Sizes of the neighbourhood, in that of the scene.
+const SIZES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+
+/// Angles of incidence below this are none, radians.
+const NORMAL: f64 = 1e-6;
+
+/// What is known beforehand (docs/theory.md, section 7).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Order {
+    /// Travel and plane mirrors leave nothing out.
+    Exact,
+    /// Somewhere light comes at an angle.
+    First,
+    /// Light comes along every normal.
+    Second,
+}
+
+impl Order {
+    /// That of a plane, before anything is computed.
+    pub(super) fn expected(system: &System, plane: &Plane) -> Self {
+        let across = plane.orientation == Orientation::Orthogonal;
+        let flat = |e: &rays::Element| {
+            let flat = e.patch.curvature.iter().all(|k| k.abs() <= 0.0);
+            flat && matches!(e.event, Specular::Mirror)
+        };
+        if across && system.elements.iter().all(flat) {
+            return Self::Exact;
+        }
+        let angle = |i: usize| system.value(plane, Parameter::Incidence(i)).unwrap_or(0.0);
+        let mut angles = (0..system.elements.len()).map(angle);
+        let here = if across { 0.0 } else { plane.longitude };
+        if here.abs() > NORMAL || angles.any(|a| a.abs() > NORMAL) {
+            Self::First
+        } else {
+            Self::Second
+        }
+    }
+
+    /// The exponent; `None` where there is no error.
+    pub(super) fn exponent(self) -> Option<f64> {
+        match self {
+            Self::Exact => None,
+            Self::First => Some(1.0),
+            Self::Second => Some(2.0),
+        }
+    }
+}
+
+/// The error at each size, and the exponent that fits them all best.
+#[derive(Clone, Debug)]
+pub(super) struct Fall {
+    pub(super) errors: [f64; 4],
+    pub(super) order: f64,
+}
+
+/// ‖first order − exact‖/‖exact‖ on neighbourhoods of all sizes.
+///
+/// # Panics
+/// When the chain does not arrive.
+pub(super) fn fall(outcome: &Outcome, index: usize) -> Fall {
+    let (system, plane) = outcome.system(index);
+    let at = &outcome.scene.planes[index];
+    let map = rays::chain(&system, &plane, Print::Corrected).expect("light arrives");
+    let errors = SIZES.map(|size| {
+        let system = system.shrunk(size);
+        let (window, grid) = (narrowed(&at.window, size), widened(&at.grid, size));
+        let exact = rays::exact(&system, &plane, &window, &grid).slices;
+        let linear = rays::linear(&system, &plane, &window, &grid, &map.map).slices;
+        distance(&linear, &exact)
+    });
+    let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), errors[i].ln()]);
+    Fall {
+        errors,
+        order: slope(&logs),
+    }
+}
+
+/// The slope of the straight line that fits points best.
+pub(super) fn slope(points: &[[f64; 2]]) -> f64 {
+    let count = points.len() as f64;
+    let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / count;
+    let [a, b] = [mean(0), mean(1)];
+    let both: f64 = points.iter().map(|p| (p[0] - a) * (p[1] - b)).sum();
+    let own: f64 = points.iter().map(|p| (p[0] - a).powi(2)).sum();
+    both / own
+}
+
+fn narrowed(window: &Window, size: f64) -> Window {
+    Window {
+        x: window.x.scaled(size),
+        y: window.y.scaled(size),
+        u: window.u.scaled(size),
+        v: window.v.scaled(size),
+    }
+}
+
+fn widened(grid: &SliceGrid, size: f64) -> SliceGrid {
+    let axis = |axis: FrequencyAxis| FrequencyAxis {
+        spacing: axis.spacing / size,
+        ..axis
+    };
+    SliceGrid {
+        azimuths: grid.azimuths,
+        rho: axis(grid.rho),
+        nu: axis(grid.nu),
+    }
+}
+
+/// ‖a − b‖/‖b‖ over the independent frequencies.
+pub(super) fn distance(a: &Slices, b: &Slices) -> f64 {
+    let grid = b.grid;
+    let mut sums = [0.0; 2];
+    for ((at, a), b) in a.half.indexed_iter().zip(&b.half) {
+        if grid.is_independent(at.1, at.2) {
+            sums[0] += (a - b).norm_sqr();
+            sums[1] += b.norm_sqr();
+        }
+    }
+    (sums[0] / sums[1]).sqrt()
+}

@@ -1,0 +1,148 @@
+//! A path over one surface in 2D: its operators, and its rays.
+
+use etendue_theory::geometry::{Map, Media};
+
+/// Steps of the path, in the order of light.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Stage {
+    Travel,
+    Incidence,
+    Curvature,
+    Event,
+    Back,
+    Outgoing,
+    Beyond,
+}
+
+use Stage::{Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
+
+/// Travel, and a surface: a mirror unless it has media.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Path {
+    /// Metres of travel before and after the surface.
+    pub(super) travels: [f64; 2],
+    pub(super) theta0: f64,
+    pub(super) k: f64,
+    pub(super) media: Option<Media>,
+}
+
+impl Path {
+    fn theta1(&self) -> f64 {
+        match self.media {
+            Some(media) => media.refracted(self.theta0).unwrap_or(f64::NAN),
+            None => -self.theta0,
+        }
+    }
+
+    /// The operators up to a stage.
+    pub(super) fn map(&self, stage: Stage) -> Map<2> {
+        let theta1 = self.theta1();
+        let event = match &self.media {
+            Some(media) => Map::<2>::refraction(self.theta0, media).unwrap_or(Map::identity()),
+            None => Map::mirror(),
+        };
+        let off = match self.media {
+            Some(_) => Map::<2>::incidence(theta1)
+                .inverse()
+                .unwrap_or(Map::identity()),
+            None => Map::<2>::outgoing(theta1),
+        };
+        let steps = [
+            (Travel, Map::travel(self.travels[0])),
+            (Incidence, Map::<2>::incidence(self.theta0)),
+            (Curvature, Map::<2>::curvature(self.k)),
+            (Event, event),
+            (Back, Map::<2>::back(self.k)),
+            (Outgoing, off),
+            (Beyond, Map::travel(self.travels[1])),
+        ];
+        let mut map = Map::identity();
+        for (step, next) in steps {
+            map = map.then(&next);
+            if step == stage {
+                break;
+            }
+        }
+        map
+    }
+
+    /// Where a ray really goes, (x, θ) at the light to the coordinates of a stage.
+    pub(super) fn trace(&self, stage: Stage, [x, theta]: [f64; 2]) -> [f64; 2] {
+        let x = x + self.travels[0] * theta.tan();
+        if stage == Travel {
+            return [x, theta];
+        }
+        // (T, N) axes: D comes from ω(θ₀), X = −c₀ T + sin θ₀ N.
+        let (sin, cos) = self.theta0.sin_cos();
+        let point = [-cos * x, sin * x];
+        let along = -omega(self.theta0 + theta);
+        let point = [point[0], point[1]];
+        let on_tangent = point[0] - point[1] / along.1 * along.0;
+        let from = self.theta0 + theta;
+        if stage == Incidence {
+            return [on_tangent, from];
+        }
+        let hit = self.hit(point, along);
+        let tilt = (self.k * hit[0]).asin();
+        if stage == Curvature {
+            return [hit[0], from - tilt];
+        }
+        let local = match self.media {
+            Some(media) => (media.index_ratio() * (from - tilt).sin()).asin(),
+            None => tilt - from,
+        };
+        if stage == Event {
+            return [hit[0], local];
+        }
+        let global = local + tilt;
+        let away = omega(global);
+        let back = hit[0] - hit[1] / away.1 * away.0;
+        if stage == Back {
+            return [back, global];
+        }
+        // The frame after: X = c₁ T − sin θ₁ N, or that of light that goes on through.
+        let theta1 = self.theta1();
+        let (sin, cos) = theta1.sin_cos();
+        let sign = if self.media.is_some() { -1.0 } else { 1.0 };
+        let axis = [sign * cos, -sign * sin];
+        let central = omega(theta1);
+        let height = hit[0] * central.0 + hit[1] * central.1;
+        let advance = away.0 * central.0 + away.1 * central.1;
+        let at = [
+            hit[0] - height / advance * away.0,
+            hit[1] - height / advance * away.1,
+        ];
+        let x = at[0] * axis[0] + at[1] * axis[1];
+        let theta = global - theta1;
+        if stage == Outgoing {
+            return [x, theta];
+        }
+        [x + self.travels[1] * theta.tan(), theta]
+    }
+
+    /// Where a line meets the circle, near the origin.
+    fn hit(&self, [s, h]: [f64; 2], along: Direction) -> [f64; 2] {
+        let Direction(a, b) = along;
+        // k (s² + h²) + 2 h = 0.
+        let (p, q) = (self.k, self.k * (s * a + h * b) + b);
+        let c = self.k * (s * s + h * h) + 2.0 * h;
+        let t = -c / (q + (q * q - p * c).sqrt().copysign(q));
+        [s + t * a, h + t * b]
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Direction(f64, f64);
+
+impl std::ops::Neg for Direction {
+    type Output = Self;
+
+    fn neg(self) -> Self {
+        Self(-self.0, -self.1)
+    }
+}
+
+/// sin θ T + cos θ N.
+fn omega(theta: f64) -> Direction {
+    Direction(theta.sin(), theta.cos())
+}

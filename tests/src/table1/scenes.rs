@@ -1,0 +1,50 @@
+//! The scenes of the table.
+
+use etendue_scene::{Scene, SceneFile, resolve};
+
+macro_rules! scene {
+    ($name:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../../scenes/table1/", $name, ".ron")),
+        )
+    };
+}
+
+const SCENES: &[(&str, &str)] = &[
+    scene!("travel"),
+    scene!("incidence"),
+    scene!("incidence_grazing"),
+    scene!("convex_normal"),
+    scene!("convex_oblique"),
+    scene!("convex_grazing"),
+    scene!("concave_normal"),
+    scene!("concave_oblique"),
+    scene!("concave_grazing"),
+    scene!("cylinder"),
+    scene!("paraboloid"),
+    scene!("twist"),
+    scene!("solar_oven"),
+    scene!("two_mirrors"),
+    scene!("lens"),
+    scene!("ball_lens"),
+    scene!("refraction_in"),
+    scene!("refraction_out"),
+    scene!("printed_incidence"),
+    scene!("printed_outgoing"),
+    scene!("printed_curvature"),
+    scene!("printed_sagittal"),
+];
+
+/// Every scene of the table, with the photons of its file unless others are given.
+///
+/// # Panics
+/// When one is not sound.
+pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
+    let resolved = SCENES.iter().map(|(name, text)| {
+        let mut file = SceneFile::parse(text).expect("a scene of the table is a scene file");
+        file.run.photons = photons.unwrap_or(file.run.photons);
+        resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of the table is sound")
+    });
+    resolved.collect()
+}

@@ -1,0 +1,221 @@
+//! Étendue along real rays, and their way back.
+
+use super::Outcome;
+use crate::report::Section;
+use etendue_field::{Frame, Orientation};
+use etendue_theory::geometry::Print;
+use etendue_theory::rays::{self, Element, System};
+use glam::DVec3;
+
+/// Step of the differences, metres and direction cosines; their error is of its sixth power.
+const STEP: f64 = 2e-3;
+/// What is left of rounding, 10⁻¹⁶ over the step, and of a sixth power.
+const ROUNDING: f64 = 1e-10;
+
+/// A straight leg of a ray.
+#[derive(Clone, Copy)]
+struct Ray {
+    point: DVec3,
+    direction: DVec3,
+}
+
+/// Phase-space volume and reversibility on every scene with surfaces.
+pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
+    let mut rows = Vec::new();
+    let mut passed = true;
+    for outcome in outcomes {
+        let planes = outcome.scene.planes.iter();
+        let mut last = planes
+            .enumerate()
+            .filter(|(_, p)| p.orientation == Orientation::Orthogonal);
+        let Some((index, _)) = last.next_back() else {
+            continue;
+        };
+        let (system, plane) = outcome.system(index);
+        let ratio = index_ratio(&system);
+        let chain = rays::chain(&system, &plane, Print::Corrected);
+        let linear = chain.map_or(f64::NAN, |c| c.rays().symplectic_defect(ratio));
+        let mut most = [0.0_f64; 3];
+        for at in bundle() {
+            let defects = defects(&system, &plane.frame, at, ratio);
+            let defects = defects.unwrap_or([f64::NAN; 3]);
+            for (most, d) in most.iter_mut().zip(defects) {
+                *most = if d <= *most { *most } else { d };
+            }
+        }
+        let [volume, invariant, back] = most;
+        let well = [linear, volume, invariant, back]
+            .iter()
+            .all(|d| *d < ROUNDING);
+        passed &= well;
+        let mut row = vec![
+            outcome.scene.name.clone(),
+            outcome.scene.planes[index].name.clone(),
+        ];
+        row.extend([linear, volume, invariant, back].map(|d| format!("{d:.1e}")));
+        row.push(if well { "pass" } else { "FAIL" }.to_owned());
+        rows.push(row);
+    }
+    Section {
+        title: "Étendue and the way back".to_owned(),
+        text: format!(
+            "Rays followed through the real surfaces, 16 about the central ray, from the light's plane to the last plane across the path, in positions and \
+             index times direction cosines. Volume: |det J| − 1 of their Jacobian J by differences; invariant: largest entry of Jᵀ Ω J − Ω, the Lagrange \
+             invariant of any two neighbours; both of the chain of affine maps with slopes: chain. Behind a thin lens both are of positions and slopes: the ideal lens, \
+             u' = u − x/f, keeps those, and étendue only to second order. Back: how far a ray sent back arrives from where it came. \
+             Required: below {ROUNDING:.0e}."
+        ),
+        header: vec![
+            "scene",
+            "to plane",
+            "chain",
+            "volume",
+            "invariant",
+            "back",
+            "verdict",
+        ],
+        rows,
+        passed,
+    }
+}
+
+/// Index at the light over index at the plane.
+fn index_ratio(system: &System) -> f64 {
+    let mut ratio = 1.0;
+    let mut ray = start([0.0; 4]);
+    for element in &system.elements {
+        ratio *= crossed(element, ray.direction);
+        if let Some(next) = follow(element, &ray) {
+            ray = next;
+        }
+    }
+    ratio
+}
+
+/// Index before over index after.
+fn crossed(element: &Element, direction: DVec3) -> f64 {
+    let etendue_field::Specular::Refraction { front, back } = element.event else {
+        return 1.0;
+    };
+    if direction.dot(element.patch.frame.d) < 0.0 {
+        front / back
+    } else {
+        back / front
+    }
+}
+
+fn bundle() -> impl Iterator<Item = [f64; 4]> {
+    // Corners of a small box.
+    (0..16).map(|n: u32| {
+        std::array::from_fn(|i| {
+            let size = if i < 2 { 0.01 } else { 0.02 };
+            if n >> i & 1 == 0 { -size } else { size }
+        })
+    })
+}
+
+/// Of volume, of the invariant, and of the way back.
+fn defects(system: &System, plane: &Frame, at: [f64; 4], ratio: f64) -> Option<[f64; 3]> {
+    let slopes = has_lens(system);
+    let map = |z: [f64; 4]| -> Option<[f64; 4]> {
+        let arrived = through(
+            &system.elements,
+            &start(if slopes { with_cosines(z) } else { z }),
+        )?;
+        let mut z = coordinates(plane, &arrived)?;
+        if slopes {
+            z = with_slopes(z);
+        }
+        // n at the light is taken as one.
+        z[2] /= ratio;
+        z[3] /= ratio;
+        Some(z)
+    };
+    let mut jacobian = [[0.0; 4]; 4];
+    for column in 0..4 {
+        for (step, weight) in [(1.0, 0.75), (2.0, -0.15), (3.0, 1.0 / 60.0)] {
+            let beside = |side: f64| {
+                let mut z = at;
+                z[column] += side * step * STEP;
+                map(z)
+            };
+            let (above, below) = (beside(1.0)?, beside(-1.0)?);
+            for row in 0..4 {
+                jacobian[row][column] += weight * (above[row] - below[row]) / STEP;
+            }
+        }
+    }
+    let rays = etendue_theory::geometry::Map::linear(jacobian);
+    let arrived = through(&system.elements, &start(at))?;
+    let mut elements = system.elements.clone();
+    elements.reverse();
+    let turned = Ray {
+        point: arrived.point + arrived.direction * STEP,
+        direction: -arrived.direction,
+    };
+    let home = through(&elements, &turned)?;
+    let [x, y, p, q] = coordinates(&Frame::IDENTITY, &home)?;
+    let off = [x - at[0], y - at[1], p + at[2], q + at[3]];
+    Some([
+        (rays.det().abs() - 1.0).abs(),
+        rays.symplectic_defect(1.0),
+        off.iter().fold(0.0, |most: f64, d| most.max(d.abs())),
+    ])
+}
+
+/// An ideal lens bends slopes, and keeps the volume of positions and slopes; no real lens does.
+fn has_lens(system: &System) -> bool {
+    let events = system.elements.iter().map(|e| e.event);
+    events
+        .into_iter()
+        .any(|e| matches!(e, etendue_field::Specular::ThinLens { .. }))
+}
+
+fn with_slopes([x, y, p, q]: [f64; 4]) -> [f64; 4] {
+    let along = (1.0 - p * p - q * q).sqrt();
+    [x, y, p / along, q / along]
+}
+
+fn with_cosines([x, y, u, v]: [f64; 4]) -> [f64; 4] {
+    let length = (1.0 + u * u + v * v).sqrt();
+    [x, y, u / length, v / length]
+}
+
+/// From a point of the light's plane with direction cosines.
+fn start([x, y, p, q]: [f64; 4]) -> Ray {
+    Ray {
+        point: DVec3::new(x, y, 0.0),
+        direction: DVec3::new(p, q, (1.0 - p * p - q * q).sqrt()),
+    }
+}
+
+fn through(elements: &[Element], ray: &Ray) -> Option<Ray> {
+    elements.iter().try_fold(*ray, |ray, e| follow(e, &ray))
+}
+
+fn follow(element: &Element, ray: &Ray) -> Option<Ray> {
+    let frame = &element.patch.frame;
+    let (start, along) = (
+        frame.to_local(ray.point),
+        frame.vector_to_local(ray.direction),
+    );
+    let hits = element.patch.hits(start, along);
+    let distance = hits.into_iter().find(|t| *t > 1e-9)?;
+    let point = ray.point + ray.direction * distance;
+    let direction = element.event.turned(&element.patch, point, ray.direction)?;
+    Some(Ray {
+        point,
+        direction: direction.normalize(),
+    })
+}
+
+/// Where the line of a ray crosses a plane, and its direction cosines.
+fn coordinates(plane: &Frame, ray: &Ray) -> Option<[f64; 4]> {
+    let (at, along) = (
+        plane.to_local(ray.point),
+        plane.vector_to_local(ray.direction),
+    );
+    let t = -at.z / along.z;
+    let z = [at.x + t * along.x, at.y + t * along.y, along.x, along.y];
+    t.is_finite().then_some(z)
+}
