@@ -30,6 +30,7 @@ const SCENES: &[(&str, &str)] = &[
     scene!("ball_lens"),
     scene!("refraction_in"),
     scene!("refraction_out"),
+    scene!("mesh_mirror"),
     scene!("printed_incidence"),
     scene!("printed_outgoing"),
     scene!("printed_curvature"),

@@ -202,7 +202,12 @@ fn follow(element: &Element, ray: &Ray) -> Option<Ray> {
     let hits = element.patch.hits(start, along);
     let distance = hits.into_iter().find(|t| *t > 1e-9)?;
     let point = ray.point + ray.direction * distance;
-    let direction = element.event.turned(&element.patch, point, ray.direction)?;
+    let direction = element.event.turned(
+        &element.patch.frame,
+        element.patch.normal(point),
+        point,
+        ray.direction,
+    )?;
     Some(Ray {
         point,
         direction: direction.normalize(),
