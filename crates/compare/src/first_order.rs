@@ -42,7 +42,7 @@ pub struct FirstOrderReport {
     /// Its numbers.
     #[serde(flatten)]
     pub chain: FirstOrderChain,
-    /// Signed root of ‖S − F₁‖² less noise, over ‖F₁‖²: its disagreement beyond noise.
+    /// Signed root of ‖S − F₁‖² less noise, over ‖exact‖²: its disagreement beyond noise.
     pub excess: Option<f64>,
     /// Upper 95 % bound of the excess.
     pub excess_bound: Option<f64>,
@@ -122,16 +122,17 @@ impl FirstOrder {
         Some(Self { slices, chain })
     }
 
-    /// Holds a measurement against it; `exact` are the residuals from the exact ray-space prediction.
+    /// Holds a measurement against it; `exact` is the exact ray-space prediction with the residuals from it.
     pub(crate) fn report(
         &self,
         measurement: &Measurement,
         index: usize,
-        exact: &Residuals,
+        exact: (&Slices, &Residuals),
         seed: u64,
     ) -> FirstOrderReport {
+        let (slices, exact) = exact;
         let residuals = Residuals::new(measurement, index, &self.slices);
-        let half = &self.slices.half;
+        let half = &slices.half;
         let predicted = residuals.sum(half, half, |f, _| f.norm_sqr());
         let (squared, error) = residuals.squared();
         let allowed = (FACTOR * self.chain.error).max(FLOOR).powi(2) * predicted;

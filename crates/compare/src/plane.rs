@@ -75,7 +75,8 @@ pub fn compare(
     let agreement = Agreement::new(&residuals, &variance, &predicted);
     let p_value = residuals.p_value(seed);
     let first_order = prediction.first_order.as_ref();
-    let first_order = first_order.map(|f| f.report(measurement, index, &residuals, seed));
+    let first_order =
+        first_order.map(|f| f.report(measurement, index, (&predicted, &residuals), seed));
     let verdict = verdict(&predicted, &tally, p_value, level, agreement.noise_limit());
     // The worse of the two: what rays do, and what the first-order chain makes of it.
     let verdict = first_order

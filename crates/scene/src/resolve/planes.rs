@@ -113,10 +113,10 @@ impl Resolver<'_> {
             Side::Before => (frame, arrives),
             Side::After => {
                 let d = path.legs[place.leg].frame.d;
-                // Light that goes through leaves on the other side: N is there, and B = N × T with it.
+                // Light that goes through leaves on the other side: N is there, and T turns with it.
                 let frame = if d.dot(frame.d) < 0.0 {
                     Frame {
-                        y: -frame.y,
+                        x: -frame.x,
                         d: -frame.d,
                         ..frame
                     }
