@@ -36,7 +36,7 @@ fn resolved(text: &str) -> Result<Scene, SceneError> {
 fn a_path_through_smooth_surfaces_resolves_to_what_it_says() {
     let scene = resolved(&text()).unwrap();
     assert!(
-        matches!(scene.light, Light::Projector { intensity, image } if intensity == 2.0 && image.grating.is_some())
+        matches!(scene.light, Light::Projector { intensity, image } if (intensity - 2.0).abs() < 1e-15 && image.grating.is_some())
     );
     let [_, reflected, refracted] = scene.path.legs.as_slice() else {
         panic!("three legs: {:?}", scene.path.legs);
@@ -166,11 +166,6 @@ const BAD: &[(&str, &str, &str)] = &[
         "(name: \"d\", at: After(\"glass\"))",
         "(name: \"d\", at: Distance(0.5), orientation: Tangent)",
         "planes[3].orientation",
-    ),
-    (
-        "(name: \"d\", at: After(\"glass\"))",
-        "(name: \"d\", at: Before(\"mesh\"))",
-        "planes[3].at",
     ),
     (
         "width: (0.1, 0.2)",

@@ -5,6 +5,9 @@ use crate::scene::PatchObject;
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
+/// Largest curvature, per metre.
+const SHARPEST: f64 = 1e6;
+
 impl Resolver<'_> {
     /// The smooth surfaces.
     pub(super) fn patches(&mut self, file: &SceneFile, light: &Frame) -> Vec<PatchObject> {
@@ -39,7 +42,14 @@ impl Resolver<'_> {
             FormFile::Cylinder(k) => [k, 0.0, k],
             FormFile::Paraboloid(k, l) => [k, l, 0.0],
         };
-        self.faults.coordinates(&format!("{of}.form"), &curvature);
+        // One number may stand for several.
+        if curvature
+            .iter()
+            .any(|k| !(-SHARPEST..=SHARPEST).contains(k))
+        {
+            let allowed = format!("curvatures of -{SHARPEST:?} to {SHARPEST:?}");
+            self.faults.add(format!("{of}.form"), show(form), allowed);
+        }
         // Beyond the half that holds the vertex there is nothing of a sphere or a cylinder.
         if curvature[2] != 0.0 && *aperture > 1.0 / curvature[2].abs() {
             let allowed = format!(
