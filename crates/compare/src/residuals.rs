@@ -188,7 +188,7 @@ impl Residuals {
         products
     }
 
-    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife error (docs/theory.md, Eq. 15).
+    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife error (docs/theory.md, section 6).
     pub(crate) fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
         let r = self.count() as f64;
