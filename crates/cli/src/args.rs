@@ -164,10 +164,11 @@ pub(crate) struct CompareArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
-  etendue converge scenes/table1/concave.ron
-  etendue converge scenes/table1/concave.ron --set as_printed=true      the paper's printed formulas stay off
+  etendue converge scenes/table1/concave_oblique.ron
+  etendue converge scenes/table1/concave_oblique.ron --set as_printed=true      the paper's printed formulas stay off
 
-Widths of light and windows times e, frequencies over e: the error of first-order maps falls as e, and as e² at normal incidence.")]
+Widths of light and windows times e, frequencies over e: the error of first-order maps falls as e, and as e² at normal incidence.
+No order is given where an error is down to that of the quadrature.")]
 pub(crate) struct ConvergeArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,

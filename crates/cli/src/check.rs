@@ -2,7 +2,7 @@ use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::{load, pictures, say};
 use etendue_compare::{Class, affine_chain, steps};
-use etendue_field::tidy;
+use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
 use etendue_theory::rays::FirstOrder;
 
@@ -43,7 +43,7 @@ fn rays(chain: &FirstOrder) -> Vec<String> {
         let foci = chain.foci.iter().map(|f| format!("{f:.6}"));
         let foci: Vec<String> = foci.collect();
         lines.push(format!(
-            "  foci  {} m from the last surface",
+            "  foci  of parallel light, {} m from the last surface",
             foci.join(" and ")
         ));
     }
@@ -76,9 +76,10 @@ fn description(scene: &Scene) -> String {
             lines.extend(rays(&chain));
         }
         lines.push(format!(
-            "  looked at in {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per unit slope",
+            "  looked at in {k} azimuths x {rho} x {nu} frequencies, up to {} cycles/m and {} cycles per {}",
             tidy(plane.grid.rho.max()),
-            tidy(plane.grid.nu.max())
+            tidy(plane.grid.nu.max()),
+            if plane.orientation == Orientation::Orthogonal { "unit slope" } else { "radian" }
         ));
     }
     lines.join("\n")

@@ -34,13 +34,13 @@ pub(crate) fn cross_section<'a>(
         }));
     }
     for (i, object) in scene.patches.iter().enumerate() {
-        let mut label = Some(spaced(&object.name));
         let outline = profile(&object.patch, arriving(scene, Object::Patch(i)));
-        segments.extend(outline.windows(2).map(|ends| Segment {
+        let middle = outline.len() / 2;
+        segments.extend(outline.windows(2).enumerate().map(|(i, ends)| Segment {
             kind: SegmentKind::Surface,
             start: ends[0],
             end: ends[1],
-            label: label.take(),
+            label: (i == middle).then(|| spaced(&object.name)),
         }));
     }
     let mut bodies = Vec::new();

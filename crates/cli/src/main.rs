@@ -36,7 +36,6 @@ use clap::Parser;
 use std::io::Write;
 use std::process::ExitCode;
 
-#[expect(clippy::print_stderr, reason = "this is where a command line speaks")]
 fn main() -> ExitCode {
     let outcome = match Cli::parse().command {
         Command::Run(args) => run::run(&args),
@@ -50,7 +49,8 @@ fn main() -> ExitCode {
     match outcome {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
-            eprintln!("error: {}", failure.message);
+            // A reader that has gone does not change the exit code.
+            let _ = writeln!(std::io::stderr(), "error: {}", failure.message);
             ExitCode::from(failure.code)
         }
     }

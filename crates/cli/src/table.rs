@@ -38,13 +38,28 @@ fn text(summary: &Summary) -> String {
                 .map(|w| format!("warning: {}: {w}", plane.name)),
         );
     }
+    let chains = summary
+        .planes
+        .iter()
+        .filter_map(|plane| Some((plane, plane.first_order.as_ref()?)));
+    for (plane, first_order) in chains.filter(|(_, f)| f.verdict != Verdict::Pass) {
+        lines.push(format!(
+            "{}: photons and rays apart, the first-order chain alone is {}: off by {}, at most {} with 95 %; its computed error is {}{}",
+            plane.name,
+            word(first_order.verdict),
+            percent(first_order.excess),
+            percent(first_order.excess_bound),
+            percent(Some(first_order.chain.error)),
+            if first_order.chain.as_printed { ", as corrected" } else { "" }
+        ));
+    }
     lines.push(format!("verdict: {}", verdict_text(summary)));
     lines.join("\n")
 }
 
 /// How far measured and predicted are apart, plane by plane.
 fn planes(summary: &Summary) -> Vec<Vec<String>> {
-    let header = [
+    let mut header = vec![
         "plane",
         "class",
         "in window",
@@ -54,10 +69,12 @@ fn planes(summary: &Summary) -> Vec<Vec<String>> {
         "noise alone",
         "shear slope [m]",
         "predicted",
-        "verdict",
     ];
+    let chains = summary.planes.iter().any(|p| p.first_order.is_some());
+    header.extend(chains.then_some("chain off by (computed)"));
+    header.push("verdict");
     let row = |plane: &PlaneReport| {
-        vec![
+        let mut row = vec![
             plane.name.clone(),
             plane.class.to_string(),
             grouped(plane.in_window),
@@ -70,12 +87,23 @@ fn planes(summary: &Summary) -> Vec<Vec<String>> {
                 _ => number(None, 0),
             },
             predicted(plane),
-            word(plane.verdict).to_owned(),
-        ]
+        ];
+        row.extend(chains.then(|| chain(plane)));
+        row.push(word(plane.verdict).to_owned());
+        row
     };
-    std::iter::once(header.map(str::to_owned).to_vec())
+    std::iter::once(header.into_iter().map(str::to_owned).collect())
         .chain(summary.planes.iter().map(row))
         .collect()
+}
+
+/// How far the photons are from the first-order chain, beyond noise, and how far they should be.
+fn chain(plane: &PlaneReport) -> String {
+    let Some(first_order) = &plane.first_order else {
+        return "–".to_owned();
+    };
+    let error = 100.0 * first_order.chain.error;
+    format!("{} ({error:.3} %)", percent(first_order.excess))
 }
 
 /// The parameters of the chain as the photons measure them.

@@ -6,7 +6,8 @@ use crate::score::score;
 use etendue_field::{Complex, PlaneTally, SliceGrid, Slices, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
-    BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, shear_slope,
+    BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, second_moment,
+    shear_slope,
 };
 use etendue_spectrum::{CrossPower, Measurement, RadialPower};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
@@ -111,6 +112,8 @@ pub fn compare(
             .filter_map(|p| score(&residuals, &variance, p))
             .collect(),
         slope: pair(&|p| shear_slope(p, grid)),
+        spectral_moments: [[2, 0], [1, 1], [0, 2]]
+            .map(|powers| pair(&|p| second_moment(p, grid, powers))),
         bandwidth_95: Bandwidth {
             rho: pair(&|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
             nu: pair(&|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),

@@ -113,6 +113,8 @@ pub struct PlaneReport {
     pub parameters: Vec<ParameterReport>,
     /// Shear slope of the radial spectrum, metres.
     pub slope: Pair,
+    /// Second moments of the radial spectrum over the grid: ρρ, ρν and νν. Of a field with edges they grow with the grid, and the bandwidth says more.
+    pub spectral_moments: [Pair; 3],
     /// 95 % bandwidth of the radial spectrum.
     pub bandwidth_95: Bandwidth,
     /// Second central moments of the windowed light field over (x, y, u, v) or what stands for them; none where no light came.

@@ -113,6 +113,22 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
 
 /// Each case: what is replaced, by what, and the field that is named.
 const BAD: &[(&str, &str, &str)] = &[
+    (
+        "facing: (0.6, 0, -0.8)",
+        "facing: (1, 0, 0.001)",
+        "path.visits[0]",
+    ),
+    (
+        "visits: [\"mirror\", \"glass\"]",
+        "visits: [\"mirror\", \"glass\"], leaves: (0, 0, -1)",
+        "path.leaves",
+    ),
+    (
+        "at: After(\"glass\")",
+        "at: Before(\"mesh\"), orientation: Tangent",
+        "planes[3].orientation",
+    ),
+    ("event: Mirror)", "event: ThinLens(0))", "surfaces[0].event"),
     ("aperture: 0.4", "aperture: 0", "surfaces[0].aperture"),
     ("aperture: 0.4", "aperture: 2.5", "surfaces[0].aperture"),
     ("aperture: 0.4", "aperture: NaN", "surfaces[0].aperture"),

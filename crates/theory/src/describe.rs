@@ -50,7 +50,7 @@ fn picture(image: &Image, [a, b]: [&str; 2]) -> String {
     let [w, h] = image.width;
     let envelope = format!("exp(−π({a}²/{w}² + {b}²/{h}²))");
     match image.grating {
-        Some(grating) => format!("{envelope} {}", formula(&grating)),
+        Some(grating) => format!("{envelope} {}", formula(&grating, [a, b])),
         None => envelope,
     }
 }
@@ -71,7 +71,9 @@ impl Operator {
                     let opaque = opaque(shapes, half_planes.len());
                     format!("multiply  visibility of {name}: {opaque}")
                 }
-                Mask::Grating(grating) => format!("multiply  grating {name}: {}", formula(grating)),
+                Mask::Grating(grating) => {
+                    format!("multiply  grating {name}: {}", formula(grating, ["x", "y"]))
+                }
             },
             Self::Cosine { name } => {
                 format!("multiply  cosine at {name}: G = (1 + u² + v²)⁻²")
@@ -118,14 +120,14 @@ pub(crate) fn opaque(shapes: &[Shape], half_planes: usize) -> String {
 }
 
 /// E.g. "½(1 + 0.9 cos(2π 5 x + 0.3))".
-pub(crate) fn formula(grating: &Grating) -> String {
+pub(crate) fn formula(grating: &Grating, names: [&str; 2]) -> String {
     let Grating {
         axis,
         frequency,
         modulation,
         phase,
     } = grating;
-    let t = if *axis == 0 { 'x' } else { 'y' };
+    let t = names[*axis];
     let (sign, size) = (if *phase < 0.0 { '−' } else { '+' }, tidy(phase.abs()));
     format!("½(1 + {modulation} cos(2π {frequency} {t} {sign} {size}))")
 }

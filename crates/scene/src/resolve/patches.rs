@@ -93,8 +93,11 @@ impl Resolver<'_> {
                 Specular::Refraction { front, back }
             }
             EventFile::ThinLens(focal_length) => {
-                self.faults
-                    .positive(format!("{of} (its size)"), focal_length.abs());
+                if focal_length == 0.0 || !focal_length.is_finite() {
+                    let allowed =
+                        "a focal length in metres, negative if the lens spreads light, not 0";
+                    self.faults.add(of, show(event), allowed);
+                }
                 if form != FormFile::Plane {
                     self.faults.add(
                         of,

@@ -10,6 +10,9 @@ use glam::DVec3;
 /// Share of a leg within which it does not meet again what it has just left.
 const LEFT: f64 = 1e-9;
 
+/// Cosine of an angle to the normal at which a surface is met edge-on.
+const GRAZING: f64 = 1.7e-3;
+
 /// What the central ray may meet.
 #[derive(Clone, Copy)]
 pub(super) struct Things<'a> {
@@ -121,6 +124,17 @@ impl Resolver<'_> {
         let path = &file.path;
         if let Some((event, lens, facing)) = things.specular(hit) {
             let name = &path.visits[i];
+            if facing.dot(leg.d).abs() < GRAZING {
+                let allowed =
+                    "a surface that the central ray meets at less than 89.9° to its normal";
+                self.faults
+                    .add(format!("path.visits[{i}]"), show(name), allowed);
+                return None;
+            }
+            if let Some(leaves) = path.leaves.filter(|_| i + 1 == path.visits.len()) {
+                let allowed = format!("nothing: {} sends light on by itself", show(name));
+                self.faults.add("path.leaves", show(leaves), allowed);
+            }
             let d = event
                 .turned(&lens, facing, hit.point, leg.d)
                 .map(DVec3::normalize);

@@ -47,7 +47,7 @@ impl Resolver<'_> {
             let (Some(place), Some(grid)) = (place, grid) else {
                 continue;
             };
-            let (frame, longitude) = self.view(&of, plane, place, path);
+            let (frame, longitude) = self.view(&of, plane, place, path, stops);
             planes.push(VirtualPlane {
                 name: plane.name.clone(),
                 distance: place.distance,
@@ -78,6 +78,7 @@ impl Resolver<'_> {
         plane: &PlaneFile,
         place: OnPath,
         path: &CentralRay,
+        stops: &[Stop<'_>],
     ) -> (Frame, f64) {
         let across = (path.frame_at(place.distance, place.leg), 0.0);
         if plane.orientation == Orientation::Orthogonal {
@@ -95,7 +96,13 @@ impl Resolver<'_> {
                 .as_ref()
                 .map(|hit| (hit, place.leg - 1)),
         };
-        let at_hit = matches!(plane.at, Place::Before(_) | Place::After(_));
+        let at_hit = match &plane.at {
+            Place::Before(name) | Place::After(name) => {
+                let mut visited = stops.iter().filter(|stop| stop.ends.is_some());
+                visited.any(|stop| stop.name == name)
+            }
+            Place::Emission | Place::Distance(_) => false,
+        };
         let Some((hit, arriving)) = hit.filter(|_| at_hit) else {
             let allowed =
                 "Orthogonal, or a place Before(…) or After(…) a surface that the path visits";

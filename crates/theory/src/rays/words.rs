@@ -47,7 +47,10 @@ pub(super) fn mask(mask: &Mask) -> String {
             crate::describe::opaque(shapes, half_planes.len())
         ),
         Mask::Grating(grating) => {
-            format!("multiply  grating {}", crate::describe::formula(grating))
+            format!(
+                "multiply  grating {}",
+                crate::describe::formula(grating, ["x", "y"])
+            )
         }
     }
 }
