@@ -1,7 +1,7 @@
 //! Statistical validation of Étendue.
 //!
 //! `short` is a few minutes, for every change; `suite` goes through all scenes and writes `docs/suite.md`; `table1` through the
-//! operators of the paper and writes `docs/table1.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
+//! operators of the paper and writes `docs/validation.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
 
 mod calibration;
 mod faults;
@@ -22,7 +22,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- short
   cargo run --release -p etendue-validation -- faults --photons 10000000
   cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
-  cargo run --release -p etendue-validation -- table1       writes docs/table1.md
+  cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -60,7 +60,7 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Table 1 of the paper, every operator in 2D and in 4D, misprints and planted faults; into docs/table1.md.
+    /// Table 1 of the paper, every operator in 2D and in 4D, misprints and planted faults; into docs/validation.md.
     Table1 {
         /// Photons for each scene, instead of those in the files.
         #[arg(long)]
@@ -94,7 +94,7 @@ fn main() -> ExitCode {
             "Scenes: all of `scenes/`",
         )),
         Command::Table1 { photons: None } => Some((
-            "docs/table1.md",
+            "docs/validation.md",
             "Table 1",
             "table1",
             "Scenes: all of `scenes/table1/`, photons as in the files",
@@ -110,12 +110,31 @@ fn main() -> ExitCode {
             "# {title}\n\nWritten by `cargo run --release -p etendue-validation -- {name}`. \
              {of}, seed {SEED} unless said.\n\n{text}"
         );
-        if let Err(error) = std::fs::write(path, page) {
+        let before = std::fs::read_to_string(path).unwrap_or_default();
+        if let Err(error) = std::fs::write(path, with_part(&before, title, &page)) {
             eprintln!("{path}: {error}");
             return ExitCode::from(3);
         }
     }
     ExitCode::from(u8::from(!sections.iter().all(|s| s.passed)))
+}
+
+/// A page with one of its parts, which begin with their titles, replaced or added.
+fn with_part(page: &str, title: &str, part: &str) -> String {
+    let heading = format!("# {title}\n");
+    // `##` begins a section of a part.
+    let starts = page.match_indices("\n# ").map(|(at, _)| at + 1);
+    let mut cuts: Vec<usize> = std::iter::once(0).chain(starts).collect();
+    cuts.push(page.len());
+    let others = cuts
+        .windows(2)
+        .map(|ends| page[ends[0]..ends[1]].trim_end());
+    let mut parts: Vec<&str> = others.filter(|other| !other.is_empty()).collect();
+    match parts.iter().position(|other| other.starts_with(&heading)) {
+        Some(at) => parts[at] = part.trim_end(),
+        None => parts.push(part.trim_end()),
+    }
+    parts.join("\n\n") + "\n"
 }
 
 fn sections(command: &Command) -> Vec<Section> {
@@ -159,4 +178,18 @@ fn noise(most: u64) -> Vec<Section> {
         noise::parameters(planes, SEED),
         noise::floor(&decades, SEED),
     ]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::with_part;
+
+    #[test]
+    fn a_part_replaces_its_like_and_leaves_the_others() {
+        let page = with_part("", "A", "# A\n\n## s\n\nold\n");
+        let page = with_part(&page, "B", "# B\n\nother\n");
+        assert_eq!(page, "# A\n\n## s\n\nold\n\n# B\n\nother\n");
+        let page = with_part(&page, "A", "# A\n\nnew\n");
+        assert_eq!(page, "# A\n\nnew\n\n# B\n\nother\n");
+    }
 }
