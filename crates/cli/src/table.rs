@@ -44,9 +44,8 @@ fn text(summary: &Summary) -> String {
         .filter_map(|plane| Some((plane, plane.first_order.as_ref()?)));
     for (plane, first_order) in chains.filter(|(_, f)| f.verdict != Verdict::Pass) {
         lines.push(format!(
-            "{}: photons and rays apart, the first-order chain alone is {}: off by {}, at most {} with 95 %; its computed error is {}{}",
+            "{}: beyond noise the first-order chain is off by {}, at most {} with 95 %; its computed error is {}{}",
             plane.name,
-            word(first_order.verdict),
             percent(first_order.excess),
             percent(first_order.excess_bound),
             percent(Some(first_order.chain.error)),
