@@ -59,7 +59,7 @@ pub(crate) fn without_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String>
             }
         }
     }
-    if matches!(scene.light, Light::Projector { .. } | Light::Beam { .. }) {
+    if scene.light.is_picture() {
         found.push("light of a picture, but for a path of smooth surfaces alone".to_owned());
     }
     if plane.orientation != Orientation::Orthogonal {
@@ -81,13 +81,7 @@ const ROUNDING: f64 = 1e-6;
 /// Meshes, and surfaces that do not lie across the path, where light for the plane may pass; on the way back, anything.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
-    let visited = |object| {
-        scene
-            .path
-            .legs
-            .iter()
-            .any(|leg| leg.leaves.is_some_and(|hit| hit.object == object))
-    };
+    let visited = |object| scene.path.visits(object);
     for (i, surface) in scene.surfaces.iter().enumerate() {
         let name = &surface.name;
         if !visited(Object::Surface(i)) && (plane.leg > 0 || surface.across().is_none()) {

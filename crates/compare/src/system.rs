@@ -1,5 +1,5 @@
 use crate::chain::stands_before;
-use etendue_field::{Light, Orientation, Side, VirtualPlane};
+use etendue_field::{Orientation, Side, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene};
 use etendue_theory::rays::{Element, Plane, System};
 
@@ -54,8 +54,8 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
 
 /// Whether a plane is predicted by following rays: behind a specular surface or on one, or in light that goes through pictures.
 pub(crate) fn follows_rays(scene: &Scene, plane: &VirtualPlane) -> bool {
-    let picture = matches!(scene.light, Light::Projector { .. } | Light::Beam { .. });
-    let goes = picture || plane.leg > 0 || plane.orientation != Orientation::Orthogonal;
+    let goes =
+        scene.light.is_picture() || plane.leg > 0 || plane.orientation != Orientation::Orthogonal;
     goes && system(scene, plane).is_some()
 }
 
@@ -69,10 +69,7 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
 
 /// Whether nothing stands beside the path.
 fn is_free(scene: &Scene) -> bool {
-    let visited = |object| {
-        let mut hits = scene.path.legs.iter().filter_map(|leg| leg.leaves);
-        hits.any(|hit| hit.object == object)
-    };
+    let visited = |object| scene.path.visits(object);
     let surfaces = (0..scene.surfaces.len()).all(|i| visited(Object::Surface(i)));
     let patches = (0..scene.patches.len()).all(|i| visited(Object::Patch(i)));
     let meshes = (0..scene.meshes.len()).all(|i| visited(Object::Mesh(i)));

@@ -185,3 +185,11 @@ pub enum Light {
         image: Image,
     },
 }
+
+impl Light {
+    /// Whether it shines through a picture.
+    #[must_use]
+    pub fn is_picture(&self) -> bool {
+        matches!(self, Self::Projector { .. } | Self::Beam { .. })
+    }
+}

@@ -108,6 +108,13 @@ impl CentralRay {
         self.legs.get(leg + 1)?.leaves.as_ref()
     }
 
+    /// Whether the path visits an object.
+    #[must_use]
+    pub fn visits(&self, object: Object) -> bool {
+        let mut hits = self.legs.iter().filter_map(|leg| leg.leaves);
+        hits.any(|hit| hit.object == object)
+    }
+
     /// How far a plane is along its leg.
     #[must_use]
     pub fn along(&self, plane: &VirtualPlane) -> f64 {

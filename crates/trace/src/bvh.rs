@@ -3,6 +3,7 @@
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
 
+use crate::obstacles::{direction, start};
 use etendue_field::{Frame, Patch, Shape, TwoPlane, interpolated_normal, triangle_distance};
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
@@ -48,8 +49,7 @@ impl Form {
                 shape.contains(at.x, at.y).then_some(*distance)
             }
             Self::Oblique { frame, shape } => {
-                let direction = DVec3::new(ray.u, ray.v, 1.0);
-                let start = DVec3::new(ray.x, ray.y, 0.0);
+                let (start, direction) = (start(ray), direction(ray));
                 let distance = (frame.origin - start).dot(frame.d) / direction.dot(frame.d);
                 let at = frame.to_local(start + distance * direction);
                 (distance.is_finite() && shape.contains(at.x, at.y)).then_some(distance)
@@ -99,29 +99,29 @@ impl Form {
                 let [[left, right], [low, high]] = [bounds.extent(0), bounds.extent(1)];
                 let corners = [[left, low], [right, low], [left, high], [right, high]]
                     .map(|[x, y]| frame.to_world(DVec3::new(x, y, 0.0)));
-                let least = corners.into_iter().reduce(DVec3::min);
-                let most = corners.into_iter().reduce(DVec3::max);
-                [least, most].map(Option::unwrap_or_default)
+                enclosing(&corners)
             }
             Self::Triangle([a, b, c])
             | Self::Shaded {
                 corners: [a, b, c], ..
             } => [a.min(*b).min(*c), a.max(*b).max(*c)],
-            Self::Smooth(patch) => {
-                let corners = patch.corners();
-                let least = corners.into_iter().reduce(DVec3::min);
-                let most = corners.into_iter().reduce(DVec3::max);
-                [least, most].map(Option::unwrap_or_default)
-            }
+            Self::Smooth(patch) => enclosing(&patch.corners()),
         }
     }
 }
 
+/// Lowest and highest coordinates of points.
+pub(crate) fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
+    let low = points.iter().copied().reduce(DVec3::min);
+    let high = points.iter().copied().reduce(DVec3::max);
+    [low, high].map(Option::unwrap_or_default)
+}
+
 fn smooth_hits(patch: &Patch, ray: &TwoPlane) -> [f64; 2] {
-    let start = patch.frame.to_local(DVec3::new(ray.x, ray.y, 0.0));
+    let frame = &patch.frame;
     patch.hits(
-        start,
-        patch.frame.vector_to_local(DVec3::new(ray.u, ray.v, 1.0)),
+        frame.to_local(start(ray)),
+        frame.vector_to_local(direction(ray)),
     )
 }
 

@@ -51,9 +51,10 @@ impl Emitter {
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };
         // Pictures have their own proposal.
-        let is_picture = matches!(light, Light::Projector { .. } | Light::Beam { .. });
         let proposals = match scene.run.emission {
-            Emission::Aimed if !is_picture => scene.planes.iter().filter_map(proposal).collect(),
+            Emission::Aimed if !light.is_picture() => {
+                scene.planes.iter().filter_map(proposal).collect()
+            }
             Emission::Aimed | Emission::Plain => Vec::new(),
         };
         Self { light, proposals }

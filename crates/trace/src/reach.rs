@@ -1,5 +1,6 @@
 //! Where light that a plane looks at can come from: what emission and scattering are aimed at.
 
+use crate::bvh::enclosing;
 use etendue_field::{Frame, Profile, VirtualPlane, box_corners};
 use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
@@ -37,10 +38,7 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     match object {
         Object::Surface(i) => scene.surfaces[i].corners().to_vec(),
         Object::Mesh(i) => {
-            let corners = scene.meshes[i].triangles.as_flattened();
-            let low = corners.iter().copied().reduce(DVec3::min);
-            let high = corners.iter().copied().reduce(DVec3::max);
-            let [low, high] = [low, high].map(Option::unwrap_or_default);
+            let [low, high] = enclosing(scene.meshes[i].triangles.as_flattened());
             box_corners(low, high).to_vec()
         }
         Object::Patch(i) => scene.patches[i].patch.corners().to_vec(),

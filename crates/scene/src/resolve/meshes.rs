@@ -1,5 +1,6 @@
 use super::Resolver;
 use super::faults::show;
+use crate::fault::Fault;
 use crate::file::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
 use crate::scene::{MeshObject, SmoothMesh};
 use crate::{Mesh, MeshError};
@@ -155,34 +156,22 @@ impl Resolver<'_> {
                 curvatures,
                 half,
                 cells,
-            } => match Mesh::paraboloid(curvatures, half, cells) {
-                Ok(mesh) => Some(mesh),
-                Err(fault) => {
-                    self.faults.add(
-                        format!("{of}.mesh.{}", fault.field),
-                        fault.value,
-                        fault.allowed,
-                    );
-                    None
-                }
-            },
+            } => self.generated(of, Mesh::paraboloid(curvatures, half, cells)),
             &MeshSource::Star {
                 radius,
                 relief,
                 lobes,
                 rings,
-            } => match Mesh::star(radius, relief, lobes, rings) {
-                Ok(mesh) => Some(mesh),
-                Err(fault) => {
-                    self.faults.add(
-                        format!("{of}.mesh.{}", fault.field),
-                        fault.value,
-                        fault.allowed,
-                    );
-                    None
-                }
-            },
+            } => self.generated(of, Mesh::star(radius, relief, lobes, rings)),
         }
+    }
+
+    fn generated(&mut self, of: &str, mesh: Result<Mesh, Fault>) -> Option<Mesh> {
+        mesh.map_err(|fault| {
+            let field = format!("{of}.mesh.{}", fault.field);
+            self.faults.add(field, fault.value, fault.allowed);
+        })
+        .ok()
     }
 }
 
