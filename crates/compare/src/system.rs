@@ -1,6 +1,6 @@
 use crate::chain::stands_before;
 use etendue_field::{Orientation, Side, VirtualPlane};
-use etendue_scene::{Hit, Object, Scene};
+use etendue_scene::{Event, Hit, Object, Scene};
 use etendue_theory::rays::{Element, Plane, System};
 
 /// The light, masks and specular surfaces that lead to a plane, and the plane, for theory to follow rays through; `None` where light
@@ -13,10 +13,13 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
         .map(|hit| match hit.object {
             Object::Patch(i) => {
                 let object = &scene.patches[i];
+                let Event::Specular(event) = object.event else {
+                    return None;
+                };
                 Some(Element {
                     name: object.name.clone(),
                     patch: object.patch,
-                    event: object.event,
+                    event,
                 })
             }
             Object::Mesh(i) => Some(Element {
@@ -36,9 +39,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
     };
     let hit = surface(scene, plane);
     let patch = match hit.map(|hit| hit.object) {
-        Some(Object::Patch(i)) if plane.orientation == Orientation::LocalNormals => {
-            Some(scene.patches[i].patch)
-        }
+        Some(Object::Patch(i)) if plane.orientation.is_local() => Some(scene.patches[i].patch),
         _ => None,
     };
     let plane = Plane {

@@ -21,6 +21,7 @@ mod plane;
 mod projection;
 pub mod random;
 mod rectangle;
+mod reflectance;
 mod shape;
 mod slices;
 mod window;
@@ -35,6 +36,7 @@ pub use patch::{Patch, Specular};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
 pub use projection::{Projection, ProjectionGrid};
 pub use rectangle::Rectangle;
+pub use reflectance::{Brdf, Fresnel, Lobe, Pattern, Reflectance};
 pub use shape::{
     Disc, Grating, HalfPlane, Light, Mask, Shape, interpolated_normal, triangle_distance,
 };

@@ -110,13 +110,13 @@ pub struct ImageFile {
     pub grating: Option<GratingFile>,
 }
 
-/// The grating of a picture.
+/// The grating of a picture or a pattern.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct GratingFile {
     /// The axis along which it varies.
     pub axis: AxisName,
-    /// f, cycles per unit of the picture.
+    /// f, cycles per unit of the picture, or per metre of a surface.
     pub frequency: f64,
     /// m.
     #[serde(default = "one")]
@@ -383,7 +383,7 @@ pub enum FormFile {
 }
 
 /// What a smooth surface does to light.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum EventFile {
     /// Reflects it all.
@@ -397,6 +397,75 @@ pub enum EventFile {
     },
     /// A thin lens, flat, with this focal length.
     ThinLens(f64),
+    /// Reflects by a BRDF, on the side it faces; black on the other.
+    Reflects {
+        /// The BRDF.
+        brdf: BrdfFile,
+        /// Another BRDF that takes its place where the pattern of the blend is 0.
+        #[serde(default)]
+        other: Option<BrdfFile>,
+        /// How the two are blended.
+        #[serde(default)]
+        blend: Option<PatternFile>,
+        /// What multiplies the BRDF.
+        #[serde(default)]
+        texture: Option<PatternFile>,
+    },
+}
+
+/// A BRDF.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct BrdfFile {
+    /// Its lobe.
+    pub lobe: LobeFile,
+    /// Factor on it, 0 to 1.
+    #[serde(default = "one")]
+    pub albedo: f64,
+    /// Its Fresnel factor.
+    #[serde(default)]
+    pub fresnel: FresnelFile,
+}
+
+/// The lobe of a BRDF.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum LobeFile {
+    /// Alike in all directions.
+    Lambertian,
+    /// cosⁿ of the angle to the mirror direction, with this n.
+    Phong(f64),
+    /// Microfacets with Beckmann's distribution of normals, with this roughness α.
+    Beckmann(f64),
+    /// Microfacets with the GGX distribution, with this roughness α.
+    Ggx(f64),
+}
+
+/// The share of light that is reflected, by the angle of incidence.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum FresnelFile {
+    /// All of it.
+    #[default]
+    White,
+    /// At a dielectric with this index of refraction.
+    Dielectric(f64),
+    /// At a conductor with index n + i k.
+    Conductor {
+        /// n.
+        n: f64,
+        /// k.
+        k: f64,
+    },
+}
+
+/// A number from 0 to 1 at each place of a surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum PatternFile {
+    /// ½ (1 + m cos(2π f t + p)), t along `along` or across it.
+    Cosine(GratingFile),
+    /// 1 and 0 by turns on squares; two of their sides make this period.
+    Checkerboard(f64),
 }
 
 /// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the

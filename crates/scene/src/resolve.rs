@@ -6,6 +6,7 @@ mod meshes;
 mod patches;
 mod path;
 mod planes;
+mod reflectance;
 mod surfaces;
 
 use crate::fault::SceneError;

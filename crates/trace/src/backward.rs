@@ -10,7 +10,7 @@ use etendue_field::{
     Crossing, Frame, Ledger, Light, Orientation, PhotonSource, Shape, Side, Specular, TwoPlane,
     VirtualPlane,
 };
-use etendue_scene::{Object, PatchObject, Scene};
+use etendue_scene::{Event, Object, PatchObject, Scene};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -359,7 +359,10 @@ impl Leaves {
             }
             Object::Patch(i) => {
                 let PatchObject { patch, event, .. } = &scene.patches[i];
-                let (patch, event) = (patch.seen_from(&leg.frame), *event);
+                let Event::Specular(event) = *event else {
+                    todo!()
+                };
+                let patch = patch.seen_from(&leg.frame);
                 let lens = patch.frame;
                 (
                     vec![target(Form::Smooth(patch))],

@@ -3,7 +3,7 @@ use crate::obstacles::ray_through;
 use crate::scatter::Scatterer;
 use crate::tracer::{Arrival, cosines};
 use etendue_field::{Frame, Specular, TwoPlane};
-use etendue_scene::{Object, Scene};
+use etendue_scene::{Event, Object, Scene};
 
 /// How light begins a leg, at the surface that ended the one before.
 #[derive(Debug)]
@@ -27,7 +27,12 @@ impl Bounce {
             },
             Object::Patch(i) => {
                 let object = &scene.patches[i];
-                Self::Specular(this.frame.decompose(&object.patch.frame), object.event)
+                match &object.event {
+                    Event::Specular(event) => {
+                        Self::Specular(this.frame.decompose(&object.patch.frame), *event)
+                    }
+                    Event::Reflects(_) => todo!(),
+                }
             }
         })
     }

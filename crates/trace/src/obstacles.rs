@@ -2,7 +2,7 @@ use crate::bvh::{Form, Target, Targets};
 use etendue_field::{
     Frame, Grating, HalfPlane, Light, Mask, Rectangle, Shape, Side, Specular, TwoPlane,
 };
-use etendue_scene::{Leg, MeshObject, Object, Scene, Surface};
+use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
 /// What a photon meets.
@@ -15,8 +15,12 @@ pub(crate) enum Meeting {
 /// What light does that meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Material {
-    Lambertian { albedo: f64 },
+    Lambertian {
+        albedo: f64,
+    },
     Specular(Specular),
+    /// By a BRDF.
+    Reflects,
 }
 
 impl Meeting {
@@ -113,7 +117,10 @@ impl Obstacles {
             });
         }
         for (i, object) in scene.patches.iter().enumerate() {
-            let material = Material::Specular(object.event);
+            let material = match object.event {
+                Event::Specular(event) => Material::Specular(event),
+                Event::Reflects(_) => Material::Reflects,
+            };
             targets.push(Target {
                 form: Form::Smooth(object.patch.seen_from(&leg.frame)),
                 tag: Meeting::Surface {

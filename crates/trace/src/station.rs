@@ -22,6 +22,8 @@ struct OnSurface {
     longitude: f64,
     /// Directions are turned around: light arrives.
     arriving: bool,
+    /// And about the normal.
+    mirrored: bool,
     /// The surface itself, in the frame of the leg, where rays are counted from its local normals.
     patch: Option<Patch>,
 }
@@ -58,7 +60,7 @@ impl Station {
             leg.leaves.as_ref()
         };
         let patch = match hit.map(|hit| hit.object) {
-            Some(Object::Patch(i)) if plane.orientation == Orientation::LocalNormals => {
+            Some(Object::Patch(i)) if plane.orientation.is_local() => {
                 Some(scene.patches[i].patch.seen_from(&leg.frame))
             }
             _ => None,
@@ -67,6 +69,7 @@ impl Station {
             frame: leg.frame.decompose(&path.frame.decompose(&plane.frame)),
             longitude: plane.longitude,
             arriving,
+            mirrored: plane.orientation == Orientation::Mirrored,
             patch,
         });
         Self {
@@ -105,8 +108,9 @@ impl OnSurface {
                 (point, self.local(patch, point))
             }
         };
-        let (sin, cos) = (seen.u + self.longitude).sin_cos();
-        let (up, across) = seen.v.sin_cos();
+        let turned = if self.mirrored { -1.0 } else { 1.0 };
+        let (sin, cos) = (turned * (seen.u + self.longitude)).sin_cos();
+        let (up, across) = (turned * seen.v).sin_cos();
         let away = frame.vector_to_world(DVec3::new(across * sin, up, across * cos));
         let along = if self.arriving { -away } else { away };
         ray_through(point, along).filter(|_| across > 0.0 && cos > 0.0)
@@ -126,8 +130,9 @@ impl OnSurface {
             }
         };
         let away = if self.arriving { -along } else { along };
+        let turned = if self.mirrored { -1.0 } else { 1.0 };
         let DVec3 { x: t, y: b, z: n } = frame.vector_to_local(away.normalize());
-        let (longitude, sine) = (t.atan2(n), b);
+        let (longitude, sine) = (turned * t.atan2(n), turned * b);
         let latitude = sine.asin();
         // The angle to the normal has the cosine cos θ cos φ = n, and the solid angle is cos φ dθ dφ.
         let measure = n * latitude.cos();

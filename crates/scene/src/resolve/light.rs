@@ -1,6 +1,6 @@
 use super::Resolver;
 use crate::file::{BulbFile, ImageFile, LightFile};
-use etendue_field::{Disc, Grating, Image, Light, Rectangle, Shape};
+use etendue_field::{Disc, Image, Light, Rectangle, Shape};
 
 impl LightFile {
     /// Where the central ray leaves it, world coordinates.
@@ -89,21 +89,10 @@ impl Resolver<'_> {
             self.faults
                 .positive(format!("light.image.width[{i}]"), *width);
         }
-        if let Some(g) = &file.grating {
-            let of = "light.image.grating";
-            self.faults.positive(format!("{of}.frequency"), g.frequency);
-            self.faults
-                .within(format!("{of}.modulation"), g.modulation, 0.0..=1.0);
-            self.faults.coordinates(&format!("{of}.phase"), &[g.phase]);
-        }
+        let grating = file.grating.as_ref();
         Image {
             width: file.width,
-            grating: file.grating.map(|g| Grating {
-                axis: g.axis.index(),
-                frequency: g.frequency,
-                modulation: g.modulation,
-                phase: g.phase,
-            }),
+            grating: grating.map(|g| self.grating("light.image.grating", g)),
         }
     }
 }
