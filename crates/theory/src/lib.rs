@@ -67,7 +67,9 @@ pub mod rays;
 mod reference;
 mod reflection;
 mod row;
+pub mod scattering;
 mod shading;
+mod shadow;
 mod sinc;
 mod slope;
 #[cfg(test)]

@@ -23,7 +23,7 @@ impl Plane {
     }
 
     /// What the quantity multiplies radiance by at a ray in the plane's coordinates.
-    pub(super) fn factor(&self, [.., u, v]: [f64; 4]) -> f64 {
+    pub(crate) fn factor(&self, [.., u, v]: [f64; 4]) -> f64 {
         match (self.orientation, self.quantity) {
             (_, Quantity::Radiance) => 1.0,
             (Orientation::Orthogonal, Quantity::DifferentialIrradiance) => {

@@ -75,7 +75,7 @@ mod sums;
 #[cfg(test)]
 mod tests;
 mod trace;
-mod words;
+pub(crate) mod words;
 
 pub use chain::{FirstOrder, chain};
 pub use covariance::covariance;
@@ -83,6 +83,9 @@ pub use derivative::derivative;
 pub use parameter::Parameter;
 pub use predict::{RaySlices, exact, linear};
 pub use projection::projection;
+
+pub(crate) use central::Incidence;
+pub(crate) use trace::Ray;
 
 use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};
 
