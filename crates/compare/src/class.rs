@@ -1,3 +1,4 @@
+use crate::scattering::scattered;
 use crate::system::follows_rays;
 use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
@@ -32,7 +33,7 @@ impl Class {
     /// a reflection straight back; mirrors, interfaces and lenses have their affine maps; everything else has not.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if follows_rays(scene, plane) {
+        if follows_rays(scene, plane) || scattered(scene, plane).is_some() {
             Self::FirstOrder
         } else if without_theory(scene, plane).is_empty() {
             Self::Exact

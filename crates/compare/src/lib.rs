@@ -14,6 +14,7 @@ mod plane;
 mod prediction;
 mod report;
 mod residuals;
+mod scattering;
 mod score;
 mod system;
 
@@ -25,5 +26,6 @@ pub use plane::{PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction, steps};
 pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
 pub use residuals::Residuals;
+pub use scattering::scattered;
 pub use score::ParameterReport;
 pub use system::system;

@@ -4,7 +4,7 @@ use super::central::{Hit, Incidence};
 use super::words::{self, degrees, number};
 use super::{Element, Plane, System};
 use crate::geometry::{Map, Matrix, Print, SpectrumMap};
-use etendue_field::{Frame, Orientation, Specular};
+use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
 
 /// The chain of first-order maps from the light to a plane.
@@ -232,6 +232,9 @@ impl Walk {
         {
             let shape = incidence.shape(patch, plane.frame.origin);
             self.curvature(shape, incidence.theta0);
+        }
+        if plane.quantity == Quantity::DifferentialIrradiance {
+            self.steps.push("multiply  cosine, cos⁺ θ cos² φ".into());
         }
         if plane.orientation == Orientation::Mirrored {
             self.mirror();

@@ -1,6 +1,7 @@
 //! What a light emits.
 
 use super::System;
+use crate::shadow::is_rectangular;
 use etendue_field::{Light, Mask, Shape};
 use std::f64::consts::TAU;
 
@@ -52,6 +53,18 @@ impl System {
         }
     }
 
+    /// The system without those opaque masks that can be taken apart into rectangles, and these masks.
+    pub(super) fn apart(&self) -> (Self, Vec<(f64, Mask)>) {
+        let goes = |mask: &Mask| matches!(mask, Mask::Opaque { .. }) && is_rectangular(mask);
+        let layers = self.layers.iter().cloned();
+        let (opaque, layers) = layers.partition(|(_, mask)| goes(mask));
+        let left = Self {
+            layers,
+            ..self.clone()
+        };
+        (left, opaque)
+    }
+
     /// Flux per unit of the emission's coordinates of the ray (x, y, u, v), masks included.
     pub(super) fn flux(&self, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = ray;
@@ -64,12 +77,15 @@ impl System {
                 radiance, exponent, ..
             } => radiance * cosine.powi(4) * cosine.powf(exponent),
         };
-        let passed = self
-            .layers
-            .iter()
-            .map(|(distance, mask)| transmittance(mask, x + distance * u, y + distance * v));
-        emitted * passed.product::<f64>()
+        emitted * passed(&self.layers, ray)
     }
+}
+
+/// The share of a ray of the light's plane that passes masks.
+pub(super) fn passed(masks: &[(f64, Mask)], [x, y, u, v]: [f64; 4]) -> f64 {
+    let each = masks.iter();
+    each.map(|(distance, mask)| transmittance(mask, x + distance * u, y + distance * v))
+        .product()
 }
 
 fn transmittance(mask: &Mask, x: f64, y: f64) -> f64 {
