@@ -17,6 +17,15 @@ pub(super) struct Leaving {
     pub(super) direction: DVec3,
 }
 
+/// Light that arrives at a point.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shining {
+    /// A unit vector to where it comes from.
+    from: DVec3,
+    /// Radiance times its share of cos θ dω.
+    irradiance: f64,
+}
+
 impl System {
     /// The ray at (x, y, u, v) of a plane, where it leaves the surface; `None` if it does not.
     pub(super) fn leaving(&self, plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Leaving> {
@@ -59,21 +68,10 @@ impl System {
     }
 
     /// All that shines on a point that light leaves.
-    pub(super) fn shines(&self, leaving: &Leaving, rule: &Rule) -> Vec<Incoming> {
-        self.incoming(leaving.point, rule)
-    }
-
-    /// The radiance that leaves, of what shines there.
-    pub(super) fn radiance(&self, leaving: &Leaving, shines: &[Incoming]) -> f64 {
-        let Leaving {
-            point,
-            normal,
-            direction,
-        } = *leaving;
-        let at = self.patch.frame.to_local(point);
-        let brdf = self.reflectance.at(at.x, at.y);
-        let each = shines.iter().map(|incoming| {
-            let [u, v] = incoming.slopes;
+    pub(super) fn shines(&self, leaving: &Leaving, rule: &Rule) -> Vec<Shining> {
+        let incoming = self.incoming(leaving.point, rule).into_iter();
+        let shining = incoming.map(|Incoming { slopes, weight }| {
+            let [u, v] = slopes;
             let secant_squared = TwoPlane {
                 u,
                 v,
@@ -82,14 +80,24 @@ impl System {
             .secant_squared();
             let secant = secant_squared.sqrt();
             let from = DVec3::new(-u, -v, -1.0) / secant;
-            let cosine = normal.dot(from);
-            if cosine <= 0.0 {
-                return 0.0;
-            }
             // dω = du dv cos³.
-            let share = incoming.weight / (secant_squared * secant);
-            share * cosine * brdf::value(&brdf, normal, from, direction)
+            let irradiance = weight * leaving.normal.dot(from) / (secant_squared * secant);
+            Shining { from, irradiance }
         });
-        each.sum()
+        shining.filter(|s| s.irradiance != 0.0).collect()
+    }
+
+    /// The radiance that leaves, of what shines there.
+    pub(super) fn radiance(&self, leaving: &Leaving, shines: &[Shining]) -> f64 {
+        let Leaving {
+            point,
+            normal,
+            direction,
+        } = *leaving;
+        let at = self.patch.frame.to_local(point);
+        let brdf = self.reflectance.at(at.x, at.y);
+        let each = shines.iter();
+        each.map(|s| s.irradiance * brdf::value(&brdf, normal, s.from, direction))
+            .sum()
     }
 }

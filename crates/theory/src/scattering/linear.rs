@@ -5,9 +5,18 @@ use super::brdf;
 use super::chain::Chain;
 use super::incoming::{Incoming, Rule};
 use crate::geometry::Map;
-use crate::rays::Plane;
-use etendue_field::{Brdf, Fresnel, Lobe};
+use etendue_field::{Brdf, Frame, Lobe};
 use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// Light that arrives at a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shining {
+    /// θ and φ of where it comes from.
+    from: [f64; 2],
+    /// Radiance times its share of cos⁺ θ cos² φ dθ dφ.
+    irradiance: f64,
+}
 
 /// The chain, ready to be evaluated.
 #[derive(Clone, Debug)]
@@ -21,11 +30,11 @@ pub(super) struct Linear<'a> {
     /// dθ dφ over du dv at a point of the surface.
     angles: f64,
     /// From the frame (T, B, N) to that of the patch: where the BRDF is looked up.
-    frame: etendue_field::Frame,
+    frame: Frame,
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(system: &'a System, chain: &'a Chain, _plane: &Plane) -> Option<Self> {
+    pub(super) fn new(system: &'a System, chain: &'a Chain) -> Option<Self> {
         let m = &chain.onto.matrix;
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
@@ -58,29 +67,34 @@ impl<'a> Linear<'a> {
     }
 
     /// All that shines on a place.
-    pub(super) fn shines(&self, local: [f64; 4], rule: &Rule) -> Vec<Incoming> {
-        self.system.incoming(self.point(local), rule)
-    }
-
-    /// The radiance that leaves, of what shines there: Σ ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being turned about the normal.
-    pub(super) fn radiance(&self, local: [f64; 4], shines: &[Incoming]) -> f64 {
-        let [s, t, theta, phi] = local;
-        let at = self.frame.to_world(DVec3::new(s, t, 0.0));
-        let brdf = self.system.reflectance.at(at.x, at.y);
+    pub(super) fn shines(&self, local: [f64; 4], rule: &Rule) -> Vec<Shining> {
         let point = self.point(local);
-        let each = shines.iter().map(|incoming| {
-            let [u, v] = incoming.slopes;
+        let incoming = self.system.incoming(point, rule).into_iter();
+        let shining = incoming.map(|Incoming { slopes, weight }| {
+            let [u, v] = slopes;
             let [x, y] = [
                 point.x - self.chain.distance * u,
                 point.y - self.chain.distance * v,
             ];
-            let [_, _, from_theta, from_phi] = self.chain.onto.apply([x, y, u, v]);
-            let cosine = from_theta.cos() * from_phi.cos().powi(2);
-            if cosine <= 0.0 {
-                return 0.0;
+            let [_, _, theta, phi] = self.chain.onto.apply([x, y, u, v]);
+            let cosine = theta.cos().max(0.0) * phi.cos().powi(2);
+            Shining {
+                from: [theta, phi],
+                irradiance: weight * self.angles * cosine,
             }
-            let kernel = self.kernel(&brdf, from_theta, [theta + from_theta, phi + from_phi]);
-            incoming.weight * self.angles * cosine * kernel
+        });
+        shining.filter(|s| s.irradiance != 0.0).collect()
+    }
+
+    /// The radiance that leaves, of what shines there: Σ ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being turned about the normal.
+    pub(super) fn radiance(&self, local: [f64; 4], shines: &[Shining]) -> f64 {
+        let [s, t, theta, phi] = local;
+        let at = self.frame.to_world(DVec3::new(s, t, 0.0));
+        let brdf = self.system.reflectance.at(at.x, at.y);
+        let each = shines.iter().map(|shining| {
+            let [from_theta, from_phi] = shining.from;
+            let apart = [theta + from_theta, phi + from_phi];
+            shining.irradiance * self.kernel(&brdf, from_theta, apart)
         });
         each.sum()
     }
@@ -92,21 +106,17 @@ impl<'a> Linear<'a> {
             let ((sin, cos), (up, across)) = (theta.sin_cos(), phi.sin_cos());
             DVec3::new(across * sin, up, across * cos)
         };
-        let factor = match brdf.lobe {
-            Lobe::Lambertian | Lobe::Phong { .. } => brdf::reflectance(brdf.fresnel, from.cos()),
-            Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-                return brdf::value(brdf, DVec3::Z, away(center, 0.0), away(theta - center, phi));
-            }
-        };
-        let white = Brdf {
-            fresnel: Fresnel::White,
-            ..*brdf
-        };
-        let lobe = match brdf.lobe {
+        let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, from.cos());
+        match brdf.lobe {
+            Lobe::Lambertian => factor() / PI,
             // Its cosine is that of the angle from the mirror direction, wherever that is.
-            Lobe::Phong { .. } => brdf::value(&white, DVec3::Z, DVec3::Z, away(theta, phi)),
-            _ => brdf.albedo / std::f64::consts::PI,
-        };
-        factor * lobe
+            Lobe::Phong { exponent } => {
+                let cos = (theta.cos() * phi.cos()).max(0.0);
+                factor() * (exponent + 1.0) / TAU * cos.powf(exponent)
+            }
+            Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
+                brdf::value(brdf, DVec3::Z, away(center, 0.0), away(theta - center, phi))
+            }
+        }
     }
 }

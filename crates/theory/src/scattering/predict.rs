@@ -2,7 +2,7 @@
 
 use super::System;
 use super::chain::Chain;
-use super::incoming::{Incoming, Rule as LightRule};
+use super::incoming::Rule as LightRule;
 use super::linear::Linear;
 use super::parameter::Parameter;
 use crate::error::distance;
@@ -45,7 +45,7 @@ const ENOUGH: f64 = 1e-4;
 /// What is left of an error over what a finer rule takes off.
 const LEFT: f64 = 2.0;
 /// Most nodes over plane and light.
-const MOST: f64 = 3e7;
+const MOST: f64 = 1e7;
 /// Nodes along each coordinate of the rule by which the one over the light is judged.
 const TRIAL: usize = 12;
 
@@ -53,36 +53,39 @@ const TRIAL: usize = 12;
 trait Field: Sync {
     /// Where a ray of the plane leaves the surface.
     type Leaving;
+    type Shining;
     fn leaving(&self, z: [f64; 4]) -> Option<Self::Leaving>;
     /// What shines there.
-    fn shines(&self, leaving: &Self::Leaving, rule: &LightRule) -> Vec<Incoming>;
-    fn radiance(&self, leaving: &Self::Leaving, shines: &[Incoming]) -> f64;
+    fn shines(&self, leaving: &Self::Leaving, rule: &LightRule) -> Vec<Self::Shining>;
+    fn radiance(&self, leaving: &Self::Leaving, shines: &[Self::Shining]) -> f64;
 }
 
 struct Exact<'a>(&'a System, &'a Plane);
 
 impl Field for Exact<'_> {
     type Leaving = super::exact::Leaving;
+    type Shining = super::exact::Shining;
     fn leaving(&self, z: [f64; 4]) -> Option<Self::Leaving> {
         self.0.leaving(self.1, z)
     }
-    fn shines(&self, leaving: &Self::Leaving, rule: &LightRule) -> Vec<Incoming> {
+    fn shines(&self, leaving: &Self::Leaving, rule: &LightRule) -> Vec<Self::Shining> {
         self.0.shines(leaving, rule)
     }
-    fn radiance(&self, leaving: &Self::Leaving, shines: &[Incoming]) -> f64 {
+    fn radiance(&self, leaving: &Self::Leaving, shines: &[Self::Shining]) -> f64 {
         self.0.radiance(leaving, shines)
     }
 }
 
 impl Field for Linear<'_> {
     type Leaving = [f64; 4];
+    type Shining = super::linear::Shining;
     fn leaving(&self, z: [f64; 4]) -> Option<[f64; 4]> {
         Some(self.local(z))
     }
-    fn shines(&self, leaving: &[f64; 4], rule: &LightRule) -> Vec<Incoming> {
+    fn shines(&self, leaving: &[f64; 4], rule: &LightRule) -> Vec<Self::Shining> {
         Linear::shines(self, *leaving, rule)
     }
-    fn radiance(&self, leaving: &[f64; 4], shines: &[Incoming]) -> f64 {
+    fn radiance(&self, leaving: &[f64; 4], shines: &[Self::Shining]) -> f64 {
         Linear::radiance(self, *leaving, shines)
     }
 }
@@ -90,7 +93,7 @@ impl Field for Linear<'_> {
 /// The slices of the windowed spectrum of what a surface scatters, as it is.
 ///
 /// A midpoint rule over the plane's four coordinates, and a Gauss rule over each part of the light; nodes are added until they change the
-/// slices by less than 10⁻⁴, or there are thirty million. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes on any number
+/// slices by less than 10⁻⁴, or there are ten million. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes on any number
 /// of threads.
 #[must_use]
 pub fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Prediction {
@@ -106,7 +109,7 @@ pub fn linear(
     grid: &SliceGrid,
     chain: &Chain,
 ) -> Option<Prediction> {
-    let field = Linear::new(system, chain, plane)?;
+    let field = Linear::new(system, chain)?;
     Some(predict(&field, system, plane, window, grid))
 }
 
@@ -123,9 +126,11 @@ pub fn derivative(
     const STEP: f64 = 1e-3;
     let value = system.value(parameter)?;
     let step = STEP * value.abs().max(0.1);
+    // Good to a per cent is good enough.
+    let rule = prediction.rule.coarser();
     let at = |value: f64| {
         let system = system.with(parameter, value)?;
-        let table = Table::new(&Exact(&system, plane), plane, window, prediction.rule);
+        let table = Table::new(&Exact(&system, plane), plane, window, rule);
         Some(table.slices(grid))
     };
     let (mut above, below) = (at(value + step)?, at(value - step)?);
@@ -185,28 +190,33 @@ fn predict(
         rule = rule.finer_light();
         light = light_error(rule);
     }
+    let few = |rule: Rule| Rule {
+        light: rule.light.min(LIGHT),
+        ..rule
+    };
+    let mut coarse = of(few(rule));
     loop {
-        let few = Rule {
-            light: rule.light.min(LIGHT),
-            ..rule
-        };
-        let inside = LEFT * distance(&of(few), &of(few.finer_plane()));
-        let next = rule.finer_plane();
-        if !(inside > 0.5 * ENOUGH) || next.nodes() > MOST {
-            let table = table(rule);
-            let error = if inside.is_finite() {
-                inside + light
-            } else {
-                f64::INFINITY
-            };
+        rule = rule.finer_plane();
+        let fine = table(few(rule));
+        let slices = fine.slices(grid);
+        let inside = LEFT * distance(&coarse, &slices);
+        let is_enough = inside <= 0.5 * ENOUGH || rule.finer_plane().nodes() > MOST;
+        // Of a dark field nothing can be said.
+        if is_enough || !inside.is_finite() {
+            let is_whole = few(rule) == rule;
+            let fine = if is_whole { fine } else { table(rule) };
             return Prediction {
-                slices: table.slices(grid),
-                quadrature_error: error,
-                covariance: table.covariance(),
+                slices: if is_whole { slices } else { fine.slices(grid) },
+                quadrature_error: if inside.is_finite() {
+                    inside + light
+                } else {
+                    f64::INFINITY
+                },
+                covariance: fine.covariance(),
                 rule,
             };
         }
-        rule = next;
+        coarse = slices;
     }
 }
 
@@ -214,6 +224,13 @@ impl Rule {
     fn nodes(&self) -> f64 {
         let plane: f64 = self.plane.iter().map(|n| *n as f64).product();
         plane * (self.light * self.light) as f64
+    }
+
+    fn coarser(self) -> Self {
+        Self {
+            plane: self.plane.map(|n| (n * 3).div_ceil(5)),
+            light: self.light.min(LIGHT),
+        }
     }
 
     fn finer_plane(self) -> Self {
@@ -248,7 +265,7 @@ struct Table {
 }
 
 impl Table {
-    fn new(field: &impl Field, plane: &Plane, window: &Window, rule: Rule) -> Self {
+    fn new<F: Field>(field: &F, plane: &Plane, window: &Window, rule: Rule) -> Self {
         let profiles = [window.x, window.y, window.u, window.v];
         let coordinates: [Vec<f64>; 4] = std::array::from_fn(|axis| {
             let (n, half) = (rule.plane[axis], profiles[axis].half_width());
@@ -267,7 +284,7 @@ impl Table {
                 let (x, y) = (xs[row / ys.len()], ys[row % ys.len()]);
                 // On the surface itself one place is seen in all directions.
                 let one_place = plane.orientation.is_local();
-                let mut shared: Option<Vec<Incoming>> = None;
+                let mut shared = None;
                 let mut values = Vec::with_capacity(us.len() * vs.len());
                 for &u in us {
                     for &v in vs {

@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::quadrature::gauss_legendre;
-use crate::testing::{chain_of, disc, lambertian, spot, square};
-use etendue_field::{Grating, Mask};
+use crate::testing::{chain_of, disc, lambertian, opaque, rectangles, spot, square};
+use etendue_field::{Grating, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 
 /// What is asked of the quadrature: ten times better than where it stops, since it reports more than is left.
@@ -132,18 +132,18 @@ fn area_lights_agree_with_polygons() {
 #[test]
 fn rectangles_are_taken_off() {
     let light = Light::Point { intensity: 2.0 };
-    let mask = crate::testing::rectangles(&[square([0.05, 0.0], 0.1)]);
+    let mask = rectangles(&[square([0.05, 0.0], 0.1)]);
     let (off, _) = shadow(light, mask.clone());
     assert!(off < GOOD, "{off:e}");
     let square = Shape::Rectangle(square([0.0, 0.05], 0.2));
-    let (off, _) = shadow(crate::testing::spot(square, 0.0), mask);
+    let (off, _) = shadow(spot(square, 0.0), mask);
     assert!(off < GOOD, "{off:e}");
 }
 
 #[test]
 fn edges_are_told() {
     // The shadow of a disc in the light of a point: a midpoint rule is off by what a row of nodes at its edge is.
-    let mask = crate::testing::opaque(vec![crate::testing::disc([0.05, 0.0], 0.06)]);
+    let mask = opaque(vec![disc([0.05, 0.0], 0.06)]);
     let (off, said) = shadow(Light::Point { intensity: 2.0 }, mask);
     assert!(off < 3e-3 && off < 10.0 * said, "{off:e}, said {said:e}");
 }
