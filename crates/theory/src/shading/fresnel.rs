@@ -5,8 +5,10 @@ use super::panels::even_transform;
 use etendue_field::Complex;
 use std::f64::consts::FRAC_PI_2;
 
-/// Halvings of the panels towards angles where the reflectance changes fast.
-const HALVINGS: i32 = 40;
+/// Halvings of the panels towards grazing angles, where the reflectance of what has an index of N changes over 1/N; good beyond 1000.
+const GRAZING: i32 = 12;
+/// Halvings towards the critical angle, where it has a root.
+const CRITICAL: i32 = 40;
 
 /// An interface that reflects unpolarised light by its angle of incidence alone: the factor f(θ) of a separable BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,8 +72,8 @@ impl Fresnel {
 
     /// Panels that shorten towards grazing angles, and towards the critical angle, where there is a root.
     fn ends(&self) -> Vec<f64> {
-        let halved = (1..=HALVINGS).map(|n| 0.5_f64.powi(n));
-        let mut ends: Vec<f64> = halved.clone().map(|h| FRAC_PI_2 * (1.0 - h)).collect();
+        let halved = |most: i32| (1..=most).map(|n| 0.5_f64.powi(n));
+        let mut ends: Vec<f64> = halved(GRAZING).map(|h| FRAC_PI_2 * (1.0 - h)).collect();
         ends.extend([0.0, FRAC_PI_2]);
         if let Self::Dielectric { index } = *self
             && index < 1.0
@@ -79,7 +81,8 @@ impl Fresnel {
             let critical = index.asin();
             ends.push(critical);
             ends.extend(
-                halved.flat_map(|h| [critical * (1.0 - h), critical + h * (FRAC_PI_2 - critical)]),
+                halved(CRITICAL)
+                    .flat_map(|h| [critical * (1.0 - h), critical + h * (FRAC_PI_2 - critical)]),
             );
         }
         ends.sort_by(f64::total_cmp);
@@ -114,5 +117,16 @@ mod tests {
         });
         let expected = 2.0 * (below + 1.0 - 1.0 / 1.5);
         assert!((inside.cosine_hat(0.0) - expected).abs() < 1e-12); // as promised
+    }
+
+    #[test]
+    fn metals_of_any_index_have_panels_enough() {
+        for (index, extinction) in [(0.05, 4.0), (3.0, 3.0), (500.0, 1000.0)] {
+            let metal = Fresnel::Conductor { index, extinction };
+            let halved = (1..=40).map(|n| FRAC_PI_2 * (1.0 - 0.5_f64.powi(n)));
+            let ends: Vec<f64> = [0.0].into_iter().chain(halved).chain([FRAC_PI_2]).collect();
+            let finer = even_transform(&ends, 0.7, |t| metal.reflectance(t) * t.cos());
+            assert!((metal.cosine_hat(0.7) - finer).abs() < 1e-12, "{index}"); // as promised
+        }
     }
 }

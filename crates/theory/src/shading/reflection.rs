@@ -44,7 +44,7 @@ impl Step {
 /// A factor of a local direction, as its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// 1: none. With no [`Lobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine.
+    /// 1: none. With no [`Lobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine. Nothing ends at the horizon then.
     One,
     /// cos⁺.
     Cosine,
@@ -146,5 +146,64 @@ impl Reflection<'_> {
             None => mirrored(w),
         };
         term.after.times(&self.lattice, omega, &blurred)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn light([x, t]: [f64; 2]) -> Complex {
+        let turn = Complex::from_polar(1.0, 0.8 * t - 0.3 * x);
+        turn * (-PI * (0.3 * x * x + 0.1 * x * t + 0.2 * t * t)).exp()
+    }
+
+    /// (1 + 0.6 sin θ) cos⁺, which tells θ from −θ.
+    fn uneven(q: f64) -> Complex {
+        let side = cosine_hat(q - 0.5 / PI) - cosine_hat(q + 0.5 / PI);
+        Complex::new(cosine_hat(q), -0.3 * side)
+    }
+
+    fn spectrum(terms: Vec<Term<'_>>) -> Complex {
+        let reflection = Reflection {
+            incidence: 0.3,
+            outgoing: -0.2,
+            curvature: 0.4,
+            terms,
+            lattice: Lattice::circle(9.0),
+        };
+        reflection.spectrum(Step::Outgoing, [0.2, -0.3], &light)
+    }
+
+    fn term<'a>(before: Factor<'a>, lobe: Option<Lobe>, after: Factor<'a>) -> Term<'a> {
+        Term {
+            before,
+            lobe,
+            after,
+        }
+    }
+
+    #[test]
+    fn at_a_mirror_factors_before_and_after_are_one_with_the_sign_turned() {
+        let turned = |q: f64| uneven(-q);
+        let one = |before, after| spectrum(vec![term(before, None, after)]);
+        let before = one(Factor::Other(&turned), Factor::One);
+        let after = one(Factor::One, Factor::Other(&uneven));
+        assert!((before - after).norm() < 1e-14 * after.norm()); // rounding of 10² terms
+        let unturned = one(Factor::Other(&uneven), Factor::One);
+        assert!((unturned - after).norm() > 0.05 * after.norm());
+    }
+
+    #[test]
+    fn terms_add_up() {
+        let phong = Some(Lobe::Phong { exponent: 20.0 });
+        let parts = [
+            term(Factor::Cosine, phong, Factor::One),
+            term(Factor::Other(&uneven), phong, Factor::Cosine),
+            term(Factor::One, None, Factor::One),
+        ];
+        let sum: Complex = parts.iter().map(|part| spectrum(vec![*part])).sum();
+        assert!((spectrum(parts.to_vec()) - sum).norm() < 1e-14 * sum.norm()); // rounding
     }
 }
