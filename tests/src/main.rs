@@ -1,13 +1,14 @@
 //! Statistical validation of Étendue.
 //!
 //! `short` is a few minutes, for every change; `suite` goes through all scenes and writes `docs/suite.md`; `table1` through the
-//! operators of the paper and writes `docs/validation.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
+//! operators of the paper and `shading` through what surfaces do to light, and both write `docs/validation.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
 
 mod calibration;
 mod faults;
 mod noise;
 mod report;
 mod scenes;
+mod shading;
 mod statistics;
 mod suite;
 mod table1;
@@ -23,6 +24,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- faults --photons 10000000
   cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
+  cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -66,6 +68,12 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
+    /// Cosines, BRDFs, textures, environments and the sampling criteria of the paper; into docs/validation.md.
+    Shading {
+        /// Photons for each scene, instead of those in the files.
+        #[arg(long)]
+        photons: Option<u64>,
+    },
     /// Everything, into docs/validation.md.
     All,
 }
@@ -98,6 +106,12 @@ fn main() -> ExitCode {
             "Table 1",
             "table1",
             "Scenes: all of `scenes/table1/`, photons as in the files",
+        )),
+        Command::Shading { photons: None } => Some((
+            "docs/validation.md",
+            "Shading",
+            "shading",
+            "In 2D and without photons where no scene is named",
         )),
         _ => None,
     };
@@ -157,6 +171,7 @@ fn sections(command: &Command) -> Vec<Section> {
             sections
         }
         Command::Table1 { photons } => table1::table1(photons),
+        Command::Shading { photons } => shading::shading(photons),
         Command::Noise { most } => noise(most),
         Command::All => {
             let mut sections = noise(1_000_000_000);
