@@ -6,6 +6,7 @@
 //!
 //! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
 
+mod bandwidth;
 mod chain;
 mod class;
 mod converge;
@@ -18,6 +19,7 @@ mod scattering;
 mod score;
 mod system;
 
+pub use bandwidth::{criterion, exact_bandwidth, measured_bandwidth};
 pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};

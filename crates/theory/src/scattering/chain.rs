@@ -18,6 +18,10 @@ pub struct Chain {
     pub off: Map<4>,
     /// Longitude θ₀ of where the central ray comes from.
     pub incidence: f64,
+    /// Longitude θ₁ and latitude of where the central ray goes.
+    pub outgoing: [f64; 2],
+    /// The shape operator at the central hit along (T, B), per metre, convex positive.
+    pub curvature: Matrix<2>,
     /// Distance of the surface from the light, metres.
     pub distance: f64,
     /// (T, B, N) at the central hit.
@@ -65,11 +69,16 @@ pub fn chain(system: &System, plane: &Plane) -> Option<Chain> {
     };
     let onto = derivative(arrives)?;
     let off = derivative(leaves)?.inverse()?;
-    let steps = steps(system, plane, &incidence, distance, &off);
+    let [.., longitude, latitude] = leaves([0.0; 4])?;
+    let outgoing = [longitude, latitude];
+    let curvature = incidence.shape(&system.patch, arriving.origin);
+    let steps = steps(system, plane, &incidence, distance, outgoing);
     Some(Chain {
         onto,
         off,
         incidence: incidence.theta0,
+        outgoing,
+        curvature,
         distance,
         frame,
         steps,
@@ -120,7 +129,7 @@ fn steps(
     plane: &Plane,
     incidence: &Incidence,
     distance: f64,
-    off: &Map<4>,
+    [theta, phi]: [f64; 2],
 ) -> Vec<String> {
     let name = &system.name;
     let mut steps = Vec::new();
@@ -153,7 +162,6 @@ fn steps(
     }
     steps.push(format!("map  back from local normals, {curved}"));
     if plane.orientation == Orientation::Orthogonal {
-        let [.., theta, phi] = off_center(off);
         let aside = if phi.abs() > 1e-9 {
             format!(", {} out of the plane of incidence", degrees(phi))
         } else {
@@ -166,11 +174,6 @@ fn steps(
         }
     }
     steps
-}
-
-/// Local coordinates of the ray at the centre of the plane.
-fn off_center(off: &Map<4>) -> [f64; 4] {
-    off.inverse().map_or([0.0; 4], |onto| onto.offset)
 }
 
 /// The BRDF in words.
