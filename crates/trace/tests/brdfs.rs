@@ -198,3 +198,24 @@ fn exitant_over_incident_flux_is_the_directional_albedo() {
         assert!(error < 3e-3, "{error} resolves nothing");
     }
 }
+
+/// The example in the repository, both ways.
+#[test]
+fn both_ways_agree_on_the_sphere_of_table_1() {
+    let file = SceneFile::parse(include_str!("../../../scenes/table1/ggx_sphere.ron")).unwrap();
+    let file = file.with("run.photons", "300000").unwrap();
+    let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
+    let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
+    let (photons, ledger) = estimates(&Tracer::new(&scene), &scene);
+    // Rounding of some 10^5 additions.
+    assert!(ledger.imbalance().abs() < 1e-12, "{ledger:?}");
+    for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
+        let name = &scene.planes[plane].name;
+        for (a, b) in a.iter().zip(b) {
+            let z = (a[0] - b[0]) / a[1].hypot(b[1]);
+            // 21 tests: 4 standard errors are passed in one run of 700.
+            assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}");
+        }
+        assert!(b[0][1] < 0.02 * b[0][0], "{name}: {b:?} is too noisy");
+    }
+}
