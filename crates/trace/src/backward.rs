@@ -1,3 +1,7 @@
+mod pieces;
+mod reflected;
+
+use crate::bounce::at;
 use crate::bvh::{Form, Target, Targets};
 use crate::emit::{LAMBERTIAN, point, radiance};
 use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
@@ -7,11 +11,13 @@ use crate::station::Station;
 use crate::tracer::rounding;
 use etendue_field::random::{self, Stream};
 use etendue_field::{
-    Crossing, Frame, Ledger, Light, Orientation, PhotonSource, Shape, Side, Specular, TwoPlane,
-    VirtualPlane,
+    Crossing, Frame, Ledger, Light, Orientation, Patch, PhotonSource, Reflectance, Shape, Side,
+    Specular, TwoPlane, VirtualPlane,
 };
 use etendue_scene::{Event, Object, PatchObject, Scene};
 use glam::DVec3;
+use pieces::{Piece, Pieces};
+use reflected::Reflection;
 use std::f64::consts::TAU;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
@@ -44,6 +50,8 @@ struct Leg {
     leaves: Option<Leaves>,
     /// What it ends on.
     ends: Option<Object>,
+    /// If that is a patch, in the frame of the leg.
+    end: Option<Patch>,
 }
 
 /// The surface that light leaves at the beginning of a leg.
@@ -61,23 +69,13 @@ struct Leaves {
 enum How {
     /// Diffusely, from pieces of which points can be drawn.
     Diffuse { albedo: f64, pieces: Pieces },
+    /// By a BRDF that may vary over a patch, in the frame of the leg.
+    Reflects {
+        patch: Patch,
+        reflectance: Box<Reflectance>,
+    },
     /// Turned; the lens's frame, in the frame of the leg.
     Turned { lens: Frame, event: Specular },
-}
-
-/// Parallelograms or triangles in the frame at the light, with their running share of the area.
-#[derive(Debug)]
-struct Pieces {
-    upto: Vec<(f64, Piece)>,
-    area: f64,
-}
-
-/// A corner and two edges, of a parallelogram or of a triangle.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    corner: DVec3,
-    edges: [DVec3; 2],
-    is_triangle: bool,
 }
 
 /// A backward ray has no chance to hit a point.
@@ -145,12 +143,16 @@ impl Backward {
             slopes
         };
         let ray = TwoPlane { x, y, u, v };
-        let Some(on_leg) = looker.station.leg_ray(&ray) else {
+        let Some((on_leg, area)) = looker.station.leg_ray(&ray) else {
             return Crossing { ray, weight: 0.0 };
         };
         let (distance, side) = (looker.station.distance, looker.station.side);
         let found = self.incident(looker.leg, &on_leg, distance, side, 1, &words);
-        let weight = if density > 0.0 { found / density } else { 0.0 };
+        let weight = if density > 0.0 {
+            area * found / density
+        } else {
+            0.0
+        };
         Crossing { ray, weight }
     }
 
@@ -176,10 +178,10 @@ impl Backward {
                 .visibility(ray, 0.0, distance, side, |what| what.is(this.ends));
             return radiance * visible;
         };
-        let Some((at, target)) = leaves.targets.last(ray) else {
+        let Some((begin, target)) = leaves.targets.last(ray) else {
             return 0.0;
         };
-        let from = at + leaves.rounding;
+        let from = begin + leaves.rounding;
         let ignored = |object| Some(object) == this.ends || object == leaves.object;
         let visible = this
             .obstacles
@@ -190,7 +192,7 @@ impl Backward {
             return 0.0;
         }
         let along = direction(ray);
-        let point = start(ray) + at * along;
+        let point = start(ray) + begin * along;
         match &leaves.how {
             How::Diffuse { albedo, .. } => {
                 // It was left on the side it goes away from.
@@ -201,6 +203,21 @@ impl Backward {
                 let point = this.frame.to_world(point);
                 visible * albedo / LAMBERTIAN
                     * self.irradiance(leg - 1, point, normal, block, words)
+            }
+            How::Reflects { patch, reflectance } => {
+                let facing = target.form.normal(point);
+                if along.dot(facing) <= 0.0 {
+                    return 0.0;
+                }
+                let frame = Frame::IDENTITY.turned_to(this.frame.vector_to_world(facing));
+                let to = frame.vector_to_local(this.frame.vector_to_world(along));
+                let reflection = Reflection {
+                    brdf: at(patch, reflectance, point),
+                    point: this.frame.to_world(point),
+                    frame,
+                    to: to.normalize(),
+                };
+                visible * self.reflected(leg - 1, &reflection, block, words)
             }
             How::Turned { lens, event } => {
                 let facing = target.form.normal(point);
@@ -318,11 +335,16 @@ fn radiance_factor(
 impl Leg {
     fn new(scene: &Scene, leg: usize) -> Self {
         let this = &scene.path.legs[leg];
+        let ends = scene.path.ends_at(leg).map(|hit| hit.object);
         Self {
             frame: this.frame,
             obstacles: Obstacles::new(scene, this),
             leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
-            ends: scene.path.ends_at(leg).map(|hit| hit.object),
+            ends,
+            end: match ends {
+                Some(Object::Patch(i)) => Some(scene.patches[i].patch.seen_from(&this.frame)),
+                _ => None,
+            },
         }
     }
 }
@@ -359,15 +381,18 @@ impl Leaves {
             }
             Object::Patch(i) => {
                 let PatchObject { patch, event, .. } = &scene.patches[i];
-                let Event::Specular(event) = *event else {
-                    todo!()
-                };
                 let patch = patch.seen_from(&leg.frame);
-                let lens = patch.frame;
-                (
-                    vec![target(Form::Smooth(patch))],
-                    How::Turned { lens, event },
-                )
+                let how = match event {
+                    Event::Specular(event) => How::Turned {
+                        lens: patch.frame,
+                        event: *event,
+                    },
+                    Event::Reflects(reflectance) => How::Reflects {
+                        patch,
+                        reflectance: Box::new(reflectance.clone()),
+                    },
+                };
+                (vec![target(Form::Smooth(patch))], how)
             }
         };
         Self {
@@ -376,51 +401,6 @@ impl Leaves {
             how,
             rounding: rounding(leg),
         }
-    }
-}
-
-impl Pieces {
-    fn new(pieces: Vec<Piece>) -> Self {
-        let mut area = 0.0;
-        let upto = pieces.into_iter().map(|piece| {
-            area += piece.area();
-            (area, piece)
-        });
-        Self {
-            upto: upto.collect(),
-            area,
-        }
-    }
-
-    /// A uniform point of it and a normal there, from three numbers in (0, 1).
-    fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
-        let wanted = r[2] * self.area;
-        let i = self.upto.partition_point(|(upto, _)| *upto < wanted);
-        let (_, piece) = self.upto[i.min(self.upto.len() - 1)];
-        let [a, b] = piece.edges;
-        let folded = piece.is_triangle && r[0] + r[1] > 1.0;
-        let [s, t] = if folded {
-            [1.0 - r[0], 1.0 - r[1]]
-        } else {
-            [r[0], r[1]]
-        };
-        (piece.corner + s * a + t * b, a.cross(b).normalize())
-    }
-}
-
-impl Piece {
-    fn new(corner: DVec3, ends: [DVec3; 2], is_triangle: bool) -> Self {
-        Self {
-            corner,
-            edges: ends.map(|end| end - corner),
-            is_triangle,
-        }
-    }
-
-    fn area(&self) -> f64 {
-        let [a, b] = self.edges;
-        let whole = a.cross(b).length();
-        if self.is_triangle { 0.5 * whole } else { whole }
     }
 }
 

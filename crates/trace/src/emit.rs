@@ -1,5 +1,5 @@
 use crate::proposal::{Follower, Proposal};
-use crate::reach::reach;
+use crate::reach::{looks_at_patch, reach};
 use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
@@ -32,12 +32,12 @@ impl Emitter {
         let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
         let proposal = |plane: &VirtualPlane| {
             let w = &plane.window;
-            let half = match plane.leg {
-                0 => None,
-                _ => reach(scene, plane, 0, &corners),
-            };
+            let is_window = plane.leg == 0 && !looks_at_patch(scene, plane);
+            let half = (!is_window)
+                .then(|| reach(scene, plane, 0, &corners))
+                .flatten();
             let along = |axis: usize, space: &Profile, slope: &Profile| {
-                if plane.leg == 0 {
+                if is_window {
                     let (space, slope) = (Follower::new(space), Follower::new(slope));
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }

@@ -9,6 +9,7 @@
 
 mod backward;
 mod bounce;
+mod brdf;
 mod bvh;
 mod emit;
 mod obstacles;
