@@ -63,6 +63,9 @@ pub(crate) fn without_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String>
     if scene.light.is_picture() {
         found.push("light of a picture, but for a path of smooth surfaces alone".to_owned());
     }
+    if matches!(scene.light, Light::Environment { .. }) {
+        found.push("light of an environment".to_owned());
+    }
     if plane.orientation != Orientation::Orthogonal {
         found.push(format!("{:?}", plane.orientation));
     }
@@ -127,6 +130,7 @@ fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bo
         }),
         Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
         Light::Beam { image, .. } => image.width.map(|w| PICTURE * w),
+        Light::Environment { .. } => [f64::MAX; 2],
     };
     let crosses = |leg: usize| {
         let (from, to, end) = if leg < plane.leg {

@@ -1,12 +1,15 @@
 use crate::chain::stands_before;
-use etendue_field::{Mask, Orientation, Side, VirtualPlane};
+use etendue_field::{Light, Mask, Orientation, Side, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, Scene};
 use etendue_theory::rays::{Element, Plane, System};
 
 /// The light, masks and specular surfaces that lead to a plane, and the plane, for theory to follow rays through; `None` where light
-/// is reflected diffusely, or may meet what is neither on the path nor in a plane across its first leg.
+/// comes from an environment or is reflected diffusely, or may meet what is neither on the path nor in a plane across its first leg.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
+    if matches!(scene.light, Light::Environment { .. }) {
+        return None;
+    }
     let path = &scene.path;
     let hits = path.legs[..=plane.leg].iter().filter_map(|leg| leg.leaves);
     let elements: Option<Vec<Element>> = hits

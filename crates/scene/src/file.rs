@@ -97,6 +97,44 @@ pub enum LightFile {
         /// The picture, in metres along X and along Y.
         image: ImageFile,
     },
+    /// Light from far away; that alone shines which comes from before the plane across `path.direction` at the centre.
+    Environment {
+        /// Where the central ray begins, world coordinates.
+        center: [f64; 3],
+        /// Direction of the map's top, any length.
+        #[serde(default = "along_y")]
+        up: [f64; 3],
+        /// Direction of the middle of the map, any length: its part orthogonal to `up` is used.
+        #[serde(default = "along_z")]
+        front: [f64; 3],
+        /// Factor on the map.
+        #[serde(default = "one")]
+        scale: f64,
+        /// How much comes from where.
+        map: EnvironmentFile,
+    },
+}
+
+/// Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum EnvironmentFile {
+    /// A sum of lobes.
+    Lobes(Vec<SphericalGaussianFile>),
+    /// An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the scene file, and stays inside its folder.
+    File(String),
+}
+
+/// A lobe of light, radiance · exp((cos γ − 1)/width²), γ being the angle to `from`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SphericalGaussianFile {
+    /// The direction most of it comes from, any length.
+    pub from: [f64; 3],
+    /// Its width, radians.
+    pub width: f64,
+    /// Radiance from that direction, W m⁻² sr⁻¹.
+    #[serde(default = "one")]
+    pub radiance: f64,
 }
 
 /// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), times a grating ½ (1 + m cos(2π f t + p)) if it has one.
@@ -466,6 +504,13 @@ pub enum PatternFile {
     Cosine(GratingFile),
     /// 1 and 0 by turns on squares; two of their sides make this period.
     Checkerboard(f64),
+    /// A picture around the vertex, 0 beyond its edge: X to its right, Y to its top, seen from where the surface faces.
+    Picture {
+        /// An OpenEXR or PNG file of numbers from 0 to 1; the path is relative to the scene file, and stays inside its folder.
+        file: String,
+        /// Width along X and height along Y, metres.
+        size: [f64; 2],
+    },
 }
 
 /// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
@@ -600,6 +645,14 @@ fn one() -> f64 {
     1.0
 }
 
+fn along_y() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn along_z() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
 fn half() -> f64 {
     0.5
 }
@@ -609,8 +662,8 @@ fn eight() -> u32 {
 }
 
 impl SceneFile {
-    /// The mesh files it names.
-    pub fn mesh_files(&self) -> impl Iterator<Item = &str> {
+    /// The files of meshes and pictures it names.
+    pub fn named_files(&self) -> impl Iterator<Item = &str> {
         let blockers = self.blockers.iter().filter_map(|b| match b {
             BlockersFile::Mesh { mesh, .. } => Some(mesh),
             _ => None,
@@ -619,10 +672,29 @@ impl SceneFile {
             SurfaceFile::Mesh { mesh, .. } => Some(mesh),
             SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
         });
-        blockers.chain(surfaces).filter_map(|mesh| match mesh {
+        let meshes = blockers.chain(surfaces).filter_map(|mesh| match mesh {
             MeshSource::File(path) => Some(path.as_str()),
             MeshSource::Star { .. } | MeshSource::Paraboloid { .. } => None,
-        })
+        });
+        let environment = match &self.light {
+            LightFile::Environment {
+                map: EnvironmentFile::File(path),
+                ..
+            } => Some(path.as_str()),
+            _ => None,
+        };
+        let patterns = self.surfaces.iter().filter_map(|s| match s {
+            SurfaceFile::Smooth {
+                event: EventFile::Reflects { blend, texture, .. },
+                ..
+            } => Some([blend, texture]),
+            _ => None,
+        });
+        let pictures = patterns.flatten().filter_map(|pattern| match pattern {
+            Some(PatternFile::Picture { file, .. }) => Some(file.as_str()),
+            _ => None,
+        });
+        meshes.chain(environment).chain(pictures)
     }
 
     /// Reads a scene file.

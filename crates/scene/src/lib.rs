@@ -22,15 +22,16 @@ mod fault;
 mod file;
 mod mesh;
 mod overrides;
+mod picture;
 mod resolve;
 mod scene;
 
 pub use fault::{Fault, SceneError};
 pub use file::{
-    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EventFile, FormFile,
-    FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
+    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
+    FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
     MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, SceneFile, ShapeFile,
-    SurfaceFile, WindowFile,
+    SphericalGaussianFile, SurfaceFile, WindowFile,
 };
 pub use mesh::{Mesh, MeshError};
 pub use resolve::resolve;

@@ -1,12 +1,13 @@
-mod pieces;
 mod reflected;
 
 use crate::bounce::at;
 use crate::bvh::{Form, Target, Targets};
 use crate::emit::{LAMBERTIAN, point, radiance};
 use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
+use crate::pieces::{Piece, Pieces};
 use crate::proposal::Follower;
 use crate::shares::Shares;
+use crate::sky::Sky;
 use crate::station::Station;
 use crate::tracer::rounding;
 use etendue_field::random::{self, Stream};
@@ -16,7 +17,6 @@ use etendue_field::{
 };
 use etendue_scene::{Event, Object, PatchObject, Scene};
 use glam::DVec3;
-use pieces::{Piece, Pieces};
 use reflected::Reflection;
 use std::f64::consts::TAU;
 
@@ -26,18 +26,20 @@ use std::f64::consts::TAU;
 /// radiance that comes along it. Nothing is emitted, aimed or absorbed, and there is no ledger.
 #[derive(Debug)]
 pub struct Backward {
-    light: Area,
+    light: Source,
     legs: Vec<Leg>,
     lookers: Vec<Looker>,
     shares: Shares,
     seed: u64,
 }
 
-/// A light that a ray can hit.
-#[derive(Clone, Copy, Debug)]
-struct Area {
-    light: Light,
-    shape: Shape,
+/// What a ray can find where the path begins.
+#[derive(Debug)]
+enum Source {
+    /// A light that it hits.
+    Area { light: Light, shape: Shape },
+    /// Light from far away.
+    Sky(Sky),
 }
 
 /// A leg of the path, looked along from its end.
@@ -50,8 +52,6 @@ struct Leg {
     leaves: Option<Leaves>,
     /// What it ends on.
     ends: Option<Object>,
-    /// If that is a patch, in the frame of the leg.
-    end: Option<Patch>,
 }
 
 /// The surface that light leaves at the beginning of a leg.
@@ -98,22 +98,27 @@ impl Backward {
     /// The backward tracer of a scene.
     ///
     /// # Errors
-    /// When the light is a point.
+    /// When the light is a point, a projector or a beam.
     pub fn new(scene: &Scene) -> Result<Self, PointLight> {
-        let Light::Area { shape, .. } = scene.light else {
-            return Err(PointLight);
+        let light = match &scene.light {
+            Light::Area { shape, .. } => Source::Area {
+                light: scene.light.clone(),
+                shape: *shape,
+            },
+            Light::Environment { environment } => Source::Sky(Sky::new(environment)),
+            Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => {
+                return Err(PointLight);
+            }
         };
         let planes = scene.planes.iter().enumerate();
-        let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &shape));
+        let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &light));
+        let lookers = lookers.collect();
         Ok(Self {
-            light: Area {
-                light: scene.light,
-                shape,
-            },
+            light,
             legs: (0..scene.path.legs.len())
                 .map(|leg| Leg::new(scene, leg))
                 .collect(),
-            lookers: lookers.collect(),
+            lookers,
             shares: Shares::new(&scene.run),
             seed: scene.run.seed,
         })
@@ -130,30 +135,46 @@ impl Backward {
         let r = words(0);
         let [x, y] = [0, 1].map(|axis| looker.position[axis].quantile(r[axis]));
         let mut density = looker.position[0].density(x) * looker.position[1].density(y);
-        let [u, v] = if looker.to_light {
-            let [x0, y0] = point(&self.light.shape, [r[2], r[3]]);
-            density *= looker.station.distance * looker.station.distance / self.light.shape.area();
-            [
-                (x - x0) / looker.station.distance,
-                (y - y0) / looker.station.distance,
-            ]
-        } else {
-            let slopes = [0, 1].map(|axis| looker.slope[axis].quantile(r[2 + axis]));
-            density *= looker.slope[0].density(slopes[0]) * looker.slope[1].density(slopes[1]);
-            slopes
+        let by_window = |[u, v]: [f64; 2]| looker.slope[0].density(u) * looker.slope[1].density(v);
+        let in_window = |r: [f64; 2]| [0, 1].map(|axis| looker.slope[axis].quantile(r[axis]));
+        let [u, v] = match &self.light {
+            Source::Area { shape, .. } if looker.to_light => {
+                let [x0, y0] = point(shape, [r[2], r[3]]);
+                density *= looker.station.distance * looker.station.distance / shape.area();
+                [
+                    (x - x0) / looker.station.distance,
+                    (y - y0) / looker.station.distance,
+                ]
+            }
+            Source::Sky(sky) if looker.to_light => {
+                // Half of them by the environment; its directions go forward or nowhere.
+                let drawn = if r[2] < 0.5 {
+                    sky.slopes(words(1))
+                } else {
+                    Some(in_window([2.0 * r[2] - 1.0, r[3]]))
+                };
+                let [u, v] = drawn.unwrap_or([f64::INFINITY; 2]);
+                let by_sky = drawn.map_or(0.0, |_| sky.slope_density(&TwoPlane { x, y, u, v }));
+                density *= 0.5 * (by_sky + by_window([u, v]));
+                [u, v]
+            }
+            _ => {
+                let slopes = in_window([r[2], r[3]]);
+                density *= by_window(slopes);
+                slopes
+            }
         };
         let ray = TwoPlane { x, y, u, v };
-        let Some((on_leg, area)) = looker.station.leg_ray(&ray) else {
+        let on_leg = looker.station.leg_ray(&ray).filter(|_| density > 0.0);
+        let Some((on_leg, area)) = on_leg else {
             return Crossing { ray, weight: 0.0 };
         };
         let (distance, side) = (looker.station.distance, looker.station.side);
         let found = self.incident(looker.leg, &on_leg, distance, side, 1, &words);
-        let weight = if density > 0.0 {
-            area * found / density
-        } else {
-            0.0
-        };
-        Crossing { ray, weight }
+        Crossing {
+            ray,
+            weight: area * found / density,
+        }
     }
 
     /// The radiance that arrives at `distance` along a ray of a leg, given where the leg begins; `block` numbers the random
@@ -169,7 +190,7 @@ impl Backward {
     ) -> f64 {
         let this = &self.legs[leg];
         let Some(leaves) = &this.leaves else {
-            let radiance = radiance(&self.light.light, ray);
+            let radiance = self.light.radiance(ray);
             if radiance <= 0.0 {
                 return 0.0;
             }
@@ -231,9 +252,33 @@ impl Backward {
                 let Some(ray) = ray_through(end, before.vector_to_world(-came)) else {
                     return 0.0;
                 };
-                visible * factor * self.incident(leg - 1, &ray, end.z, Side::Before, block, words)
+                visible * factor * self.arriving(leg - 1, &ray, end.z, block, words)
             }
         }
+    }
+
+    /// The radiance that arrives along a ray at a point, `end` along the leg, of the surface that ends it: of a hollow or a bulky one, another part
+    /// may stand in the way.
+    fn arriving(
+        &self,
+        leg: usize,
+        ray: &TwoPlane,
+        end: f64,
+        block: u32,
+        words: &impl Fn(u32) -> [f64; 4],
+    ) -> f64 {
+        let this = &self.legs[leg];
+        if !matches!(this.ends, Some(Object::Surface(_))) {
+            let leaves = this.leaves.as_ref();
+            let from = leaves.map_or(0.0, |leaves| {
+                let left = leaves.targets.last(ray);
+                left.map_or(0.0, |(at, _)| at + leaves.rounding)
+            });
+            if this.obstacles.is_behind(this.ends, ray, from, end) {
+                return 0.0;
+            }
+        }
+        self.incident(leg, ray, end, Side::Before, block, words)
     }
 
     /// The irradiance at a point, with its normal, at the end of a leg, from one point of what light leaves at its beginning;
@@ -255,12 +300,20 @@ impl Backward {
             }) => Some(pieces),
             Some(_) => return self.through_turn(leg, point, normal, r, block, words),
         };
-        let (from, facing, area) = if let Some(pieces) = pieces {
-            let (from, facing) = pieces.point([r[0], r[1], r[2]]);
-            (from, facing, pieces.area)
-        } else {
-            let [x, y] = self::point(&self.light.shape, [r[0], r[1]]);
-            (DVec3::new(x, y, 0.0), DVec3::Z, self.light.shape.area())
+        let (from, facing, area) = match (pieces, &self.light) {
+            (Some(pieces), _) => {
+                let (from, facing) = pieces.point([r[0], r[1], r[2]]);
+                (from, facing, pieces.area())
+            }
+            (None, Source::Area { shape, .. }) => {
+                let [x, y] = self::point(shape, [r[0], r[1]]);
+                (DVec3::new(x, y, 0.0), DVec3::Z, shape.area())
+            }
+            (None, Source::Sky(sky)) => {
+                return sky.irradiance(point, normal, r, |ray, end| {
+                    self.arriving(leg, ray, end, block + 1, words)
+                });
+            }
         };
         let this = &self.legs[leg];
         let [end, begin] = [point, from].map(|p| this.frame.to_local(p));
@@ -282,7 +335,7 @@ impl Backward {
         }
         // cos θ cos θ' dA / r².
         let solid = cosines * area / way.length_squared().powi(2);
-        solid * self.incident(leg, &ray, end.z, Side::Before, block + 1, words)
+        solid * self.arriving(leg, &ray, end.z, block + 1, words)
     }
 }
 
@@ -306,7 +359,7 @@ impl Backward {
         let Some(ray) = ray_through(end, this.vector_to_local(-towards)) else {
             return 0.0;
         };
-        LAMBERTIAN * self.incident(leg, &ray, end.z, Side::Before, block + 1, words)
+        LAMBERTIAN * self.arriving(leg, &ray, end.z, block + 1, words)
     }
 }
 
@@ -341,10 +394,6 @@ impl Leg {
             obstacles: Obstacles::new(scene, this),
             leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
             ends,
-            end: match ends {
-                Some(Object::Patch(i)) => Some(scene.patches[i].patch.seen_from(&this.frame)),
-                _ => None,
-            },
         }
     }
 }
@@ -404,12 +453,27 @@ impl Leaves {
     }
 }
 
+impl Source {
+    /// Radiance along a ray that nothing stands in the way of.
+    fn radiance(&self, ray: &TwoPlane) -> f64 {
+        match self {
+            Self::Area { light, .. } => radiance(light, ray),
+            Self::Sky(sky) => sky.radiance(ray),
+        }
+    }
+}
+
 impl Looker {
-    fn new(station: Station, plane: &VirtualPlane, shape: &Shape) -> Self {
+    fn new(station: Station, plane: &VirtualPlane, light: &Source) -> Self {
         let w = &plane.window;
-        let bounds = shape.bounds();
-        let slopes = |axis: usize| bounds.size[axis] / plane.distance;
-        let narrower = slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width();
+        let narrower = match light {
+            Source::Area { shape, .. } => {
+                let bounds = shape.bounds();
+                let slopes = |axis: usize| bounds.size[axis] / plane.distance;
+                slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width()
+            }
+            Source::Sky(_) => true,
+        };
         Self {
             leg: plane.leg,
             station,

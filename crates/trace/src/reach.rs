@@ -6,8 +6,8 @@ use crate::station::Station;
 use etendue_field::{
     Frame, Orientation, Patch, Profile, Side, TwoPlane, VirtualPlane, box_corners,
 };
-use etendue_scene::{Event, Hit, Leg, Object, Scene};
-use glam::DVec3;
+use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
+use glam::{DVec2, DVec3};
 
 /// Half-widths, across the end of `leg`, of a box around the central ray through which all light passes that can
 /// reach the window of `plane`, on a later leg or on what ends this one, coming from `origins` (in the frame of the leg); `None` if there is none.
@@ -47,6 +47,37 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
         }
         Object::Patch(i) => scene.patches[i].patch.corners().to_vec(),
     }
+}
+
+/// The part of a flat surface, the first on the path, from which light can reach the window of a plane on it or beyond it, as lowest and highest
+/// coordinates in the surface's frame; `None` if there is none.
+pub(crate) fn footprint(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    surface: &Surface,
+) -> Option<[DVec2; 2]> {
+    let across = plane.orientation == Orientation::Orthogonal;
+    let is_on_it = plane.leg == usize::from(plane.side == Side::After);
+    let points = match (across, plane.leg) {
+        (true, 1) => seen(scene, plane),
+        (false, _) if is_on_it => {
+            let half = [&plane.window.x, &plane.window.y].map(Profile::half_width);
+            let half = DVec3::new(half[0], half[1], 0.0);
+            let to_light = |p: DVec3| scene.path.frame.to_local(plane.frame.to_world(p));
+            box_corners(-half, half).map(to_light).to_vec()
+        }
+        _ => surface.corners().to_vec(),
+    };
+    let points: Vec<DVec2> = points
+        .iter()
+        .map(|p| surface.frame.to_local(*p).truncate())
+        .collect();
+    let end = 0.5 * DVec2::from(surface.size);
+    let low = points.iter().copied().reduce(DVec2::min)?;
+    let high = points.iter().copied().reduce(DVec2::max)?;
+    let margin = MARGIN * end;
+    let [low, high] = [(low - margin).max(-end), (high + margin).min(end)];
+    low.cmplt(high).all().then_some([low, high])
 }
 
 /// The corners of the part of its surface that a plane's window sees, or of more than that.

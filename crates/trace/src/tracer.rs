@@ -88,7 +88,9 @@ impl Tracer {
     #[inline]
     fn photon(&self, index: u64, crossings: &mut [Vec<Crossing>], ledger: &mut Ledger) {
         let words = |block| random::words(self.seed, Stream::Photon, index, block);
-        let ray = self.emitter.sample([words(0), words(1)]);
+        let Some(ray) = self.emitter.sample([words(0), words(1)]) else {
+            return;
+        };
         let weight = self.emitter.weight(&ray);
         // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
         if weight <= 0.0 {

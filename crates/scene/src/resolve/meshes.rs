@@ -176,7 +176,7 @@ impl Resolver<'_> {
 }
 
 /// Whether a path leads nowhere but down: then a scene and its meshes can be moved together.
-fn stays_inside(path: &str) -> bool {
+pub(super) fn stays_inside(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))
 }

@@ -89,6 +89,7 @@ impl Resolver<'_> {
                 self.faults.positive(of, *period);
                 Pattern::Checkerboard { period: *period }
             }
+            PatternFile::Picture { file, size } => self.picture_pattern(of, file, *size),
         }
     }
 

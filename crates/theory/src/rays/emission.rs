@@ -1,6 +1,7 @@
 //! What a light emits.
 
 use super::System;
+use crate::chain::no_closed_form;
 use crate::shadow::is_rectangular;
 use etendue_field::{Light, Mask, Shape};
 use std::f64::consts::TAU;
@@ -30,6 +31,7 @@ impl System {
             Light::Point { .. } => ([2, 3], None, None),
             Light::Beam { image, .. } => ([0, 1], Some(image), None),
             Light::Area { shape, .. } => ([2, 3], None, Some(shape)),
+            Light::Environment { .. } => no_closed_form(),
         };
         let mut cycles = [0.0; 2];
         if let Some(image) = image {
@@ -76,6 +78,7 @@ impl System {
             Light::Area {
                 radiance, exponent, ..
             } => radiance * cosine.powi(4) * cosine.powf(exponent),
+            Light::Environment { .. } => no_closed_form(),
         };
         emitted * passed(&self.layers, ray)
     }

@@ -203,6 +203,10 @@ fn reflection(system: &System) -> Vec<String> {
     }
     let varies = |pattern: &Pattern| match pattern {
         Pattern::Cosine(grating) => crate::describe::formula(grating, ["s", "t"]),
+        Pattern::Picture(picture) => {
+            let [w, h] = picture.size;
+            format!("picture of {} x {} m", number(w), number(h))
+        }
         Pattern::Checkerboard { period } => format!("checkerboard of period {} m", number(*period)),
     };
     let over = match &reflectance.blend {

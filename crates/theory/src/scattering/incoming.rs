@@ -3,9 +3,9 @@
 use super::System;
 use crate::quadrature::gauss_legendre;
 use crate::shadow::{Seen, Sides, is_rectangular, open};
-use etendue_field::{Light, Mask, Shape};
+use etendue_field::{Environment, EnvironmentMap, Frame, Light, Mask, Shape};
 use glam::DVec3;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Light that arrives with slopes (u, v).
 #[derive(Clone, Copy, Debug)]
@@ -54,6 +54,16 @@ impl System {
                 let seen = image.value(slopes[0], slopes[1]);
                 one(slopes, intensity * seen * secant(slopes) / (z * z))
             }
+            Light::Environment { environment } => sky(environment, rule)
+                .into_iter()
+                .map(|incoming| {
+                    let passes = self.transmittance(point, incoming.slopes, false);
+                    Incoming {
+                        weight: incoming.weight * passes,
+                        ..incoming
+                    }
+                })
+                .collect(),
             Light::Beam { irradiance, image } => one([0.0; 2], irradiance * image.value(x, y)),
             Light::Area {
                 shape,
@@ -61,12 +71,12 @@ impl System {
                 exponent,
             } => {
                 let lobe = |slopes| radiance * secant(slopes).powf(-exponent);
-                self.from_area(point, shape, rule, lobe)
+                self.area(point, shape, rule, lobe)
             }
         }
     }
 
-    fn from_area(
+    fn area(
         &self,
         point: DVec3,
         shape: &Shape,
@@ -76,7 +86,7 @@ impl System {
         let DVec3 { x, y, z } = point;
         let clear = |(_, mask): &&(f64, Mask)| is_rectangular(mask);
         let Shape::Rectangle(rectangle) = shape else {
-            return self.from_disc(point, shape, rule, radiance);
+            return self.disc(point, shape, rule, radiance);
         };
         let [w, h] = [0, 1].map(|axis| {
             let [low, high] = rectangle.extent(axis);
@@ -105,7 +115,7 @@ impl System {
     }
 
     /// From a disc: equal shares of the angle, and a rule in the square of the radius.
-    fn from_disc(
+    fn disc(
         &self,
         point: DVec3,
         shape: &Shape,
@@ -156,6 +166,61 @@ impl System {
         });
         masks.product()
     }
+}
+
+/// Widths of a spherical Gaussian beyond which nothing is left: exp(−6²/2) = 2·10⁻⁸.
+const GLOW: f64 = 6.0;
+
+/// An environment over slopes: each lobe in the angle from its middle and around it, each square of a map's pixels by itself.
+fn sky(environment: &Environment, rule: &Rule) -> Vec<Incoming> {
+    let mut all = Vec::new();
+    let mut add = |from: DVec3, solid_angle: f64| {
+        let along = -environment.frame.vector_to_world(from);
+        if along.z > 0.0 {
+            let slopes = [along.x / along.z, along.y / along.z];
+            // du dv = dω / cos³.
+            let weight = environment.radiance(along) * solid_angle * secant(slopes).powi(3);
+            all.push(Incoming { slopes, weight });
+        }
+    };
+    match &environment.map {
+        EnvironmentMap::Lobes(lobes) => {
+            for lobe in lobes {
+                let around = Frame::IDENTITY.turned_to(lobe.from);
+                let most = (GLOW * lobe.width).min(PI);
+                let turns = 3 * rule.0.len();
+                for &(t, weight) in &rule.0 {
+                    let (sin, cos) = (t * most).sin_cos();
+                    let share = weight * most * sin * TAU / turns as f64;
+                    for turn in 0..turns {
+                        let (s, c) = (TAU * turn as f64 / turns as f64).sin_cos();
+                        let from = around.vector_to_world(DVec3::new(sin * c, sin * s, cos));
+                        // Where lobes overlap, each has its share of the radiance of all.
+                        let own = lobe.radiance_from(from);
+                        let whole: f64 = lobes.iter().map(|l| l.radiance_from(from)).sum();
+                        if own > 0.0 {
+                            add(from, share * own / whole);
+                        }
+                    }
+                }
+            }
+        }
+        EnvironmentMap::LatLong(map) => {
+            let [w, h] = [map.raster().width(), map.raster().height()];
+            let pixel = TAU / w as f64 * PI / h as f64;
+            // Between centres of pixels it is bilinear: halves of a pixel have no kinks.
+            let half = Rule::new(2);
+            for place in (0..4 * w * h).map(|i| [i % (2 * w), i / (2 * w)]) {
+                let [a, b] = place.map(|i| [0.5 * i as f64, 0.5 * (i + 1) as f64]);
+                for (at, share) in half.over([a, b]) {
+                    let from = map.direction(at);
+                    add(from, share * pixel * from.x.hypot(from.z));
+                }
+            }
+        }
+    }
+    all.retain(|incoming| incoming.weight > 0.0);
+    all
 }
 
 /// 1/cos of the angle to the central ray.

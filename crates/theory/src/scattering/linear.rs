@@ -4,7 +4,7 @@ use super::System;
 use super::brdf;
 use super::chain::Chain;
 use super::incoming::{Incoming, Rule};
-use crate::geometry::Map;
+use crate::geometry::{Map, Matrix};
 use etendue_field::{Brdf, Frame, Lobe};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -27,8 +27,8 @@ pub(super) struct Linear<'a> {
     off: Map<4>,
     /// Positions on the surface to those at its distance across the light's axis, as a matrix.
     across: [[f64; 2]; 2],
-    /// dθ dφ over du dv at a point of the surface.
-    angles: f64,
+    /// Angles on the surface of those from the light's axis, at a point of the surface.
+    angles: Matrix<2>,
     /// From the frame (T, B, N) to that of the patch: where the BRDF is looked up.
     frame: Frame,
 }
@@ -42,13 +42,12 @@ impl<'a> Linear<'a> {
         // u at a point whose place across the axis stays: the light's place moves back by the distance.
         let slope =
             |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
-        let angles = slope(2, 0) * slope(3, 1) - slope(2, 1) * slope(3, 0);
         Some(Self {
             system,
             chain,
             off: chain.off.inverse()?,
             across,
-            angles: angles.abs(),
+            angles: [[slope(2, 0), slope(2, 1)], [slope(3, 0), slope(3, 1)]],
             frame: system.patch.frame.decompose(&chain.frame),
         })
     }
@@ -69,18 +68,25 @@ impl<'a> Linear<'a> {
     /// All that shines on a place.
     pub(super) fn shines(&self, local: [f64; 4], rule: &Rule) -> Vec<Shining> {
         let point = self.point(local);
+        // Of the ray along the axis that meets the place.
+        let central = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
         let incoming = self.system.incoming(point, rule).into_iter();
         let shining = incoming.map(|Incoming { slopes, weight }| {
             let [u, v] = slopes;
-            let [x, y] = [
-                point.x - self.chain.distance * u,
-                point.y - self.chain.distance * v,
-            ];
-            let [_, _, theta, phi] = self.chain.onto.apply([x, y, u, v]);
+            // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³.
+            let across = (1.0 + u * u).sqrt();
+            let (longitude, latitude) = (u.atan(), (v / across).atan());
+            let per_angle = (1.0 + u * u + v * v).powf(-1.5) / latitude.cos();
+            let [[a, b], [c, d]] = self.angles;
+            let [_, _, theta, phi] = central;
+            let (theta, phi) = (
+                theta + a * longitude + b * latitude,
+                phi + c * longitude + d * latitude,
+            );
             let cosine = theta.cos().max(0.0) * phi.cos().powi(2);
             Shining {
                 from: [theta, phi],
-                irradiance: weight * self.angles * cosine,
+                irradiance: weight * per_angle * (a * d - b * c).abs() * cosine,
             }
         });
         shining.filter(|s| s.irradiance != 0.0).collect()

@@ -1,10 +1,10 @@
 //! Light that a surface with a BRDF reflects, from one direction it may have come from.
 
-use super::Backward;
+use super::{Backward, Source};
 use crate::brdf;
 use crate::emit::point;
-use crate::obstacles::{direction, ray_through, start};
-use etendue_field::{Brdf, Frame, Side, TwoPlane};
+use crate::obstacles::ray_through;
+use etendue_field::{Brdf, Frame};
 use glam::DVec3;
 
 /// A point at which light is reflected, in the frame at the light.
@@ -35,9 +35,14 @@ impl Backward {
         let this = &self.legs[leg];
         let sees_light = this.leaves.is_none();
         let from = if sees_light && r[2] < 0.5 {
-            let [x, y] = point(&self.light.shape, [r[0], r[1]]);
-            let way = DVec3::new(x, y, 0.0) - at.point;
-            frame.vector_to_local(way).normalize()
+            let towards = match &self.light {
+                Source::Area { shape, .. } => {
+                    let [x, y] = point(shape, [r[0], r[1]]);
+                    DVec3::new(x, y, 0.0) - at.point
+                }
+                Source::Sky(sky) => -sky.sample([r[0], r[1], 2.0 * r[2], r[3]]),
+            };
+            frame.vector_to_local(towards).normalize()
         } else {
             brdf::sample(brdf, *to, [r[0], r[1]])
         };
@@ -48,49 +53,31 @@ impl Backward {
         let Some(ray) = ray_through(end, came).filter(|_| carried > 0.0) else {
             return 0.0;
         };
-        if self.hides_itself(leg, &ray, end.z) {
-            return 0.0;
-        }
         let by_lobe = brdf::density(brdf, *to, from);
         let density = if sees_light {
-            0.5 * (by_lobe + self.density_towards_light(at.point, towards))
+            0.5 * (by_lobe + self.light.density_towards(at.point, towards))
         } else {
             by_lobe
         };
-        carried / density * self.incident(leg, &ray, end.z, Side::Before, block + 1, words)
+        carried / density * self.arriving(leg, &ray, end.z, block + 1, words)
     }
+}
 
-    /// The density per solid angle, at a point, of directions to uniform points of the light.
-    fn density_towards_light(&self, point: DVec3, towards: DVec3) -> f64 {
+impl Source {
+    /// The density per solid angle, at a point, of directions drawn towards the light.
+    fn density_towards(&self, point: DVec3, towards: DVec3) -> f64 {
+        let shape = match self {
+            Self::Sky(sky) => return sky.density(-towards),
+            Self::Area { shape, .. } => shape,
+        };
         let way = -point.z / towards.z;
         let on = point + way * towards;
-        let is_on = way > 0.0 && self.light.shape.contains(on.x, on.y);
+        let is_on = way > 0.0 && shape.contains(on.x, on.y);
         // r² dω = cos θ dA.
         if is_on {
-            way * way / (towards.z.abs() * self.light.shape.area())
+            way * way / (towards.z.abs() * shape.area())
         } else {
             0.0
         }
     }
-
-    /// Whether the patch that a leg ends on stands in the way of light to its own point at `end`.
-    fn hides_itself(&self, leg: usize, ray: &TwoPlane, end: f64) -> bool {
-        let this = &self.legs[leg];
-        let Some(patch) = &this.end else {
-            return false;
-        };
-        let begin = match &this.leaves {
-            None => 0.0,
-            Some(leaves) => leaves.targets.last(ray).map_or(end, |(at, _)| at),
-        };
-        let hits = patch.hits(
-            patch.frame.to_local(start(ray)),
-            patch.frame.vector_to_local(direction(ray)),
-        );
-        let nearer = |at: &f64| *at > begin && *at < end - ROUNDING * (end - begin);
-        hits.iter().any(nearer)
-    }
 }
-
-/// Share of a way by which a point that is met again is off.
-const ROUNDING: f64 = 1e-9;

@@ -108,7 +108,7 @@ fn area_lights_agree_with_polygons() {
         spot(disc([0.0, 0.03], 0.1), 20.0),
     ];
     for light in lights {
-        let expected = crate::slices(&chain_of(light, steps()), &window, &grid);
+        let expected = crate::slices(&chain_of(light.clone(), steps()), &window, &grid);
         let mut system = system(light, vec![]);
         let Some(Mask::Grating(grating)) = steps()[0].1 else {
             unreachable!()
@@ -153,7 +153,7 @@ fn shadow(light: Light, mask: Mask) -> (f64, f64) {
     let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
     let grid = grid(2, [0.3, 0.3]);
     let steps = [(0.6, Some(mask.clone())), (0.9, None)];
-    let expected = crate::slices(&chain_of(light, steps), &window, &grid);
+    let expected = crate::slices(&chain_of(light.clone(), steps), &window, &grid);
     let mut system = system(light, vec![]);
     system.layers = vec![(0.6, mask)];
     let got = exact(&system, &after(&system, 1.5), &window, &grid);
@@ -176,7 +176,12 @@ fn plane_mirror_is_a_travel() {
             }),
         },
     };
-    let folded = mirror(light, std::f64::consts::FRAC_PI_4, [0.0, 0.0], [0.0; 3]);
+    let folded = mirror(
+        light.clone(),
+        std::f64::consts::FRAC_PI_4,
+        [0.0, 0.0],
+        [0.0; 3],
+    );
     let straight = system(light, vec![]);
     let got = exact(&folded, &after(&folded, 0.5), &window, &grid);
     // The frame turns over: x' = −x, so azimuths φ become π − φ and (ρ, ν) their negatives; y' = y.

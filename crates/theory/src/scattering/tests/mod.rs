@@ -9,6 +9,7 @@ use etendue_field::{
     Shape, SliceGrid, Window,
 };
 use glam::DVec3;
+use std::f64::consts::{PI, TAU};
 
 const DISTANCE: f64 = 1.0;
 
@@ -277,11 +278,95 @@ fn wrong_operators_are_seen() {
     // The central ray as if it came along the normal: no cosine, and no mirror direction.
     turned.onto.offset[2] = 0.0;
     assert!(error(&system, &turned) > 5.0 * least);
-    let mut sheared = sound.clone();
+    let mut sheared = sound;
     sheared.onto.matrix[2][0] *= -1.0;
     assert!(error(&system, &sheared) > 3.0 * least);
     let exact_error =
         |other: &System| distance(&exact(other, &plane, &window, &grid).slices, &right.slices);
     let sharper = system.with(Parameter::Lobe, 1.05 / (0.25 * e * e)).unwrap();
     assert!(exact_error(&sharper) > 0.005);
+}
+
+/// ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its middle: the product of spherical harmonics that is the convolution with the clamped
+/// cosine (Ramamoorthi and Hanrahan 2001; in 2D the paper's section 6.1).
+fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
+    let squared = width * width;
+    let legendre = |l: i32, x: f64| {
+        let (mut before, mut value) = (1.0, x);
+        if l == 0 {
+            return 1.0;
+        }
+        for j in 2..=l {
+            let j = f64::from(j);
+            (before, value) = (
+                value,
+                ((2.0 * j - 1.0) * x * value - (j - 1.0) * before) / j,
+            );
+        }
+        value
+    };
+    let mut factorials = 1.0; // l!/(2^l ((l/2)!)²), of even l
+    let mut sum = 0.0;
+    for l in 0..=60 {
+        let cosine = if l == 0 {
+            PI
+        } else if l == 1 {
+            TAU / 3.0
+        } else if l % 2 == 1 {
+            continue;
+        } else {
+            factorials *= f64::from(l - 1) / f64::from(l);
+            let sign = if l % 4 == 2 { 1.0 } else { -1.0 };
+            TAU * sign * factorials / f64::from((l + 2) * (l - 1))
+        };
+        let light = TAU
+            * crate::quadrature::integrate(200, [-1.0, 1.0], |x| {
+                ((x - 1.0) / squared).exp() * legendre(l, x)
+            });
+        sum += f64::from(2 * l + 1) / (2.0 * TAU) * light * cosine * legendre(l, gamma.cos());
+    }
+    sum
+}
+
+#[test]
+fn diffuse_sphere_under_an_environment_is_the_known_product() {
+    let width = 0.25;
+    let from = DVec3::new(0.2, 0.1, -1.0).normalize();
+    let lobe = etendue_field::SphericalGaussian {
+        from,
+        radiance: 1.0,
+        width,
+    };
+    let environment = etendue_field::Environment {
+        frame: Frame::IDENTITY,
+        map: etendue_field::EnvironmentMap::Lobes(vec![lobe]),
+    };
+    let light = Light::Environment { environment };
+    let system = system(light, 0.0, [0.8; 3], white(Lobe::Lambertian));
+    let plane = Plane {
+        longitude: 0.0,
+        ..on(&system, 0.0, Orientation::LocalNormals)
+    };
+    let rule = incoming::Rule::new(24);
+    for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
+        let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
+        let radiance = system.radiance(&leaving, &system.shines(&leaving, &rule));
+        let gamma = leaving.normal.dot(from).acos();
+        let expected = 0.7 / PI * harmonic_irradiance(width, gamma);
+        let off = (radiance / expected - 1.0).abs();
+        assert!(off < 1e-6, "{off:e} at {s} {t}"); // lobes are cut at six widths, 2e-8
+    }
+    // The same environment turned by the width of a pixel of 256 along is another light.
+    assert!(
+        (harmonic_irradiance(width, 0.3) / harmonic_irradiance(width, 0.3 + TAU / 256.0) - 1.0)
+            > 1e-3
+    );
+    // First order is exact but for the sphere.
+    let window = window(Profile::Hann(0.1), Profile::Hann(0.4));
+    let grid = grid([0.1, 0.4]);
+    let chain = chain(&system, &plane).unwrap();
+    let right = exact(&system, &plane, &window, &grid);
+    let near = linear(&system, &plane, &window, &grid, &chain).unwrap();
+    let error = distance(&near.slices, &right.slices);
+    assert!(error < 3e-3, "{error}"); // (k s)³ of 0.08³, and what tilts of both axes do to each other
 }

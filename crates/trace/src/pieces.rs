@@ -4,21 +4,21 @@ use glam::DVec3;
 
 /// Parallelograms or triangles in the frame at the light, with their running share of the area.
 #[derive(Debug)]
-pub(super) struct Pieces {
+pub(crate) struct Pieces {
     upto: Vec<(f64, Piece)>,
-    pub(super) area: f64,
+    area: f64,
 }
 
 /// A corner and two edges, of a parallelogram or of a triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Piece {
+pub(crate) struct Piece {
     corner: DVec3,
     edges: [DVec3; 2],
     is_triangle: bool,
 }
 
 impl Pieces {
-    pub(super) fn new(pieces: Vec<Piece>) -> Self {
+    pub(crate) fn new(pieces: Vec<Piece>) -> Self {
         let mut area = 0.0;
         let upto = pieces.into_iter().map(|piece| {
             area += piece.area();
@@ -30,8 +30,13 @@ impl Pieces {
         }
     }
 
+    /// The whole area.
+    pub(crate) fn area(&self) -> f64 {
+        self.area
+    }
+
     /// A uniform point of it and a normal there, from three numbers in (0, 1).
-    pub(super) fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
+    pub(crate) fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
         let wanted = r[2] * self.area;
         let i = self.upto.partition_point(|(upto, _)| *upto < wanted);
         let (_, piece) = self.upto[i.min(self.upto.len() - 1)];
@@ -47,7 +52,7 @@ impl Pieces {
 }
 
 impl Piece {
-    pub(super) fn new(corner: DVec3, ends: [DVec3; 2], is_triangle: bool) -> Self {
+    pub(crate) fn new(corner: DVec3, ends: [DVec3; 2], is_triangle: bool) -> Self {
         Self {
             corner,
             edges: ends.map(|end| end - corner),
