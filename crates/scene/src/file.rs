@@ -501,7 +501,18 @@ pub enum FresnelFile {
 #[serde(deny_unknown_fields)]
 pub enum PatternFile {
     /// ½ (1 + m cos(2π f t + p)), t along `along` or across it.
-    Cosine(GratingFile),
+    Cosine {
+        /// The axis along which it varies: X is `along`.
+        axis: AxisName,
+        /// f, cycles per metre.
+        frequency: f64,
+        /// m.
+        #[serde(default = "one")]
+        modulation: f64,
+        /// p, radians.
+        #[serde(default)]
+        phase: f64,
+    },
     /// 1 and 0 by turns on squares; two of their sides make this period.
     Checkerboard(f64),
     /// A picture around the vertex, 0 beyond its edge: X to its right, Y to its top, seen from where the surface faces.

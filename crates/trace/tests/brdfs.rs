@@ -36,7 +36,7 @@ const CASES: &[Case] = &[
         "a textured Lambertian sphere",
         r#"Smooth(name: "it", center: (0, 0, 1), facing: (0.5, 0.2, -0.8), form: Sphere(1.5), aperture: 0.35,
             event: Reflects(brdf: (lobe: Lambertian, albedo: 0.9, fresnel: Dielectric(1.5)),
-            texture: Cosine((axis: Y, frequency: 4, modulation: 0.8, phase: 1))))"#,
+            texture: Cosine(axis: Y, frequency: 4, modulation: 0.8, phase: 1)))"#,
         r#"visits: ["it"], leaves: (0.7, 0.1, -0.8)"#,
         ON_IT,
     ),

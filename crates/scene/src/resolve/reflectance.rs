@@ -84,7 +84,20 @@ impl Resolver<'_> {
 
     fn pattern(&mut self, of: &str, file: &PatternFile) -> Pattern {
         match file {
-            PatternFile::Cosine(grating) => Pattern::Cosine(self.grating(of, grating)),
+            &PatternFile::Cosine {
+                axis,
+                frequency,
+                modulation,
+                phase,
+            } => {
+                let grating = GratingFile {
+                    axis,
+                    frequency,
+                    modulation,
+                    phase,
+                };
+                Pattern::Cosine(self.grating(of, &grating))
+            }
             PatternFile::Checkerboard(period) => {
                 self.faults.positive(of, *period);
                 Pattern::Checkerboard { period: *period }

@@ -1,11 +1,11 @@
 //! What shines on a point, by quadrature over slopes.
 
-use super::System;
+use super::{System, sky};
 use crate::quadrature::gauss_legendre;
 use crate::shadow::{Seen, Sides, is_rectangular, open};
-use etendue_field::{Environment, EnvironmentMap, Frame, Light, Mask, Shape};
+use etendue_field::{Light, Mask, Shape};
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// Light that arrives with slopes (u, v).
 #[derive(Clone, Copy, Debug)]
@@ -17,20 +17,36 @@ pub(super) struct Incoming {
 
 /// A Gauss rule on (0, 1).
 #[derive(Clone, Debug)]
-pub(super) struct Rule(Vec<(f64, f64)>);
+pub(super) struct Rule {
+    pub(super) nodes: Vec<(f64, f64)>,
+    /// What an environment shines on all points, where nothing is in its way.
+    sky: Vec<Incoming>,
+}
 
 impl Rule {
-    pub(super) fn new(count: usize) -> Self {
+    pub(super) fn new(count: usize, light: &Light) -> Self {
+        let mut rule = Self::plain(count);
+        if let Light::Environment { environment } = light {
+            rule.sky = sky::incoming(environment, &rule);
+        }
+        rule
+    }
+
+    /// Nodes alone.
+    pub(super) fn plain(count: usize) -> Self {
         let nodes = gauss_legendre(count).into_iter();
-        Self(nodes.map(|(x, w)| (0.5 * (x + 1.0), 0.5 * w)).collect())
+        Self {
+            nodes: nodes.map(|(x, w)| (0.5 * (x + 1.0), 0.5 * w)).collect(),
+            sky: Vec::new(),
+        }
     }
 
     /// Nodes and weights on a rectangle.
-    fn over(&self, [a, b]: Sides) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
+    pub(super) fn over(&self, [a, b]: Sides) -> impl Iterator<Item = ([f64; 2], f64)> + '_ {
         let at = |[low, high]: [f64; 2], t: f64| low + t * (high - low);
         let area = (a[1] - a[0]) * (b[1] - b[0]);
-        self.0.iter().flat_map(move |&(s, p)| {
-            let along = self.0.iter();
+        self.nodes.iter().flat_map(move |&(s, p)| {
+            let along = self.nodes.iter();
             along.map(move |&(t, q)| ([at(a, s), at(b, t)], p * q * area))
         })
     }
@@ -54,13 +70,14 @@ impl System {
                 let seen = image.value(slopes[0], slopes[1]);
                 one(slopes, intensity * seen * secant(slopes) / (z * z))
             }
-            Light::Environment { environment } => sky(environment, rule)
-                .into_iter()
+            Light::Environment { .. } => rule
+                .sky
+                .iter()
                 .map(|incoming| {
                     let passes = self.transmittance(point, incoming.slopes, false);
                     Incoming {
                         weight: incoming.weight * passes,
-                        ..incoming
+                        ..*incoming
                     }
                 })
                 .collect(),
@@ -125,9 +142,9 @@ impl System {
         let Shape::Disc(disc) = shape else {
             return Vec::new();
         };
-        let angles = 2 * rule.0.len();
+        let angles = 2 * rule.nodes.len();
         let share = shape.area() / (angles as f64 * point.z * point.z);
-        let nodes = rule.0.iter().flat_map(|&(t, weight)| {
+        let nodes = rule.nodes.iter().flat_map(|&(t, weight)| {
             (0..angles).map(move |i| {
                 let (sin, cos) = (TAU * i as f64 / angles as f64).sin_cos();
                 let r = disc.radius * t.sqrt();
@@ -168,62 +185,7 @@ impl System {
     }
 }
 
-/// Widths of a spherical Gaussian beyond which nothing is left: exp(−6²/2) = 2·10⁻⁸.
-const GLOW: f64 = 6.0;
-
-/// An environment over slopes: each lobe in the angle from its middle and around it, each square of a map's pixels by itself.
-fn sky(environment: &Environment, rule: &Rule) -> Vec<Incoming> {
-    let mut all = Vec::new();
-    let mut add = |from: DVec3, solid_angle: f64| {
-        let along = -environment.frame.vector_to_world(from);
-        if along.z > 0.0 {
-            let slopes = [along.x / along.z, along.y / along.z];
-            // du dv = dω / cos³.
-            let weight = environment.radiance(along) * solid_angle * secant(slopes).powi(3);
-            all.push(Incoming { slopes, weight });
-        }
-    };
-    match &environment.map {
-        EnvironmentMap::Lobes(lobes) => {
-            for lobe in lobes {
-                let around = Frame::IDENTITY.turned_to(lobe.from);
-                let most = (GLOW * lobe.width).min(PI);
-                let turns = 3 * rule.0.len();
-                for &(t, weight) in &rule.0 {
-                    let (sin, cos) = (t * most).sin_cos();
-                    let share = weight * most * sin * TAU / turns as f64;
-                    for turn in 0..turns {
-                        let (s, c) = (TAU * turn as f64 / turns as f64).sin_cos();
-                        let from = around.vector_to_world(DVec3::new(sin * c, sin * s, cos));
-                        // Where lobes overlap, each has its share of the radiance of all.
-                        let own = lobe.radiance_from(from);
-                        let whole: f64 = lobes.iter().map(|l| l.radiance_from(from)).sum();
-                        if own > 0.0 {
-                            add(from, share * own / whole);
-                        }
-                    }
-                }
-            }
-        }
-        EnvironmentMap::LatLong(map) => {
-            let [w, h] = [map.raster().width(), map.raster().height()];
-            let pixel = TAU / w as f64 * PI / h as f64;
-            // Between centres of pixels it is bilinear: halves of a pixel have no kinks.
-            let half = Rule::new(2);
-            for place in (0..4 * w * h).map(|i| [i % (2 * w), i / (2 * w)]) {
-                let [a, b] = place.map(|i| [0.5 * i as f64, 0.5 * (i + 1) as f64]);
-                for (at, share) in half.over([a, b]) {
-                    let from = map.direction(at);
-                    add(from, share * pixel * from.x.hypot(from.z));
-                }
-            }
-        }
-    }
-    all.retain(|incoming| incoming.weight > 0.0);
-    all
-}
-
 /// 1/cos of the angle to the central ray.
-fn secant([u, v]: [f64; 2]) -> f64 {
+pub(super) fn secant([u, v]: [f64; 2]) -> f64 {
     (1.0 + u * u + v * v).sqrt()
 }

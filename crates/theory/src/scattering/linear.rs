@@ -21,7 +21,7 @@ pub(super) struct Shining {
 /// The chain, ready to be evaluated.
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
-    system: &'a System,
+    pub(super) system: &'a System,
     chain: &'a Chain,
     /// From the plane to local coordinates of where light goes.
     off: Map<4>,

@@ -21,6 +21,7 @@ mod incoming;
 mod linear;
 mod parameter;
 mod predict;
+mod sky;
 #[cfg(test)]
 mod tests;
 

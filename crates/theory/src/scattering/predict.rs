@@ -9,7 +9,8 @@ use crate::error::distance;
 use crate::geometry::Matrix;
 use crate::rays::Plane;
 use etendue_field::{
-    Complex, Light, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
+    Complex, Light, Orientation, Pattern, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane,
+    Window,
 };
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
@@ -34,6 +35,8 @@ pub(super) struct Rule {
     plane: [usize; 4],
     /// Along each side of a part of the light: a Gauss rule; 1 where there is no light with an extent.
     light: usize,
+    /// Along x and y: their number is a multiple of these, so that tiles of a checkerboard end between them.
+    tiles: [usize; 2],
 }
 
 /// Fewest nodes along a coordinate, beside those that its frequencies ask for.
@@ -58,6 +61,7 @@ trait Field: Sync {
     /// What shines there.
     fn shines(&self, leaving: &Self::Leaving, rule: &LightRule) -> Vec<Self::Shining>;
     fn radiance(&self, leaving: &Self::Leaving, shines: &[Self::Shining]) -> f64;
+    fn system(&self) -> &System;
 }
 
 struct Exact<'a>(&'a System, &'a Plane);
@@ -74,6 +78,9 @@ impl Field for Exact<'_> {
     fn radiance(&self, leaving: &Self::Leaving, shines: &[Self::Shining]) -> f64 {
         self.0.radiance(leaving, shines)
     }
+    fn system(&self) -> &System {
+        self.0
+    }
 }
 
 impl Field for Linear<'_> {
@@ -87,6 +94,9 @@ impl Field for Linear<'_> {
     }
     fn radiance(&self, leaving: &[f64; 4], shines: &[Self::Shining]) -> f64 {
         Linear::radiance(self, *leaving, shines)
+    }
+    fn system(&self) -> &System {
+        self.system
     }
 }
 
@@ -150,6 +160,7 @@ pub fn projection(
     let rule = Rule {
         plane: [grid.bins, TRIAL, grid.bins, TRIAL],
         light: LIGHT,
+        tiles: [1; 2],
     };
     let table = Table::new(&Exact(system, plane), plane, window, rule);
     Projection {
@@ -168,6 +179,7 @@ fn predict(
     let widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
     let cycles = [grid.rho.max(), grid.rho.max(), grid.nu.max(), grid.nu.max()];
     let along: [f64; 4] = std::array::from_fn(|i| FEWEST + 4.0 * widths[i] * cycles[i]);
+    let tiles = [0, 1].map(|axis| tiles(system, plane, window, axis));
     let has_extent = !matches!(
         system.light,
         Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. }
@@ -175,14 +187,17 @@ fn predict(
     let mut rule = Rule {
         plane: along.map(whole),
         light: if has_extent { LIGHT } else { 1 },
-    };
+        tiles,
+    }
+    .aligned();
     let table = |rule: Rule| Table::new(field, plane, window, rule);
     let of = |rule: Rule| table(rule).slices(grid);
     let light_error = |rule: Rule| {
         let coarse = Rule {
             plane: rule.plane.map(|n| n.min(TRIAL)),
             ..rule
-        };
+        }
+        .aligned();
         LEFT * distance(&of(coarse), &of(coarse.finer_light()))
     };
     let mut light = if has_extent { light_error(rule) } else { 0.0 };
@@ -220,6 +235,39 @@ fn predict(
     }
 }
 
+/// How many tiles of a checkerboard the window of a plane on the surface holds along an axis, if they fit; else 1.
+fn tiles(system: &System, plane: &Plane, window: &Window, axis: usize) -> usize {
+    let reflectance = &system.reflectance;
+    let patterns = reflectance.blend.iter().map(|(_, pattern)| pattern);
+    let periods = patterns
+        .chain(&reflectance.texture)
+        .filter_map(|p| match p {
+            Pattern::Checkerboard { period } => Some(*period),
+            _ => None,
+        });
+    let axes = [plane.frame.x, plane.frame.y];
+    let own = [system.patch.frame.x, system.patch.frame.y];
+    let along = axes[axis].dot(own[axis]).abs() > 1.0 - 1e-9;
+    let centered = (plane.frame.origin - system.patch.frame.origin).length() < 1e-9;
+    let is_flat = system.patch.curvature.iter().all(|k| k.abs() <= 0.0);
+    let on_it =
+        plane.orientation.is_local() || plane.orientation == Orientation::Tangent && is_flat;
+    let Some(period) = periods.last().filter(|_| along && centered && on_it) else {
+        return 1;
+    };
+    let half = [window.x, window.y][axis].half_width();
+    let tiles = 4.0 * half / period;
+    let fit = (tiles - tiles.round()).abs() < 1e-9 && (1.0..1e3).contains(&tiles);
+    // The middle of the window is the end of a tile too.
+    let pairs = 2 * whole(0.5 * tiles.round());
+    let count = whole(tiles.round());
+    match (fit, count == pairs) {
+        (false, _) => 1,
+        (true, true) => count,
+        (true, false) => 2 * count,
+    }
+}
+
 impl Rule {
     fn nodes(&self) -> f64 {
         let plane: f64 = self.plane.iter().map(|n| *n as f64).product();
@@ -230,7 +278,9 @@ impl Rule {
         Self {
             plane: self.plane.map(|n| (n * 3).div_ceil(5)),
             light: self.light.min(LIGHT),
+            ..self
         }
+        .aligned()
     }
 
     fn finer_plane(self) -> Self {
@@ -238,6 +288,14 @@ impl Rule {
             plane: self.plane.map(|n| (n * 5).div_ceil(4)),
             ..self
         }
+        .aligned()
+    }
+
+    fn aligned(mut self) -> Self {
+        for (nodes, tiles) in self.plane.iter_mut().zip(self.tiles) {
+            *nodes = nodes.next_multiple_of(tiles);
+        }
+        self
     }
 
     fn finer_light(self) -> Self {
@@ -276,7 +334,7 @@ impl Table {
         let volume: f64 = (0..4)
             .map(|axis| 2.0 * profiles[axis].half_width() / rule.plane[axis] as f64)
             .product();
-        let light = LightRule::new(rule.light);
+        let light = LightRule::new(rule.light, &field.system().light);
         let [xs, ys, us, vs] = &coordinates;
         let rows: Vec<Vec<f64>> = (0..xs.len() * ys.len())
             .into_par_iter()

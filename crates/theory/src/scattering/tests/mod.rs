@@ -347,7 +347,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         longitude: 0.0,
         ..on(&system, 0.0, Orientation::LocalNormals)
     };
-    let rule = incoming::Rule::new(24);
+    let rule = incoming::Rule::new(24, &system.light);
     for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
         let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
         let radiance = system.radiance(&leaving, &system.shines(&leaving, &rule));
