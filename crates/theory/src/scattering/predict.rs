@@ -252,7 +252,7 @@ fn tiles(system: &System, plane: &Plane, window: &Window, axis: usize) -> usize 
     let is_flat = system.patch.curvature.iter().all(|k| k.abs() <= 0.0);
     let on_it =
         plane.orientation.is_local() || plane.orientation == Orientation::Tangent && is_flat;
-    let Some(period) = periods.last().filter(|_| along && centered && on_it) else {
+    let Some(period) = periods.next_back().filter(|_| along && centered && on_it) else {
         return 1;
     };
     let half = [window.x, window.y][axis].half_width();
