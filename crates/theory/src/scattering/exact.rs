@@ -4,8 +4,9 @@ use super::System;
 use super::brdf;
 use super::incoming::{Incoming, Rule};
 use crate::rays::{Plane, Ray};
-use etendue_field::{Orientation, TwoPlane};
+use etendue_field::{Fresnel, Lobe, Orientation, TwoPlane};
 use glam::DVec3;
+use std::f64::consts::PI;
 
 /// Where a ray leaves the surface.
 #[derive(Clone, Copy, Debug)]
@@ -97,6 +98,22 @@ impl System {
         let at = self.patch.frame.to_local(point);
         let brdf = self.reflectance.at(at.x, at.y);
         let each = shines.iter();
+        // Alike in all directions: nothing is asked of each.
+        if (brdf.lobe, brdf.fresnel) == (Lobe::Lambertian, Fresnel::White) {
+            let leaves = direction.dot(normal) > 0.0;
+            let lit = each.map(|s| {
+                if normal.dot(s.from) > 0.0 {
+                    s.irradiance
+                } else {
+                    0.0
+                }
+            });
+            return if leaves {
+                brdf.albedo / PI * lit.sum::<f64>()
+            } else {
+                0.0
+            };
+        }
         each.map(|s| s.irradiance * brdf::value(&brdf, normal, s.from, direction))
             .sum()
     }

@@ -5,8 +5,8 @@ use etendue_field::{Environment, EnvironmentMap, Frame};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// Widths of a spherical Gaussian beyond which nothing is left: exp(−6²/2) = 2·10⁻⁸.
-const GLOW: f64 = 6.0;
+/// Widths of a spherical Gaussian beyond which nothing is left: exp(−5²/2) = 4·10⁻⁶.
+const GLOW: f64 = 5.0;
 
 /// An environment over slopes: each lobe in the angle from its middle and around it, each square of a map's pixels by itself.
 pub(super) fn incoming(environment: &Environment, rule: &Rule) -> Vec<Incoming> {
@@ -25,7 +25,7 @@ pub(super) fn incoming(environment: &Environment, rule: &Rule) -> Vec<Incoming> 
             for lobe in lobes {
                 let around = Frame::IDENTITY.turned_to(lobe.from);
                 let most = (GLOW * lobe.width).min(PI);
-                let turns = 3 * rule.nodes.len();
+                let turns = 2 * rule.nodes.len();
                 for &(t, weight) in &rule.nodes {
                     let (sin, cos) = (t * most).sin_cos();
                     let share = weight * most * sin * TAU / turns as f64;

@@ -354,7 +354,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         let gamma = leaving.normal.dot(from).acos();
         let expected = 0.7 / PI * harmonic_irradiance(width, gamma);
         let off = (radiance / expected - 1.0).abs();
-        assert!(off < 1e-6, "{off:e} at {s} {t}"); // lobes are cut at six widths, 2e-8
+        assert!(off < 1e-5, "{off:e} at {s} {t}"); // lobes are cut at five widths, 4e-6
     }
     // The same environment turned by the width of a pixel of 256 along is another light.
     assert!(
