@@ -79,7 +79,7 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
     let inner = columns as f64 * (SIZE[0] + BETWEEN[0]) - BETWEEN[0];
     let mut svg = Svg::default();
     let top = svg.title(LEFT, inner, &curves.title, &curves.note);
-    key(&mut svg, curves, [LEFT, top + 16.0]);
+    let key_right = key(&mut svg, curves, [LEFT, top + 16.0]);
     let top = top + 58.0;
     let mut bottom = top;
     for (i, panel) in curves.panels.iter().enumerate() {
@@ -94,13 +94,16 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
         bottom = area.bottom();
     }
     Ok(Figure {
-        svg: svg.finish(LEFT + inner + 24.0, bottom + LABEL_BASELINE + 14.0),
+        svg: svg.finish(
+            (LEFT + inner).max(key_right) + 24.0,
+            bottom + LABEL_BASELINE + 14.0,
+        ),
         csv: numbers(curves)?,
     })
 }
 
-/// Each name once, with what it looks like.
-fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) {
+/// Each name once, with what it looks like; returns where they end.
+fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) -> f64 {
     let mut known: Vec<&str> = Vec::new();
     for curve in curves.panels.iter().flat_map(|p| &p.curves) {
         if known.contains(&curve.name.as_str()) {
@@ -124,6 +127,7 @@ fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) {
         );
         x = start + width(&plain(&curve.name), LABEL_TEXT) + 30.0;
     }
+    x - 30.0
 }
 
 fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
