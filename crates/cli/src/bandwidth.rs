@@ -55,7 +55,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     }
     let warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
     let cells = rows.iter().map(Row::cells);
-    let table: Vec<Vec<String>> = std::iter::once(header.clone()).chain(cells).collect();
+    let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
         "Bandwidths hold 95 % of the energy: that of the lobe in cycles per radian, others in cycles per unit slope at a fixed point of the plane.",
     );
