@@ -3,6 +3,7 @@
 //! `short` is a few minutes, for every change; `suite` goes through all scenes and writes `docs/suite.md`; `table1` through the
 //! operators of the paper and `shading` through what surfaces do to light, and both write `docs/validation.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
 
+mod bandwidth;
 mod calibration;
 mod faults;
 mod noise;
@@ -25,6 +26,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
+  cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -74,6 +76,12 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
+    /// The sampling criteria against photons, into docs/bandwidth.md with its picture.
+    Bandwidth {
+        /// Photons for each point; then nothing is written.
+        #[arg(long)]
+        photons: Option<u64>,
+    },
     /// Everything, into docs/validation.md.
     All,
 }
@@ -88,6 +96,9 @@ const SEED: u64 = 1;
 )]
 fn main() -> ExitCode {
     let command = Cli::parse().command;
+    if let Command::Bandwidth { photons } = command {
+        return bandwidth::page(photons);
+    }
     let page = match command {
         Command::All => Some((
             "docs/validation.md",
@@ -172,6 +183,7 @@ fn sections(command: &Command) -> Vec<Section> {
         }
         Command::Table1 { photons } => table1::table1(photons),
         Command::Shading { photons } => shading::shading(photons),
+        Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
         Command::Noise { most } => noise(most),
         Command::All => {
             let mut sections = noise(1_000_000_000);

@@ -248,14 +248,16 @@ pub(crate) struct ExportArgs {
     pub(crate) out: Option<PathBuf>,
 }
 
-/// What `--to` knows.
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   etendue bandwidth scenes/bandwidth.ron
   etendue bandwidth scenes/bandwidth.ron --measure --sweep surfaces.0.form.Sphere=-0.3..0.5:9
   etendue bandwidth scenes/bandwidth.ron --sweep surfaces.0.facing.0=0..1:5      tan of the angle of incidence
+  etendue bandwidth scenes/bandwidth_edge.ron --measure --csv edge.csv
 
-One row for each plane across the ray that leaves a smooth surface with a BRDF. Several sweeps go in step.")]
+One row for each plane across the ray that leaves a smooth surface with a BRDF, and each value of the sweep; several sweeps go in step. B (Eq. 20) is
+for light from far away, B' (Eq. 21) for an edge or a narrow light at d' before the surface. They say nothing of windows: those of the scene must hold the lobe, and its
+frequencies the spectrum.")]
 pub(crate) struct BandwidthArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -267,6 +269,10 @@ pub(crate) struct BandwidthArgs {
     /// Set a field to N values from A to B; may be repeated
     #[arg(long, value_name = "PATH=A..B:N", value_parser = sweep)]
     pub(crate) sweep: Vec<Sweep>,
+
+    /// Write the table into this file too, with all digits
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
 
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
@@ -310,6 +316,7 @@ fn sweep(text: &str) -> Result<Sweep, String> {
     parsed().ok_or_else(|| "must be PATH=A..B:N, numbers A and B and 1 to 1000 values".to_owned())
 }
 
+/// What `--to` knows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Program {
     /// Mitsuba 3: scene.xml, PLY files, and planes.json

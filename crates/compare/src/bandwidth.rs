@@ -28,7 +28,7 @@ pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
     };
     let last = system.layers.last().map(|(distance, _)| *distance);
     let edge = match &system.light {
-        Light::Beam { .. } => last,
+        Light::Beam { .. } | Light::Environment { .. } => last,
         _ => Some(last.unwrap_or(0.0)),
     };
     Some(Criterion {

@@ -6,12 +6,15 @@ mod brdfs;
 mod errata;
 mod eye;
 mod factors;
+mod glossy;
 mod light;
 mod operators;
 mod primal;
 mod spreading;
 mod traced;
 mod words;
+
+pub(crate) use glossy::glossy;
 
 use crate::report::Section;
 
@@ -29,8 +32,8 @@ pub(crate) fn shading(photons: Option<u64>) -> Vec<Section> {
 }
 
 /// Sections that trace photons.
-fn with_photons(_photons: Option<u64>) -> Vec<Section> {
-    Vec::new()
+fn with_photons(photons: Option<u64>) -> Vec<Section> {
+    vec![glossy(photons).0]
 }
 
 fn verdict(well: bool) -> String {
