@@ -239,7 +239,7 @@ fn predict(
 fn tiles(system: &System, plane: &Plane, window: &Window, axis: usize) -> usize {
     let reflectance = &system.reflectance;
     let patterns = reflectance.blend.iter().map(|(_, pattern)| pattern);
-    let periods = patterns
+    let mut periods = patterns
         .chain(&reflectance.texture)
         .filter_map(|p| match p {
             Pattern::Checkerboard { period } => Some(*period),
