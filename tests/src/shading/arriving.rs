@@ -72,7 +72,8 @@ impl Sphere<'_> {
         let local = plane.frame.turned_to(plane.frame.vector_to_world(normal));
         let from = local.vector_to_world(DVec3::new(across * sin, up, across * cos));
         let along = self.scene.path.frame.vector_to_local(-from);
-        self.environment.radiance(along)
+        // The integral is over the sphere's area.
+        self.environment.radiance(along) / normal.z
     }
 }
 
