@@ -1,15 +1,22 @@
-//! Shading: what cosines, BRDFs, textures and environments do to spectra, against plain quadrature and traced rays, in 2D.
+//! Shading: what cosines, BRDFs, textures and environments do to spectra, in 2D against plain quadrature and traced rays, in 4D against photons.
 
+mod arriving;
 mod bandwidth;
+mod bench;
 mod blockers;
 mod brdfs;
+mod chains;
 mod errata;
 mod eye;
 mod factors;
 mod glossy;
 mod light;
+mod misprints;
 mod operators;
+mod photons;
+mod planted;
 mod primal;
+mod scenes;
 mod spreading;
 mod traced;
 mod words;
@@ -33,7 +40,12 @@ pub(crate) fn shading(photons: Option<u64>) -> Vec<Section> {
 
 /// Sections that trace photons.
 fn with_photons(photons: Option<u64>) -> Vec<Section> {
-    vec![glossy(photons).0]
+    vec![
+        photons::photons(photons),
+        planted::planted(photons),
+        chains::chains(photons),
+        misprints::misprints(photons),
+    ]
 }
 
 fn verdict(well: bool) -> String {

@@ -76,7 +76,14 @@ impl Field for Exact<'_> {
         self.0.shines(leaving, rule)
     }
     fn radiance(&self, leaving: &Self::Leaving, shines: &[Self::Shining]) -> f64 {
-        self.0.radiance(leaving, shines)
+        let Self(system, plane) = self;
+        let radiance = system.radiance(leaving, shines);
+        if plane.orientation.is_local() {
+            // On the surface itself the integral is over its area, which exceeds that of the tangent plane.
+            radiance / leaving.normal.dot(plane.frame.d).abs()
+        } else {
+            radiance
+        }
     }
     fn system(&self) -> &System {
         self.0
