@@ -17,6 +17,7 @@ mod planted;
 mod primal;
 mod scenes;
 mod spreading;
+mod tamper;
 mod traced;
 mod words;
 
