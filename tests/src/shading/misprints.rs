@@ -6,6 +6,7 @@ use super::scenes::{alone, changed};
 use crate::report::Section;
 use etendue_compare::{sidak, system};
 use etendue_field::{Complex, Light, Quantity, Slices};
+use etendue_scene::Scene;
 use etendue_theory::rays;
 use std::f64::consts::PI;
 
@@ -14,7 +15,7 @@ const ALPHA: f64 = 0.01;
 /// Photons, unless others are given.
 const PHOTONS: u64 = 4_000_000;
 /// Curvature of the sphere in the environment, as in the file, per metre.
-const K: f64 = 1.25;
+pub(super) const K: f64 = 1.25;
 
 struct Misprint {
     place: &'static str,
@@ -117,10 +118,15 @@ fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
     (Bench::of(scene, sound), vec![misprint])
 }
 
-fn environment(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
+/// The scene of the environment with a plane in the light that arrives, alone.
+pub(super) fn arriving(photons: Option<u64>) -> Scene {
     let plane = "(name: \"arriving\", at: Before(\"sphere\"), orientation: Mirrored, quantity: DifferentialIrradiance),";
     let texts = [["planes: [", &format!("planes: [{plane}")]];
-    let scene = alone(changed("environment", photons, &texts), "arriving");
+    alone(changed("environment", photons, &texts), "arriving")
+}
+
+fn environment(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
+    let scene = arriving(photons);
     let Light::Environment { environment } = &scene.light else {
         panic!("an environment");
     };

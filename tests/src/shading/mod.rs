@@ -18,6 +18,7 @@ mod planted;
 mod primal;
 mod scenes;
 mod spreading;
+mod tamper;
 mod traced;
 mod words;
 

@@ -1,13 +1,16 @@
 //! Faults of shading, planted in the prediction or in the photons: a comparison is judged by what it rejects.
 
-use super::bench::{Bench, mean, on_flat, reflectance};
+use super::arriving::Sphere;
+use super::bench::{Bench, mean, reflectance};
+use super::misprints;
 use super::scenes::{alone, changed};
+use super::tamper::{around_the_normal, cosine, polarised, scaled, textured_here};
 use crate::report::Section;
 use etendue_compare::sidak;
-use etendue_field::{Crossing, Fresnel, Lobe, Pattern, Slices};
+use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Slices};
 use etendue_scene::Scene;
 use etendue_theory::scattering::{Parameter, System};
-use glam::{DQuat, DVec3};
+use glam::DQuat;
 use std::f64::consts::TAU;
 
 /// Share of true sections that may be rejected, over all benches.
@@ -38,7 +41,8 @@ struct Stand {
 /// The section.
 pub(super) fn planted(photons: Option<u64>) -> Section {
     let stands = stands();
-    let count = stands.len();
+    // And the one in the light that arrives.
+    let count = stands.len() + 1;
     let level = sidak(ALPHA, count);
     let mut rows = Vec::new();
     let mut passed = true;
@@ -48,35 +52,30 @@ pub(super) fn planted(photons: Option<u64>) -> Section {
         let sound = bench.p_value(&bench.photons, &bench.sound);
         passed &= sound >= level;
         for (name, plant) in stand.faults {
-            let (p, change) = plant.judged(&bench);
-            passed &= p < level;
-            rows.push(vec![
-                name.to_owned(),
-                match plant {
-                    Plant::Photons(..) => "photons",
-                    _ => "prediction",
-                }
-                .to_owned(),
-                stand.scene.to_owned(),
-                stand.plane.to_owned(),
-                format!("{sound:.5}"),
-                format!("{p:.5}"),
-                format!("{:.2} %", 100.0 * change),
-                match (sound >= level, p < level) {
-                    (true, true) => "rejected",
-                    (true, false) => "FAIL: accepted",
-                    (false, _) => "FAIL: sound rejected",
-                }
-                .to_owned(),
-            ]);
+            let judged = plant.judged(&bench);
+            let place = match plant {
+                Plant::Photons(..) => "photons",
+                _ => "prediction",
+            };
+            passed &= judged.0 < level;
+            rows.push(row([name, place], &bench, sound, judged, level));
         }
+    }
+    let (bench, turned) = turned(photons.or(Some(PHOTONS)));
+    let sound = bench.p_value(&bench.photons, &bench.sound);
+    passed &= sound >= level;
+    for (name, said) in turned {
+        let p = bench.p_value(&bench.photons, &said);
+        let judged = (p, bench.apart(&said, &bench.sound));
+        passed &= p < level;
+        rows.push(row([name, "prediction"], &bench, sound, judged, level));
     }
     Section {
         title: "Planted faults of shading".to_owned(),
         text: format!(
             "Each fault alone, in the prediction or in the photons, of a scene with one of its planes, at {:.0e} photons; p sound is of the same plane without a fault. \
              Change: of the spectrum, relative to it. In the row of the lobe around the normal the tiles are met at 5°: at 37° no light of it would be in \
-             the window. The sphere in the turned environment has a Phong lobe of exponent 100: of a diffuse one the spectrum would change by 0.3 %, which 4e6 photons do not tell. Required: p < {level:.5}, α = {ALPHA} over {count} planes, for every fault, and p sound not below; p is not below 0.00005.",
+             the window. The environment is turned in the light that arrives at the sphere: of what the diffuse sphere reflects the spectrum would change by 0.3 %, which these photons do not tell. Required: p < {level:.5}, α = {ALPHA} over {count} planes, for every fault, and p sound not below; p is not below 0.00005.",
             photons.unwrap_or(PHOTONS) as f64
         ),
         header: vec![
@@ -212,39 +211,7 @@ fn stands() -> Vec<Stand> {
             // k is 1.25 /m.
             faults: vec![("missing 1/|k|", Plant::Factor(1.25))],
         },
-        Stand {
-            scene: "environment",
-            plane: "reflection",
-            texts: &[["Lambertian", "Phong(100)"]],
-            faults: vec![
-                (
-                    "environment turned by 1/256 about Y",
-                    Plant::System(|s| turned(s, PIXEL)),
-                ),
-                ("turned by − 1/256", Plant::System(|s| turned(s, -PIXEL))),
-            ],
-        },
     ]
-}
-
-fn scaled(mut crossing: Crossing, factor: f64) -> Crossing {
-    crossing.weight *= factor;
-    crossing
-}
-
-/// Of the angle at which light comes in.
-fn cosine(scene: &Scene, crossing: &Crossing) -> f64 {
-    let [_, from] = on_flat(scene, crossing);
-    from.z
-}
-
-/// Shares of s and p that glass of index 1.5 reflects, over their mean (Fresnel's equations with Snell's law).
-fn polarised(cosine: f64) -> [f64; 2] {
-    const INDEX: f64 = 1.5;
-    let inner = (1.0 - (1.0 - cosine * cosine) / (INDEX * INDEX)).sqrt();
-    let s = ((cosine - INDEX * inner) / (cosine + INDEX * inner)).powi(2);
-    let p = ((INDEX * cosine - inner) / (INDEX * cosine + inner)).powi(2);
-    [s, p].map(|share| 2.0 * share / (s + p))
 }
 
 fn lobe(system: &mut System, factor: f64) {
@@ -261,34 +228,53 @@ fn texture(system: &mut System, factor: f64) {
     }
 }
 
-fn turned(system: &mut System, angle: f64) {
-    if let etendue_field::Light::Environment { environment } = &mut system.light {
-        let turn = DQuat::from_axis_angle(environment.frame.y, angle);
-        let frame = &mut environment.frame;
-        (frame.x, frame.d) = (turn * frame.x, turn * frame.d);
-    }
-}
-
-/// The texture of `textured_glossy` where the light is, with 1/cos θ₁ for positions along the surface.
-fn textured_here(scene: &Scene, crossing: Crossing) -> Crossing {
-    const MIRROR: f64 = 0.796_083_799;
-    let etendue_scene::Event::Reflects(reflectance) = &scene.patches[0].event else {
-        return crossing;
+/// Light of the environment that arrives at the sphere, times the cosine: of it as it is, and turned.
+fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
+    let scene = misprints::arriving(photons);
+    let Light::Environment { environment } = &scene.light else {
+        panic!("an environment");
     };
-    let ray = crossing.ray;
-    let texture = reflectance.texture.as_ref();
-    let factor = texture.map_or(1.0, |t| t.value(ray.x / MIRROR, ray.y));
-    scaled(crossing, factor)
+    let of = |angle: f64| {
+        let mut environment = environment.clone();
+        let frame = &mut environment.frame;
+        let turn = DQuat::from_axis_angle(frame.y, angle);
+        (frame.x, frame.d) = (turn * frame.x, turn * frame.d);
+        let sphere = Sphere {
+            scene: &scene,
+            environment: &environment,
+            k: misprints::K,
+        };
+        sphere.slices(-1.0)
+    };
+    let sound = of(0.0);
+    let turned = [
+        ("environment turned by + 1/256", of(PIXEL)),
+        ("environment turned by − 1/256", of(-PIXEL)),
+    ];
+    (Bench::of(scene, sound), turned)
 }
 
-/// What leaves about the mirror direction, turned until that is the normal; solid angles stay, those of (θ, φ) do not.
-fn around_the_normal(scene: &Scene, mut crossing: Crossing) -> Crossing {
-    let [away, from] = on_flat(scene, &crossing);
-    let mirrored = DVec3::new(-from.x, -from.y, from.z);
-    let turned = DQuat::from_rotation_arc(mirrored, DVec3::Z) * away;
-    let latitude = turned.y.clamp(-1.0, 1.0).asin();
-    crossing.weight *= crossing.ray.v.cos() / latitude.cos();
-    crossing.ray.u = turned.x.atan2(turned.z) - scene.planes[0].longitude;
-    crossing.ray.v = latitude;
-    crossing
+/// A fault with where it is planted.
+fn row(
+    [name, place]: [&str; 2],
+    bench: &Bench,
+    sound: f64,
+    (p, change): (f64, f64),
+    level: f64,
+) -> Vec<String> {
+    let verdict = match (sound >= level, p < level) {
+        (true, true) => "rejected",
+        (true, false) => "FAIL: accepted",
+        (false, _) => "FAIL: sound rejected",
+    };
+    vec![
+        name.to_owned(),
+        place.to_owned(),
+        bench.scene.name.clone(),
+        bench.scene.planes[0].name.clone(),
+        format!("{sound:.5}"),
+        format!("{p:.5}"),
+        format!("{:.2} %", 100.0 * change),
+        verdict.to_owned(),
+    ]
 }
