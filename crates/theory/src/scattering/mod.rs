@@ -17,11 +17,14 @@
 mod brdf;
 mod chain;
 mod exact;
+mod field;
 mod incoming;
 mod linear;
 mod parameter;
 mod predict;
+mod rule;
 mod sky;
+mod table;
 #[cfg(test)]
 mod tests;
 
