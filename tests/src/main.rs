@@ -1,13 +1,15 @@
 //! Statistical validation of Étendue.
 //!
 //! `short` is a few minutes, for every change; `suite` goes through all scenes and writes `docs/suite.md`; `table1` through the
-//! operators of the paper and writes `docs/validation.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
+//! operators of the paper and `shading` through what surfaces do to light, and both write `docs/validation.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
 
+mod bandwidth;
 mod calibration;
 mod faults;
 mod noise;
 mod report;
 mod scenes;
+mod shading;
 mod statistics;
 mod suite;
 mod table1;
@@ -23,7 +25,9 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- faults --photons 10000000
   cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
-  cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
+  cargo run --release -p etendue-validation -- shading      writes docs/validation.md
+  cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
+  cargo run --release -p etendue-validation -- all          an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -66,7 +70,21 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
-    /// Everything, into docs/validation.md.
+    /// Cosines, BRDFs, textures, environments and the sampling criteria of the paper; into docs/validation.md.
+    Shading {
+        /// Photons for each scene, instead of those in the files.
+        #[arg(long)]
+        photons: Option<u64>,
+    },
+    /// The sampling criteria against photons, into docs/bandwidth.md with its picture.
+    Bandwidth {
+        /// Photons for each point; then nothing is written.
+        #[arg(long)]
+        photons: Option<u64>,
+    },
+    /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
+    Main,
+    /// The whole of docs/validation.md: `main`, `table1` and `shading`.
     All,
 }
 
@@ -80,43 +98,68 @@ const SEED: u64 = 1;
 )]
 fn main() -> ExitCode {
     let command = Cli::parse().command;
-    let page = match command {
-        Command::All => Some((
+    if let Command::Bandwidth { photons } = command {
+        return bandwidth::page(photons);
+    }
+    let parts = match command {
+        Command::All => vec![
+            Command::Main,
+            Command::Table1 { photons: None },
+            Command::Shading { photons: None },
+        ],
+        other => vec![other],
+    };
+    let mut passed = true;
+    for part in &parts {
+        let sections = sections(part);
+        let text: Vec<String> = sections.iter().map(Section::markdown).collect();
+        let text = text.join("\n");
+        println!("{text}");
+        passed &= sections.iter().all(|section| section.passed);
+        if let Some([path, title, name, of]) = page(part) {
+            let page = format!(
+                "# {title}\n\nWritten by `cargo run --release -p etendue-validation -- {name}`. \
+                 {of}, seed {SEED} unless said.\n\n{text}"
+            );
+            let before = std::fs::read_to_string(path).unwrap_or_default();
+            if let Err(error) = std::fs::write(path, with_part(&before, title, &page)) {
+                eprintln!("{path}: {error}");
+                return ExitCode::from(3);
+            }
+        }
+    }
+    ExitCode::from(u8::from(!passed))
+}
+
+/// The page that a command writes a part of: its file, the title of the part, the command's name and what is shown.
+fn page(command: &Command) -> Option<[&'static str; 4]> {
+    Some(match command {
+        Command::Main => [
             "docs/validation.md",
             "Validation",
-            "all",
+            "main",
             "Scene: `scenes/fig9b.ron`",
-        )),
-        Command::Suite { photons: None } => Some((
+        ],
+        Command::Suite { photons: None } => [
             "docs/suite.md",
             "The suite",
             "suite",
             "Scenes: all of `scenes/`",
-        )),
-        Command::Table1 { photons: None } => Some((
+        ],
+        Command::Table1 { photons: None } => [
             "docs/validation.md",
             "Table 1",
             "table1",
-            "Scenes: all of `scenes/table1/`, photons as in the files",
-        )),
-        _ => None,
-    };
-    let sections = sections(&command);
-    let text: Vec<String> = sections.iter().map(Section::markdown).collect();
-    let text = text.join("\n");
-    println!("{text}");
-    if let Some((path, title, name, of)) = page {
-        let page = format!(
-            "# {title}\n\nWritten by `cargo run --release -p etendue-validation -- {name}`. \
-             {of}, seed {SEED} unless said.\n\n{text}"
-        );
-        let before = std::fs::read_to_string(path).unwrap_or_default();
-        if let Err(error) = std::fs::write(path, with_part(&before, title, &page)) {
-            eprintln!("{path}: {error}");
-            return ExitCode::from(3);
-        }
-    }
-    ExitCode::from(u8::from(!sections.iter().all(|s| s.passed)))
+            "Scenes: all of `scenes/table1/` without BRDFs, photons as in the files",
+        ],
+        Command::Shading { photons: None } => [
+            "docs/validation.md",
+            "Shading",
+            "shading",
+            "In 2D and without photons where no scene is named",
+        ],
+        _ => return None,
+    })
 }
 
 /// A page with one of its parts, which begin with their titles, replaced or added.
@@ -157,8 +200,10 @@ fn sections(command: &Command) -> Vec<Section> {
             sections
         }
         Command::Table1 { photons } => table1::table1(photons),
+        Command::Shading { photons } => shading::shading(photons),
+        Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
         Command::Noise { most } => noise(most),
-        Command::All => {
+        Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);
             sections.extend(calibration::calibration(1000, 100_000));
             sections.push(faults::planted(10_000_000, SEED));

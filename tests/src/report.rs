@@ -13,7 +13,11 @@ pub(crate) struct Section {
 
 impl Section {
     pub(crate) fn markdown(&self) -> String {
-        let line = |cells: &[String]| format!("| {} |\n", cells.join(" | "));
+        // A bar within a cell would end it.
+        let line = |cells: &[String]| {
+            let cells: Vec<String> = cells.iter().map(|c| c.replace('|', "\\|")).collect();
+            format!("| {} |\n", cells.join(" | "))
+        };
         let header: Vec<String> = self.header.iter().map(ToString::to_string).collect();
         let rule = vec!["---".to_owned(); header.len()];
         let rows: String = self.rows.iter().map(|row| line(row)).collect();

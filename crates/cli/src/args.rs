@@ -37,6 +37,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Shrink the neighbourhood of the central ray: how fast the first-order chain comes to the exact prediction.
     Converge(ConvergeArgs),
+    /// How fast a glossy reflection changes with angle: the paper's criteria, corrected and as printed, and measured.
+    Bandwidth(BandwidthArgs),
     /// Write a scene for another program, which then can be asked for the same light field.
     Export(ExportArgs),
 }
@@ -244,6 +246,74 @@ pub(crate) struct ExportArgs {
     /// Folder for its files [default: out/NAME-mitsuba]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue bandwidth scenes/bandwidth.ron
+  etendue bandwidth scenes/bandwidth.ron --measure --sweep surfaces.0.form.Sphere=-0.3..0.5:9
+  etendue bandwidth scenes/bandwidth.ron --sweep surfaces.0.facing.0=0..1:5      tan of the angle of incidence
+  etendue bandwidth scenes/bandwidth_edge.ron --measure --csv edge.csv
+
+One row for each plane across the ray that leaves a smooth surface with a BRDF, and each value of the sweep; several sweeps go in step. B (Eq. 20) is
+for light from far away, B' (Eq. 21) for an edge or a narrow light at d' before the surface. They say nothing of windows: those of the scene must hold the lobe, and its
+frequencies the spectrum.")]
+pub(crate) struct BandwidthArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Trace the scene and measure the bandwidth; beside it stands that of the exact prediction
+    #[arg(long)]
+    pub(crate) measure: bool,
+
+    /// Set a field to N values from A to B; may be repeated
+    #[arg(long, value_name = "PATH=A..B:N", value_parser = sweep)]
+    pub(crate) sweep: Vec<Sweep>,
+
+    /// Write the table into this file too, with all digits
+    #[arg(long, value_name = "FILE")]
+    pub(crate) csv: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// No progress bars
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+/// Values of a field, evenly spaced.
+#[derive(Clone, Debug)]
+pub(crate) struct Sweep {
+    pub(crate) path: String,
+    pub(crate) from: f64,
+    pub(crate) to: f64,
+    pub(crate) count: u32,
+}
+
+fn sweep(text: &str) -> Result<Sweep, String> {
+    let parsed = || {
+        let (path, values) = text.split_once('=')?;
+        let (ends, count) = values.split_once(':')?;
+        let (from, to) = ends.split_once("..")?;
+        let [from, to] =
+            [from, to].map(|end| end.trim().parse::<f64>().ok().filter(|x| x.is_finite()));
+        let count = count
+            .trim()
+            .parse()
+            .ok()
+            .filter(|n| (1..=1000).contains(n))?;
+        Some(Sweep {
+            path: path.trim().to_owned(),
+            from: from?,
+            to: to?,
+            count,
+        })
+    };
+    parsed().ok_or_else(|| "must be PATH=A..B:N, numbers A and B and 1 to 1000 values".to_owned())
 }
 
 /// What `--to` knows.

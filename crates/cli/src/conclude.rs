@@ -80,9 +80,10 @@ fn written(
     planes: &[PlaneComparison],
     mut watch: Stopwatch,
 ) -> Result<PathBuf, Failure> {
-    for (prediction, plane) in case.predictions.iter().zip(planes) {
+    let each = case.predictions.iter().zip(planes);
+    for ((prediction, plane), at) in each.zip(&case.scene.planes) {
         files::write(&mut results, summary, plane)?;
-        pictures::plane(&mut results, summary, prediction, plane)?;
+        pictures::plane(&mut results, summary, prediction, at, plane)?;
     }
     pictures::path(&mut results, summary, &case.scene, planes)?;
     if ending.save.contains(&Save::Photons) {

@@ -137,7 +137,7 @@ fn light(scene: &Scene) -> Segment {
         Light::Area { shape, .. } => shape.bounds().extent(0),
         // A dot.
         Light::Beam { image, .. } => [-0.5, 0.5].map(|half| half * image.width[0]),
-        Light::Point { .. } | Light::Projector { .. } => {
+        Light::Point { .. } | Light::Projector { .. } | Light::Environment { .. } => {
             [-0.005, 0.005].map(|x| x * scene.path.first_hit())
         }
     };

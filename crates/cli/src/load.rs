@@ -26,18 +26,18 @@ pub(crate) fn scene(
     resolved(&name, file, folder(args), &shown.to_string())
 }
 
-/// The folder of the scene file, in which its meshes are.
+/// The folder of the scene file, in which its meshes and pictures are.
 fn folder(args: &SceneArgs) -> &Path {
     args.path.parent().unwrap_or(Path::new(""))
 }
 
-/// Copies the meshes of a scene into a stage's folder, where the next stage looks for them.
-pub(crate) fn copy_meshes(
+/// Copies the meshes and pictures of a scene into a stage's folder, where the next stage looks for them.
+pub(crate) fn copy_files(
     results: &mut Results,
     scene: &Scene,
     args: &SceneArgs,
 ) -> Result<(), Failure> {
-    for name in scene.file.mesh_files() {
+    for name in scene.file.named_files() {
         let path = folder(args).join(name);
         let shown = path.display();
         let bytes =

@@ -4,6 +4,7 @@
 //! over files; `check` says what a scene says.
 
 mod args;
+mod bandwidth;
 mod batches;
 mod check;
 mod compare;
@@ -44,6 +45,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
         Command::Converge(args) => converge::converge(&args),
+        Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),
     };
     match outcome {

@@ -29,7 +29,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
         let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
         results.begin()?;
         batches::write(&mut results, &measurement)?;
-        load::copy_meshes(&mut results, &scene, &args.scene)?;
+        load::copy_files(&mut results, &scene, &args.scene)?;
         Ok(Held {
             seed: scene.run.seed,
             method,

@@ -7,7 +7,9 @@ use crate::results::Results;
 use crate::summary::Summary;
 use crate::table::word;
 use etendue_compare::{Class, PlaneComparison, Prediction, stands_before};
-use etendue_field::{FrequencyAxis, Light, ProjectionGrid, Side, SliceGrid, VirtualPlane};
+use etendue_field::{
+    FrequencyAxis, Light, Orientation, ProjectionGrid, Side, SliceGrid, VirtualPlane,
+};
 use etendue_figures::{
     Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
     strip,
@@ -25,12 +27,14 @@ pub(crate) fn plane(
     results: &mut Results,
     summary: &Summary,
     prediction: &Prediction,
+    at: &VirtualPlane,
     plane: &PlaneComparison,
 ) -> Result<(), Failure> {
+    let words = Words::of(at);
     let name = &plane.report.name;
     let note = format!("{}; {}", made_from(summary), verdict_line(plane));
     let measured = &plane.projection.mean;
-    let [x, u] = projection_axes(&measured.grid);
+    let [x, u] = words.projection_axes(&measured.grid);
     let difference = z(
         &measured.values,
         &prediction.projection.values,
@@ -38,13 +42,17 @@ pub(crate) fn plane(
     );
     let primal = Comparison {
         title: &format!(
-            "{}: light field in (*x*, *u*), integrated over *y* and *v*",
-            spaced(name)
+            "{}: light field in ({}, {}), integrated over {} and {}",
+            spaced(name),
+            words.along[0],
+            words.along[1],
+            words.across[0],
+            words.across[1]
         ),
         note: &note,
         x,
         y: u,
-        quantity: light_field_quantity(),
+        quantity: words.light_field_quantity(),
         scale: Scale::Linear,
         measured: measured.values.view(),
         predicted: prediction.projection.values.view(),
@@ -56,7 +64,7 @@ pub(crate) fn plane(
         &comparison(&primal).map_err(Failure::cannot_run)?,
     )?;
 
-    let [rho, nu] = frequency_axes(&plane.measured.grid);
+    let [rho, nu] = words.frequency_axes(&plane.measured.grid);
     let difference = radial_z(plane);
     let spectrum = Comparison {
         title: &format!(
@@ -97,11 +105,15 @@ pub(crate) fn path(
         .iter()
         .map(|(plane, compared)| column(scene, plane, compared));
     let columns: Vec<Column<'_>> = columns.collect();
-    let guided = |more: usize| columns.iter().any(|column| column.guides.len() > more);
-    let dashed = match (guided(0), guided(1)) {
-        (true, true) => " Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
-        (true, false) => " Dashed: predicted, *ν* = −*d* *ρ*.",
-        _ => "",
+    let most = columns.iter().map(|column| column.guides.len()).max();
+    let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
+    let dashed = match (most, is_exact) {
+        (None | Some(0), _) => "",
+        (Some(1), true) => " Dashed: predicted, *ν* = −*d* *ρ*.",
+        (_, true) => " Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
+        (_, false) => {
+            " Dashed: where the chain puts the light, in the plane of incidence and across it."
+        }
     };
     let figure = strip(&Strip {
         title: &format!(
@@ -114,7 +126,7 @@ pub(crate) fn path(
         ),
         section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),
         columns,
-        light_field: light_field_quantity(),
+        light_field: Words::ACROSS.light_field_quantity(),
         spectrum: spectrum_quantity(),
         floor: FLOOR,
     })
@@ -125,8 +137,9 @@ pub(crate) fn path(
 /// What is shown under a plane.
 fn column<'a>(scene: &Scene, plane: &VirtualPlane, compared: &'a PlaneComparison) -> Column<'a> {
     let projection = &compared.projection.mean;
-    let [x, u] = projection_axes(&projection.grid);
-    let [rho, nu] = frequency_axes(&compared.measured.grid);
+    let words = Words::of(plane);
+    let [x, u] = words.projection_axes(&projection.grid);
+    let [rho, nu] = words.frequency_axes(&compared.measured.grid);
     Column {
         light_field: Picture {
             x,
@@ -186,7 +199,7 @@ fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];
         match scene.light {
-            Light::Beam { .. } => -position[i] / slope[i],
+            Light::Beam { .. } | Light::Environment { .. } => -position[i] / slope[i],
             _ => -position[i + 2] / slope[i + 2],
         }
     };
@@ -229,25 +242,56 @@ fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), Failu
     results.write(&format!("{name}.csv"), figure.csv.as_bytes())
 }
 
-fn projection_axes(grid: &ProjectionGrid) -> [Axis; 2] {
-    [
-        Axis::edges("*x*", "m", [-grid.half_x, grid.half_x]),
-        Axis::edges("*u*", "", [-grid.half_u, grid.half_u]),
-    ]
+/// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
+struct Words {
+    along: [&'static str; 2],
+    across: [&'static str; 2],
+    angle: &'static str,
+    per_angle: &'static str,
 }
 
-fn frequency_axes(grid: &SliceGrid) -> [Axis; 2] {
-    let axis = |name, unit, axis: &FrequencyAxis| {
-        Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
+impl Words {
+    const ACROSS: Self = Self {
+        along: ["*x*", "*u*"],
+        across: ["*y*", "*v*"],
+        angle: "",
+        per_angle: "cycles per unit slope",
     };
-    [
-        axis("*ρ*", "cycles/m", &grid.rho),
-        axis("*ν*", "cycles per unit slope", &grid.nu),
-    ]
-}
+    const ON_SURFACE: Self = Self {
+        along: ["*s*", "*θ*"],
+        across: ["*t*", "*φ*"],
+        angle: "rad",
+        per_angle: "cycles per radian",
+    };
 
-fn light_field_quantity() -> Quantity {
-    Quantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m")
+    fn of(plane: &VirtualPlane) -> Self {
+        match plane.orientation {
+            Orientation::Orthogonal => Self::ACROSS,
+            _ => Self::ON_SURFACE,
+        }
+    }
+
+    fn projection_axes(&self, grid: &ProjectionGrid) -> [Axis; 2] {
+        [
+            Axis::edges(self.along[0], "m", [-grid.half_x, grid.half_x]),
+            Axis::edges(self.along[1], self.angle, [-grid.half_u, grid.half_u]),
+        ]
+    }
+
+    fn frequency_axes(&self, grid: &SliceGrid) -> [Axis; 2] {
+        let axis = |name, unit, axis: &FrequencyAxis| {
+            Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
+        };
+        [
+            axis("*ρ*", "cycles/m", &grid.rho),
+            axis("*ν*", self.per_angle, &grid.nu),
+        ]
+    }
+
+    fn light_field_quantity(&self) -> Quantity {
+        let [a, b] = self.across;
+        Quantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
+    }
 }
 
 fn spectrum_quantity() -> Quantity {

@@ -18,7 +18,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let content = on_threads(&args.threads, || {
         let predictions = predicted(&scene, args.photons.method, args.quiet)?;
         results.begin()?;
-        load::copy_meshes(&mut results, &scene, &args.scene)?;
+        load::copy_files(&mut results, &scene, &args.scene)?;
         predictions::write(&mut results, &scene, &predictions)
     })?;
     let folder = Index::new(&scene, content).finish(results)?;

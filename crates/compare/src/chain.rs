@@ -44,7 +44,7 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     Chain {
         source: Source {
             name: "light".to_owned(),
-            light: scene.light,
+            light: scene.light.clone(),
         },
         operators: walk.operators,
     }

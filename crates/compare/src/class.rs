@@ -1,3 +1,4 @@
+use crate::scattering::scattered;
 use crate::system::follows_rays;
 use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
@@ -32,7 +33,7 @@ impl Class {
     /// a reflection straight back; mirrors, interfaces and lenses have their affine maps; everything else has not.
     #[must_use]
     pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if follows_rays(scene, plane) {
+        if follows_rays(scene, plane) || scattered(scene, plane).is_some() {
             Self::FirstOrder
         } else if without_theory(scene, plane).is_empty() {
             Self::Exact
@@ -61,6 +62,9 @@ pub(crate) fn without_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String>
     }
     if scene.light.is_picture() {
         found.push("light of a picture, but for a path of smooth surfaces alone".to_owned());
+    }
+    if matches!(scene.light, Light::Environment { .. }) {
+        found.push("light of an environment".to_owned());
     }
     if plane.orientation != Orientation::Orthogonal {
         found.push(format!("{:?}", plane.orientation));
@@ -126,6 +130,7 @@ fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bo
         }),
         Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
         Light::Beam { image, .. } => image.width.map(|w| PICTURE * w),
+        Light::Environment { .. } => [f64::MAX; 2],
     };
     let crosses = |leg: usize| {
         let (from, to, end) = if leg < plane.leg {

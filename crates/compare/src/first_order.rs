@@ -175,6 +175,8 @@ fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Mat
             [x, y, narrow[2], narrow[3]]
         }
         Light::Point { .. } => [narrow[0], narrow[1], 0.0, 0.0],
+        // No system holds it.
+        Light::Environment { .. } => return None,
         Light::Area { shape, .. } => {
             let [x, y] = match shape {
                 Shape::Rectangle(r) => r.size.map(|side| 12.0 / (side * side)),

@@ -6,6 +6,7 @@
 //!
 //! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
 
+mod bandwidth;
 mod chain;
 mod class;
 mod converge;
@@ -14,9 +15,11 @@ mod plane;
 mod prediction;
 mod report;
 mod residuals;
+mod scattering;
 mod score;
 mod system;
 
+pub use bandwidth::{criterion, exact_bandwidth, measured_bandwidth};
 pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};
@@ -25,5 +28,6 @@ pub use plane::{PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction, steps};
 pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
 pub use residuals::Residuals;
+pub use scattering::scattered;
 pub use score::ParameterReport;
 pub use system::system;

@@ -1,6 +1,7 @@
 use crate::chain::chain;
 use crate::class::{Class, without_theory};
 use crate::first_order::{FirstOrder, affine_chain};
+use crate::scattering::scattered;
 use crate::system::system;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -52,6 +53,11 @@ pub struct PredictedParameter {
 pub fn steps(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let Window { x, y, u, v } = &plane.window;
     let mut steps = chain(scene, plane).describe();
+    if let Some((system, at)) = scattered(scene, plane) {
+        let chain = etendue_theory::scattering::chain(&system, &at);
+        steps.truncate(1);
+        steps.extend(chain.into_iter().flat_map(|chain| chain.steps));
+    }
     if let Some(chain) = affine_chain(scene, plane) {
         // What shines is said alike; how it travels, by the maps.
         steps.truncate(1);
@@ -79,6 +85,9 @@ impl Prediction {
             && let Some((system, at)) = system(scene, plane)
         {
             return Self::by_rays(scene, plane, &system, &at);
+        }
+        if let Some((system, at)) = scattered(scene, plane) {
+            return Self::by_scattering(scene, plane, &system, &at);
         }
         let chain = chain(scene, plane);
         let (window, grid) = (&plane.window, &plane.grid);

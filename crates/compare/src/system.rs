@@ -1,22 +1,28 @@
 use crate::chain::stands_before;
-use etendue_field::{Orientation, Side, VirtualPlane};
-use etendue_scene::{Hit, Object, Scene};
+use etendue_field::{Light, Mask, Orientation, Side, VirtualPlane};
+use etendue_scene::{Event, Hit, Object, Scene};
 use etendue_theory::rays::{Element, Plane, System};
 
 /// The light, masks and specular surfaces that lead to a plane, and the plane, for theory to follow rays through; `None` where light
-/// is reflected diffusely, or may meet what is neither on the path nor in a plane across its first leg.
+/// comes from an environment or is reflected diffusely, or may meet what is neither on the path nor in a plane across its first leg.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
+    if matches!(scene.light, Light::Environment { .. }) {
+        return None;
+    }
     let path = &scene.path;
     let hits = path.legs[..=plane.leg].iter().filter_map(|leg| leg.leaves);
     let elements: Option<Vec<Element>> = hits
         .map(|hit| match hit.object {
             Object::Patch(i) => {
                 let object = &scene.patches[i];
+                let Event::Specular(event) = object.event else {
+                    return None;
+                };
                 Some(Element {
                     name: object.name.clone(),
                     patch: object.patch,
-                    event: object.event,
+                    event,
                 })
             }
             Object::Mesh(i) => Some(Element {
@@ -27,29 +33,36 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
             Object::Surface(_) => None,
         })
         .collect();
-    let layers = scene.blockers.iter();
-    let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
     let system = System {
-        light: scene.light,
-        layers: layers.map(|l| (l.distance, l.mask.clone())).collect(),
+        light: scene.light.clone(),
+        layers: layers_before(scene, plane),
         elements: elements?,
     };
+    is_free(scene).then(|| (system, in_frame(scene, plane)))
+}
+
+/// The masks that light meets before a plane, with their distances.
+pub(crate) fn layers_before(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
+    let layers = scene.blockers.iter();
+    let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
+    layers.map(|l| (l.distance, l.mask.clone())).collect()
+}
+
+/// A plane in the frame at the light.
+pub(crate) fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     let hit = surface(scene, plane);
     let patch = match hit.map(|hit| hit.object) {
-        Some(Object::Patch(i)) if plane.orientation == Orientation::LocalNormals => {
-            Some(scene.patches[i].patch)
-        }
+        Some(Object::Patch(i)) if plane.orientation.is_local() => Some(scene.patches[i].patch),
         _ => None,
     };
-    let plane = Plane {
-        frame: path.frame.decompose(&plane.frame),
+    Plane {
+        frame: scene.path.frame.decompose(&plane.frame),
         orientation: plane.orientation,
         longitude: plane.longitude,
         patch,
         arriving: plane.side == Side::Before && plane.orientation != Orientation::Orthogonal,
         quantity: plane.quantity,
-    };
-    is_free(scene).then_some((system, plane))
+    }
 }
 
 /// Whether a plane is predicted by following rays: behind a specular surface or on one, or in light that goes through pictures.
@@ -68,7 +81,7 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
 }
 
 /// Whether nothing stands beside the path.
-fn is_free(scene: &Scene) -> bool {
+pub(crate) fn is_free(scene: &Scene) -> bool {
     let visited = |object| scene.path.visits(object);
     let surfaces = (0..scene.surfaces.len()).all(|i| visited(Object::Surface(i)));
     let patches = (0..scene.patches.len()).all(|i| visited(Object::Patch(i)));

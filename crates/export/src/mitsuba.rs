@@ -36,6 +36,11 @@ pub enum NotInMitsuba {
     /// A projector or a beam.
     #[error("Mitsuba has no such light as {0}: it cannot be exported")]
     Picture(&'static str),
+    /// An environment.
+    #[error(
+        "an environment cannot be exported: here light begins in the plane of `center`, in Mitsuba it comes from all around"
+    )]
+    Environment,
     /// A smooth surface.
     #[error(
         "the smooth surface {name:?} cannot be exported: the light field behind it is compared here alone"
@@ -142,6 +147,7 @@ impl Writer {
             }
             Light::Projector { .. } => return Err(NotInMitsuba::Picture("a projector")),
             Light::Beam { .. } => return Err(NotInMitsuba::Picture("a beam")),
+            Light::Environment { .. } => return Err(NotInMitsuba::Environment),
         }
         Ok(())
     }
@@ -219,7 +225,10 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
 fn reach(scene: &Scene) -> f64 {
     let light = match scene.light {
         Light::Area { shape, .. } => shape.bounds().reach(),
-        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => 0.0,
+        Light::Point { .. }
+        | Light::Projector { .. }
+        | Light::Beam { .. }
+        | Light::Environment { .. } => 0.0,
     };
     let windows = scene.planes.iter().filter(|plane| plane.leg == 0);
     let windows = windows.map(|p| p.window.x.half_width().max(p.window.y.half_width()));

@@ -11,6 +11,7 @@
 //! (`docs/conventions.md`).
 
 mod crossing;
+mod environment;
 mod field_grid;
 mod frame;
 mod frequency;
@@ -20,12 +21,15 @@ mod patch;
 mod plane;
 mod projection;
 pub mod random;
+mod raster;
 mod rectangle;
+mod reflectance;
 mod shape;
 mod slices;
 mod window;
 
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
+pub use environment::{Environment, EnvironmentMap, LatLong, SphericalGaussian};
 pub use field_grid::{Assignment, FieldGrid};
 pub use frame::{Frame, TwoPlane, box_corners};
 pub use frequency::{FrequencyAxis, SliceGrid};
@@ -34,7 +38,9 @@ pub use number::tidy;
 pub use patch::{Patch, Specular};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
 pub use projection::{Projection, ProjectionGrid};
+pub use raster::Raster;
 pub use rectangle::Rectangle;
+pub use reflectance::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance};
 pub use shape::{
     Disc, Grating, HalfPlane, Light, Mask, Shape, interpolated_normal, triangle_distance,
 };

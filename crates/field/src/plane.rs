@@ -18,23 +18,8 @@ pub enum Quantity {
     #[default]
     Radiance,
     /// Differential irradiance: radiance times G = (1 + u² + v²)⁻² = cos θ dω / du dv
-    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md, Eq. 7).
+    /// (Durand et al. 2005, section 3.3 in 2D; docs/theory.md, Eq. 7); on a surface times cos θ cos² φ = cos θ dω / dθ dφ.
     DifferentialIrradiance,
-}
-
-impl Quantity {
-    /// What the quantity multiplies radiance by at a ray.
-    #[inline]
-    #[must_use]
-    pub fn factor(&self, ray: &TwoPlane) -> f64 {
-        match self {
-            Self::Radiance => 1.0,
-            Self::DifferentialIrradiance => {
-                let secant_squared = ray.secant_squared();
-                1.0 / (secant_squared * secant_squared)
-            }
-        }
-    }
 }
 
 /// What the coordinates of a plane's rays are counted from.
@@ -51,6 +36,17 @@ pub enum Orientation {
     /// The surface itself: positions along T and B of the point hit, angles to the normal at that point, T and B being turned with
     /// it by the smallest angle.
     LocalNormals,
+    /// As `LocalNormals`, light that arrives being turned about the normal: in the direction in which a mirror would send it
+    /// (Durand et al. 2005, Fig. 10, step 4).
+    Mirrored,
+}
+
+impl Orientation {
+    /// Whether angles are counted from the normal at the point hit.
+    #[must_use]
+    pub fn is_local(self) -> bool {
+        matches!(self, Self::LocalNormals | Self::Mirrored)
+    }
 }
 
 /// Where on the central ray the local light field is looked at, and how.
@@ -76,4 +72,23 @@ pub struct VirtualPlane {
     pub window: Window,
     /// The frequencies of its slices.
     pub grid: SliceGrid,
+}
+
+impl VirtualPlane {
+    /// What its quantity multiplies radiance by at a ray.
+    #[inline]
+    #[must_use]
+    pub fn factor(&self, ray: &TwoPlane) -> f64 {
+        match (self.quantity, self.orientation) {
+            (Quantity::Radiance, _) => 1.0,
+            (Quantity::DifferentialIrradiance, Orientation::Orthogonal) => {
+                let secant_squared = ray.secant_squared();
+                1.0 / (secant_squared * secant_squared)
+            }
+            (Quantity::DifferentialIrradiance, _) => {
+                let latitude = ray.v.cos();
+                (ray.u + self.longitude).cos() * latitude * latitude
+            }
+        }
+    }
 }

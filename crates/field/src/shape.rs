@@ -1,4 +1,4 @@
-use crate::{Image, Rectangle, TwoPlane};
+use crate::{Environment, Image, Rectangle, TwoPlane};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -154,7 +154,7 @@ pub enum Mask {
 }
 
 /// A light in a plane across the central ray, shining along it.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub enum Light {
     /// A flat shape.
     Area {
@@ -183,6 +183,11 @@ pub enum Light {
         irradiance: f64,
         /// The picture.
         image: Image,
+    },
+    /// Light from far away.
+    Environment {
+        /// From where how much.
+        environment: Environment,
     },
 }
 

@@ -6,7 +6,8 @@
 //!
 //! * [`comparison()`]: one quantity, measured | predicted | difference in σ;
 //! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
-//! * [`section()`]: that cut alone.
+//! * [`section()`]: that cut alone;
+//! * [`curves()`]: curves and measured points, panel beside panel.
 //!
 //! Arrays are [x, y] with both axes ascending; pictures put x to the right and y upwards.
 //!
@@ -37,6 +38,7 @@ mod axis;
 mod bar;
 mod color;
 mod comparison;
+mod curves;
 mod cut;
 mod figure;
 mod image;
@@ -50,6 +52,7 @@ mod text;
 pub use axis::{Axis, Quantity};
 pub use color::Scale;
 pub use comparison::{Comparison, comparison};
+pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
 pub use figure::{Error, Figure};
 pub use section::{PlaneMark, Section, Segment, SegmentKind, section};
 pub use strip::{Column, Guide, Picture, Strip, strip};

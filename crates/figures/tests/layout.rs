@@ -6,7 +6,9 @@ mod common;
 
 use common::{DECIBEL, compare, corner, path, scene};
 use etendue_field::Side;
-use etendue_figures::{Figure, Scale, section};
+use etendue_figures::{
+    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, curves, section,
+};
 use resvg::usvg;
 
 /// Figures of every kind: few planes and many, short names and long, plain numbers, tiny ones and gaps.
@@ -32,7 +34,37 @@ fn gallery() -> Vec<Figure> {
         figures.push(path(&scene, tiny.view()));
         figures.push(section(&scene, &"A long title ".repeat(20), "").unwrap());
     }
+    for count in [1, 3, 5] {
+        figures.push(curves(&lines(count)).unwrap());
+    }
     figures
+}
+
+/// Panels of a curve and of points, one with tiny numbers.
+fn lines(count: usize) -> Curves {
+    let curve = |kind, name: &str, scale: f64| Curve {
+        kind,
+        name: name.to_owned(),
+        points: vec![[-1.0, 0.0, 0.0], [0.5, scale, 0.1 * scale]],
+    };
+    let panel = |i: usize| {
+        let scale = if i == 0 { 3e-7 } else { 25.0 };
+        CurvePanel {
+            title: "*a* panel with a title that is a good deal longer than it is wide".to_owned(),
+            x: Quantity::new("*θ*_{0} = −*θ*_{1}", "degrees"),
+            curves: vec![
+                curve(CurveKind::Theory, "corrected", scale),
+                curve(CurveKind::Rival, "as printed", 0.5 * scale),
+                curve(CurveKind::Measured, "measured", scale),
+            ],
+        }
+    };
+    Curves {
+        title: "A title".to_owned(),
+        note: String::new(),
+        y: Quantity::new("*B*", "cycles/slope"),
+        panels: (0..count).map(panel).collect(),
+    }
 }
 
 /// The texts of a figure with the boxes of their lines, and the size of the canvas.

@@ -1,3 +1,13 @@
+mod light;
+mod surface;
+
+pub use light::{
+    BulbFile, EnvironmentFile, GratingFile, ImageFile, LightFile, SphericalGaussianFile,
+};
+pub use surface::{
+    BrdfFile, EventFile, FormFile, FresnelFile, LobeFile, MeshSource, PatternFile, SurfaceFile,
+};
+
 use crate::SceneError;
 use etendue_field::{Orientation, Profile, Quantity};
 use serde::{Deserialize, Serialize};
@@ -31,108 +41,6 @@ pub struct SceneFile {
     /// How it is measured.
     #[serde(default)]
     pub run: RunFile,
-}
-
-/// The light. The central ray leaves its centre.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum LightFile {
-    /// A Lambertian rectangle orthogonal to the central ray, edges along X and Y, dark on its back.
-    Rectangle {
-        /// Centre, world coordinates.
-        center: [f64; 3],
-        /// Side lengths along X and Y.
-        size: [f64; 2],
-        /// Radiance, W m⁻² sr⁻¹.
-        #[serde(default = "one")]
-        radiance: f64,
-    },
-    /// A Lambertian disc orthogonal to the central ray, dark on its back.
-    Disc {
-        /// Centre, world coordinates.
-        center: [f64; 3],
-        /// Radius.
-        radius: f64,
-        /// Radiance, W m⁻² sr⁻¹.
-        #[serde(default = "one")]
-        radiance: f64,
-    },
-    /// A point that shines alike in all directions.
-    Point {
-        /// Where it is, world coordinates.
-        center: [f64; 3],
-        /// Intensity, W sr⁻¹.
-        #[serde(default = "one")]
-        intensity: f64,
-    },
-    /// A flat bulb whose radiance falls off as cosⁿθ from the central ray.
-    Spot {
-        /// Centre, world coordinates.
-        center: [f64; 3],
-        /// Its shape.
-        bulb: BulbFile,
-        /// Radiance along the central ray, W m⁻² sr⁻¹.
-        #[serde(default = "one")]
-        radiance: f64,
-        /// The exponent n.
-        exponent: f64,
-    },
-    /// A slide projector: a point whose intensity is a picture over slopes.
-    Projector {
-        /// Where it is, world coordinates.
-        center: [f64; 3],
-        /// Intensity where the picture is 1, W sr⁻¹.
-        #[serde(default = "one")]
-        intensity: f64,
-        /// The picture, over slopes along X and along Y.
-        image: ImageFile,
-    },
-    /// A collimated beam along the central ray whose irradiance is a picture.
-    Beam {
-        /// Where the central ray begins, world coordinates.
-        center: [f64; 3],
-        /// Irradiance where the picture is 1, W m⁻².
-        #[serde(default = "one")]
-        irradiance: f64,
-        /// The picture, in metres along X and along Y.
-        image: ImageFile,
-    },
-}
-
-/// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), times a grating ½ (1 + m cos(2π f t + p)) if it has one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct ImageFile {
-    /// w₁ and w₂ along X and along Y.
-    pub width: [f64; 2],
-    /// Its grating.
-    #[serde(default)]
-    pub grating: Option<GratingFile>,
-}
-
-/// The grating of a picture.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct GratingFile {
-    /// The axis along which it varies.
-    pub axis: AxisName,
-    /// f, cycles per unit of the picture.
-    pub frequency: f64,
-    /// m.
-    #[serde(default = "one")]
-    pub modulation: f64,
-    /// p, radians.
-    #[serde(default)]
-    pub phase: f64,
-}
-
-/// The bulb of a spot, orthogonal to the central ray.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum BulbFile {
-    /// A square with this side, edges along X and Y.
-    Square(f64),
-    /// A disc with this radius.
-    Disc(f64),
 }
 
 /// Black blockers, most of them in one plane orthogonal to the central ray.
@@ -269,136 +177,6 @@ pub enum HalfName {
     Above,
 }
 
-/// Where a mesh comes from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum MeshSource {
-    /// An OBJ or PLY file; the path is relative to the scene file, and stays inside its folder.
-    File(String),
-    /// A generated piece of the paraboloid z = −(k₁ x² + k₂ y²)/2 around the origin, facing along z: see
-    /// [`Mesh::paraboloid`](crate::Mesh::paraboloid).
-    Paraboloid {
-        /// k₁ and k₂, per metre: positive if it is convex.
-        curvatures: [f64; 2],
-        /// It reaches to ± this along x and along y.
-        half: f64,
-        /// Cells along a side, of two triangles each.
-        cells: u32,
-    },
-    /// A generated closed surface around the origin: see [`Mesh::star`](crate::Mesh::star).
-    Star {
-        /// Mean radius.
-        radius: f64,
-        /// Height of the lobes as a share of the radius.
-        relief: f64,
-        /// Number of lobes around the axis.
-        lobes: u32,
-        /// Rings from pole to pole.
-        rings: u32,
-    },
-}
-
-/// A Lambertian surface.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum SurfaceFile {
-    /// A rectangle, edges along X and Y unless it faces elsewhere.
-    Rectangle {
-        /// Name, for the path and the planes to refer to.
-        name: String,
-        /// Centre, world coordinates.
-        center: [f64; 3],
-        /// Side lengths along X and Y.
-        size: [f64; 2],
-        /// Its normal, any length: back along `path.direction` unless stated. Its edges are then along the part of the path's
-        /// X axis that is orthogonal to it (of Y, if X is along it), and across.
-        #[serde(default)]
-        facing: Option<[f64; 3]>,
-        /// Reflected over incident flux.
-        #[serde(default = "half")]
-        albedo: f64,
-    },
-    /// A triangle mesh, Lambertian on both sides.
-    Mesh {
-        /// Name.
-        name: String,
-        /// Where the mesh's origin is put, world coordinates.
-        center: [f64; 3],
-        /// The triangles.
-        mesh: MeshSource,
-        /// Factor on the mesh's coordinates.
-        #[serde(default = "one")]
-        scale: f64,
-        /// Reflected over incident flux, if it is Lambertian.
-        #[serde(default = "half")]
-        albedo: f64,
-        /// What it does to light as a smooth surface, with normals interpolated between its vertices.
-        #[serde(default)]
-        event: Option<EventFile>,
-    },
-    /// A smooth piece of a plane, sphere, cylinder or paraboloid that reflects or refracts.
-    Smooth {
-        /// Name.
-        name: String,
-        /// Its vertex, world coordinates.
-        center: [f64; 3],
-        /// Its normal at the vertex, any length.
-        facing: [f64; 3],
-        /// Its form.
-        form: FormFile,
-        /// Direction of the first curvature, any length: the path's X axis unless stated (Y, if it faces along X); its part
-        /// orthogonal to the normal is used.
-        #[serde(default)]
-        along: Option<[f64; 3]>,
-        /// Its radius, seen along the normal.
-        aperture: f64,
-        /// What it does.
-        event: EventFile,
-    },
-}
-
-impl SurfaceFile {
-    /// Its name.
-    #[must_use]
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Rectangle { name, .. } | Self::Mesh { name, .. } | Self::Smooth { name, .. } => {
-                name
-            }
-        }
-    }
-}
-
-/// The form of a smooth surface around its vertex; curvatures per metre, positive if it is convex seen from where it faces.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub enum FormFile {
-    /// Flat.
-    Plane,
-    /// A sphere with this curvature, 1/R.
-    Sphere(f64),
-    /// A circular cylinder with this curvature; its axis is across `along`.
-    Cylinder(f64),
-    /// A paraboloid with these curvatures at its vertex, the first along `along`.
-    Paraboloid(f64, f64),
-}
-
-/// What a smooth surface does to light.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub enum EventFile {
-    /// Reflects it all.
-    Mirror,
-    /// Lets it through by Snell's law; nothing is reflected.
-    Refraction {
-        /// Index of refraction on the side it faces.
-        front: f64,
-        /// Index on the other side.
-        back: f64,
-    },
-    /// A thin lens, flat, with this focal length.
-    ThinLens(f64),
-}
-
 /// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
 /// next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -531,6 +309,14 @@ fn one() -> f64 {
     1.0
 }
 
+fn along_y() -> [f64; 3] {
+    [0.0, 1.0, 0.0]
+}
+
+fn along_z() -> [f64; 3] {
+    [0.0, 0.0, 1.0]
+}
+
 fn half() -> f64 {
     0.5
 }
@@ -540,8 +326,8 @@ fn eight() -> u32 {
 }
 
 impl SceneFile {
-    /// The mesh files it names.
-    pub fn mesh_files(&self) -> impl Iterator<Item = &str> {
+    /// The files of meshes and pictures it names.
+    pub fn named_files(&self) -> impl Iterator<Item = &str> {
         let blockers = self.blockers.iter().filter_map(|b| match b {
             BlockersFile::Mesh { mesh, .. } => Some(mesh),
             _ => None,
@@ -550,10 +336,29 @@ impl SceneFile {
             SurfaceFile::Mesh { mesh, .. } => Some(mesh),
             SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
         });
-        blockers.chain(surfaces).filter_map(|mesh| match mesh {
+        let meshes = blockers.chain(surfaces).filter_map(|mesh| match mesh {
             MeshSource::File(path) => Some(path.as_str()),
             MeshSource::Star { .. } | MeshSource::Paraboloid { .. } => None,
-        })
+        });
+        let environment = match &self.light {
+            LightFile::Environment {
+                map: EnvironmentFile::File(path),
+                ..
+            } => Some(path.as_str()),
+            _ => None,
+        };
+        let patterns = self.surfaces.iter().filter_map(|s| match s {
+            SurfaceFile::Smooth {
+                event: EventFile::Reflects { blend, texture, .. },
+                ..
+            } => Some([blend, texture]),
+            _ => None,
+        });
+        let pictures = patterns.flatten().filter_map(|pattern| match pattern {
+            Some(PatternFile::Picture { file, .. }) => Some(file.as_str()),
+            _ => None,
+        });
+        meshes.chain(environment).chain(pictures)
     }
 
     /// Reads a scene file.

@@ -22,18 +22,20 @@ mod fault;
 mod file;
 mod mesh;
 mod overrides;
+mod picture;
 mod resolve;
 mod scene;
 
 pub use fault::{Fault, SceneError};
 pub use file::{
-    AxisFile, AxisName, BlockersFile, BulbFile, Emission, EventFile, FormFile, FrequenciesFile,
-    GratingFile, HalfName, ImageFile, LightFile, MeshSource, PathFile, Place, PlaneFile, RunFile,
-    SceneFile, ShapeFile, SurfaceFile, WindowFile,
+    AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
+    FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
+    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, SceneFile, ShapeFile,
+    SphericalGaussianFile, SurfaceFile, WindowFile,
 };
 pub use mesh::{Mesh, MeshError};
 pub use resolve::resolve;
 pub use scene::{
-    BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene, SmoothMesh,
-    Surface,
+    BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene,
+    SmoothMesh, Surface,
 };

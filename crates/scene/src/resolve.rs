@@ -5,7 +5,9 @@ mod light;
 mod meshes;
 mod patches;
 mod path;
+mod pictures;
 mod planes;
+mod reflectance;
 mod surfaces;
 
 use crate::fault::SceneError;
@@ -17,7 +19,7 @@ use glam::DVec3;
 use path::Things;
 use std::path::Path;
 
-/// Checks a scene file and resolves it to a scene; paths of meshes are relative to `folder`, `memory` is what
+/// Checks a scene file and resolves it to a scene; paths of meshes and pictures are relative to `folder`, `memory` is what
 /// this machine can hold, in bytes.
 ///
 /// # Errors
@@ -53,12 +55,12 @@ struct Resolver<'a> {
 impl Resolver<'_> {
     fn scene(&mut self, name: &str, file: SceneFile, memory: u64) -> Option<Scene> {
         let frame = self.frame(&file);
-        let light = self.light(&file.light);
         self.run(&file.run);
         self.level(file.run.alpha, file.planes.len());
         self.layers(&file);
         // Without a frame no distance is known: check on with one that leaves the values as they are.
         let checked = frame.unwrap_or(Frame::IDENTITY);
+        let light = self.light(&file.light, &checked);
         let surfaces = self.surfaces(&file, &checked);
         let meshes = self.meshes(&file, &checked);
         let patches = self.patches(&file, &checked);

@@ -1,5 +1,7 @@
 use crate::{Emission, SceneFile};
-use etendue_field::{Frame, Light, Mask, Patch, Rectangle, Specular, VirtualPlane};
+use etendue_field::{
+    Frame, Light, Lobe, Mask, Patch, Rectangle, Reflectance, Specular, VirtualPlane,
+};
 use glam::DVec3;
 
 /// A checked experiment. Distances are along the central ray from the light, blockers lie across its first leg, and
@@ -184,7 +186,27 @@ pub struct PatchObject {
     /// Its form, in the frame at the light.
     pub patch: Patch,
     /// What it does.
-    pub event: Specular,
+    pub event: Event,
+}
+
+/// What a smooth surface does to light.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Event {
+    /// Sends each ray on in one direction.
+    Specular(Specular),
+    /// Reflects it by a BRDF, on the side it faces; on the other it is black.
+    Reflects(Reflectance),
+}
+
+impl Event {
+    /// Whether light leaves it in the direction of a mirror, or more or less so; Lambertian light does not.
+    #[must_use]
+    pub fn mirrors(&self) -> bool {
+        match self {
+            Self::Specular(event) => *event == Specular::Mirror,
+            Self::Reflects(reflectance) => reflectance.brdf.lobe != Lobe::Lambertian,
+        }
+    }
 }
 
 /// A Lambertian rectangle.

@@ -129,6 +129,71 @@ const BAD: &[(&str, &str, &str)] = &[
         "planes[3].orientation",
     ),
     ("event: Mirror)", "event: ThinLens(0))", "surfaces[0].event"),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Ggx(0))))",
+        "surfaces[0].event.brdf.lobe",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Beckmann(2))))",
+        "surfaces[0].event.brdf.lobe",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Phong(-1))))",
+        "surfaces[0].event.brdf.lobe",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Phong(NaN))))",
+        "surfaces[0].event.brdf.lobe",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian, albedo: 1.5)))",
+        "surfaces[0].event.brdf.albedo",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian, fresnel: Dielectric(0))))",
+        "surfaces[0].event.brdf.fresnel",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian, fresnel: Conductor(n: NaN, k: 1))))",
+        "surfaces[0].event.brdf.fresnel.n",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian, fresnel: Conductor(n: 1, k: -1))))",
+        "surfaces[0].event.brdf.fresnel.k",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian), blend: Checkerboard(0.1)))",
+        "surfaces[0].event.blend",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian), other: (lobe: Lambertian)))",
+        "surfaces[0].event.other",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian), texture: Checkerboard(0)))",
+        "surfaces[0].event.texture",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian), texture: Cosine(axis: X, frequency: inf)))",
+        "surfaces[0].event.texture.frequency",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian), texture: Cosine(axis: Y, frequency: 1, modulation: 2)))",
+        "surfaces[0].event.texture.modulation",
+    ),
     ("aperture: 0.4", "aperture: 0", "surfaces[0].aperture"),
     ("aperture: 0.4", "aperture: 2.5", "surfaces[0].aperture"),
     ("aperture: 0.4", "aperture: NaN", "surfaces[0].aperture"),
@@ -175,7 +240,7 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "(name: \"d\", at: After(\"glass\"))",
-        "(name: \"d\", at: After(\"glass\"), orientation: Tangent, quantity: DifferentialIrradiance)",
+        "(name: \"d\", at: After(\"glass\"), orientation: Mirrored)",
         "planes[3].orientation",
     ),
     (

@@ -3,9 +3,7 @@ use crate::histogram::ProjectionHistogram;
 use crate::measurement::Measurement;
 use crate::ray_moments::RayMoments;
 use crate::transform::{Accumulator, SliceTransform};
-use etendue_field::{
-    Crossing, PhotonSource, PlaneTally, ProjectionGrid, Quantity, VirtualPlane, Window,
-};
+use etendue_field::{Crossing, PhotonSource, PlaneTally, ProjectionGrid, VirtualPlane};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -67,8 +65,7 @@ fn measure_batch(
 
 /// Takes the crossings of one plane, applies its quantity and its window and keeps the sums.
 struct Recorder<'plan> {
-    window: Window,
-    quantity: Quantity,
+    plane: &'plan VirtualPlane,
     tally: PlaneTally,
     slices: Accumulator<'plan>,
     projection: ProjectionHistogram,
@@ -76,11 +73,10 @@ struct Recorder<'plan> {
 }
 
 impl<'plan> Recorder<'plan> {
-    fn new(plane: &VirtualPlane, plan: &'plan SliceTransform) -> Self {
+    fn new(plane: &'plan VirtualPlane, plan: &'plan SliceTransform) -> Self {
         let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         Self {
-            window: plane.window,
-            quantity: plane.quantity,
+            plane,
             tally: PlaneTally::default(),
             slices: plan.accumulator(),
             projection: ProjectionHistogram::new(cells),
@@ -91,12 +87,12 @@ impl<'plan> Recorder<'plan> {
     fn record(&mut self, crossings: &[Crossing]) {
         for Crossing { ray, weight } in crossings {
             self.tally.crossed += 1;
-            if !self.window.contains(ray) {
+            if !self.plane.window.contains(ray) {
                 self.tally.outside += 1;
                 continue;
             }
             self.tally.inside += 1;
-            let weight = weight * self.window.value(ray) * self.quantity.factor(ray);
+            let weight = weight * self.plane.window.value(ray) * self.plane.factor(ray);
             self.slices.deposit(ray, weight);
             self.projection.deposit(ray, weight);
             self.moments.deposit(ray, weight);

@@ -125,9 +125,9 @@ impl Chain {
     }
 }
 
-/// Light that goes through pictures is followed ray by ray (`rays`).
+/// Light that goes through pictures is followed ray by ray (`rays`), that of an environment not at all.
 pub(crate) fn no_closed_form() -> ! {
-    panic!("a projector or a beam has no closed form here")
+    panic!("a projector, a beam or an environment has no closed form here")
 }
 
 impl Path<'_> {
@@ -136,7 +136,9 @@ impl Path<'_> {
         match self.light {
             Light::Area { shape, .. } => std::slice::from_ref(shape),
             Light::Point { .. } => &[],
-            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
         }
     }
 
@@ -146,7 +148,9 @@ impl Path<'_> {
         let light = match self.light {
             Light::Area { exponent, .. } => -0.5 * exponent,
             Light::Point { .. } => 0.5,
-            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
         };
         light - 2.0 * f64::from(self.cosines)
     }

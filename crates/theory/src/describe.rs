@@ -42,6 +42,7 @@ impl Source {
                 let picture = picture(&image, ["x", "y"]);
                 format!("source  {name}: beam, irradiance {irradiance} W m⁻² × {picture}")
             }
+            Light::Environment { .. } => format!("source  {name}: environment"),
         }
     }
 }

@@ -179,7 +179,9 @@ impl Expansion {
                     section.become_segment(path.distance);
                 }
             }
-            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
         }
     }
 

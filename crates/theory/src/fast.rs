@@ -153,8 +153,8 @@ mod tests {
         shaded.operators.push(cosine());
         vec![
             chain_of(round, steps.clone()),
-            chain_of(point, steps),
-            chain_of(point, []),
+            chain_of(point.clone(), steps),
+            chain_of(point.clone(), []),
             chain_of(point, [(2.0, Some(half_plane(0, 0.25, true)))]),
             chain_of(spot(disc([0.0; 2], 0.05), 20.0), [(1.0, None)]),
             shaded,

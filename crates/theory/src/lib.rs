@@ -13,6 +13,7 @@
 //! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors, refraction, lenses) as affine
 //! maps of rays, with what they do to spectra and covariances; a chain does not use them. [`rays`] predicts what is behind mirrors,
 //! refracting surfaces and lenses: exactly, by following rays, and to first order, by a chain of those maps read off the same surfaces.
+//! [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in 2D.
 //!
 //! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no evidence.
 //!
@@ -67,7 +68,9 @@ pub mod rays;
 mod reference;
 mod reflection;
 mod row;
-mod shading;
+pub mod scattering;
+pub mod shading;
+mod shadow;
 mod sinc;
 mod slope;
 #[cfg(test)]

@@ -288,12 +288,12 @@ mod tests {
             (0.3, Some(grating(1, 4.0, 0.0))),
             (0.2, None),
         ];
-        let mut shaded = chain_of(square, masks.clone());
+        let mut shaded = chain_of(square.clone(), masks.clone());
         shaded.operators.push(cosine());
         let round = chain_of(spot(disc([0.05, 0.0], 0.2), 0.0), masks.clone());
         for (chain, close) in [
             (chain_of(square, masks.clone()), 1e-11), // as said at NODES
-            (chain_of(point, masks.clone()), 1e-11),  // as said at NODES
+            (chain_of(point.clone(), masks.clone()), 1e-11), // as said at NODES
             (chain_of(point, [(0.0, None)]), 1e-11),  // on an edge between cells
             (chain_of(spot(oblong, 20.0), masks), 1e-11), // the same series on both sides
             (shaded, 1e-11),                          // the same series on both sides

@@ -1,17 +1,23 @@
+mod reflected;
+
+use crate::bounce::at;
 use crate::bvh::{Form, Target, Targets};
 use crate::emit::{LAMBERTIAN, point, radiance};
 use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
+use crate::pieces::{Piece, Pieces};
 use crate::proposal::Follower;
 use crate::shares::Shares;
+use crate::sky::Sky;
 use crate::station::Station;
 use crate::tracer::rounding;
 use etendue_field::random::{self, Stream};
 use etendue_field::{
-    Crossing, Frame, Ledger, Light, Orientation, PhotonSource, Shape, Side, Specular, TwoPlane,
-    VirtualPlane,
+    Crossing, Frame, Ledger, Light, Orientation, Patch, PhotonSource, Reflectance, Shape, Side,
+    Specular, TwoPlane, VirtualPlane,
 };
-use etendue_scene::{Object, PatchObject, Scene};
+use etendue_scene::{Event, Object, PatchObject, Scene};
 use glam::DVec3;
+use reflected::Reflection;
 use std::f64::consts::TAU;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
@@ -20,18 +26,20 @@ use std::f64::consts::TAU;
 /// radiance that comes along it. Nothing is emitted, aimed or absorbed, and there is no ledger.
 #[derive(Debug)]
 pub struct Backward {
-    light: Area,
+    light: Source,
     legs: Vec<Leg>,
     lookers: Vec<Looker>,
     shares: Shares,
     seed: u64,
 }
 
-/// A light that a ray can hit.
-#[derive(Clone, Copy, Debug)]
-struct Area {
-    light: Light,
-    shape: Shape,
+/// What a ray can find where the path begins.
+#[derive(Debug)]
+enum Source {
+    /// A light that it hits.
+    Area { light: Light, shape: Shape },
+    /// Light from far away.
+    Sky(Sky),
 }
 
 /// A leg of the path, looked along from its end.
@@ -61,23 +69,13 @@ struct Leaves {
 enum How {
     /// Diffusely, from pieces of which points can be drawn.
     Diffuse { albedo: f64, pieces: Pieces },
+    /// By a BRDF that may vary over a patch, in the frame of the leg.
+    Reflects {
+        patch: Patch,
+        reflectance: Box<Reflectance>,
+    },
     /// Turned; the lens's frame, in the frame of the leg.
     Turned { lens: Frame, event: Specular },
-}
-
-/// Parallelograms or triangles in the frame at the light, with their running share of the area.
-#[derive(Debug)]
-struct Pieces {
-    upto: Vec<(f64, Piece)>,
-    area: f64,
-}
-
-/// A corner and two edges, of a parallelogram or of a triangle.
-#[derive(Clone, Copy, Debug)]
-struct Piece {
-    corner: DVec3,
-    edges: [DVec3; 2],
-    is_triangle: bool,
 }
 
 /// A backward ray has no chance to hit a point.
@@ -100,22 +98,27 @@ impl Backward {
     /// The backward tracer of a scene.
     ///
     /// # Errors
-    /// When the light is a point.
+    /// When the light is a point, a projector or a beam.
     pub fn new(scene: &Scene) -> Result<Self, PointLight> {
-        let Light::Area { shape, .. } = scene.light else {
-            return Err(PointLight);
+        let light = match &scene.light {
+            Light::Area { shape, .. } => Source::Area {
+                light: scene.light.clone(),
+                shape: *shape,
+            },
+            Light::Environment { environment } => Source::Sky(Sky::new(environment)),
+            Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => {
+                return Err(PointLight);
+            }
         };
         let planes = scene.planes.iter().enumerate();
-        let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &shape));
+        let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &light));
+        let lookers = lookers.collect();
         Ok(Self {
-            light: Area {
-                light: scene.light,
-                shape,
-            },
+            light,
             legs: (0..scene.path.legs.len())
                 .map(|leg| Leg::new(scene, leg))
                 .collect(),
-            lookers: lookers.collect(),
+            lookers,
             shares: Shares::new(&scene.run),
             seed: scene.run.seed,
         })
@@ -132,26 +135,46 @@ impl Backward {
         let r = words(0);
         let [x, y] = [0, 1].map(|axis| looker.position[axis].quantile(r[axis]));
         let mut density = looker.position[0].density(x) * looker.position[1].density(y);
-        let [u, v] = if looker.to_light {
-            let [x0, y0] = point(&self.light.shape, [r[2], r[3]]);
-            density *= looker.station.distance * looker.station.distance / self.light.shape.area();
-            [
-                (x - x0) / looker.station.distance,
-                (y - y0) / looker.station.distance,
-            ]
-        } else {
-            let slopes = [0, 1].map(|axis| looker.slope[axis].quantile(r[2 + axis]));
-            density *= looker.slope[0].density(slopes[0]) * looker.slope[1].density(slopes[1]);
-            slopes
+        let by_window = |[u, v]: [f64; 2]| looker.slope[0].density(u) * looker.slope[1].density(v);
+        let in_window = |r: [f64; 2]| [0, 1].map(|axis| looker.slope[axis].quantile(r[axis]));
+        let [u, v] = match &self.light {
+            Source::Area { shape, .. } if looker.to_light => {
+                let [x0, y0] = point(shape, [r[2], r[3]]);
+                density *= looker.station.distance * looker.station.distance / shape.area();
+                [
+                    (x - x0) / looker.station.distance,
+                    (y - y0) / looker.station.distance,
+                ]
+            }
+            Source::Sky(sky) if looker.to_light => {
+                // Half of them by the environment; its directions go forward or nowhere.
+                let drawn = if r[2] < 0.5 {
+                    sky.slopes(words(1))
+                } else {
+                    Some(in_window([2.0 * r[2] - 1.0, r[3]]))
+                };
+                let [u, v] = drawn.unwrap_or([f64::INFINITY; 2]);
+                let by_sky = drawn.map_or(0.0, |_| sky.slope_density(&TwoPlane { x, y, u, v }));
+                density *= 0.5 * (by_sky + by_window([u, v]));
+                [u, v]
+            }
+            _ => {
+                let slopes = in_window([r[2], r[3]]);
+                density *= by_window(slopes);
+                slopes
+            }
         };
         let ray = TwoPlane { x, y, u, v };
-        let Some(on_leg) = looker.station.leg_ray(&ray) else {
+        let on_leg = looker.station.leg_ray(&ray).filter(|_| density > 0.0);
+        let Some((on_leg, area)) = on_leg else {
             return Crossing { ray, weight: 0.0 };
         };
         let (distance, side) = (looker.station.distance, looker.station.side);
         let found = self.incident(looker.leg, &on_leg, distance, side, 1, &words);
-        let weight = if density > 0.0 { found / density } else { 0.0 };
-        Crossing { ray, weight }
+        Crossing {
+            ray,
+            weight: area * found / density,
+        }
     }
 
     /// The radiance that arrives at `distance` along a ray of a leg, given where the leg begins; `block` numbers the random
@@ -167,7 +190,7 @@ impl Backward {
     ) -> f64 {
         let this = &self.legs[leg];
         let Some(leaves) = &this.leaves else {
-            let radiance = radiance(&self.light.light, ray);
+            let radiance = self.light.radiance(ray);
             if radiance <= 0.0 {
                 return 0.0;
             }
@@ -176,10 +199,10 @@ impl Backward {
                 .visibility(ray, 0.0, distance, side, |what| what.is(this.ends));
             return radiance * visible;
         };
-        let Some((at, target)) = leaves.targets.last(ray) else {
+        let Some((begin, target)) = leaves.targets.last(ray) else {
             return 0.0;
         };
-        let from = at + leaves.rounding;
+        let from = begin + leaves.rounding;
         let ignored = |object| Some(object) == this.ends || object == leaves.object;
         let visible = this
             .obstacles
@@ -190,7 +213,7 @@ impl Backward {
             return 0.0;
         }
         let along = direction(ray);
-        let point = start(ray) + at * along;
+        let point = start(ray) + begin * along;
         match &leaves.how {
             How::Diffuse { albedo, .. } => {
                 // It was left on the side it goes away from.
@@ -201,6 +224,21 @@ impl Backward {
                 let point = this.frame.to_world(point);
                 visible * albedo / LAMBERTIAN
                     * self.irradiance(leg - 1, point, normal, block, words)
+            }
+            How::Reflects { patch, reflectance } => {
+                let facing = target.form.normal(point);
+                if along.dot(facing) <= 0.0 {
+                    return 0.0;
+                }
+                let frame = Frame::IDENTITY.turned_to(this.frame.vector_to_world(facing));
+                let to = frame.vector_to_local(this.frame.vector_to_world(along));
+                let reflection = Reflection {
+                    brdf: at(patch, reflectance, point),
+                    point: this.frame.to_world(point),
+                    frame,
+                    to: to.normalize(),
+                };
+                visible * self.reflected(leg - 1, &reflection, block, words)
             }
             How::Turned { lens, event } => {
                 let facing = target.form.normal(point);
@@ -214,9 +252,33 @@ impl Backward {
                 let Some(ray) = ray_through(end, before.vector_to_world(-came)) else {
                     return 0.0;
                 };
-                visible * factor * self.incident(leg - 1, &ray, end.z, Side::Before, block, words)
+                visible * factor * self.arriving(leg - 1, &ray, end.z, block, words)
             }
         }
+    }
+
+    /// The radiance that arrives along a ray at a point, `end` along the leg, of the surface that ends it: of a hollow or a bulky one, another part
+    /// may stand in the way.
+    fn arriving(
+        &self,
+        leg: usize,
+        ray: &TwoPlane,
+        end: f64,
+        block: u32,
+        words: &impl Fn(u32) -> [f64; 4],
+    ) -> f64 {
+        let this = &self.legs[leg];
+        if !matches!(this.ends, Some(Object::Surface(_))) {
+            let leaves = this.leaves.as_ref();
+            let from = leaves.map_or(0.0, |leaves| {
+                let left = leaves.targets.last(ray);
+                left.map_or(0.0, |(at, _)| at + leaves.rounding)
+            });
+            if this.obstacles.is_behind(this.ends, ray, from, end) {
+                return 0.0;
+            }
+        }
+        self.incident(leg, ray, end, Side::Before, block, words)
     }
 
     /// The irradiance at a point, with its normal, at the end of a leg, from one point of what light leaves at its beginning;
@@ -238,12 +300,20 @@ impl Backward {
             }) => Some(pieces),
             Some(_) => return self.through_turn(leg, point, normal, r, block, words),
         };
-        let (from, facing, area) = if let Some(pieces) = pieces {
-            let (from, facing) = pieces.point([r[0], r[1], r[2]]);
-            (from, facing, pieces.area)
-        } else {
-            let [x, y] = self::point(&self.light.shape, [r[0], r[1]]);
-            (DVec3::new(x, y, 0.0), DVec3::Z, self.light.shape.area())
+        let (from, facing, area) = match (pieces, &self.light) {
+            (Some(pieces), _) => {
+                let (from, facing) = pieces.point([r[0], r[1], r[2]]);
+                (from, facing, pieces.area())
+            }
+            (None, Source::Area { shape, .. }) => {
+                let [x, y] = self::point(shape, [r[0], r[1]]);
+                (DVec3::new(x, y, 0.0), DVec3::Z, shape.area())
+            }
+            (None, Source::Sky(sky)) => {
+                return sky.irradiance(point, normal, r, |ray, end| {
+                    self.arriving(leg, ray, end, block + 1, words)
+                });
+            }
         };
         let this = &self.legs[leg];
         let [end, begin] = [point, from].map(|p| this.frame.to_local(p));
@@ -265,7 +335,7 @@ impl Backward {
         }
         // cos θ cos θ' dA / r².
         let solid = cosines * area / way.length_squared().powi(2);
-        solid * self.incident(leg, &ray, end.z, Side::Before, block + 1, words)
+        solid * self.arriving(leg, &ray, end.z, block + 1, words)
     }
 }
 
@@ -289,7 +359,7 @@ impl Backward {
         let Some(ray) = ray_through(end, this.vector_to_local(-towards)) else {
             return 0.0;
         };
-        LAMBERTIAN * self.incident(leg, &ray, end.z, Side::Before, block + 1, words)
+        LAMBERTIAN * self.arriving(leg, &ray, end.z, block + 1, words)
     }
 }
 
@@ -318,11 +388,12 @@ fn radiance_factor(
 impl Leg {
     fn new(scene: &Scene, leg: usize) -> Self {
         let this = &scene.path.legs[leg];
+        let ends = scene.path.ends_at(leg).map(|hit| hit.object);
         Self {
             frame: this.frame,
             obstacles: Obstacles::new(scene, this),
             leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
-            ends: scene.path.ends_at(leg).map(|hit| hit.object),
+            ends,
         }
     }
 }
@@ -359,12 +430,18 @@ impl Leaves {
             }
             Object::Patch(i) => {
                 let PatchObject { patch, event, .. } = &scene.patches[i];
-                let (patch, event) = (patch.seen_from(&leg.frame), *event);
-                let lens = patch.frame;
-                (
-                    vec![target(Form::Smooth(patch))],
-                    How::Turned { lens, event },
-                )
+                let patch = patch.seen_from(&leg.frame);
+                let how = match event {
+                    Event::Specular(event) => How::Turned {
+                        lens: patch.frame,
+                        event: *event,
+                    },
+                    Event::Reflects(reflectance) => How::Reflects {
+                        patch,
+                        reflectance: Box::new(reflectance.clone()),
+                    },
+                };
+                (vec![target(Form::Smooth(patch))], how)
             }
         };
         Self {
@@ -376,57 +453,27 @@ impl Leaves {
     }
 }
 
-impl Pieces {
-    fn new(pieces: Vec<Piece>) -> Self {
-        let mut area = 0.0;
-        let upto = pieces.into_iter().map(|piece| {
-            area += piece.area();
-            (area, piece)
-        });
-        Self {
-            upto: upto.collect(),
-            area,
+impl Source {
+    /// Radiance along a ray that nothing stands in the way of.
+    fn radiance(&self, ray: &TwoPlane) -> f64 {
+        match self {
+            Self::Area { light, .. } => radiance(light, ray),
+            Self::Sky(sky) => sky.radiance(ray),
         }
-    }
-
-    /// A uniform point of it and a normal there, from three numbers in (0, 1).
-    fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
-        let wanted = r[2] * self.area;
-        let i = self.upto.partition_point(|(upto, _)| *upto < wanted);
-        let (_, piece) = self.upto[i.min(self.upto.len() - 1)];
-        let [a, b] = piece.edges;
-        let folded = piece.is_triangle && r[0] + r[1] > 1.0;
-        let [s, t] = if folded {
-            [1.0 - r[0], 1.0 - r[1]]
-        } else {
-            [r[0], r[1]]
-        };
-        (piece.corner + s * a + t * b, a.cross(b).normalize())
-    }
-}
-
-impl Piece {
-    fn new(corner: DVec3, ends: [DVec3; 2], is_triangle: bool) -> Self {
-        Self {
-            corner,
-            edges: ends.map(|end| end - corner),
-            is_triangle,
-        }
-    }
-
-    fn area(&self) -> f64 {
-        let [a, b] = self.edges;
-        let whole = a.cross(b).length();
-        if self.is_triangle { 0.5 * whole } else { whole }
     }
 }
 
 impl Looker {
-    fn new(station: Station, plane: &VirtualPlane, shape: &Shape) -> Self {
+    fn new(station: Station, plane: &VirtualPlane, light: &Source) -> Self {
         let w = &plane.window;
-        let bounds = shape.bounds();
-        let slopes = |axis: usize| bounds.size[axis] / plane.distance;
-        let narrower = slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width();
+        let narrower = match light {
+            Source::Area { shape, .. } => {
+                let bounds = shape.bounds();
+                let slopes = |axis: usize| bounds.size[axis] / plane.distance;
+                slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width()
+            }
+            Source::Sky(_) => true,
+        };
         Self {
             leg: plane.leg,
             station,

@@ -1,15 +1,22 @@
 use crate::emit::LAMBERTIAN;
 use crate::obstacles::ray_through;
-use crate::scatter::Scatterer;
+use crate::scatter::{Scatterer, Spread};
 use crate::tracer::{Arrival, cosines};
-use etendue_field::{Frame, Specular, TwoPlane};
-use etendue_scene::{Object, Scene};
+use etendue_field::{Brdf, Frame, Patch, Reflectance, Specular, TwoPlane};
+use etendue_scene::{Event, Object, Scene};
+use glam::DVec3;
 
 /// How light begins a leg, at the surface that ended the one before.
 #[derive(Debug)]
 pub(crate) enum Bounce {
     /// Diffusely; the albedo, and `None` when no plane looks at light that has come so far.
     Diffuse(f64, Option<Scatterer>),
+    /// By a BRDF that may vary over a patch, in the frame of the leg.
+    Reflects {
+        patch: Patch,
+        reflectance: Box<Reflectance>,
+        scatterer: Option<Scatterer>,
+    },
     /// By reflection, refraction or a lens; the lens's frame, in the frame of the leg.
     Specular(Frame, Specular),
 }
@@ -27,7 +34,16 @@ impl Bounce {
             },
             Object::Patch(i) => {
                 let object = &scene.patches[i];
-                Self::Specular(this.frame.decompose(&object.patch.frame), object.event)
+                match &object.event {
+                    Event::Specular(event) => {
+                        Self::Specular(this.frame.decompose(&object.patch.frame), *event)
+                    }
+                    Event::Reflects(reflectance) => Self::Reflects {
+                        patch: object.patch.seen_from(&this.frame),
+                        reflectance: Box::new(reflectance.clone()),
+                        scatterer: Scatterer::new(scene, leg),
+                    },
+                }
             }
         })
     }
@@ -41,9 +57,34 @@ impl Bounce {
                     return None;
                 }
                 let scatterer = scatterer.as_ref()?;
-                let (ray, density) = scatterer.sample(arrival.point, arrival.normal, words)?;
+                let (point, normal) = (arrival.point, arrival.normal);
+                let (ray, density) = scatterer.sample(point, normal, &Spread::Cosine, words)?;
                 // Radiance albedo/π · E, and a photon's flux is E at its point.
                 Some((ray, albedo * arrival.flux / (LAMBERTIAN * density)))
+            }
+            Self::Reflects {
+                patch,
+                reflectance,
+                scatterer,
+            } => {
+                let Arrival {
+                    point,
+                    facing,
+                    direction,
+                    flux,
+                    ..
+                } = *arrival;
+                let brdf = at(patch, reflectance, point);
+                if brdf.albedo <= 0.0 || !arrival.is_on_front() {
+                    return None;
+                }
+                let frame = Frame::IDENTITY.turned_to(facing);
+                let from = frame.vector_to_local(-direction).normalize();
+                let spread = Spread::Lobe { brdf, frame, from };
+                let (ray, density) = scatterer.as_ref()?.sample(point, facing, &spread, words)?;
+                // Radiance f · E, as above.
+                let value = spread.value(&ray);
+                (value > 0.0).then(|| (ray, value * flux / density))
             }
             Self::Specular(lens, event) => {
                 let Arrival { point, facing, .. } = *arrival;
@@ -53,4 +94,11 @@ impl Bounce {
             }
         }
     }
+}
+
+/// The BRDF at a point of a patch.
+#[inline]
+pub(crate) fn at(patch: &Patch, reflectance: &Reflectance, point: DVec3) -> Brdf {
+    let at = patch.frame.to_local(point);
+    reflectance.at(at.x, at.y)
 }

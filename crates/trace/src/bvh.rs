@@ -75,6 +75,21 @@ impl Form {
         }
     }
 
+    /// The distances at which the line of a ray meets it; NaN where it does not.
+    fn meets_at(&self, ray: &TwoPlane) -> [f64; 2] {
+        match self {
+            Self::Smooth(patch) => {
+                // A line that meets it once has the same distance twice.
+                let [first, last] = smooth_hits(patch, ray);
+                [first, if last > first { last } else { f64::NAN }]
+            }
+            _ => {
+                let at = self.meets(ray, f64::NEG_INFINITY);
+                [at.unwrap_or(f64::NAN), f64::NAN]
+            }
+        }
+    }
+
     /// A normal at a point of it, of unit length.
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
         match self {
@@ -177,8 +192,9 @@ impl<T: Copy> Targets<T> {
     /// The first target that a ray meets beyond `from`, and at what distance.
     #[inline]
     pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, &Target<T>)> {
-        let start = ray.travelled(from);
-        let origin = Vec3A::new(single(start.x), single(start.y), single(from));
+        let begin = self.beside(ray, from, 1.0);
+        let start = ray.travelled(begin);
+        let origin = Vec3A::new(single(start.x), single(start.y), single(begin));
         let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
         let mut first = None;
         let mut nearest = f64::INFINITY;
@@ -192,7 +208,7 @@ impl<T: Copy> Targets<T> {
                         nearest = distance;
                         first = Some(target);
                         // Boxes this far are still opened: the first hit is decided in f64.
-                        single((distance - from) * (1.0 + PADDING) + PADDING * distance.abs())
+                        single((distance - begin) * (1.0 + PADDING) + PADDING * distance.abs())
                     }
                     _ => f32::INFINITY,
                 }
@@ -203,8 +219,9 @@ impl<T: Copy> Targets<T> {
 
     /// The last target on the line of a ray, and at what distance; looked for backwards, from beyond everything.
     pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, &Target<T>)> {
-        let end = ray.travelled(self.front);
-        let origin = Vec3A::new(single(end.x), single(end.y), single(self.front));
+        let begin = self.beside(ray, self.front, -1.0);
+        let end = ray.travelled(begin);
+        let origin = Vec3A::new(single(end.x), single(end.y), single(begin));
         let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
         let mut last: Option<(f64, &Target<T>)> = None;
         self.bvh.ray_traverse(
@@ -215,7 +232,7 @@ impl<T: Copy> Targets<T> {
                 match target.form.meets_last(ray) {
                     Some(at) if last.is_none_or(|(farthest, _)| at > farthest) => {
                         last = Some((at, target));
-                        let back = self.front - at;
+                        let back = begin - at;
                         single(back + PADDING * (back.abs() + at.abs()))
                     }
                     _ => f32::INFINITY,
@@ -223,6 +240,39 @@ impl<T: Copy> Targets<T> {
             },
         );
         last
+    }
+
+    /// Tells every target on the line of a ray, and at what distance.
+    pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, &Target<T>)) {
+        let begin = self.beside(ray, -self.front, 1.0);
+        let start = ray.travelled(begin);
+        let origin = Vec3A::new(single(start.x), single(start.y), single(begin));
+        let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
+        self.bvh.ray_traverse(
+            Ray::new(origin, direction, 0.0, f32::MAX),
+            &mut RayHit::none(),
+            |_, i| {
+                let target = &self.targets[i];
+                let hits = target.form.meets_at(ray).into_iter();
+                hits.filter(|at| !at.is_nan())
+                    .for_each(|at| tell(at, target));
+                f32::INFINITY
+            },
+        );
+    }
+
+    /// Where to begin looking along a ray, forward or back (`way` 1 or −1): at `from`, or, if that is far to the side of everything, where it
+    /// comes near; f32 would lose it on the way.
+    fn beside(&self, ray: &TwoPlane, from: f64, way: f64) -> f64 {
+        let at = ray.travelled(from);
+        if at.x.abs().max(at.y.abs()) < 4.0 * self.front {
+            return from;
+        }
+        let comes_near = |x: f64, slope: f64| way * (-x - way * self.front.copysign(slope)) / slope;
+        let ahead = [comes_near(ray.x, ray.u), comes_near(ray.y, ray.v)];
+        // Along an axis a ray does not come nearer: NaN, or beyond all numbers.
+        let ahead = ahead.into_iter().filter(|t| t.is_finite());
+        way * ahead.fold(way * from, f64::max)
     }
 
     /// Whether light on a ray meets a target between `from` and `distance`; at that very distance when `inclusive`.

@@ -1,5 +1,7 @@
+use crate::aim::FromSky;
 use crate::proposal::{Follower, Proposal};
-use crate::reach::reach;
+use crate::reach::{looks_at_patch, reach};
+use crate::sky;
 use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
@@ -7,11 +9,13 @@ use std::f64::consts::{PI, TAU};
 
 /// How rays leave the light: a density over (x, y, u, v) at the light, and a way to sample it. That of a point
 /// is over (u, v) alone, that of a beam over (x, y).
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Emitter {
     light: Light,
     /// One proposal for each plane, as factors over (x, u) and (y, v); empty for plain emission.
     proposals: Vec<[Proposal; 2]>,
+    /// Those of light from far away.
+    sky: Option<FromSky>,
 }
 
 impl Emitter {
@@ -19,25 +23,26 @@ impl Emitter {
     ///
     /// Aimed emission is a mixture, with equal shares, of one proposal for each virtual plane whose window
     /// the light reaches; for a plane on a later leg, of rays to the part of the first surface from which light can get there.
-    /// Where it reaches none, emission is plain: every window stays empty all the same.
+    /// Where it reaches none, emission is plain: every window stays empty all the same. Of an environment only rays that a plane may look at are
+    /// emitted, aimed or plain, and the ledger is of these.
     #[must_use]
     pub fn new(scene: &Scene) -> Self {
-        let light = scene.light;
+        let light = scene.light.clone();
         let extent = match light {
             Light::Area { shape, .. } => [0, 1].map(|axis| shape.bounds().extent(axis)),
-            Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => [[0.0; 2]; 2],
+            _ => [[0.0; 2]; 2],
         };
         let [[left, right], [low, high]] = extent;
         let corners = [[left, low], [right, low], [left, high], [right, high]];
         let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
         let proposal = |plane: &VirtualPlane| {
             let w = &plane.window;
-            let half = match plane.leg {
-                0 => None,
-                _ => reach(scene, plane, 0, &corners),
-            };
+            let is_window = plane.leg == 0 && !looks_at_patch(scene, plane);
+            let half = (!is_window)
+                .then(|| reach(scene, plane, 0, &corners))
+                .flatten();
             let along = |axis: usize, space: &Profile, slope: &Profile| {
-                if plane.leg == 0 {
+                if is_window {
                     let (space, slope) = (Follower::new(space), Follower::new(slope));
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
@@ -50,29 +55,40 @@ impl Emitter {
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };
+        let sky = match &light {
+            Light::Environment { environment } => Some(FromSky::new(scene, environment)),
+            _ => None,
+        };
         // Pictures have their own proposal.
         let proposals = match scene.run.emission {
-            Emission::Aimed if !light.is_picture() => {
+            Emission::Aimed if !light.is_picture() && sky.is_none() => {
                 scene.planes.iter().filter_map(proposal).collect()
             }
             Emission::Aimed | Emission::Plain => Vec::new(),
         };
-        Self { light, proposals }
+        Self {
+            light,
+            proposals,
+            sky,
+        }
     }
 
-    /// A ray from eight random words.
+    /// A ray from eight random words; `None` when what was drawn goes nowhere.
     #[inline]
     #[must_use]
-    pub fn sample(&self, words: [[u32; 4]; 2]) -> TwoPlane {
+    pub fn sample(&self, words: [[u32; 4]; 2]) -> Option<TwoPlane> {
+        if let Some(sky) = &self.sky {
+            return sky.sample(words);
+        }
         let r = words[0].map(random::unit);
         if self.proposals.is_empty() {
-            return self.plain(r);
+            return Some(self.plain(r));
         }
         let which = random::index(words[1][0], self.proposals.len());
         let [along_x, along_y] = &self.proposals[which];
         let [x, u] = along_x.sample([r[0], r[1]]);
         let [y, v] = along_y.sample([r[2], r[3]]);
-        TwoPlane { x, y, u, v }
+        Some(TwoPlane { x, y, u, v })
     }
 
     /// Uniform over the light's area, by radiance and cosine over direction; a point's by solid angle, forwards.
@@ -112,6 +128,7 @@ impl Emitter {
                     },
                 };
             }
+            Light::Environment { .. } => unreachable!("it has emission of its own"),
         };
         TwoPlane {
             x: position[0],
@@ -125,6 +142,9 @@ impl Emitter {
     #[inline]
     #[must_use]
     pub fn density(&self, ray: &TwoPlane) -> f64 {
+        if let Some(sky) = &self.sky {
+            return sky.density(ray);
+        }
         if self.proposals.is_empty() {
             let secant_squared = ray.secant_squared();
             return match self.light {
@@ -138,6 +158,7 @@ impl Emitter {
                 Light::Point { .. } => secant_squared.powf(-1.5) / TAU,
                 Light::Projector { image, .. } => envelope(&image, ray.u, ray.v),
                 Light::Beam { image, .. } => envelope(&image, ray.x, ray.y),
+                Light::Environment { .. } => unreachable!("it has emission of its own"),
             };
         }
         let sum: f64 = self
@@ -187,6 +208,7 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
             intensity * image.value(ray.u, ray.v) * ray.secant_squared().sqrt()
         }
         Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
+        Light::Environment { environment } => sky::radiance(environment, ray),
     }
 }
 

@@ -7,15 +7,20 @@
 //! distance along the central ray is a coordinate. Random numbers are functions of (seed, photon), so a photon's
 //! life does not depend on who traces it.
 
+mod aim;
 mod backward;
 mod bounce;
+mod brdf;
 mod bvh;
 mod emit;
+mod ground;
 mod obstacles;
+mod pieces;
 mod proposal;
 mod reach;
 mod scatter;
 mod shares;
+mod sky;
 mod station;
 mod tracer;
 

@@ -2,7 +2,7 @@ use crate::bvh::{Form, Target, Targets};
 use etendue_field::{
     Frame, Grating, HalfPlane, Light, Mask, Rectangle, Shape, Side, Specular, TwoPlane,
 };
-use etendue_scene::{Leg, MeshObject, Object, Scene, Surface};
+use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
 /// What a photon meets.
@@ -15,8 +15,12 @@ pub(crate) enum Meeting {
 /// What light does that meets a surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Material {
-    Lambertian { albedo: f64 },
+    Lambertian {
+        albedo: f64,
+    },
     Specular(Specular),
+    /// By a BRDF.
+    Reflects,
 }
 
 impl Meeting {
@@ -113,7 +117,10 @@ impl Obstacles {
             });
         }
         for (i, object) in scene.patches.iter().enumerate() {
-            let material = Material::Specular(object.event);
+            let material = match object.event {
+                Event::Specular(event) => Material::Specular(event),
+                Event::Reflects(_) => Material::Reflects,
+            };
             targets.push(Target {
                 form: Form::Smooth(object.patch.seen_from(&leg.frame)),
                 tag: Meeting::Surface {
@@ -134,7 +141,8 @@ impl Obstacles {
         }
         let origins = match scene.light {
             Light::Area { shape, .. } => shape.bounds().reach(),
-            Light::Point { .. } | Light::Projector { .. } => 0.0,
+            // What starts far to the side is looked for from nearer.
+            Light::Point { .. } | Light::Projector { .. } | Light::Environment { .. } => 0.0,
             Light::Beam { image, .. } => FARTHEST * image.width[0].max(image.width[1]),
         };
         Self {
@@ -182,6 +190,20 @@ impl Obstacles {
         met.product()
     }
 
+    /// Whether a point at a distance on a ray has another point of its own object before it, beyond `from`.
+    pub(crate) fn is_behind(
+        &self,
+        own: Option<Object>,
+        ray: &TwoPlane,
+        from: f64,
+        distance: f64,
+    ) -> bool {
+        let other = |what: &Meeting| !what.is(own);
+        // The point itself is as far, but for rounding.
+        let distance = distance - ROUNDING * distance.abs();
+        self.targets.blocks(ray, from, distance, false, other)
+    }
+
     /// The share of light on a ray that reaches a plane from `from`, looked for from the plane back; what `ignored` says
     /// does not stand in its way.
     pub(crate) fn visibility(
@@ -205,6 +227,9 @@ impl Obstacles {
         self.transmittance(ray, from, distance, side)
     }
 }
+
+/// Share of a distance on which two ways to it may differ.
+const ROUNDING: f64 = 1e-9;
 
 /// Widths of a Gaussian picture beyond which no random number falls.
 const FARTHEST: f64 = 3.0;

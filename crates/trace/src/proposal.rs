@@ -30,6 +30,11 @@ impl Follower {
         }
     }
 
+    pub(crate) fn constant(half: f64) -> Self {
+        let kind = Kind::Constant;
+        Self { half, kind }
+    }
+
     /// For slopes of light that a surface receives, up to `half`: as the cosine weighs them in 2D (docs/theory.md, Eq. 6).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = Kind::Cosine;

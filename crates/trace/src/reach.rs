@@ -1,12 +1,16 @@
 //! Where light that a plane looks at can come from: what emission and scattering are aimed at.
 
 use crate::bvh::enclosing;
-use etendue_field::{Frame, Profile, VirtualPlane, box_corners};
-use etendue_scene::{Leg, Object, Scene};
-use glam::DVec3;
+use crate::obstacles::{direction, start};
+use crate::station::Station;
+use etendue_field::{
+    Frame, Orientation, Patch, Profile, Side, TwoPlane, VirtualPlane, box_corners,
+};
+use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
+use glam::{DVec2, DVec3};
 
 /// Half-widths, across the end of `leg`, of a box around the central ray through which all light passes that can
-/// reach the window of `plane`, on a later leg, coming from `origins` (in the frame of the leg); `None` if there is none.
+/// reach the window of `plane`, on a later leg or on what ends this one, coming from `origins` (in the frame of the leg); `None` if there is none.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -14,7 +18,7 @@ pub(crate) fn reach(
     origins: &[DVec3],
 ) -> Option<[f64; 2]> {
     let this = &scene.path.legs[leg];
-    let points = if leg + 1 == plane.leg {
+    let points = if leg + 1 == plane.leg || leg == plane.leg {
         seen(scene, plane)
     } else {
         // Diffuse light that leaves the next surface anywhere can go on to the window.
@@ -45,15 +49,55 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     }
 }
 
+/// The part of a flat surface, the first on the path, from which light can reach the window of a plane on it or beyond it, as lowest and highest
+/// coordinates in the surface's frame; `None` if there is none.
+pub(crate) fn footprint(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    surface: &Surface,
+) -> Option<[DVec2; 2]> {
+    let across = plane.orientation == Orientation::Orthogonal;
+    let is_on_it = plane.leg == usize::from(plane.side == Side::After);
+    let points = match (across, plane.leg) {
+        (true, 1) => seen(scene, plane),
+        (false, _) if is_on_it => {
+            let half = [&plane.window.x, &plane.window.y].map(Profile::half_width);
+            let half = DVec3::new(half[0], half[1], 0.0);
+            let to_light = |p: DVec3| scene.path.frame.to_local(plane.frame.to_world(p));
+            box_corners(-half, half).map(to_light).to_vec()
+        }
+        _ => surface.corners().to_vec(),
+    };
+    let points: Vec<DVec2> = points
+        .iter()
+        .map(|p| surface.frame.to_local(*p).truncate())
+        .collect();
+    let end = 0.5 * DVec2::from(surface.size);
+    let low = points.iter().copied().reduce(DVec2::min)?;
+    let high = points.iter().copied().reduce(DVec2::max)?;
+    let margin = MARGIN * end;
+    let [low, high] = [(low - margin).max(-end), (high + margin).min(end)];
+    low.cmplt(high).all().then_some([low, high])
+}
+
 /// The corners of the part of its surface that a plane's window sees, or of more than that.
 fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let leg = &scene.path.legs[plane.leg];
-    let Some(hit) = leg.leaves else {
+    let met = if looks_at_patch(scene, plane) {
+        scene.path.ends_at(plane.leg)
+    } else {
+        leg.leaves.as_ref()
+    };
+    let Some(hit) = met else {
         return Vec::new();
     };
     let all = outline(scene, hit.object);
-    let Object::Surface(i) = hit.object else {
-        return all;
+    let i = match hit.object {
+        Object::Surface(i) => i,
+        Object::Patch(i) if reflects(scene, hit.object) => {
+            return seen_of_patch(scene, plane, hit, &scene.patches[i].patch).unwrap_or(all);
+        }
+        Object::Patch(_) | Object::Mesh(_) => return all,
     };
     let surface = &scene.surfaces[i];
     // Edges of the tube of rays that cross the window meet the surface at the corners of what is seen of it.
@@ -80,6 +124,87 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
         }
     }
     points
+}
+
+/// Whether an object is a patch with a BRDF.
+pub(crate) fn reflects(scene: &Scene, object: Object) -> bool {
+    matches!(object, Object::Patch(i) if matches!(scene.patches[i].event, Event::Reflects(_)))
+}
+
+/// Whether a plane looks at the light that arrives on a patch with a BRDF, in coordinates of the patch.
+pub(crate) fn looks_at_patch(scene: &Scene, plane: &VirtualPlane) -> bool {
+    let ends = scene.path.ends_at(plane.leg);
+    plane.orientation != Orientation::Orthogonal
+        && plane.side == Side::Before
+        && ends.is_some_and(|hit| reflects(scene, hit.object))
+}
+
+/// The corners of a box around the part of a patch that a plane's window sees, in the frame at the light; `None` when it may see all of it.
+fn seen_of_patch(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    hit: &Hit,
+    patch: &Patch,
+) -> Option<Vec<DVec3>> {
+    let sharpest = patch.curvature.iter().fold(0.0_f64, |k, l| k.max(l.abs()));
+    if 2.0 * patch.aperture * sharpest >= 1.0 {
+        return None;
+    }
+    let leg = &scene.path.legs[plane.leg];
+    let station = Station::new(scene, 0, plane);
+    let at = Frame {
+        origin: hit.point,
+        ..match plane.orientation {
+            Orientation::Orthogonal => Frame::IDENTITY.turned_to(hit.normal),
+            _ => scene.path.frame.decompose(&plane.frame),
+        }
+    };
+    let w = &plane.window;
+    let ends = |profile: &Profile| [-1.0, 1.0].map(|s| s * profile.half_width());
+    let mut rays = Vec::new();
+    for x in ends(&w.x) {
+        for y in ends(&w.y) {
+            if plane.orientation.is_local() {
+                // Positions are those of the points hit.
+                rays.push([DVec3::new(x, y, 0.0), DVec3::Z]);
+                continue;
+            }
+            for u in ends(&w.u) {
+                for v in ends(&w.v) {
+                    let ray = station.leg_ray(&TwoPlane { x, y, u, v })?.0;
+                    let from = leg.frame.to_world(start(&ray));
+                    let along = leg.frame.vector_to_world(direction(&ray));
+                    rays.push([at.to_local(from), at.vector_to_local(along)]);
+                }
+            }
+        }
+    }
+    if rays.iter().any(|[_, along]| along.z.abs() < LEAST) {
+        return None;
+    }
+    let corners = patch.corners().map(|p| at.to_local(p));
+    let [mut low, mut high] = enclosing(&corners);
+    // A point of the patch at distance r from the normal at the hit is at most |k| r² off the tangent plane, and lines of the window
+    // that are that near to it meet it in a box: again and again, from the whole patch down.
+    for _ in 0..8 {
+        let [x, y] = [low.x.abs().max(high.x.abs()), low.y.abs().max(high.y.abs())];
+        let depth = sharpest * (x * x + y * y);
+        (low.z, high.z) = (low.z.max(-depth), high.z.min(depth));
+        let met = rays.iter().flat_map(|[from, along]| {
+            [low.z, high.z].map(|z| *from + (z - from.z) / along.z * *along)
+        });
+        let met: Vec<DVec3> = met.collect();
+        let [least, most] = enclosing(&met);
+        (low, high) = (low.max(least), high.min(most));
+    }
+    let is_empty = low.x > high.x || low.y > high.y;
+    let center = 0.5 * (low + high);
+    let corners = || box_corners(low - center, high - center).map(|p| at.to_world(center + p));
+    Some(if is_empty {
+        Vec::new()
+    } else {
+        corners().to_vec()
+    })
 }
 
 /// The rays through the corners of a window with its extreme slopes, by two points each, in the frame at the light.

@@ -1,52 +1,171 @@
+use crate::brdf;
 use crate::emit::LAMBERTIAN;
 use crate::obstacles::direction;
 use crate::proposal::{Aim, Follower};
-use crate::reach::{outline, reach};
-use etendue_field::{Frame, Profile, TwoPlane, random};
+use crate::reach::{looks_at_patch, outline, reach, reflects};
+use crate::station::{Station, View};
+use etendue_field::{Brdf, Frame, Profile, TwoPlane, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// How light leaves the surface at the beginning of a leg, diffusely: a density over slopes at each of its
+/// How light leaves the surface at the beginning of a leg: a density over slopes at each of its
 /// points, and a way to sample it. Rays are in the frame of the leg.
 #[derive(Clone, Debug)]
 pub(crate) struct Scatterer {
-    /// One aim for each plane on this leg or a later one, along X and along Y; `None` for plain scattering.
-    aims: Vec<Option<[Aim; 2]>>,
+    /// Ways to draw a ray, with equal shares.
+    ways: Vec<Way>,
+}
+
+/// One way to draw a ray.
+#[derive(Clone, Debug)]
+enum Way {
+    /// Towards a window, along X and along Y.
+    Window([Aim; 2]),
+    /// In the directions that a plane on the surface looks at.
+    Angles(Box<Angles>),
+    /// As the surface itself sends light on.
+    Lobe,
+}
+
+/// What a plane on the surface looks at.
+#[derive(Clone, Copy, Debug)]
+struct Angles {
+    view: View,
+    across: [Follower; 2],
+}
+
+/// How a surface sends light on from one of its points.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Spread {
+    /// By the cosine of the angle to its normal.
+    Cosine,
+    /// By a BRDF, in a frame with D along the normal; light has come from a direction in that frame.
+    Lobe {
+        brdf: Brdf,
+        frame: Frame,
+        from: DVec3,
+    },
 }
 
 /// Slopes towards a surface are bounded by its size alone.
 const ANY_SLOPE: f64 = 1e6;
 
+impl Spread {
+    /// A direction in which light leaves, in any length, where the surface has this normal.
+    #[inline]
+    fn sample(&self, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+        match self {
+            Self::Cosine => {
+                let (sin, cos) = (TAU * b).sin_cos();
+                let slope = (a / (1.0 - a)).sqrt();
+                let local = DVec3::new(slope * cos, slope * sin, 1.0);
+                Frame::IDENTITY.turned_to(normal).vector_to_world(local)
+            }
+            Self::Lobe { brdf, frame, from } => {
+                frame.vector_to_world(brdf::sample(brdf, *from, [a, b]))
+            }
+        }
+    }
+
+    /// The density of [`Self::sample`] with respect to du dv over n · (u, v, 1), which is `cosine`.
+    #[inline]
+    fn density(&self, ray: &TwoPlane, cosine: f64) -> f64 {
+        let secant_squared = ray.secant_squared();
+        match self {
+            Self::Cosine => 1.0 / (LAMBERTIAN * secant_squared * secant_squared),
+            Self::Lobe { brdf, frame, from } => {
+                let to = frame.vector_to_local(direction(ray)).normalize();
+                brdf::density(brdf, *from, to) * per_slope(secant_squared, cosine)
+            }
+        }
+    }
+
+    /// The BRDF towards a ray; without the albedo, where light is spread by the cosine.
+    #[inline]
+    pub(crate) fn value(&self, ray: &TwoPlane) -> f64 {
+        match self {
+            Self::Cosine => 1.0 / LAMBERTIAN,
+            Self::Lobe { brdf, frame, from } => {
+                let to = frame.vector_to_local(direction(ray)).normalize();
+                brdf::value(brdf, *from, to)
+            }
+        }
+    }
+}
+
+impl Angles {
+    /// A direction in which light leaves a point, from two numbers in (0, 1).
+    fn sample(&self, point: DVec3, random: [f64; 2]) -> Option<DVec3> {
+        let angles = [0, 1].map(|i| self.across[i].quantile(random[i]));
+        self.view.direction(point, angles)
+    }
+
+    /// The density of [`Self::sample`] per solid angle, which is cos φ dθ dφ.
+    fn density(&self, point: DVec3, ray: &TwoPlane) -> f64 {
+        self.view
+            .angles(point, direction(ray))
+            .map_or(0.0, |[u, v]| {
+                self.across[0].density(u) * self.across[1].density(v) / v.cos()
+            })
+    }
+}
+
+/// dω over du dv / n · (u, v, 1): dω is du dv / (1 + u² + v²)^(3/2).
+#[inline]
+fn per_slope(secant_squared: f64, cosine: f64) -> f64 {
+    1.0 / (secant_squared * secant_squared.sqrt() * cosine)
+}
+
 impl Scatterer {
     /// `None` when no plane looks at light that has come to this leg.
     pub(crate) fn new(scene: &Scene, leg: usize) -> Option<Self> {
         let this = &scene.path.legs[leg];
-        let origins: Vec<DVec3> = outline(scene, this.leaves?.object)
+        let leaves = this.leaves?.object;
+        let origins: Vec<DVec3> = outline(scene, leaves)
             .iter()
             .map(|p| this.frame.to_local(*p))
             .collect();
         let is_ahead = origins.iter().all(|p| p.z < 0.99 * this.length);
-        let planes = scene.planes.iter().filter(|p| p.leg >= leg);
-        let aims: Vec<_> = planes
-            .map(|plane| {
-                let w = &plane.window;
-                if scene.run.emission == Emission::Plain {
-                    None
-                } else if plane.leg == leg {
-                    let d = scene.path.along(plane);
-                    Some([
-                        Aim::new(d, &w.x, Follower::new(&w.u)),
-                        Aim::new(d, &w.y, Follower::new(&w.v)),
-                    ])
-                } else {
-                    let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                    let slope = Follower::cosine(ANY_SLOPE);
-                    Some(half.map(|half| Aim::new(this.length, &Profile::Box(half), slope)))
-                }
-            })
-            .collect();
-        (!aims.is_empty()).then_some(Self { aims })
+        let by_brdf = reflects(scene, leaves);
+        let aim = |(index, plane): (usize, &etendue_field::VirtualPlane)| {
+            let w = &plane.window;
+            if scene.run.emission == Emission::Plain {
+                return None;
+            }
+            let station = Station::new(scene, index, plane);
+            let view = station.view().filter(|_| by_brdf);
+            if let Some(view) = view.filter(|view| plane.leg == leg && !view.is_arriving()) {
+                let across = [Follower::new(&w.u), Follower::new(&w.v)];
+                Some(Way::Angles(Box::new(Angles { view, across })))
+            } else if plane.leg == leg && !looks_at_patch(scene, plane) {
+                let d = scene.path.along(plane);
+                Some(Way::Window([
+                    Aim::new(d, &w.x, Follower::new(&w.u)),
+                    Aim::new(d, &w.y, Follower::new(&w.v)),
+                ]))
+            } else {
+                let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
+                let slope = Follower::cosine(ANY_SLOPE);
+                Some(Way::Window(half.map(|half| {
+                    Aim::new(this.length, &Profile::Box(half), slope)
+                })))
+            }
+        };
+        let planes = scene.planes.iter().enumerate();
+        let mut looking = planes.filter(|(_, p)| p.leg >= leg).peekable();
+        looking.peek()?;
+        let aims = looking.map(aim);
+        let ways: Vec<Way> = if by_brdf {
+            // A lobe may be narrower than any window, or wider than all: it has half of the shares.
+            let mut ways: Vec<Way> = aims.flatten().collect();
+            let lobes = ways.len().max(1);
+            ways.extend((0..lobes).map(|_| Way::Lobe));
+            ways
+        } else {
+            aims.map(|aim| aim.unwrap_or(Way::Lobe)).collect()
+        };
+        Some(Self { ways })
     }
 
     /// A ray that leaves a point, where the surface has this normal, and its density with respect to du dv over n · (u, v, 1);
@@ -56,25 +175,20 @@ impl Scatterer {
         &self,
         point: DVec3,
         normal: DVec3,
+        spread: &Spread,
         words: [u32; 4],
     ) -> Option<(TwoPlane, f64)> {
         let r = words.map(random::unit);
         let from = point.z;
-        let [u, v] = match &self.aims[random::index(words[2], self.aims.len())] {
-            Some([along_x, along_y]) => [
+        let slopes =
+            |leaves: DVec3| (leaves.z > 0.0).then(|| [leaves.x / leaves.z, leaves.y / leaves.z]);
+        let [u, v] = match &self.ways[random::index(words[2], self.ways.len())] {
+            Way::Window([along_x, along_y]) => [
                 along_x.sample(point.x, from, r[0])?,
                 along_y.sample(point.y, from, r[1])?,
             ],
-            None => {
-                let (sin, cos) = (TAU * r[1]).sin_cos();
-                let slope = (r[0] / (1.0 - r[0])).sqrt();
-                let local = DVec3::new(slope * cos, slope * sin, 1.0);
-                let leaves = Frame::IDENTITY.turned_to(normal).vector_to_world(local);
-                if leaves.z <= 0.0 {
-                    return None;
-                }
-                [leaves.x / leaves.z, leaves.y / leaves.z]
-            }
+            Way::Angles(angles) => slopes(angles.sample(point, [r[0], r[1]])?)?,
+            Way::Lobe => slopes(spread.sample(normal, [r[0], r[1]]))?,
         };
         let ray = TwoPlane {
             x: point.x - from * u,
@@ -86,13 +200,17 @@ impl Scatterer {
         if cosine <= 0.0 {
             return None;
         }
-        let secant_squared = ray.secant_squared();
-        let plain = 1.0 / (LAMBERTIAN * secant_squared * secant_squared);
-        let densities = self.aims.iter().map(|aim| match aim {
-            Some([a, b]) => a.density(point.x, from, u) * b.density(point.y, from, v) / cosine,
-            None => plain,
+        let plain = spread.density(&ray, cosine);
+        let densities = self.ways.iter().map(|way| match way {
+            Way::Window([a, b]) => {
+                a.density(point.x, from, u) * b.density(point.y, from, v) / cosine
+            }
+            Way::Angles(angles) => {
+                angles.density(point, &ray) * per_slope(ray.secant_squared(), cosine)
+            }
+            Way::Lobe => plain,
         });
-        let density = densities.sum::<f64>() / self.aims.len() as f64;
+        let density = densities.sum::<f64>() / self.ways.len() as f64;
         (density > 0.0).then_some((ray, density))
     }
 }

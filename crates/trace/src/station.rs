@@ -11,17 +11,19 @@ pub(crate) struct Station {
     pub(crate) distance: f64,
     pub(crate) side: Side,
     /// `None` across the leg.
-    surface: Option<OnSurface>,
+    surface: Option<View>,
 }
 
-/// A plane on a surface.
+/// How a plane on a surface looks at it.
 #[derive(Clone, Copy, Debug)]
-struct OnSurface {
+pub(crate) struct View {
     /// (T, B, N) at the central hit, in the frame of the leg.
     frame: Frame,
     longitude: f64,
     /// Directions are turned around: light arrives.
     arriving: bool,
+    /// And about the normal.
+    mirrored: bool,
     /// The surface itself, in the frame of the leg, where rays are counted from its local normals.
     patch: Option<Patch>,
 }
@@ -40,12 +42,19 @@ fn nearest(patch: &Patch, start: DVec3, along: DVec3, to: DVec3) -> Option<DVec3
 }
 
 impl Station {
-    /// The ray of the leg, where it begins, that the plane has as `seen`; `None` if there is none.
-    pub(crate) fn leg_ray(&self, seen: &TwoPlane) -> Option<TwoPlane> {
+    /// The ray of the leg, where it begins, that the plane has as `seen`, and dA over dx dy there; `None` if there is none.
+    ///
+    /// On a surface itself, light is counted per area of it (docs/theory.md, section 8); everywhere else dA is dx dy.
+    pub(crate) fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         match &self.surface {
-            None => Some(seen.travelled(-self.distance)),
+            None => Some((seen.travelled(-self.distance), 1.0)),
             Some(surface) => surface.leg_ray(seen),
         }
+    }
+
+    /// How it looks at the surface it is on; `None` across the leg.
+    pub(crate) fn view(&self) -> Option<View> {
+        self.surface
     }
 
     pub(crate) fn new(scene: &Scene, index: usize, plane: &VirtualPlane) -> Self {
@@ -58,15 +67,16 @@ impl Station {
             leg.leaves.as_ref()
         };
         let patch = match hit.map(|hit| hit.object) {
-            Some(Object::Patch(i)) if plane.orientation == Orientation::LocalNormals => {
+            Some(Object::Patch(i)) if plane.orientation.is_local() => {
                 Some(scene.patches[i].patch.seen_from(&leg.frame))
             }
             _ => None,
         };
-        let surface = (plane.orientation != Orientation::Orthogonal).then(|| OnSurface {
+        let surface = (plane.orientation != Orientation::Orthogonal).then(|| View {
             frame: leg.frame.decompose(&path.frame.decompose(&plane.frame)),
             longitude: plane.longitude,
             arriving,
+            mirrored: plane.orientation == Orientation::Mirrored,
             patch,
         });
         Self {
@@ -87,7 +97,7 @@ impl Station {
     }
 }
 
-impl OnSurface {
+impl View {
     /// The frame of the local normal at a point, on the side of the one at the central hit.
     fn local(&self, patch: &Patch, point: DVec3) -> Frame {
         let normal = patch.normal(point);
@@ -96,7 +106,7 @@ impl OnSurface {
     }
 
     /// The inverse of [`Self::look`].
-    fn leg_ray(&self, seen: &TwoPlane) -> Option<TwoPlane> {
+    fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         let foot = self.frame.to_world(DVec3::new(seen.x, seen.y, 0.0));
         let (point, frame) = match &self.patch {
             None => (foot, self.frame),
@@ -105,11 +115,9 @@ impl OnSurface {
                 (point, self.local(patch, point))
             }
         };
-        let (sin, cos) = (seen.u + self.longitude).sin_cos();
-        let (up, across) = seen.v.sin_cos();
-        let away = frame.vector_to_world(DVec3::new(across * sin, up, across * cos));
-        let along = if self.arriving { -away } else { away };
-        ray_through(point, along).filter(|_| across > 0.0 && cos > 0.0)
+        let away = self.away(&frame, [seen.u, seen.v])?;
+        let ray = ray_through(point, if self.arriving { -away } else { away })?;
+        Some((ray, 1.0 / frame.d.dot(self.frame.d)))
     }
 
     fn look(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
@@ -126,21 +134,59 @@ impl OnSurface {
             }
         };
         let away = if self.arriving { -along } else { along };
+        let ([u, v], measure) = self.seen(&frame, away)?;
+        let at = self.frame.to_local(point);
+        let secant_squared = ray.secant_squared();
+        let ray = TwoPlane {
+            x: at.x,
+            y: at.y,
+            u,
+            v,
+        };
+        Some((ray, weight / (secant_squared * secant_squared * measure)))
+    }
+
+    /// The coordinates of a direction away from the surface, to be counted from this frame, and dω cos θ over du dv; `None` behind it.
+    fn seen(&self, frame: &Frame, away: DVec3) -> Option<([f64; 2], f64)> {
+        let turned = if self.mirrored { -1.0 } else { 1.0 };
         let DVec3 { x: t, y: b, z: n } = frame.vector_to_local(away.normalize());
-        let (longitude, sine) = (t.atan2(n), b);
+        let (longitude, sine) = (turned * t.atan2(n), turned * b);
         let latitude = sine.asin();
         // The angle to the normal has the cosine cos θ cos φ = n, and the solid angle is cos φ dθ dφ.
         let measure = n * latitude.cos();
-        let at = self.frame.to_local(point);
-        let secant_squared = ray.secant_squared();
-        (n > 0.0).then(|| {
-            let ray = TwoPlane {
-                x: at.x,
-                y: at.y,
-                u: longitude - self.longitude,
-                v: latitude,
-            };
-            (ray, weight / (secant_squared * secant_squared * measure))
-        })
+        (n > 0.0).then_some(([longitude - self.longitude, latitude], measure))
+    }
+
+    /// The inverse of [`Self::seen`].
+    fn away(&self, frame: &Frame, [u, v]: [f64; 2]) -> Option<DVec3> {
+        let turned = if self.mirrored { -1.0 } else { 1.0 };
+        let (sin, cos) = (turned * (u + self.longitude)).sin_cos();
+        let (up, across) = (turned * v).sin_cos();
+        (across > 0.0 && cos > 0.0)
+            .then(|| frame.vector_to_world(DVec3::new(across * sin, up, across * cos)))
+    }
+
+    /// Whether it looks at light that arrives.
+    pub(crate) fn is_arriving(&self) -> bool {
+        self.arriving
+    }
+
+    /// What angles are counted from at a point of the surface.
+    fn frame_at(&self, point: DVec3) -> Frame {
+        match &self.patch {
+            None => self.frame,
+            Some(patch) => self.local(patch, point),
+        }
+    }
+
+    /// The direction of a ray that leaves a point of the surface and has these coordinates, (u, v).
+    pub(crate) fn direction(&self, point: DVec3, seen: [f64; 2]) -> Option<DVec3> {
+        self.away(&self.frame_at(point), seen)
+    }
+
+    /// The inverse of [`Self::direction`].
+    pub(crate) fn angles(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
+        let (seen, _) = self.seen(&self.frame_at(point), direction)?;
+        Some(seen)
     }
 }

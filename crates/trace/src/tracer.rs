@@ -14,6 +14,9 @@ use glam::DVec3;
 /// A photon leaves the light and crosses the planes in front of what it meets first; gratings on the way take
 /// their share of it. Blockers absorb it, a Lambertian surface absorbs 1 − albedo of it. What the surface at the end of a leg
 /// sends on crosses the planes on the next one, and so on; anything else it meets ends it.
+///
+/// What arrives at a surface with a BRDF, on the side it faces, is booked as stopped: the share it reflects has no closed form. Light that
+/// is scattered onwards, by the cosine or by a BRDF, is aimed, and in no account.
 #[derive(Debug)]
 pub struct Tracer {
     emitter: Emitter,
@@ -85,7 +88,9 @@ impl Tracer {
     #[inline]
     fn photon(&self, index: u64, crossings: &mut [Vec<Crossing>], ledger: &mut Ledger) {
         let words = |block| random::words(self.seed, Stream::Photon, index, block);
-        let ray = self.emitter.sample([words(0), words(1)]);
+        let Some(ray) = self.emitter.sample([words(0), words(1)]) else {
+            return;
+        };
         let weight = self.emitter.weight(&ray);
         // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
         if weight <= 0.0 {
@@ -94,7 +99,7 @@ impl Tracer {
         ledger.emitted += weight / cosines(&ray);
         let from = 0.0;
         let mut flight = Flight { ray, from, weight };
-        // Diffuse light is aimed at windows: what becomes of it is in no account.
+        // Scattered light is aimed at windows: what becomes of it is in no account.
         let mut beyond = Ledger::default();
         let mut account = ledger;
         let mut legs = self.legs.iter().zip(1..).peekable();
@@ -122,12 +127,19 @@ impl Tracer {
                 .peek()
                 .map(|(next, _)| *next)
                 .filter(|_| target.tag.is(this.ends));
+            let arrival = Arrival::new(&ray, distance, target, arrives);
             if let Material::Lambertian { albedo } = material {
                 account.stopped += albedo * arrives;
                 account.absorbed += (1.0 - albedo) * arrives;
                 account = &mut beyond;
+            } else if material == Material::Reflects {
+                if arrival.is_on_front() {
+                    account.stopped += arrives;
+                } else {
+                    account.absorbed += arrives;
+                }
+                account = &mut beyond;
             }
-            let arrival = Arrival::new(&ray, distance, target, arrives);
             let onwards = next.and_then(|next| next.begin(this, &arrival, words(block + 1)));
             let Some(next) = onwards else {
                 if let Material::Specular(_) = material {
@@ -158,6 +170,11 @@ impl Arrival {
             direction,
             flux,
         }
+    }
+
+    /// Whether it has come to the side that the surface faces.
+    pub(crate) fn is_on_front(&self) -> bool {
+        self.facing.dot(self.direction) < 0.0
     }
 
     /// In the frame of another leg; both frames are in the frame at the light.

@@ -13,6 +13,9 @@ mod scenes;
 mod steps;
 mod volume;
 
+pub(crate) use order::slope;
+pub(crate) use quadrature::apart;
+
 use crate::report::Section;
 use crate::scenes::{compared, predicted, traced};
 use etendue_compare::{PlaneComparison, Prediction, sidak, system};

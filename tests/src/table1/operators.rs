@@ -134,6 +134,7 @@ fn operator(system: &System, plane: &Plane) -> &'static str {
     if plane.arriving {
         return match plane.orientation {
             Orientation::LocalNormals => "curvature",
+            Orientation::Mirrored => "mirror",
             _ => "incidence",
         };
     }
@@ -143,7 +144,7 @@ fn operator(system: &System, plane: &Plane) -> &'static str {
     let refracts = matches!(element.event, Specular::Refraction { .. });
     match plane.orientation {
         Orientation::LocalNormals if refracts => "refraction",
-        Orientation::LocalNormals => "mirror",
+        Orientation::LocalNormals | Orientation::Mirrored => "mirror",
         Orientation::Tangent => "back",
         Orientation::Orthogonal => {
             let far = (plane.frame.origin - element.patch.frame.origin).length();
@@ -207,6 +208,7 @@ fn section(system: &System, plane: &Plane) -> Option<(Path, Stage)> {
         Orientation::Tangent if arriving => Stage::Incidence,
         Orientation::LocalNormals if arriving => Stage::Curvature,
         Orientation::LocalNormals => Stage::Event,
+        Orientation::Mirrored => return None,
         Orientation::Tangent => Stage::Back,
         Orientation::Orthogonal if after.abs() < 1e-9 => Stage::Outgoing,
         Orientation::Orthogonal => Stage::Beyond,

@@ -83,7 +83,7 @@ pub(super) fn fall(outcome: &Outcome, index: usize) -> Fall {
 }
 
 /// The slope of the straight line that fits points best.
-pub(super) fn slope(points: &[[f64; 2]]) -> f64 {
+pub(crate) fn slope(points: &[[f64; 2]]) -> f64 {
     let count = points.len() as f64;
     let mean = |axis: usize| points.iter().map(|p| p[axis]).sum::<f64>() / count;
     let [a, b] = [mean(0), mean(1)];

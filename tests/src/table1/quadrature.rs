@@ -76,7 +76,7 @@ pub(super) fn of_field(field: &Matrix<2>, map: &Map<2>, frequencies: &[[f64; 2]]
     sums
 }
 
-pub(super) fn apart(a: &[Complex], b: &[Complex]) -> f64 {
+pub(crate) fn apart(a: &[Complex], b: &[Complex]) -> f64 {
     let off: f64 = a.iter().zip(b).map(|(a, b)| (a - b).norm_sqr()).sum();
     (off / b.iter().map(|b| b.norm_sqr()).sum::<f64>()).sqrt()
 }

@@ -1,6 +1,6 @@
 use super::Resolver;
 use crate::file::{BulbFile, ImageFile, LightFile};
-use etendue_field::{Disc, Grating, Image, Light, Rectangle, Shape};
+use etendue_field::{Disc, Frame, Image, Light, Rectangle, Shape};
 
 impl LightFile {
     /// Where the central ray leaves it, world coordinates.
@@ -11,7 +11,8 @@ impl LightFile {
             | Self::Point { center, .. }
             | Self::Spot { center, .. }
             | Self::Projector { center, .. }
-            | Self::Beam { center, .. } => *center,
+            | Self::Beam { center, .. }
+            | Self::Environment { center, .. } => *center,
         }
     }
 }
@@ -20,8 +21,8 @@ impl LightFile {
 const SHARPEST: f64 = 1e4;
 
 impl Resolver<'_> {
-    /// The light, around the origin of the central ray.
-    pub(super) fn light(&mut self, light: &LightFile) -> Light {
+    /// The light, around the origin of the central ray, where its frame is.
+    pub(super) fn light(&mut self, light: &LightFile, frame: &Frame) -> Light {
         self.faults.coordinates("light.center", &light.center());
         let area = |shape: Shape, radiance: f64, exponent: f64| Light::Area {
             shape,
@@ -63,6 +64,13 @@ impl Resolver<'_> {
                 let image = self.image(image);
                 Light::Beam { irradiance, image }
             }
+            LightFile::Environment {
+                ref up,
+                ref front,
+                scale,
+                ref map,
+                ..
+            } => self.environment([up, front], scale, map, frame),
             LightFile::Spot {
                 bulb,
                 radiance,
@@ -89,21 +97,10 @@ impl Resolver<'_> {
             self.faults
                 .positive(format!("light.image.width[{i}]"), *width);
         }
-        if let Some(g) = &file.grating {
-            let of = "light.image.grating";
-            self.faults.positive(format!("{of}.frequency"), g.frequency);
-            self.faults
-                .within(format!("{of}.modulation"), g.modulation, 0.0..=1.0);
-            self.faults.coordinates(&format!("{of}.phase"), &[g.phase]);
-        }
+        let grating = file.grating.as_ref();
         Image {
             width: file.width,
-            grating: file.grating.map(|g| Grating {
-                axis: g.axis.index(),
-                frequency: g.frequency,
-                modulation: g.modulation,
-                phase: g.phase,
-            }),
+            grating: grating.map(|g| self.grating("light.image.grating", g)),
         }
     }
 }

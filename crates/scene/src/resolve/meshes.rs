@@ -16,7 +16,7 @@ struct Placed<'a> {
     mesh: &'a MeshSource,
     scale: f64,
     albedo: Option<f64>,
-    event: Option<EventFile>,
+    event: Option<&'a EventFile>,
 }
 
 impl Resolver<'_> {
@@ -62,7 +62,7 @@ impl Resolver<'_> {
                     mesh,
                     scale: *scale,
                     albedo: event.is_none().then_some(*albedo),
-                    event: *event,
+                    event: event.as_ref(),
                 }),
                 SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
             });
@@ -106,16 +106,16 @@ impl Resolver<'_> {
     fn smooth(
         &mut self,
         of: &str,
-        event: EventFile,
+        event: &EventFile,
         mesh: &Mesh,
         frame: &Frame,
     ) -> Option<SmoothMesh> {
         let of = format!("{of}.event");
-        if let EventFile::ThinLens(_) = event {
+        if let EventFile::ThinLens(_) | EventFile::Reflects { .. } = event {
             self.faults.add(of, show(event), "Mirror or Refraction(…)");
             return None;
         }
-        let event = self.event(&of, event, FormFile::Plane);
+        let event = self.specular(&of, event, FormFile::Plane)?;
         let mut normals = vec![DVec3::ZERO; mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
             let [a, b, c] = corners;
@@ -176,7 +176,7 @@ impl Resolver<'_> {
 }
 
 /// Whether a path leads nowhere but down: then a scene and its meshes can be moved together.
-fn stays_inside(path: &str) -> bool {
+pub(super) fn stays_inside(path: &str) -> bool {
     let mut components = Path::new(path).components();
     components.all(|c| matches!(c, Component::Normal(_)))
 }

@@ -1,7 +1,7 @@
 use super::Resolver;
 use super::faults::show;
 use crate::file::{EventFile, FormFile, SceneFile, SurfaceFile};
-use crate::scene::PatchObject;
+use crate::scene::{Event, PatchObject};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
@@ -59,7 +59,22 @@ impl Resolver<'_> {
             self.faults
                 .add(format!("{of}.aperture"), show(aperture), allowed);
         }
-        let event = self.event(&format!("{of}.event"), *event, *form);
+        let of_event = format!("{of}.event");
+        let event = match event {
+            EventFile::Reflects {
+                brdf,
+                other,
+                blend,
+                texture,
+            } => Event::Reflects(self.reflectance(
+                &of_event,
+                brdf,
+                other.as_ref(),
+                blend.as_ref(),
+                texture.as_ref(),
+            )),
+            _ => Event::Specular(self.specular(&of_event, event, *form)?),
+        };
         let origin = light.to_local(DVec3::from(*center));
         let d = light.vector_to_local(DVec3::from(*facing));
         let frame = match along {
@@ -82,8 +97,15 @@ impl Resolver<'_> {
         })
     }
 
-    pub(super) fn event(&mut self, of: &str, event: EventFile, form: FormFile) -> Specular {
-        match event {
+    /// `None` of a surface that reflects by a BRDF.
+    pub(super) fn specular(
+        &mut self,
+        of: &str,
+        event: &EventFile,
+        form: FormFile,
+    ) -> Option<Specular> {
+        Some(match *event {
+            EventFile::Reflects { .. } => return None,
             EventFile::Mirror => Specular::Mirror,
             EventFile::Refraction { front, back } => {
                 for (side, index) in [("front", front), ("back", back)] {
@@ -107,6 +129,6 @@ impl Resolver<'_> {
                 }
                 Specular::ThinLens { focal_length }
             }
-        }
+        })
     }
 }

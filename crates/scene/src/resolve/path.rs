@@ -3,7 +3,9 @@
 use super::Resolver;
 use super::faults::show;
 use crate::file::SceneFile;
-use crate::scene::{BlockerLayer, CentralRay, Hit, Leg, MeshObject, Object, PatchObject, Surface};
+use crate::scene::{
+    BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Surface,
+};
 use etendue_field::{Frame, Specular, TwoPlane, interpolated_normal, triangle_distance};
 use glam::DVec3;
 
@@ -103,6 +105,14 @@ impl Resolver<'_> {
             let allowed = format!("{}, which the central ray hits first", show(name));
             self.faults.add(&of, show(visit), allowed);
         }
+        if let Object::Patch(i) = object {
+            let PatchObject { patch, event, .. } = &things.patches[i];
+            let behind = patch.normal(point).dot(normal) < 0.0;
+            if behind && matches!(event, Event::Reflects(_)) {
+                let allowed = "a surface met on the side it faces: behind it is black";
+                self.faults.add(of, show(visit), allowed);
+            }
+        }
         let hit = Hit {
             object,
             point,
@@ -157,6 +167,8 @@ impl Resolver<'_> {
             self.faults.coordinates("path.leaves", &leaves);
             let d = world.vector_to_local(DVec3::from(leaves));
             ("path.leaves".to_owned(), show(leaves), d)
+        } else if things.mirrors(hit.object) {
+            return Some(leg.d - 2.0 * leg.d.dot(hit.normal) * hit.normal);
         } else {
             return Some(-leg.d);
         };
@@ -222,6 +234,9 @@ impl Things<'_> {
             Object::Surface(_) => None,
             Object::Patch(i) => {
                 let PatchObject { patch, event, .. } = &self.patches[i];
+                let Event::Specular(event) = event else {
+                    return None;
+                };
                 Some((*event, patch.frame, patch.normal(hit.point)))
             }
             Object::Mesh(i) => {
@@ -229,6 +244,14 @@ impl Things<'_> {
                 let facing = mesh.facing(hit)?;
                 Some((mesh.smooth.as_ref()?.event, Frame::IDENTITY, facing))
             }
+        }
+    }
+
+    /// Whether light leaves it as it leaves a mirror, or more or less so.
+    fn mirrors(&self, object: Object) -> bool {
+        match object {
+            Object::Surface(_) | Object::Mesh(_) => false,
+            Object::Patch(i) => self.patches[i].event.mirrors(),
         }
     }
 

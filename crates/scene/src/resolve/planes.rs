@@ -8,8 +8,7 @@ use crate::file::{
 };
 use crate::scene::{CentralRay, Object};
 use etendue_field::{
-    Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
-    tidy,
+    Frame, FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window, tidy,
 };
 
 /// A place on the path.
@@ -85,8 +84,8 @@ impl Resolver<'_> {
             return across;
         }
         let of = format!("{of}.orientation");
-        if plane.quantity != Quantity::Radiance {
-            let allowed = "Orthogonal: on a surface only radiance is recorded";
+        if plane.orientation == Orientation::Mirrored && place.side == Side::After {
+            let allowed = "a place Before(…) a surface: light that leaves it goes where it goes";
             self.faults.add(&of, show(plane.orientation), allowed);
         }
         let hit = match place.side {
@@ -110,13 +109,14 @@ impl Resolver<'_> {
             return across;
         };
         let on_mesh = matches!(hit.object, Object::Mesh(_));
-        if on_mesh && plane.orientation == Orientation::LocalNormals {
+        if on_mesh && plane.orientation.is_local() {
             let allowed =
                 "Orthogonal or Tangent: the normals of a mesh are known between its vertices only";
             self.faults.add(&of, show(plane.orientation), allowed);
         }
         let (frame, arrives) = hit.surface_frame(&path.legs[arriving].frame);
         match place.side {
+            Side::Before if plane.orientation == Orientation::Mirrored => (frame, -arrives),
             Side::Before => (frame, arrives),
             Side::After => {
                 let d = path.legs[place.leg].frame.d;

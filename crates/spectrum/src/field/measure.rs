@@ -189,9 +189,7 @@ impl Run<'_> {
     fn trace(&self, group: usize) -> (FieldCells, PlaneTally) {
         let mut cells = self.transform.cells();
         let mut tally = PlaneTally::default();
-        let VirtualPlane {
-            window, quantity, ..
-        } = self.plane;
+        let VirtualPlane { window, .. } = self.plane;
         for batch in self.members(group) {
             let scale = 1.0 / (self.source.emitted(batch) as f64 * self.batches.len() as f64);
             let record = &mut |plane: usize, crossings: &[Crossing]| {
@@ -205,7 +203,7 @@ impl Run<'_> {
                         continue;
                     }
                     tally.inside += 1;
-                    let weight = weight * window.value(ray) * quantity.factor(ray);
+                    let weight = weight * window.value(ray) * self.plane.factor(ray);
                     cells.deposit(ray, scale * weight);
                 }
             };

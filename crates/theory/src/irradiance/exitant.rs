@@ -84,7 +84,9 @@ impl Receiver<'_> {
                 Shape::Disc(d) => d.radius,
             },
             Light::Point { .. } => 0.0,
-            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
         };
         let lengths = self.barriers.iter().map(|barrier| {
             let beyond = self.distance - barrier.distance;

@@ -124,7 +124,9 @@ impl<'a> Receiver<'a> {
             Light::Area { exponent, .. } => (0.5 * exponent, Bundle::At([0.0; 2])),
             // Its radiance is I √(1 + u² + v²) δ(x − D u) δ(y − D v).
             Light::Point { .. } => (-0.5, Bundle::From(distance)),
-            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
         };
         let barriers: Vec<_> = layers.iter().map(Barrier::new).collect();
         let frequency = |axis: usize| {
@@ -136,7 +138,7 @@ impl<'a> Receiver<'a> {
         };
         let integrator = Integrator::new(lobe + shading, [frequency(0), frequency(1)]);
         Self {
-            light: *light,
+            light: light.clone(),
             barriers,
             distance,
             integrator,
@@ -167,7 +169,9 @@ impl<'a> Receiver<'a> {
                 let lobe = self.density(&bundle, &[]).value(u, v);
                 through.product::<f64>() * intensity * lobe / self.distance.powi(2)
             }
-            Light::Projector { .. } | Light::Beam { .. } => no_closed_form(),
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
         }
     }
 

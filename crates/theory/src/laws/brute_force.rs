@@ -65,14 +65,14 @@ pub(super) fn brute_force(
     let half = [window.x.half_width(), window.y.half_width()];
     let powers = [1, 2, 3, 4].map(|i| 1.167_303_978_261_418_7_f64.powi(-i));
     let mut sums = vec![Complex::ZERO; frequencies.len()];
-    let (measure, exponent, brightness) = match chain.source.light {
+    let (measure, exponent, brightness) = match &chain.source.light {
         Light::Area {
             shape,
             radiance,
             exponent,
-        } => (shape.area(), exponent, radiance),
+        } => (shape.area(), *exponent, *radiance),
         // At distance D √(1 + u² + v²).
-        Light::Point { intensity } => (1.0, -1.0, intensity),
+        Light::Point { intensity } => (1.0, -1.0, *intensity),
         other => panic!("no brute force for {other:?}"),
     };
     for i in 0..rays {

@@ -118,7 +118,7 @@ fn travels_add_up_with_gratings_and_points() {
         spot(disc([0.0, 0.0], 0.2), 6.0),
     ] {
         let [whole, parts] = [
-            chain_of(light, whole.clone()),
+            chain_of(light.clone(), whole.clone()),
             chain_of(light, parts.clone()),
         ];
         for k in FREQUENCIES {

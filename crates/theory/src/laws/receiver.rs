@@ -41,7 +41,7 @@ fn exitant_radiance_is_what_arrives() {
         Some(half_plane(0, 0.1, true)),
         Some(opaque(vec![disc([0.05, 0.1], 0.15)])),
     ] {
-        let arriving = onto_floor(light, mask);
+        let arriving = onto_floor(light.clone(), mask);
         let leaving = reflected(arriving.clone());
         let largest = at(&leaving, &seen, [0.0; 4]).norm();
         for [x, y, u, v] in [[1.1, 0.3, 0.5, -0.8], [-2.0, 1.0, 0.0, 0.0]]

@@ -11,19 +11,19 @@ const NORMAL: f64 = 1e-9;
 
 /// How the central ray meets a surface (docs/theory.md, section 7).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Incidence {
+pub(crate) struct Incidence {
     /// The normal on the side light comes from.
-    pub(super) n: DVec3,
-    pub(super) t: DVec3,
-    pub(super) b: DVec3,
-    pub(super) theta0: f64,
+    pub(crate) n: DVec3,
+    pub(crate) t: DVec3,
+    pub(crate) b: DVec3,
+    pub(crate) theta0: f64,
     /// The angle about D by which the leg's frame is turned so that X lies in the plane of incidence, within ± π/2.
     pub(super) turn: f64,
 }
 
 impl Incidence {
     /// `frame` is that of the leg, `normal` on either side.
-    pub(super) fn new(frame: &Frame, normal: DVec3) -> Self {
+    pub(crate) fn new(frame: &Frame, normal: DVec3) -> Self {
         let n = normal * -normal.dot(frame.d).signum();
         // With X and Y = B turned into place, N + c₀ D = sin θ₀ X.
         let across = n + frame.d * -n.dot(frame.d);
@@ -47,7 +47,7 @@ impl Incidence {
     }
 
     /// The derivative of the normal along (T, B) at a point of a patch: its shape operator, per metre, convex positive as seen along N.
-    pub(super) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
+    pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));
         let side = patch.frame.vector_to_world(gradient).dot(self.n).signum();
         let curvature = DVec3::from(patch.curvature) * (side / gradient.length());

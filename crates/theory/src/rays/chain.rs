@@ -4,7 +4,7 @@ use super::central::{Hit, Incidence};
 use super::words::{self, degrees, number};
 use super::{Element, Plane, System};
 use crate::geometry::{Map, Matrix, Print, SpectrumMap};
-use etendue_field::{Frame, Orientation, Specular};
+use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
 
 /// The chain of first-order maps from the light to a plane.
@@ -76,7 +76,7 @@ pub fn chain(system: &System, plane: &Plane, print: Print) -> Option<FirstOrder>
         walk.frame = walk.frame.travelled(distance);
         match plane.orientation {
             Orientation::Orthogonal => walk.reach_frame(&plane.frame),
-            Orientation::Tangent | Orientation::LocalNormals => walk.arriving_surface(plane),
+            _ => walk.arriving_surface(plane),
         }
     }
     Some(FirstOrder {
@@ -175,10 +175,7 @@ impl Walk {
             self.step(&map, words);
             Some((shape, theta2))
         } else {
-            self.step(
-                &Map::mirror().spectrum_map(),
-                "map  mirror: ℓ̂(Ωx, −Ωθ)".into(),
-            );
+            self.mirror();
             Some((shape, -theta0))
         }
     }
@@ -191,6 +188,11 @@ impl Walk {
     fn curvature(&mut self, shape: Matrix<2>, theta0: f64) {
         let words = format!("map  curvature {}", words::curvature(shape));
         self.step(&self.print.curvature_4d(shape, theta0), words);
+    }
+
+    fn mirror(&mut self) {
+        let words = "map  mirror: ℓ̂(Ωx, −Ωθ)".into();
+        self.step(&Map::mirror().spectrum_map(), words);
     }
 
     fn back(&mut self, shape: Matrix<2>, theta1: f64) {
@@ -223,9 +225,19 @@ impl Walk {
         let incidence = Incidence::new(&self.frame, plane.frame.d);
         self.turn(incidence.turn, "the plane of incidence");
         self.incidence(incidence.theta0, "surface");
-        if let (Orientation::LocalNormals, Some(patch)) = (plane.orientation, &plane.patch) {
+        if let Some(patch) = plane
+            .patch
+            .as_ref()
+            .filter(|_| plane.orientation.is_local())
+        {
             let shape = incidence.shape(patch, plane.frame.origin);
             self.curvature(shape, incidence.theta0);
+        }
+        if plane.quantity == Quantity::DifferentialIrradiance {
+            self.steps.push("multiply  cosine, cos⁺ θ cos² φ".into());
+        }
+        if plane.orientation == Orientation::Mirrored {
+            self.mirror();
         }
         self.onto_surface(incidence.t, incidence.b, plane);
     }

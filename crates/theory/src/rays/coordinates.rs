@@ -14,7 +14,7 @@ impl Plane {
                 let (s, t) = crossing(&self.frame, ray)?;
                 self.on_surface([s, t], ray.direction, &self.frame)
             }
-            Orientation::LocalNormals => {
+            Orientation::LocalNormals | Orientation::Mirrored => {
                 let (point, normal) = self.hit(ray)?;
                 let at = self.frame.to_local(point);
                 self.on_surface([at.x, at.y], ray.direction, &self.frame.turned_to(normal))
@@ -23,10 +23,12 @@ impl Plane {
     }
 
     /// What the quantity multiplies radiance by at a ray in the plane's coordinates.
-    pub(super) fn factor(&self, [x, y, u, v]: [f64; 4]) -> f64 {
+    pub(crate) fn factor(&self, [.., u, v]: [f64; 4]) -> f64 {
         match (self.orientation, self.quantity) {
             (_, Quantity::Radiance) => 1.0,
-            (Orientation::Orthogonal, quantity) => quantity.factor(&TwoPlane { x, y, u, v }),
+            (Orientation::Orthogonal, Quantity::DifferentialIrradiance) => {
+                (1.0 + u * u + v * v).powi(-2)
+            }
             (_, Quantity::DifferentialIrradiance) => (u + self.longitude).cos() * v.cos() * v.cos(),
         }
     }
@@ -69,7 +71,10 @@ impl Plane {
     ) -> Option<([f64; 4], f64)> {
         let away = if self.arriving { -direction } else { direction };
         let away = local.vector_to_local(away);
-        let (theta, phi) = (away.x.atan2(away.z), away.y.asin());
+        let (mut theta, mut phi) = (away.x.atan2(away.z), away.y.asin());
+        if self.orientation == Orientation::Mirrored {
+            (theta, phi) = (-theta, -phi);
+        }
         let z = [s, t, theta - self.longitude, phi];
         let projected = theta.cos() * phi.cos() * phi.cos();
         (away.z > 0.0).then(|| (z, self.factor(z) / projected))

@@ -15,8 +15,9 @@ const OUTER: usize = 12;
 /// Relative error about 10⁻⁶ where nothing has edges. `None` if no light arrives.
 #[must_use]
 pub fn covariance(system: &System, plane: &Plane, window: &Window) -> Option<Matrix<4>> {
-    let field = exact_field(system, plane);
-    let emission = system.emission();
+    let (open, opaque) = system.apart();
+    let field = exact_field(&open, plane);
+    let emission = open.emission();
     let rule = if emission.shape.is_some() {
         Rule {
             outer: OUTER,
@@ -28,7 +29,7 @@ pub fn covariance(system: &System, plane: &Plane, window: &Window) -> Option<Mat
             inner: INNER[0],
         }
     };
-    let nodes = Finder::new(&field, window, emission)?.nodes(rule);
+    let nodes = Finder::new(&field, window, emission, opaque)?.nodes(rule);
     let total: f64 = nodes.iter().map(|node| node.weight).sum();
     if total <= 0.0 {
         return None;

@@ -29,8 +29,9 @@ pub fn derivative(
     let step = STEP * size;
     let at = |value: f64| {
         let (system, plane) = system.with(plane, parameter, value)?;
-        let field = exact_field(&system, &plane);
-        let finder = Finder::new(&field, window, system.emission())?;
+        let (open, opaque) = system.apart();
+        let field = exact_field(&open, &plane);
+        let finder = Finder::new(&field, window, open.emission(), opaque)?;
         Some(sums(&finder.nodes(prediction.rule.coarse()), grid))
     };
     let (mut above, below) = (at(value + step)?, at(value - step)?);

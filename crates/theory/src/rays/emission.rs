@@ -1,6 +1,8 @@
 //! What a light emits.
 
 use super::System;
+use crate::chain::no_closed_form;
+use crate::shadow::is_rectangular;
 use etendue_field::{Light, Mask, Shape};
 use std::f64::consts::TAU;
 
@@ -29,6 +31,7 @@ impl System {
             Light::Point { .. } => ([2, 3], None, None),
             Light::Beam { image, .. } => ([0, 1], Some(image), None),
             Light::Area { shape, .. } => ([2, 3], None, Some(shape)),
+            Light::Environment { .. } => no_closed_form(),
         };
         let mut cycles = [0.0; 2];
         if let Some(image) = image {
@@ -52,6 +55,18 @@ impl System {
         }
     }
 
+    /// The system without those opaque masks that can be taken apart into rectangles, and these masks.
+    pub(super) fn apart(&self) -> (Self, Vec<(f64, Mask)>) {
+        let goes = |mask: &Mask| matches!(mask, Mask::Opaque { .. }) && is_rectangular(mask);
+        let layers = self.layers.iter().cloned();
+        let (opaque, layers) = layers.partition(|(_, mask)| goes(mask));
+        let left = Self {
+            layers,
+            ..self.clone()
+        };
+        (left, opaque)
+    }
+
     /// Flux per unit of the emission's coordinates of the ray (x, y, u, v), masks included.
     pub(super) fn flux(&self, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = ray;
@@ -63,13 +78,17 @@ impl System {
             Light::Area {
                 radiance, exponent, ..
             } => radiance * cosine.powi(4) * cosine.powf(exponent),
+            Light::Environment { .. } => no_closed_form(),
         };
-        let passed = self
-            .layers
-            .iter()
-            .map(|(distance, mask)| transmittance(mask, x + distance * u, y + distance * v));
-        emitted * passed.product::<f64>()
+        emitted * passed(&self.layers, ray)
     }
+}
+
+/// The share of a ray of the light's plane that passes masks.
+pub(super) fn passed(masks: &[(f64, Mask)], [x, y, u, v]: [f64; 4]) -> f64 {
+    let each = masks.iter();
+    each.map(|(distance, mask)| transmittance(mask, x + distance * u, y + distance * v))
+        .product()
 }
 
 fn transmittance(mask: &Mask, x: f64, y: f64) -> f64 {

@@ -75,7 +75,7 @@ mod sums;
 #[cfg(test)]
 mod tests;
 mod trace;
-mod words;
+pub(crate) mod words;
 
 pub use chain::{FirstOrder, chain};
 pub use covariance::covariance;
@@ -84,6 +84,9 @@ pub use parameter::Parameter;
 pub use predict::{RaySlices, exact, linear};
 pub use projection::projection;
 
+pub(crate) use central::Incidence;
+pub(crate) use trace::Ray;
+
 use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};
 
 /// A light and the specular surfaces its central ray visits, in the frame at the light.
@@ -91,7 +94,7 @@ use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};
 pub struct System {
     /// What shines from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks across the first leg and their distances from the light, metres. What is opaque has edges, and the quadrature converges slowly.
+    /// Masks across the first leg and their distances from the light, metres. Opaque discs have edges that rectangles do not fit, and the quadrature converges slowly.
     pub layers: Vec<(f64, Mask)>,
     /// The surfaces, in the order of light.
     pub elements: Vec<Element>,

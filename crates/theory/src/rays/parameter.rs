@@ -30,7 +30,7 @@ impl System {
         match self.light {
             Light::Area { .. } => all.push(Parameter::SourceSize),
             Light::Projector { .. } | Light::Beam { .. } => all.push(Parameter::ImageWidth),
-            Light::Point { .. } => {}
+            Light::Point { .. } | Light::Environment { .. } => {}
         }
         for (i, element) in self.elements.iter().enumerate() {
             all.push(Parameter::Travel(i));
@@ -128,7 +128,7 @@ impl System {
                 | Shape::Disc(etendue_field::Disc { center, .. })) = shape;
                 *center = center.map(|c| c * factor);
             }
-            Light::Point { .. } => {}
+            Light::Point { .. } | Light::Environment { .. } => {}
         }
         system
     }
@@ -236,7 +236,7 @@ fn change_light(light: &mut Light, new: impl FnOnce(f64) -> f64) -> Option<()> {
             };
             resize(shape, new(size) / size);
         }
-        Light::Point { .. } => return None,
+        Light::Point { .. } | Light::Environment { .. } => return None,
     }
     Some(())
 }

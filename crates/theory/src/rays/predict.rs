@@ -6,7 +6,7 @@ use super::sums::sums;
 use super::{Plane, System};
 use crate::error::distance;
 use crate::geometry::{Map, SpectrumMap};
-use etendue_field::{SliceGrid, Slices, Window};
+use etendue_field::{Mask, SliceGrid, Slices, Window};
 
 /// A prediction by rays.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,8 +31,9 @@ const ENOUGH: f64 = 1e-4;
 /// W m⁻² sr⁻¹ · m² rad². The same bytes on any number of threads.
 #[must_use]
 pub fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> RaySlices {
-    let field = exact_field(system, plane);
-    predict(&field, system, window, grid)
+    let (open, opaque) = system.apart();
+    let field = exact_field(&open, plane);
+    predict(&field, &open, opaque, window, grid)
 }
 
 /// The slices that a first-order chain predicts, such as that of [`chain`](super::chain), by the same quadrature.
@@ -47,8 +48,9 @@ pub fn linear(
     grid: &SliceGrid,
     map: &SpectrumMap<4>,
 ) -> RaySlices {
-    let field = linear_field(system, plane, map);
-    predict(&field, system, window, grid)
+    let (open, opaque) = system.apart();
+    let field = linear_field(&open, plane, map);
+    predict(&field, &open, opaque, window, grid)
 }
 
 pub(super) fn exact_field<'a>(system: &'a System, plane: &'a Plane) -> impl Field + 'a {
@@ -76,8 +78,14 @@ fn linear_field<'a>(
     }
 }
 
-fn predict(field: &impl Field, system: &System, window: &Window, grid: &SliceGrid) -> RaySlices {
-    let Some(finder) = Finder::new(field, window, system.emission()) else {
+fn predict(
+    field: &impl Field,
+    system: &System,
+    opaque: Vec<(f64, Mask)>,
+    window: &Window,
+    grid: &SliceGrid,
+) -> RaySlices {
+    let Some(finder) = Finder::new(field, window, system.emission(), opaque) else {
         return RaySlices {
             slices: Slices::zeros(*grid),
             quadrature_error: f64::INFINITY,

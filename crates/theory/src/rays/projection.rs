@@ -1,4 +1,4 @@
-use super::emission::point_of;
+use super::emission::{passed, point_of};
 use super::predict::exact_field;
 use super::region::{Field, Finder};
 use super::sums::Node;
@@ -22,10 +22,11 @@ pub fn projection(
     window: &Window,
     grid: &ProjectionGrid,
 ) -> Projection {
-    let field = exact_field(system, plane);
+    let (open, opaque) = system.apart();
+    let field = exact_field(&open, plane);
     let bins = grid.bins;
     let mut values = ndarray::Array2::zeros((bins, bins));
-    let cells = Finder::new(&field, window, system.emission())
+    let cells = Finder::new(&field, window, open.emission(), opaque)
         .map_or_else(Vec::new, |finder| finder.binned(grid));
     // Parts in order.
     for part in cells {
@@ -96,9 +97,10 @@ impl<F: Field> Finder<'_, F> {
         for i in rays {
             let at = lattice(i);
             let inner = [0, 1].map(|k| region[k][0] + at[k] * (region[k][1] - region[k][0]));
-            let Node { z, weight } = self.node(self.ray(from, inner), share);
+            let ray = self.ray(from, inner);
+            let Node { z, weight } = self.node(ray, share);
             if let Some(cell) = grid.cell(z[0], z[2]) {
-                sum[cell] += weight;
+                sum[cell] += weight * passed(&self.opaque, ray);
             }
         }
         sum

@@ -4,6 +4,7 @@ use super::emission::point_of;
 use super::region::{Field, Finder};
 use super::sums::Node;
 use crate::quadrature::gauss_legendre;
+use crate::shadow::{Seen, open};
 use etendue_field::{Shape, SliceGrid};
 use rayon::prelude::*;
 
@@ -20,6 +21,8 @@ pub(super) struct Rule {
 pub(super) const MOST_NODES: usize = 4_000_000;
 /// Fewest nodes along an inner coordinate.
 const FEWEST: f64 = 16.0;
+/// Fewest along a side of an opaque rectangle: a Gauss rule, exact where a rule without edges would be.
+const FEWEST_INSIDE: f64 = 6.0;
 /// Fewest along a side of an area light.
 const FEWEST_OUTSIDE: f64 = 4.0;
 
@@ -66,7 +69,40 @@ impl<F: Field> Finder<'_, F> {
             let nodes = (0..count).map(move |j| self.node(ray(j), share * da * db));
             nodes.filter(|node| node.weight != 0.0)
         };
-        (0..count).into_par_iter().flat_map_iter(row).collect()
+        let mut nodes: Vec<Node> = (0..count).into_par_iter().flat_map_iter(row).collect();
+        for (sign, sides) in open([a, b], &self.seen(from)).into_iter().skip(1) {
+            let along = |axis: usize| {
+                let ([low, high], whole) = (sides[axis], [a, b][axis]);
+                let share = (high - low) / (whole[1] - whole[0]);
+                let count = whole_number(FEWEST_INSIDE + 1.6 * share * count as f64);
+                let nodes = gauss_legendre(count).into_iter();
+                nodes.map(move |(t, w)| {
+                    (low + 0.5 * (t + 1.0) * (high - low), 0.5 * (high - low) * w)
+                })
+            };
+            let second: Vec<(f64, f64)> = along(1).collect();
+            let part = along(0).flat_map(|(at, p)| {
+                let ray = move |b: f64| self.ray(from, [at, b]);
+                second
+                    .iter()
+                    .map(move |&(b, q)| self.node(ray(b), sign * share * p * q))
+            });
+            nodes.extend(part.filter(|node| node.weight != 0.0));
+        }
+        nodes
+    }
+
+    /// Opaque masks as rays from a point of the light see them.
+    fn seen(&self, from: [f64; 2]) -> Vec<Seen<'_>> {
+        let is_beam = self.emission.inner[0] == 0;
+        let masks = self.opaque.iter();
+        masks
+            .map(|(distance, mask)| Seen {
+                mask,
+                origin: if is_beam { [0.0; 2] } else { from },
+                scale: if is_beam { 1.0 } else { *distance },
+            })
+            .collect()
     }
 
     /// A rule that should do for a grid: a midpoint rule integrates exactly what has fewer cycles than nodes.
@@ -94,10 +130,9 @@ impl<F: Field> Finder<'_, F> {
             // A Gauss rule needs π/2 nodes for a cycle, and then a few.
             FEWEST_OUTSIDE + 1.6 * (w * cycles(0)).max(h * cycles(1))
         });
-        let whole = |x: f64| num_whole(x).max(1);
         let mut rule = Rule {
-            outer: whole(outer),
-            inner: whole(inner),
+            outer: whole_number(outer),
+            inner: whole_number(inner),
         };
         while rule.nodes() > MOST_NODES {
             rule = Rule {
@@ -114,8 +149,8 @@ impl<F: Field> Finder<'_, F> {
     clippy::cast_sign_loss,
     reason = "not negative; beyond 10⁴ it is cut down"
 )]
-fn num_whole(x: f64) -> usize {
-    x.ceil().min(1e4) as usize
+fn whole_number(x: f64) -> usize {
+    x.ceil().clamp(1.0, 1e4) as usize
 }
 
 /// A Gauss rule over a shape. Over a disc: in r², and equal angles.

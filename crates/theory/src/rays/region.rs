@@ -1,7 +1,7 @@
 //! Where in the emission's inner coordinates the rays are that land in a window.
 
 use super::emission::Emission;
-use etendue_field::{TwoPlane, Window};
+use etendue_field::{Mask, TwoPlane, Window};
 
 /// A box in two coordinates: lowest and highest along each.
 pub(super) type Region = [[f64; 2]; 2];
@@ -25,6 +25,8 @@ pub(super) struct Finder<'a, F> {
     pub(super) field: &'a F,
     pub(super) window: &'a Window,
     pub(super) emission: Emission,
+    /// Masks that the field leaves out: rectangles, to be taken off one by one.
+    pub(super) opaque: Vec<(f64, Mask)>,
     /// Coordinates at the plane of the light's central ray, and how they change with those of rays at the light, [at plane, at light].
     pub(super) center: [f64; 4],
     pub(super) jacobian: [[f64; 4]; 4],
@@ -32,7 +34,12 @@ pub(super) struct Finder<'a, F> {
 
 impl<'a, F: Field> Finder<'a, F> {
     /// `None` if the central ray, or one beside it, does not arrive.
-    pub(super) fn new(field: &'a F, window: &'a Window, emission: Emission) -> Option<Self> {
+    pub(super) fn new(
+        field: &'a F,
+        window: &'a Window,
+        emission: Emission,
+        opaque: Vec<(f64, Mask)>,
+    ) -> Option<Self> {
         const STEP: f64 = 1e-6;
         let (center, _) = field([0.0; 4])?;
         let mut jacobian = [[0.0; 4]; 4];
@@ -51,6 +58,7 @@ impl<'a, F: Field> Finder<'a, F> {
             field,
             window,
             emission,
+            opaque,
             center,
             jacobian,
         })

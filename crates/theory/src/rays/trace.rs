@@ -6,16 +6,16 @@ use glam::DVec3;
 
 /// A straight leg of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Ray {
+pub(crate) struct Ray {
     /// Where it starts.
-    pub(super) point: DVec3,
+    pub(crate) point: DVec3,
     /// A unit vector.
-    pub(super) direction: DVec3,
+    pub(crate) direction: DVec3,
 }
 
 impl Ray {
     /// The ray (x, y, u, v) of the light's plane.
-    pub(super) fn new([x, y, u, v]: [f64; 4]) -> Self {
+    pub(crate) fn new([x, y, u, v]: [f64; 4]) -> Self {
         Self {
             point: DVec3::new(x, y, 0.0),
             direction: DVec3::new(u, v, 1.0).normalize(),
@@ -26,7 +26,7 @@ impl Ray {
     ///
     /// By Newton's method from the tangent plane at the vertex. Along a ray the quadric is a polynomial of degree two, so there is one root on
     /// either side of its extremum, and the nearer to the tangent plane is found.
-    pub(super) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
+    pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
         let point = patch.frame.to_local(self.point);
         let direction = patch.frame.vector_to_local(self.direction);
         let mut t = if direction.z.abs() > 1e-3 {

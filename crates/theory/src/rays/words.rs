@@ -4,14 +4,14 @@ use crate::geometry::Matrix;
 use etendue_field::Mask;
 
 /// A number to six decimals, without those that are zero.
-pub(super) fn number(x: f64) -> String {
+pub(crate) fn number(x: f64) -> String {
     let rounded = (x * 1e6).round() / 1e6;
     let sign = if rounded < 0.0 { "−" } else { "" };
     format!("{sign}{}", rounded.abs())
 }
 
 /// An angle in degrees.
-pub(super) fn degrees(radians: f64) -> String {
+pub(crate) fn degrees(radians: f64) -> String {
     let rounded = (radians.to_degrees() * 1e3).round() / 1e3;
     format!("{}°", number(rounded))
 }
@@ -27,7 +27,7 @@ pub(super) fn turn(angle: f64, into: &str) -> String {
     format!("map  axes turned by {} into {into}", degrees(angle))
 }
 
-pub(super) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
+pub(crate) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
     let off_diagonal = b.abs().max(c.abs());
     let [a, b, c, d] = [a, b, c, d].map(number);
     if off_diagonal < 1e-9 {
@@ -37,7 +37,7 @@ pub(super) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
     }
 }
 
-pub(super) fn mask(mask: &Mask) -> String {
+pub(crate) fn mask(mask: &Mask) -> String {
     match mask {
         Mask::Opaque {
             shapes,

@@ -8,6 +8,7 @@ mod geometry;
 mod grating;
 mod half_planes;
 mod lights;
+mod shading;
 
 use crate::expansion::Expansion;
 use crate::gaussian::{Bench, Gaussian};

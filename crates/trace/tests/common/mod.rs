@@ -13,7 +13,7 @@ pub(crate) fn estimates(source: &dyn PhotonSource, scene: &Scene) -> (Vec<[[f64;
         let mut record = |plane: usize, crossings: &[Crossing]| {
             for Crossing { ray, weight } in crossings {
                 let at = &scene.planes[plane];
-                let w = weight * at.window.value(ray) * at.quantity.factor(ray);
+                let w = weight * at.window.value(ray) * at.factor(ray);
                 let phase = TAU * (1.3 * ray.x - 0.4 * ray.y + 0.9 * ray.u + 0.7 * ray.v);
                 let terms = [w, w * phase.cos(), w * phase.sin()];
                 for (sum, term) in sums[plane].iter_mut().zip(terms) {

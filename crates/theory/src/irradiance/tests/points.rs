@@ -90,7 +90,7 @@ fn benches_against_sums_over_the_light() {
             unreachable!("area lights only")
         };
         let bounds = shape.bounds();
-        let open = alone(bench.light, bench.distance);
+        let open = alone(bench.light.clone(), bench.distance);
         for point in [[0.0, 0.0], [0.21, -0.13], [-0.3, 0.17]] {
             let at =
                 |s: &[f64; 2]| [0, 1].map(|k| bounds.center[k] + bounds.size[k] * (s[k] - 0.5));
@@ -116,7 +116,7 @@ fn tiles_that_fill_the_plane_leave_nothing() {
             area(disc([-0.1, 0.12], 0.4), exponent),
             vec![(1.0, opaque(tiles(0.11)))],
         );
-        let open = alone(bench.light, bench.distance);
+        let open = alone(bench.light.clone(), bench.distance);
         for [x, y] in [[0.0, 0.0], [0.21, -0.13], [-0.3, 0.17]] {
             let share = bench.receiver().irradiance(x, y) / open.receiver().irradiance(x, y);
             assert!(share.abs() < CLOSE, "{share:e}");
@@ -184,8 +184,8 @@ fn half_planes_are_very_large_rectangles() {
     let far = 100.0;
     let left = rectangle([-0.1 - far, 0.0], [2.0 * far, 4.0 * far]);
     let above = rectangle([far - 0.1, 0.12 + far], [2.0 * far; 2]);
-    let [a, b] =
-        [corner, opaque(vec![left, above])].map(|mask| Bench::new(light, vec![(1.0, mask)]));
+    let [a, b] = [corner, opaque(vec![left, above])]
+        .map(|mask| Bench::new(light.clone(), vec![(1.0, mask)]));
     for [x, y] in [[0.0, 0.0], [0.3, 0.2]] {
         let [a, b] = [&a, &b].map(|bench| bench.receiver().irradiance(x, y));
         assert!((a - b).abs() < CLOSE * b && a > 0.0, "{a} {b}");

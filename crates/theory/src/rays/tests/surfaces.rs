@@ -44,7 +44,7 @@ fn projection_of_an_area_light() {
     let light = crate::testing::lambertian(crate::testing::square([0.0; 2], 0.2));
     let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
     let cells = ProjectionGrid::new(&window, 32);
-    let straight = system(light, vec![]);
+    let straight = system(light.clone(), vec![]);
     let got = projection(&straight, &after(&straight, 1.0), &window, &cells);
     let chain = crate::testing::chain_of(light, [(1.0, None)]);
     let expected = crate::projection(&chain, &window, &cells);

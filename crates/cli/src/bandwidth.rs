@@ -1,0 +1,258 @@
+use crate::args::{BandwidthArgs, SceneArgs, Sweep};
+use crate::failure::Failure;
+use crate::measure::measured;
+use crate::table::aligned;
+use crate::threads::on_threads;
+use crate::{load, method, progress, say};
+use atomic_write_file::AtomicWriteFile;
+use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth};
+use etendue_field::VirtualPlane;
+use etendue_scene::Scene;
+use etendue_theory::shading::Criterion;
+use std::io::Write;
+use std::path::Path;
+
+/// `etendue bandwidth`: returns the exit code.
+pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
+    let points = points(&args.sweep)?;
+    let scenes: Result<Vec<Scene>, Failure> = points
+        .iter()
+        .map(|point| {
+            let mut set = args.scene.set.clone();
+            set.extend(
+                point
+                    .iter()
+                    .map(|(path, value)| (path.clone(), format!("{value:?}"))),
+            );
+            let scene = SceneArgs {
+                path: args.scene.path.clone(),
+                set,
+            };
+            load::scene(&scene, |run| args.photons.set(run))
+        })
+        .collect();
+    let scenes = scenes?;
+    if args.measure {
+        for scene in &scenes {
+            method::check(scene, args.photons.method)?;
+        }
+    }
+    let csv = args.csv.as_deref().map(Csv::open).transpose()?;
+    let rows = on_threads(&args.threads, || {
+        let each = scenes.iter().zip(&points);
+        let rows: Result<Vec<_>, Failure> =
+            each.map(|(scene, point)| of(args, scene, point)).collect();
+        rows.map(|rows| rows.concat())
+    })?;
+    if rows.is_empty() {
+        return Err(Failure::bad_input(
+            "no plane of this scene looks, across its ray, at light that has left a smooth surface with a BRDF",
+        ));
+    }
+    let header = header(args);
+    if let Some(csv) = csv {
+        csv.write(&header, &rows)?;
+    }
+    let warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
+    let cells = rows.iter().map(Row::cells);
+    let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
+    say(
+        "Bandwidths hold 95 % of the energy: that of the lobe in cycles per radian, others in cycles per unit slope at a fixed point of the plane.",
+    );
+    say("B, B': Durand et al. 2005, Eqs. 20 and 21, corrected; as printed beside them.\n");
+    say(&aligned(table).join("\n"));
+    for warning in warnings {
+        say(&format!("warning: {warning}"));
+    }
+    Ok(0)
+}
+
+fn header(args: &BandwidthArgs) -> Vec<String> {
+    let mut header: Vec<String> = args.sweep.iter().map(|sweep| sweep.path.clone()).collect();
+    let numbers = [
+        "plane",
+        "k [1/m]",
+        "θ0 [°]",
+        "θ1 [°]",
+        "d [m]",
+        "d' [m]",
+        "lobe",
+        "B (Eq. 20)",
+        "as printed",
+        "B' (Eq. 21)",
+        "as printed",
+    ];
+    header.extend(numbers.map(str::to_owned));
+    if args.measure {
+        header.extend(["exact", "measured", "error"].map(str::to_owned));
+    }
+    header
+}
+
+/// What is known of a plane at a point of the sweep.
+#[derive(Clone, Debug)]
+struct Row {
+    /// The values swept.
+    point: Vec<f64>,
+    plane: String,
+    /// In the order of the header, `None` where there is none.
+    numbers: Vec<Option<f64>>,
+    warnings: Vec<String>,
+}
+
+impl Row {
+    fn cells(&self) -> Vec<String> {
+        let mut cells: Vec<String> = self.point.iter().map(|x| number(*x)).collect();
+        cells.push(self.plane.clone());
+        let numbers = self.numbers.iter();
+        cells.extend(numbers.map(|x| x.map_or("–".to_owned(), number)));
+        cells
+    }
+
+    /// With all digits; empty where there is no number.
+    fn record(&self) -> Vec<String> {
+        let digits = |x: &f64| format!("{x:?}");
+        let mut cells: Vec<String> = self.point.iter().map(digits).collect();
+        cells.push(self.plane.clone());
+        let numbers = self.numbers.iter();
+        cells.extend(numbers.map(|x| x.as_ref().map_or(String::new(), digits)));
+        cells
+    }
+}
+
+/// A file that is there when it is whole, and not before.
+#[derive(Debug)]
+struct Csv<'a> {
+    path: &'a Path,
+    file: AtomicWriteFile,
+}
+
+impl<'a> Csv<'a> {
+    /// Proves that the file can be written, so that a long sweep does not end in vain.
+    fn open(path: &'a Path) -> Result<Self, Failure> {
+        let file = AtomicWriteFile::open(path).map_err(|e| Failure::write(path, e))?;
+        Ok(Self { path, file })
+    }
+
+    fn write(mut self, header: &[String], rows: &[Row]) -> Result<(), Failure> {
+        let line = |cells: &[String]| {
+            let cells: Vec<String> = cells.iter().map(|cell| quoted(cell)).collect();
+            cells.join(",") + "\n"
+        };
+        let lines = rows.iter().map(|row| line(&row.record()));
+        let text: String = std::iter::once(line(header)).chain(lines).collect();
+        self.file
+            .write_all(text.as_bytes())
+            .and_then(|()| self.file.commit())
+            .map_err(|e| Failure::write(self.path, e))
+    }
+}
+
+/// A cell of a CSV file.
+fn quoted(cell: &str) -> String {
+    if cell.contains(['"', ',', '\n', '\r']) {
+        format!("\"{}\"", cell.replace('"', "\"\""))
+    } else {
+        cell.to_owned()
+    }
+}
+
+/// The values of all sweeps, which go in step.
+fn points(sweeps: &[Sweep]) -> Result<Vec<Vec<(String, f64)>>, Failure> {
+    let count = sweeps.first().map_or(1, |sweep| sweep.count);
+    if sweeps.iter().any(|sweep| sweep.count != count) {
+        let message = "--sweep: several sweeps go in step and have the same number of values";
+        return Err(Failure::bad_input(message));
+    }
+    let value = |sweep: &Sweep, i: u32| {
+        let share = if count > 1 {
+            f64::from(i) / f64::from(count - 1)
+        } else {
+            0.0
+        };
+        (
+            sweep.path.clone(),
+            sweep.from + share * (sweep.to - sweep.from),
+        )
+    };
+    Ok((0..count)
+        .map(|i| sweeps.iter().map(|sweep| value(sweep, i)).collect())
+        .collect())
+}
+
+/// A row for each plane with a criterion.
+fn of(args: &BandwidthArgs, scene: &Scene, point: &[(String, f64)]) -> Result<Vec<Row>, Failure> {
+    let all = scene.planes.iter().enumerate();
+    let planes: Vec<(usize, Criterion)> = all
+        .filter_map(|(i, plane)| Some((i, criterion(scene, plane)?)))
+        .collect();
+    let measurement = if args.measure && !planes.is_empty() {
+        let batches = 0..scene.run.batches;
+        Some(measured(scene, args.photons.method, batches, args.quiet)?)
+    } else {
+        None
+    };
+    let row = |(i, c): (usize, Criterion)| {
+        let plane = &scene.planes[i];
+        let edge = |value: f64| c.blocker_distance.map(|_| value);
+        let mut row = Row {
+            point: point.iter().map(|(_, value)| *value).collect(),
+            plane: plane.name.clone(),
+            numbers: vec![
+                Some(c.curvature),
+                Some(c.incidence.to_degrees()),
+                Some(c.outgoing.to_degrees()),
+                Some(c.distance),
+                c.blocker_distance,
+                Some(c.lobe_cutoff),
+                Some(c.environment()),
+                Some(c.printed_environment()),
+                edge(c.blocker()),
+                edge(c.printed_blocker()),
+            ],
+            warnings: Vec::new(),
+        };
+        if let Some(measurement) = &measurement {
+            let stage = progress::stage("predicting", args.quiet);
+            let exact = exact_bandwidth(scene, plane);
+            stage.finish_and_clear();
+            let found = measured_bandwidth(measurement, i).map_err(Failure::cannot_run)?;
+            let (value, error) = (found.map(|f| f.value), found.map(|f| f.error));
+            row.numbers.extend([exact, value, error]);
+            let most = exact.into_iter().chain(value).fold(0.0, f64::max);
+            row.warnings
+                .extend(warning(plane, most).map(|text| place(point) + &text));
+        }
+        Ok(row)
+    };
+    planes.into_iter().map(row).collect()
+}
+
+/// Where a sweep is, for texts.
+fn place(point: &[(String, f64)]) -> String {
+    let parts: Vec<String> = point.iter().map(|(p, x)| format!("{p}={x:?}")).collect();
+    if parts.is_empty() {
+        String::new()
+    } else {
+        parts.join(", ") + ": "
+    }
+}
+
+/// A bandwidth at the end of the grid is that of the grid. Of a spectrum that is even all over it, it is 95 % of the largest frequency.
+fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
+    const NEAR: f64 = 0.9;
+    let nu = plane.grid.nu;
+    let end = (NEAR * nu.max()).min(nu.max() - nu.spacing);
+    (bandwidth >= end).then(|| {
+        format!(
+            "{}: a bandwidth of {} is at the end of its frequencies: there may be more beyond; frequencies.nu.max is {}",
+            plane.name,
+            number(bandwidth),
+            nu.max()
+        )
+    })
+}
+
+fn number(x: f64) -> String {
+    format!("{x:.3}")
+}

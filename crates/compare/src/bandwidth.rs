@@ -1,0 +1,72 @@
+//! How fast a glossy reflection changes with angle, by the paper's criteria, by quadrature and as measured.
+
+use crate::scattering::scattered;
+use etendue_field::{Light, Lobe, Orientation, VirtualPlane};
+use etendue_scene::Scene;
+use etendue_spectrum::estimate::TooFewBatches;
+use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu};
+use etendue_spectrum::{CrossPower, Measurement, Uncertain};
+use etendue_theory::scattering;
+use etendue_theory::shading::{self, Criterion};
+
+/// The criterion of a plane across the ray that leaves a surface with a BRDF, its cutoff being that of [`BANDWIDTH_FRACTION`] of the energy of the
+/// lobe; `None` for any other plane.
+///
+/// What blocks the light is the last of the blockers; without them the light's own edge does, unless it comes from far away.
+#[must_use]
+pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
+    let (system, at) = scattered(scene, plane)?;
+    if plane.orientation != Orientation::Orthogonal {
+        return None;
+    }
+    let chain = scattering::chain(&system, &at)?;
+    let lobe_cutoff = match system.reflectance.brdf.lobe {
+        Lobe::Lambertian => 0.0,
+        Lobe::Phong { exponent } => cutoff(shading::Lobe::Phong { exponent }),
+        Lobe::Beckmann { roughness } => cutoff(shading::Lobe::Beckmann { roughness }),
+        Lobe::Ggx { roughness } => cutoff(shading::Lobe::Ggx { roughness }),
+    };
+    let last = system.layers.last().map(|(distance, _)| *distance);
+    let edge = match &system.light {
+        Light::Beam { .. } | Light::Environment { .. } => last,
+        _ => Some(last.unwrap_or(0.0)),
+    };
+    Some(Criterion {
+        curvature: chain.curvature[0][0],
+        incidence: chain.incidence,
+        outgoing: chain.outgoing[0],
+        distance: scene.path.along(plane),
+        blocker_distance: edge.map(|distance| chain.distance - distance),
+        lobe_cutoff,
+        environment_cutoff: f64::INFINITY,
+    })
+}
+
+fn cutoff(lobe: shading::Lobe) -> f64 {
+    lobe.cutoff(BANDWIDTH_FRACTION)
+}
+
+/// The bandwidth along ν of the exact prediction of such a plane, by the estimator that photons are measured with.
+#[must_use]
+pub fn exact_bandwidth(scene: &Scene, plane: &VirtualPlane) -> Option<f64> {
+    let (system, at) = scattered(scene, plane)?;
+    let slices = scattering::exact(&system, &at, &plane.window, &plane.grid).slices;
+    bandwidth_nu(
+        slices.radial_power().view(),
+        &plane.grid,
+        BANDWIDTH_FRACTION,
+    )
+}
+
+/// The bandwidth along ν as measured at plane `index`, with its error; `None` where no light came.
+///
+/// # Errors
+/// When the measurement has too few batches.
+pub fn measured_bandwidth(
+    measurement: &Measurement,
+    index: usize,
+) -> Result<Option<Uncertain>, TooFewBatches> {
+    let grid = &measurement.planes()[index].grid;
+    let power = CrossPower::new(measurement, index)?;
+    Ok(power.statistic(|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)))
+}

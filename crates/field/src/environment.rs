@@ -1,0 +1,217 @@
+use crate::{Frame, Raster};
+use glam::DVec3;
+use serde::{Serialize, Serializer};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// Light from far away: radiance that depends on its direction alone.
+///
+/// Environments shine forward: a ray of a leg goes along (u, v, 1), so that light is dark, whatever the map says, that does not come from the half
+/// of all directions that the central ray begins in. It begins in the plane across the central ray's beginning: nothing behind stands in its way.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Environment {
+    /// The axes of the map, in the coordinates of the frame at the light: Y is up, D is to the front, and X = Y × D.
+    pub frame: Frame,
+    /// What is where.
+    pub map: EnvironmentMap,
+}
+
+/// Radiance by the direction that light comes from, in the coordinates of an [`Environment`].
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub enum EnvironmentMap {
+    /// A sum of lobes.
+    Lobes(Vec<SphericalGaussian>),
+    /// A picture of all directions.
+    LatLong(#[serde(serialize_with = "shared")] Arc<LatLong>),
+}
+
+/// A lobe of light: L exp((cos γ − 1)/σ²), γ being the angle to the direction that most of it comes from.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SphericalGaussian {
+    /// The direction most of it comes from, of unit length.
+    pub from: DVec3,
+    /// L, W m⁻² sr⁻¹.
+    pub radiance: f64,
+    /// σ, radians.
+    pub width: f64,
+}
+
+/// Radiance on a grid over latitude and longitude, W m⁻² sr⁻¹: bilinear between the centres of pixels, all around in longitude; from the centres of
+/// the first and the last row to the poles it is that at the centre.
+///
+/// The axes are those of `OpenEXR`'s latitude–longitude maps: the top is up (Y), longitude is 0 in the middle, to the front (Z), and grows to the
+/// left, π/2 being along X; latitude is π/2 at the top. So light is seen as one does who looks around from within. A pixel is an area, as in
+/// other renderers: the centre of column i of w is at longitude π (1 − (2 i + 1)/w), that of row j of h at latitude π (½ − (j + ½)/h).
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct LatLong {
+    radiance: Raster,
+}
+
+fn shared<S: Serializer>(map: &Arc<LatLong>, serializer: S) -> Result<S::Ok, S::Error> {
+    map.as_ref().serialize(serializer)
+}
+
+impl Environment {
+    /// Radiance of light that travels along a direction of any length, in the coordinates of the frame at the light.
+    #[inline]
+    #[must_use]
+    pub fn radiance(&self, along: DVec3) -> f64 {
+        self.map.radiance(self.origin_of(along))
+    }
+
+    /// Where light comes from that travels along a direction: of unit length, in the coordinates of the map.
+    #[inline]
+    #[must_use]
+    pub fn origin_of(&self, along: DVec3) -> DVec3 {
+        -self.frame.vector_to_local(along).normalize()
+    }
+}
+
+impl EnvironmentMap {
+    /// Radiance of light that comes from a direction of unit length.
+    #[inline]
+    #[must_use]
+    pub fn radiance(&self, from: DVec3) -> f64 {
+        match self {
+            Self::Lobes(lobes) => lobes.iter().map(|lobe| lobe.radiance_from(from)).sum(),
+            Self::LatLong(map) => map.radiance(from),
+        }
+    }
+}
+
+impl SphericalGaussian {
+    /// Its radiance from a direction of unit length.
+    #[inline]
+    #[must_use]
+    pub fn radiance_from(&self, from: DVec3) -> f64 {
+        // 1 − cos γ, without cancelling where it is small.
+        let fall = 0.5 * (from - self.from).length_squared();
+        self.radiance * (-fall / (self.width * self.width)).exp()
+    }
+
+    /// Its integral over all directions, 2π σ² (1 − exp(−2/σ²)) L.
+    #[must_use]
+    pub fn integral(&self) -> f64 {
+        let squared = self.width * self.width;
+        -TAU * squared * (-2.0 / squared).exp_m1() * self.radiance
+    }
+}
+
+impl LatLong {
+    /// The map of a picture.
+    #[must_use]
+    pub fn new(radiance: Raster) -> Self {
+        Self { radiance }
+    }
+
+    /// The map with `radiance` at the direction of each pixel's centre; one pixel at least.
+    #[must_use]
+    pub fn from_fn(width: usize, height: usize, radiance: impl Fn(DVec3) -> f64) -> Self {
+        let (width, height) = (width.max(1), height.max(1));
+        let pixels = (0..width * height).map(|i| {
+            let place = [(i % width) as f64 + 0.5, (i / width) as f64 + 0.5];
+            radiance(toward(width, height, place))
+        });
+        let raster = Raster::new(width, height, pixels.collect());
+        Self::new(raster.unwrap_or_else(|| unreachable!("one value for each pixel")))
+    }
+
+    /// The radiance of the pixels.
+    #[must_use]
+    pub fn raster(&self) -> &Raster {
+        &self.radiance
+    }
+
+    /// Where on the raster a direction is, in pixels from the left and from the top.
+    #[inline]
+    #[must_use]
+    pub fn place(&self, from: DVec3) -> [f64; 2] {
+        let longitude = from.x.atan2(from.z);
+        let latitude = from.y.atan2(from.x.hypot(from.z));
+        let [w, h] = [self.radiance.width() as f64, self.radiance.height() as f64];
+        [w * (0.5 - longitude / TAU), h * (0.5 - latitude / PI)]
+    }
+
+    /// The direction of a place on the raster, of unit length.
+    #[inline]
+    #[must_use]
+    pub fn direction(&self, place: [f64; 2]) -> DVec3 {
+        toward(self.radiance.width(), self.radiance.height(), place)
+    }
+
+    /// Radiance of light that comes from a direction.
+    #[inline]
+    #[must_use]
+    pub fn radiance(&self, from: DVec3) -> f64 {
+        let [column, row] = self.place(from);
+        self.radiance.value(column, row, true)
+    }
+}
+
+/// The direction of a place on a raster of this size.
+fn toward(width: usize, height: usize, [column, row]: [f64; 2]) -> DVec3 {
+    let longitude = TAU * (0.5 - column / width as f64);
+    let latitude = PI * (0.5 - row / height as f64);
+    let across = latitude.cos();
+    DVec3::new(
+        across * longitude.sin(),
+        latitude.sin(),
+        across * longitude.cos(),
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The axes of `OpenEXR`: up at the top, +X (longitude π/2) a quarter from the left, +Z in the middle.
+    #[test]
+    fn the_map_is_seen_from_within() {
+        let map = LatLong::from_fn(8, 4, |_| 1.0);
+        for (direction, place) in [
+            (DVec3::Y, [4.0, 0.0]),
+            (DVec3::NEG_Y, [4.0, 4.0]),
+            (DVec3::X, [2.0, 2.0]),
+            (DVec3::Z, [4.0, 2.0]),
+            (DVec3::NEG_X, [6.0, 2.0]),
+        ] {
+            // Rounding of angles.
+            assert!((map.direction(place) - direction).length() < 1e-15);
+            let [column, row] = map.place(direction);
+            assert!((column - place[0]).abs() + (row - place[1]).abs() < 1e-14); // likewise
+        }
+        let radiance = |d: DVec3| 2.0 + d.x + 0.5 * d.y;
+        let map = LatLong::from_fn(64, 32, radiance);
+        let d = DVec3::new(0.3, -0.8, 0.4).normalize();
+        // An eighth of the square of a pixel's side, 0.1, times the second derivatives.
+        assert!((map.radiance(d) - radiance(d)).abs() < 3e-3);
+    }
+
+    #[test]
+    fn environments_turn_with_their_frame() {
+        let lobe = SphericalGaussian {
+            from: DVec3::Z,
+            radiance: 2.0,
+            width: 0.3,
+        };
+        let frame = Frame::new(DVec3::ZERO, DVec3::X, DVec3::Y).unwrap();
+        let environment = Environment {
+            frame,
+            map: EnvironmentMap::Lobes(vec![lobe]),
+        };
+        // Light that comes from along +X travels along −X.
+        assert!((environment.radiance(DVec3::new(-3.0, 0.0, 0.0)) - 2.0).abs() < 1e-15);
+        let aside = environment.radiance(DVec3::new(-(0.1_f64.cos()), 0.1_f64.sin(), 0.0));
+        let expected = 2.0 * ((0.1_f64.cos() - 1.0) / 0.09).exp();
+        assert!((aside - expected).abs() < 1e-14); // rounding of unit vectors
+        // ∫ over the sphere by mid-points in cos γ: an error of (step/σ²)²/24.
+        let n = 20_000;
+        let sum: f64 = (0..n)
+            .map(|i| {
+                let cosine = (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
+                2.0 * ((cosine - 1.0) / 0.09).exp() * TAU * 2.0 / f64::from(n)
+            })
+            .sum();
+        assert!((lobe.integral() / sum - 1.0).abs() < 1e-7);
+    }
+}

@@ -1,0 +1,206 @@
+//! Curves and measured points over one axis, panel beside panel.
+
+use crate::axis::{Axis, Quantity};
+use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::panel::Panel;
+use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT};
+use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::text::{plain, width};
+
+/// What a curve is, which says how it is drawn.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum CurveKind {
+    /// A full line.
+    Theory,
+    /// A broken line.
+    Rival,
+    /// Points with their errors.
+    Measured,
+}
+
+/// A curve, or points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curve {
+    /// How it is drawn.
+    pub kind: CurveKind,
+    /// Its name in the key; curves of one name have one entry.
+    pub name: String,
+    /// (x, y, standard error of y), in the order in which they are joined; of a line the error is 0.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// Curves in one frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CurvePanel {
+    /// Over the frame, markup.
+    pub title: String,
+    /// What is along x.
+    pub x: Quantity,
+    /// What is in the frame.
+    pub curves: Vec<Curve>,
+}
+
+/// Panels of curves that show one quantity; each has scales of its own, and y begins at 0.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Curves {
+    /// Markup.
+    pub title: String,
+    /// A line below the title, markup.
+    pub note: String,
+    /// What is along y.
+    pub y: Quantity,
+    /// From left to right, and then below.
+    pub panels: Vec<CurvePanel>,
+}
+
+const ACROSS: usize = 3;
+const SIZE: [f64; 2] = [262.0, 190.0];
+const LEFT: f64 = 62.0;
+const BETWEEN: [f64; 2] = [58.0, 74.0];
+const RADIUS: f64 = 3.0;
+/// Half of the stroke at the end of an error bar.
+const CAP: f64 = 3.0;
+const THEORY: Stroke = Stroke::solid("#1f6fb4", 1.8);
+const RIVAL: Stroke = Stroke {
+    color: "#c8502e",
+    width: 1.6,
+    dash: "6 4",
+};
+const POINT: &str = INK;
+/// Length of a line in the key.
+const SAMPLE: f64 = 30.0;
+
+/// Draws them. The CSV has a row for each point.
+///
+/// # Errors
+/// When the numbers cannot be written.
+pub fn curves(curves: &Curves) -> Result<Figure, Error> {
+    let columns = curves.panels.len().clamp(1, ACROSS);
+    let inner = columns as f64 * (SIZE[0] + BETWEEN[0]) - BETWEEN[0];
+    let mut svg = Svg::default();
+    let top = svg.title(LEFT, inner, &curves.title, &curves.note);
+    let key_right = key(&mut svg, curves, [LEFT, top + 16.0]);
+    let top = top + 58.0;
+    let mut bottom = top;
+    for (i, panel) in curves.panels.iter().enumerate() {
+        let [column, row] = [i % ACROSS, i / ACROSS].map(|n| n as f64);
+        let area = Area {
+            x: LEFT + column * (SIZE[0] + BETWEEN[0]),
+            y: top + row * (SIZE[1] + BETWEEN[1]),
+            width: SIZE[0],
+            height: SIZE[1],
+        };
+        draw(&mut svg, panel, &curves.y, area);
+        bottom = area.bottom();
+    }
+    Ok(Figure {
+        svg: svg.finish(
+            (LEFT + inner).max(key_right) + 24.0,
+            bottom + LABEL_BASELINE + 14.0,
+        ),
+        csv: numbers(curves)?,
+    })
+}
+
+/// Each name once, with what it looks like; returns where they end.
+fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) -> f64 {
+    let mut known: Vec<&str> = Vec::new();
+    for curve in curves.panels.iter().flat_map(|p| &p.curves) {
+        if known.contains(&curve.name.as_str()) {
+            continue;
+        }
+        known.push(&curve.name);
+        let middle = y - 4.0;
+        match curve.kind {
+            CurveKind::Theory => svg.line([x, middle], [x + SAMPLE, middle], THEORY),
+            CurveKind::Rival => svg.line([x, middle], [x + SAMPLE, middle], RIVAL),
+            CurveKind::Measured => {
+                let at = [x + 0.5 * SAMPLE, middle];
+                bar(svg, at, [middle - 7.0, middle + 7.0]);
+                svg.circle(at, RADIUS, POINT);
+            }
+        }
+        let start = x + SAMPLE + 8.0;
+        svg.markup(
+            Text::new([start, y], LABEL_TEXT, Anchor::Start),
+            &curve.name,
+        );
+        x = start + width(&plain(&curve.name), LABEL_TEXT) + 30.0;
+    }
+    x - 30.0
+}
+
+fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
+    let points = || panel.curves.iter().flat_map(|c| &c.points);
+    let [low, high] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
+        [a.min(p[0]), b.max(p[0])]
+    });
+    let margin = 0.04 * (high - low);
+    let most = points().map(|p| p[1] + p[2]).fold(0.0, f64::max);
+    let frame = Panel {
+        area,
+        x: &Axis {
+            quantity: panel.x.clone(),
+            min: low - margin,
+            max: high + margin,
+        },
+        y: &Axis {
+            quantity: y.clone(),
+            min: 0.0,
+            max: 1.06 * most,
+        },
+        label_y: true,
+    };
+    svg.clipped(area, |svg| {
+        for curve in &panel.curves {
+            let at: Vec<[f64; 2]> = curve
+                .points
+                .iter()
+                .map(|p| frame.point(p[0], p[1]))
+                .collect();
+            match curve.kind {
+                CurveKind::Theory => svg.polyline(&at, THEORY),
+                CurveKind::Rival => svg.polyline(&at, RIVAL),
+                CurveKind::Measured => {
+                    for (p, at) in curve.points.iter().zip(at) {
+                        let ends = [p[1] - p[2], p[1] + p[2]].map(|y| frame.point(p[0], y)[1]);
+                        bar(svg, at, ends);
+                        svg.circle(at, RADIUS, POINT);
+                    }
+                }
+            }
+        }
+    });
+    frame.axes(svg);
+    let at = [area.x, area.y - 8.0];
+    let style = Text::new(at, HEAD_TEXT, Anchor::Start).bold();
+    svg.fitted(style, &panel.title, area.width);
+}
+
+/// An error bar.
+fn bar(svg: &mut Svg, [x, _]: [f64; 2], [low, high]: [f64; 2]) {
+    let stroke = Stroke::solid(FAINT, 1.2);
+    svg.line([x, low], [x, high], stroke);
+    for end in [low, high] {
+        svg.line([x - CAP, end], [x + CAP, end], stroke);
+    }
+}
+
+fn numbers(curves: &Curves) -> Result<String, Error> {
+    let header = ["panel", "axis", "curve", "x", &curves.y.heading(), "error"].map(str::to_owned);
+    let rows = curves.panels.iter().flat_map(|panel| {
+        panel.curves.iter().flat_map(|curve| {
+            curve.points.iter().map(|[x, y, error]| {
+                vec![
+                    plain(&panel.title),
+                    panel.x.heading(),
+                    plain(&curve.name),
+                    decimal(x),
+                    decimal(y),
+                    decimal(error),
+                ]
+            })
+        })
+    });
+    csv_text(&header, rows)
+}

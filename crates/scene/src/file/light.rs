@@ -1,0 +1,144 @@
+//! Lights, as written.
+
+use super::{AxisName, along_y, along_z, one};
+use serde::{Deserialize, Serialize};
+
+/// The light. The central ray leaves its centre.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum LightFile {
+    /// A Lambertian rectangle orthogonal to the central ray, edges along X and Y, dark on its back.
+    Rectangle {
+        /// Centre, world coordinates.
+        center: [f64; 3],
+        /// Side lengths along X and Y.
+        size: [f64; 2],
+        /// Radiance, W m⁻² sr⁻¹.
+        #[serde(default = "one")]
+        radiance: f64,
+    },
+    /// A Lambertian disc orthogonal to the central ray, dark on its back.
+    Disc {
+        /// Centre, world coordinates.
+        center: [f64; 3],
+        /// Radius.
+        radius: f64,
+        /// Radiance, W m⁻² sr⁻¹.
+        #[serde(default = "one")]
+        radiance: f64,
+    },
+    /// A point that shines alike in all directions.
+    Point {
+        /// Where it is, world coordinates.
+        center: [f64; 3],
+        /// Intensity, W sr⁻¹.
+        #[serde(default = "one")]
+        intensity: f64,
+    },
+    /// A flat bulb whose radiance falls off as cosⁿθ from the central ray.
+    Spot {
+        /// Centre, world coordinates.
+        center: [f64; 3],
+        /// Its shape.
+        bulb: BulbFile,
+        /// Radiance along the central ray, W m⁻² sr⁻¹.
+        #[serde(default = "one")]
+        radiance: f64,
+        /// The exponent n.
+        exponent: f64,
+    },
+    /// A slide projector: a point whose intensity is a picture over slopes.
+    Projector {
+        /// Where it is, world coordinates.
+        center: [f64; 3],
+        /// Intensity where the picture is 1, W sr⁻¹.
+        #[serde(default = "one")]
+        intensity: f64,
+        /// The picture, over slopes along X and along Y.
+        image: ImageFile,
+    },
+    /// A collimated beam along the central ray whose irradiance is a picture.
+    Beam {
+        /// Where the central ray begins, world coordinates.
+        center: [f64; 3],
+        /// Irradiance where the picture is 1, W m⁻².
+        #[serde(default = "one")]
+        irradiance: f64,
+        /// The picture, in metres along X and along Y.
+        image: ImageFile,
+    },
+    /// Light from far away; that alone shines which comes from before the plane across `path.direction` at the centre.
+    Environment {
+        /// Where the central ray begins, world coordinates.
+        center: [f64; 3],
+        /// Direction of the map's top, any length.
+        #[serde(default = "along_y")]
+        up: [f64; 3],
+        /// Direction of the middle of the map, any length: its part orthogonal to `up` is used.
+        #[serde(default = "along_z")]
+        front: [f64; 3],
+        /// Factor on the map.
+        #[serde(default = "one")]
+        scale: f64,
+        /// How much comes from where.
+        map: EnvironmentFile,
+    },
+}
+
+/// Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub enum EnvironmentFile {
+    /// A sum of lobes.
+    Lobes(Vec<SphericalGaussianFile>),
+    /// An OpenEXR picture over latitude and longitude, W m⁻² sr⁻¹; the path is relative to the scene file, and stays inside its folder.
+    File(String),
+}
+
+/// A lobe of light, radiance · exp((cos γ − 1)/width²), γ being the angle to `from`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SphericalGaussianFile {
+    /// The direction most of it comes from, any length.
+    pub from: [f64; 3],
+    /// Its width, radians.
+    pub width: f64,
+    /// Radiance from that direction, W m⁻² sr⁻¹.
+    #[serde(default = "one")]
+    pub radiance: f64,
+}
+
+/// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), times a grating ½ (1 + m cos(2π f t + p)) if it has one.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ImageFile {
+    /// w₁ and w₂ along X and along Y.
+    pub width: [f64; 2],
+    /// Its grating.
+    #[serde(default)]
+    pub grating: Option<GratingFile>,
+}
+
+/// The grating of a picture or a pattern.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GratingFile {
+    /// The axis along which it varies.
+    pub axis: AxisName,
+    /// f, cycles per unit of the picture, or per metre of a surface.
+    pub frequency: f64,
+    /// m.
+    #[serde(default = "one")]
+    pub modulation: f64,
+    /// p, radians.
+    #[serde(default)]
+    pub phase: f64,
+}
+
+/// The bulb of a spot, orthogonal to the central ray.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub enum BulbFile {
+    /// A square with this side, edges along X and Y.
+    Square(f64),
+    /// A disc with this radius.
+    Disc(f64),
+}

@@ -1,0 +1,163 @@
+//! Pictures: read from OpenEXR and PNG files, as one number for each pixel.
+
+use crate::fault::Fault;
+use etendue_field::Raster;
+use exr::meta::MetaData;
+use exr::prelude::{AnyChannels, FlatSamples, ReadChannels, ReadLayers};
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+
+/// Weights of red, green and blue in luminance (Rec. ITU-R BT.709).
+const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
+
+/// Most numbers in a file: 8192 × 4096 pixels of red, green, blue and alpha.
+const MOST: usize = 1 << 27;
+
+/// Reads a picture, its format told by the extension in any case.
+///
+/// OpenEXR: the first layer with channels R, G and B, whose luminance it is, or Y; all its data window. PNG: grey or colour of 8 or 16 bits, its
+/// levels as they are with full at 1: no transfer curve is undone; alpha is passed over.
+pub(crate) fn load(file: &Path, extensions: &[&str]) -> Result<Raster, Fault> {
+    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    let extension = extension.to_ascii_lowercase();
+    if !extensions.contains(&extension.as_str()) {
+        let shown = format!("{extension:?}");
+        return Err(fault("the extension", shown, extensions.join(", ")));
+    }
+    let unreadable = |error| {
+        let allowed = format!("a picture; {} cannot be read: {error}", file.display());
+        fault("the file", "unreadable", allowed)
+    };
+    // A pipe or a device might never end.
+    if !fs::metadata(file).map_err(unreadable)?.is_file() {
+        return Err(fault("the path", "not a file", "a file"));
+    }
+    let bytes = fs::read(file).map_err(unreadable)?;
+    match extension.as_str() {
+        "png" => png(&bytes),
+        _ => exr(&bytes),
+    }
+}
+
+fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
+    Fault {
+        field: place.into(),
+        value: value.to_string(),
+        allowed: allowed.into(),
+        memory: false,
+    }
+}
+
+/// Refuses a picture that is too large.
+fn limited(numbers: Option<usize>) -> Result<(), Fault> {
+    match numbers {
+        Some(numbers) if numbers <= MOST => Ok(()),
+        _ => {
+            let shown = numbers.map_or("countless".to_owned(), |n| n.to_string());
+            let allowed = format!("at most {MOST} numbers");
+            Err(fault("the number of pixels times channels", shown, allowed))
+        }
+    }
+}
+
+fn raster(width: usize, height: usize, values: Vec<f64>) -> Result<Raster, Fault> {
+    let allowed = "as many numbers as pixels, and at least one";
+    Raster::new(width, height, values)
+        .ok_or_else(|| fault("the size", format!("{width} × {height}"), allowed))
+}
+
+fn exr(bytes: &[u8]) -> Result<Raster, Fault> {
+    let unsound = |error: exr::error::Error| fault("the file", error, "an OpenEXR picture");
+    let meta = MetaData::read_from_buffered(bytes, false).map_err(unsound)?;
+    let sizes = meta.headers.iter().map(|header| {
+        let pixels = header.layer_size.0.checked_mul(header.layer_size.1)?;
+        pixels.checked_mul(header.channels.list.len())
+    });
+    limited(sizes.sum::<Option<usize>>())?;
+    let image = exr::prelude::read()
+        .no_deep_data()
+        .largest_resolution_level()
+        .all_channels()
+        .all_layers()
+        .all_attributes()
+        .from_buffered(Cursor::new(bytes))
+        .map_err(unsound)?;
+    let names = |channels: &AnyChannels<FlatSamples>| -> Vec<String> {
+        let list = channels.list.iter();
+        list.map(|channel| channel.name.to_string()).collect()
+    };
+    for layer in &image.layer_data {
+        if let Some(values) = luminance(&layer.channel_data) {
+            return raster(layer.size.0, layer.size.1, values);
+        }
+    }
+    let found: Vec<String> = image
+        .layer_data
+        .iter()
+        .flat_map(|layer| names(&layer.channel_data))
+        .collect();
+    Err(fault(
+        "the channels",
+        found.join(", "),
+        "R, G and B, or Y, in one layer",
+    ))
+}
+
+/// The luminance of a layer; `None` without the channels for it.
+fn luminance(channels: &AnyChannels<FlatSamples>) -> Option<Vec<f64>> {
+    let channel = |name: &str| {
+        let mut list = channels.list.iter();
+        let found = list.find(|channel| channel.name.eq(name))?;
+        let values = found.sample_data.values_as_f32().map(f64::from);
+        Some(values.collect::<Vec<f64>>())
+    };
+    let Some(((red, green), blue)) = channel("R").zip(channel("G")).zip(channel("B")) else {
+        return channel("Y");
+    };
+    let pixels = red.iter().zip(&green).zip(&blue);
+    let weighted = pixels.map(|((r, g), b)| weigh([*r, *g, *b]));
+    Some(weighted.collect())
+}
+
+fn weigh(rgb: [f64; 3]) -> f64 {
+    let [r, g, b] = rgb;
+    LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
+}
+
+fn png(bytes: &[u8]) -> Result<Raster, Fault> {
+    let unsound = |error: png::DecodingError| fault("the file", error, "a PNG picture");
+    let mut decoder = png::Decoder::new(Cursor::new(bytes));
+    // Palettes and levels of less than 8 bits become bytes.
+    decoder.set_transformations(png::Transformations::EXPAND);
+    let info = decoder.read_header_info().map_err(unsound)?;
+    let [width, height] = [info.width, info.height].map(|n| usize::try_from(n).unwrap_or(MOST));
+    limited(width.checked_mul(height).and_then(|n| n.checked_mul(4)))?;
+    let mut reader = decoder.read_info().map_err(unsound)?;
+    let size = reader.output_buffer_size();
+    limited(size.map(|bytes| bytes / 2))?;
+    let mut buffer = vec![0; size.unwrap_or_default()];
+    let frame = reader.next_frame(&mut buffer).map_err(unsound)?;
+    let levels: Vec<f64> = match frame.bit_depth {
+        png::BitDepth::Sixteen => {
+            let words = buffer.chunks_exact(2);
+            words
+                .map(|w| f64::from(u16::from_be_bytes([w[0], w[1]])) / 65_535.0)
+                .collect()
+        }
+        _ => buffer.iter().map(|b| f64::from(*b) / 255.0).collect(),
+    };
+    let values = match frame.color_type {
+        png::ColorType::Grayscale => levels,
+        png::ColorType::GrayscaleAlpha => levels.chunks_exact(2).map(|p| p[0]).collect(),
+        png::ColorType::Rgba => levels
+            .chunks_exact(4)
+            .map(|p| weigh([p[0], p[1], p[2]]))
+            .collect(),
+        _ => levels
+            .chunks_exact(3)
+            .map(|p| weigh([p[0], p[1], p[2]]))
+            .collect(),
+    };
+    raster(width, height, values)
+}

@@ -1,0 +1,128 @@
+//! Environments, and pictures on surfaces.
+
+use super::Resolver;
+use super::faults::show;
+use super::meshes::stays_inside;
+use crate::file::EnvironmentFile;
+use crate::picture;
+use etendue_field::{
+    Environment, EnvironmentMap, Frame, LatLong, Light, Pattern, Picture, Raster, SphericalGaussian,
+};
+use glam::DVec3;
+use std::sync::Arc;
+
+/// Narrowest lobe of light, radians, and the widest: it is even to a millionth.
+const WIDTHS: [f64; 2] = [1e-4, 1e3];
+
+impl Resolver<'_> {
+    /// Light from far away; the axes are directions of the world, `light` is the frame at the light.
+    pub(super) fn environment(
+        &mut self,
+        [up, front]: [&[f64; 3]; 2],
+        scale: f64,
+        map: &EnvironmentFile,
+        light: &Frame,
+    ) -> Light {
+        self.faults.coordinates("light.up", up);
+        self.faults.coordinates("light.front", front);
+        self.faults.positive("light.scale", scale);
+        let [y, d] = [up, front].map(|v| light.vector_to_local(DVec3::from(*v)));
+        // The poles are where `up` says: it is `front` that gives way.
+        let across = y.try_normalize().map_or(DVec3::NAN, |y| d - y * d.dot(y));
+        let frame = Frame::new(DVec3::ZERO, d, y).and(Frame::new(DVec3::ZERO, across, y.cross(d)));
+        if frame.is_none() && y.is_finite() && d.is_finite() {
+            let shown = format!("{} and {}", show(up), show(front));
+            let allowed = "two directions that are not parallel, neither of length 0";
+            self.faults.add("light.up and light.front", shown, allowed);
+        }
+        let map = match map {
+            EnvironmentFile::Lobes(lobes) => {
+                if lobes.is_empty() {
+                    self.faults.add("light.map", "no lobe", "at least one lobe");
+                }
+                let lobes = lobes.iter().enumerate().map(|(i, lobe)| {
+                    let of = format!("light.map[{i}]");
+                    let from = self.faults_of_direction(&format!("{of}.from"), lobe.from);
+                    let [least, most] = WIDTHS;
+                    self.faults
+                        .within(format!("{of}.width"), lobe.width, least..=most);
+                    self.faults
+                        .positive(format!("{of}.radiance"), lobe.radiance);
+                    SphericalGaussian {
+                        from,
+                        radiance: scale * lobe.radiance,
+                        width: lobe.width,
+                    }
+                });
+                EnvironmentMap::Lobes(lobes.collect())
+            }
+            EnvironmentFile::File(path) => {
+                let most = 1e9;
+                let raster = self.picture("light.map", path, &["exr"], most);
+                let dark = |raster: &Raster| raster.values().iter().all(|value| *value <= 0.0);
+                if raster.as_ref().is_some_and(dark) {
+                    let allowed = "a picture with light somewhere";
+                    self.faults.add("light.map", show(path), allowed);
+                }
+                let scaled = raster.and_then(|raster| {
+                    let values = raster.values().iter().map(|value| scale * value);
+                    Raster::new(raster.width(), raster.height(), values.collect())
+                });
+                let dark = || LatLong::from_fn(1, 1, |_| 0.0);
+                EnvironmentMap::LatLong(Arc::new(scaled.map_or_else(dark, LatLong::new)))
+            }
+        };
+        Light::Environment {
+            environment: Environment {
+                frame: frame.unwrap_or(Frame::IDENTITY),
+                map,
+            },
+        }
+    }
+
+    fn faults_of_direction(&mut self, of: &str, direction: [f64; 3]) -> DVec3 {
+        self.faults.coordinates(of, &direction);
+        let direction = DVec3::from(direction);
+        direction.try_normalize().unwrap_or_else(|| {
+            if direction.is_finite() {
+                self.faults.add(of, show(direction), "a direction");
+            }
+            DVec3::Z
+        })
+    }
+
+    /// A picture that varies a BRDF over a surface.
+    pub(super) fn picture_pattern(&mut self, of: &str, file: &str, size: [f64; 2]) -> Pattern {
+        self.size(of, &size);
+        let raster = self.picture(&format!("{of}.file"), file, &["exr", "png"], 1.0);
+        let black = || LatLong::from_fn(1, 1, |_| 0.0).raster().clone();
+        Pattern::Picture(Picture {
+            size,
+            pixels: Arc::new(raster.unwrap_or_else(black)),
+        })
+    }
+
+    /// The picture in a file, of numbers from 0 to `most`.
+    fn picture(&mut self, of: &str, path: &str, extensions: &[&str], most: f64) -> Option<Raster> {
+        if !stays_inside(path) {
+            let allowed = "a relative path inside the folder of the scene file";
+            self.faults.add(of, show(path), allowed);
+            return None;
+        }
+        let raster = picture::load(&self.folder.join(path), extensions).map_err(|fault| {
+            let field = format!("{of}, {path:?}: {}", fault.field);
+            self.faults.add(field, fault.value, fault.allowed);
+        });
+        let raster = raster.ok()?;
+        let mut values = raster.values().iter();
+        if let Some(pixel) = values.position(|value| !(0.0..=most).contains(value)) {
+            let [column, row] = [pixel % raster.width(), pixel / raster.width()];
+            let field = format!("{of}, {path:?}: pixel {column} of row {row}");
+            let allowed = format!("0 to {most:?}");
+            self.faults
+                .add(field, show(raster.values()[pixel]), allowed);
+            return None;
+        }
+        Some(raster)
+    }
+}

@@ -1,0 +1,187 @@
+//! The BRDFs of `etendue_field::Brdf`, by formulas of theory's own.
+
+use etendue_field::{Brdf, Fresnel, Lobe};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// The BRDF for light that comes from `from` and leaves along `to`, unit vectors away from the surface with this unit normal; sr⁻¹.
+pub(super) fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
+    let (cos_from, cos_to) = (normal.dot(from), normal.dot(to));
+    if cos_from <= 0.0 || cos_to <= 0.0 {
+        return 0.0;
+    }
+    let lobe = match brdf.lobe {
+        Lobe::Lambertian => reflectance(brdf.fresnel, cos_from) / PI,
+        Lobe::Phong { exponent } => {
+            let cos = 2.0 * cos_from * cos_to - from.dot(to);
+            let lobe = (exponent + 1.0) / TAU * cos.max(0.0).powf(exponent);
+            lobe * reflectance(brdf.fresnel, cos_from)
+        }
+        Lobe::Beckmann { roughness } => {
+            let [slope_squared, cos_half] = half_way(normal, from, to);
+            let width = roughness * roughness;
+            let normals = (-slope_squared / width).exp() / (PI * width);
+            let shadow = |cos: f64| beckmann_shadow(cos, roughness);
+            microfacets(
+                brdf,
+                normals,
+                slope_squared,
+                cos_half,
+                shadow,
+                cos_from,
+                cos_to,
+            )
+        }
+        Lobe::Ggx { roughness } => {
+            let [slope_squared, cos_half] = half_way(normal, from, to);
+            let width = roughness * roughness;
+            let normals = 1.0 / (PI * width * (1.0 + slope_squared / width).powi(2));
+            let shadow = |cos: f64| {
+                let slope_squared = (1.0 - cos * cos).max(0.0) / (cos * cos);
+                2.0 / (1.0 + (1.0 + width * slope_squared).sqrt())
+            };
+            microfacets(
+                brdf,
+                normals,
+                slope_squared,
+                cos_half,
+                shadow,
+                cos_from,
+                cos_to,
+            )
+        }
+    };
+    brdf.albedo * lobe
+}
+
+/// tan² of the tilt of the microfacet that reflects one direction into the other, and the cosine at which it is met.
+fn half_way(normal: DVec3, from: DVec3, to: DVec3) -> [f64; 2] {
+    let half = (from + to).normalize();
+    let cos = half.dot(normal);
+    [(1.0 - cos * cos).max(0.0) / (cos * cos), half.dot(from)]
+}
+
+/// With the density of slopes, P(tan² tilt) = D cos⁴: D G F / (4 cos cos).
+fn microfacets(
+    brdf: &Brdf,
+    slopes: f64,
+    slope_squared: f64,
+    cos_half: f64,
+    shadow: impl Fn(f64) -> f64,
+    cos_from: f64,
+    cos_to: f64,
+) -> f64 {
+    let normals = slopes * (1.0 + slope_squared).powi(2);
+    normals * shadow(cos_from) * shadow(cos_to) * reflectance(brdf.fresnel, cos_half)
+        / (4.0 * cos_from * cos_to)
+}
+
+/// Smith's shadowing of Beckmann slopes: 2/(1 + erf a + e^(−a²)/(a√π)), a = 1/(α tan θ) (Walter et al. 2007, Eq. 26).
+fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
+    let sine = (1.0 - cos * cos).max(0.0).sqrt();
+    if sine <= 0.0 {
+        return 1.0;
+    }
+    let a = cos / (roughness * sine);
+    2.0 / (1.0 + erf(a) + (-a * a).exp() / (a * PI.sqrt()))
+}
+
+/// The error function of a positive number, to 10⁻¹⁴: its series below 2.5, beyond it the continued fraction of erfc.
+pub(super) fn erf(a: f64) -> f64 {
+    if a > 6.0 {
+        return 1.0;
+    }
+    if a < 2.5 {
+        // e^(−a²) Σ 2ⁿ a²ⁿ⁺¹/(2n + 1)!!: all terms are positive.
+        let (mut term, mut sum) = (a, a);
+        for n in 1..60 {
+            term *= 2.0 * a * a / f64::from(2 * n + 1);
+            sum += term;
+        }
+        return 2.0 / PI.sqrt() * (-a * a).exp() * sum;
+    }
+    let tail = (1..=60)
+        .rev()
+        .fold(0.0, |tail, n| 0.5 * f64::from(n) / (a + tail));
+    1.0 - (-a * a).exp() / (PI.sqrt() * (a + tail))
+}
+
+/// The share of unpolarised light reflected at an angle with this cosine.
+pub(super) fn reflectance(fresnel: Fresnel, cos: f64) -> f64 {
+    let (n, k) = match fresnel {
+        Fresnel::White => return 1.0,
+        Fresnel::Dielectric { index } => (index, 0.0),
+        Fresnel::Conductor { n, k } => (n, k),
+    };
+    // With complex amplitudes: n' cos' = √(n'² − sin²).
+    let squared = num_complex::Complex::new(n, k).powi(2);
+    let inner = (squared - (1.0 - cos * cos)).sqrt();
+    let across = (inner - cos) / (inner + cos);
+    let along = (squared * cos - inner) / (squared * cos + inner);
+    0.5 * (across.norm_sqr() + along.norm_sqr())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn fresnel_is_known() {
+        let glass = Fresnel::Dielectric { index: 1.5 };
+        let aluminium = Fresnel::Conductor { n: 0.96, k: 6.69 };
+        for (angle, a, b) in [
+            (0.0_f64, 0.04, 0.920_983_914_876_63),
+            (0.7, 0.045_807_898_596_632_76, 0.918_696_850_446_167_8),
+            (1.4, 0.395_131_394_819_772_3, 0.867_438_841_447_289_3),
+        ] {
+            let cos = angle.cos();
+            assert!((reflectance(glass, cos) - a).abs() < 1e-14); // rounding
+            assert!((reflectance(aluminium, cos) - b).abs() < 1e-14); // rounding
+        }
+        // From the denser side beyond the critical angle everything is reflected.
+        let inside = reflectance(Fresnel::Dielectric { index: 1.0 / 1.5 }, 0.3);
+        assert!((inside - 1.0).abs() < 1e-14); // rounding
+    }
+
+    #[test]
+    fn error_function_is_known() {
+        for (a, expected) in [
+            (0.5, 0.520_499_877_813_046_5),
+            (1.0, 0.842_700_792_949_714_9),
+            (2.0, 0.995_322_265_018_952_7),
+            (3.0, 0.999_977_909_503_001_4),
+        ] {
+            assert!((erf(a) - expected).abs() < 1e-14, "{a}"); // as it says
+        }
+    }
+
+    /// ∫ D cos dω = 1 through the lobe at normal incidence, where f = D G₁/(4 cos): the weak white furnace without shadowing.
+    #[test]
+    fn lobes_hold_what_they_say() {
+        let normal = DVec3::Z;
+        let total = |lobe: Lobe, cosine: bool| {
+            let brdf = Brdf {
+                lobe,
+                albedo: 1.0,
+                fresnel: Fresnel::White,
+            };
+            crate::quadrature::integrate(400, [0.0, PI / 2.0], |theta| {
+                let (sin, cos) = theta.sin_cos();
+                let to = DVec3::new(sin, 0.0, cos);
+                let factor = if cosine { cos } else { 1.0 };
+                TAU * sin * factor * value(&brdf, normal, normal, to)
+            })
+        };
+        let phong = total(Lobe::Phong { exponent: 40.0 }, false);
+        assert!((phong - 1.0).abs() < 1e-12); // quadrature of a polynomial in cos θ
+        assert!((total(Lobe::Lambertian, true) - 1.0).abs() < 1e-12); // as above
+        for lobe in [
+            Lobe::Beckmann { roughness: 0.1 },
+            Lobe::Ggx { roughness: 0.02 },
+        ] {
+            let albedo = total(lobe, true);
+            // Of light that meets smooth microfacets head-on, next to nothing is shadowed.
+            assert!((0.99..=1.0 + 1e-9).contains(&albedo), "{lobe:?} {albedo}");
+        }
+    }
+}

@@ -1,0 +1,224 @@
+//! The first-order chain: affine maps onto the surface and off it, with the lobe between them.
+
+use super::System;
+use crate::geometry::{Map, Matrix};
+use crate::rays::words::{self, degrees, number};
+use crate::rays::{Incidence, Plane, Ray};
+use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern};
+use glam::DVec3;
+
+/// What the central ray does, to first order in the neighbourhood.
+///
+/// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals, T lying in the plane of incidence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// From (x, y, u, v) at the light to local coordinates of where light comes from: travel, incidence, curvature.
+    pub onto: Map<4>,
+    /// From local coordinates of where light goes to those of the plane: back, outgoing angle, travel.
+    pub off: Map<4>,
+    /// Longitude θ₀ of where the central ray comes from.
+    pub incidence: f64,
+    /// Longitude θ₁ and latitude of where the central ray goes.
+    pub outgoing: [f64; 2],
+    /// The shape operator at the central hit along (T, B), per metre, convex positive.
+    pub curvature: Matrix<2>,
+    /// Distance of the surface from the light, metres.
+    pub distance: f64,
+    /// (T, B, N) at the central hit.
+    pub frame: Frame,
+    /// The steps in words, in the order of light.
+    pub steps: Vec<String>,
+}
+
+/// Step of the differences that maps are read off with, metres and radians.
+const STEP: f64 = 1e-5;
+
+/// The chain of a system up to a plane on its surface or beyond; `None` where the central ray does not get there.
+///
+/// Its maps are the derivatives of where rays go; without twist they are those of Durand et al. 2005, Eqs. 9–11 and 19, corrected
+/// (docs/theory.md, section 7), which its tests hold them against.
+#[must_use]
+pub fn chain(system: &System, plane: &Plane) -> Option<Chain> {
+    let central = Ray {
+        point: DVec3::ZERO,
+        direction: DVec3::Z,
+    };
+    let (distance, normal) = central.met(&system.patch)?;
+    let arriving = Frame::IDENTITY.travelled(distance);
+    let incidence = Incidence::new(&arriving, normal);
+    let frame = Frame {
+        origin: arriving.origin,
+        x: incidence.t,
+        y: incidence.b,
+        d: incidence.n,
+    };
+    let arrives = |[x, y, u, v]: [f64; 4]| {
+        let ray = Ray::new([x, y, u, v]);
+        let (distance, normal) = ray.met(&system.patch)?;
+        let point = ray.point + ray.direction * distance;
+        Some(local(&frame, point, normal, -ray.direction))
+    };
+    let leaves = |z: [f64; 4]| {
+        let leaving = system.leaving(plane, z)?;
+        Some(local(
+            &frame,
+            leaving.point,
+            leaving.normal,
+            leaving.direction,
+        ))
+    };
+    let onto = derivative(arrives)?;
+    let off = derivative(leaves)?.inverse()?;
+    let [.., longitude, latitude] = leaves([0.0; 4])?;
+    let outgoing = [longitude, latitude];
+    let curvature = incidence.shape(&system.patch, arriving.origin);
+    let steps = steps(system, plane, &incidence, distance, outgoing);
+    Some(Chain {
+        onto,
+        off,
+        incidence: incidence.theta0,
+        outgoing,
+        curvature,
+        distance,
+        frame,
+        steps,
+    })
+}
+
+impl Chain {
+    /// A of the rays from the light to the plane by way of the mirror direction, z' = A z.
+    #[must_use]
+    pub fn rays(&self) -> Map<4> {
+        self.onto.then(&Map::<4>::mirror()).then(&self.off)
+    }
+}
+
+/// Coordinates at a point of the surface, of a direction away from it.
+fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
+    let at = frame.to_local(point);
+    let away = frame.turned_to(normal).vector_to_local(away);
+    [
+        at.x,
+        at.y,
+        away.x.atan2(away.z),
+        away.y.clamp(-1.0, 1.0).asin(),
+    ]
+}
+
+/// The affine map that touches another one at zero.
+fn derivative(map: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> Option<Map<4>> {
+    let offset = map([0.0; 4])?;
+    let mut matrix: Matrix<4> = [[0.0; 4]; 4];
+    for column in 0..4 {
+        let at = |share: f64| {
+            let mut z = [0.0; 4];
+            z[column] = share * STEP;
+            map(z)
+        };
+        let [a, b, c, d] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
+        for row in 0..4 {
+            // Of fourth order in the step.
+            matrix[row][column] = (a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row]) / (12.0 * STEP);
+        }
+    }
+    Some(Map { matrix, offset })
+}
+
+fn steps(
+    system: &System,
+    plane: &Plane,
+    incidence: &Incidence,
+    distance: f64,
+    [theta, phi]: [f64; 2],
+) -> Vec<String> {
+    let name = &system.name;
+    let mut steps = Vec::new();
+    let mut at = ("light", 0.0);
+    let travel = |from: &str, to: &str, d: f64| {
+        format!(
+            "map  travel {} m, {from} to {to}: ℓ̂(Ωx, Ωu + {} Ωx)",
+            number(d),
+            number(d)
+        )
+    };
+    for (next, mask) in &system.layers {
+        steps.push(travel(at.0, "mask", next - at.1));
+        steps.push(words::mask(mask));
+        at = ("mask", *next);
+    }
+    steps.push(travel(at.0, name, distance - at.1));
+    steps.push(format!(
+        "map  incidence {} onto {name}",
+        degrees(incidence.theta0)
+    ));
+    let shape = incidence.shape(&system.patch, DVec3::Z * distance);
+    let curved = words::curvature(shape);
+    steps.push(format!("map  curvature {curved}"));
+    steps.push("multiply  cosine, cos⁺ θ cos² φ".to_owned());
+    steps.push("map  mirror: ℓ̂(Ωx, −Ωθ)".to_owned());
+    steps.extend(reflection(system));
+    if plane.orientation.is_local() {
+        return steps;
+    }
+    steps.push(format!("map  back from local normals, {curved}"));
+    if plane.orientation == Orientation::Orthogonal {
+        let aside = if phi.abs() > 1e-9 {
+            format!(", {} out of the plane of incidence", degrees(phi))
+        } else {
+            String::new()
+        };
+        steps.push(format!("map  outgoing angle {}{aside}", degrees(theta)));
+        let beyond = (plane.frame.origin - DVec3::Z * distance).length();
+        if beyond > 1e-9 {
+            steps.push(travel(name, "plane", beyond));
+        }
+    }
+    steps
+}
+
+/// The BRDF in words.
+fn reflection(system: &System) -> Vec<String> {
+    let reflectance = &system.reflectance;
+    let brdf = &reflectance.brdf;
+    let lobe = match brdf.lobe {
+        Lobe::Lambertian => "Lambertian".to_owned(),
+        Lobe::Phong { exponent } => format!("Phong, exponent {}", number(exponent)),
+        Lobe::Beckmann { roughness } => format!("Beckmann, roughness {}", number(roughness)),
+        Lobe::Ggx { roughness } => format!("GGX, roughness {}", number(roughness)),
+    };
+    let mut words = Vec::new();
+    match brdf.fresnel {
+        Fresnel::White => {}
+        Fresnel::Dielectric { index } => {
+            words.push(format!(
+                "multiply  Fresnel factor of index {}",
+                number(index)
+            ));
+        }
+        Fresnel::Conductor { n, k } => words.push(format!(
+            "multiply  Fresnel factor of index {} + {} i",
+            number(n),
+            number(k)
+        )),
+    }
+    let varies = |pattern: &Pattern| match pattern {
+        Pattern::Cosine(grating) => crate::describe::formula(grating, ["s", "t"]),
+        Pattern::Picture(picture) => {
+            let [w, h] = picture.size;
+            format!("picture of {} x {} m", number(w), number(h))
+        }
+        Pattern::Checkerboard { period } => format!("checkerboard of period {} m", number(*period)),
+    };
+    let over = match &reflectance.blend {
+        Some((_, pattern)) => format!(", blended with another over {}", varies(pattern)),
+        None => String::new(),
+    };
+    words.push(format!(
+        "convolve  BRDF {lobe}, albedo {}{over}",
+        number(brdf.albedo)
+    ));
+    if let Some(texture) = &reflectance.texture {
+        words.push(format!("multiply  texture {}", varies(texture)));
+    }
+    words
+}

@@ -1,0 +1,128 @@
+//! The radiance of a ray at a plane by the first-order chain.
+
+use super::System;
+use super::brdf;
+use super::chain::Chain;
+use super::incoming::{Incoming, Rule};
+use crate::geometry::{Map, Matrix};
+use etendue_field::{Brdf, Frame, Lobe};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// Light that arrives at a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Shining {
+    /// θ and φ of where it comes from.
+    from: [f64; 2],
+    /// Radiance times its share of cos⁺ θ cos² φ dθ dφ.
+    irradiance: f64,
+}
+
+/// The chain, ready to be evaluated.
+#[derive(Clone, Debug)]
+pub(super) struct Linear<'a> {
+    pub(super) system: &'a System,
+    chain: &'a Chain,
+    /// From the plane to local coordinates of where light goes.
+    off: Map<4>,
+    /// Positions on the surface to those at its distance across the light's axis, as a matrix.
+    across: [[f64; 2]; 2],
+    /// Angles on the surface of those from the light's axis, at a point of the surface.
+    angles: Matrix<2>,
+    /// From the frame (T, B, N) to that of the patch: where the BRDF is looked up.
+    frame: Frame,
+}
+
+impl<'a> Linear<'a> {
+    pub(super) fn new(system: &'a System, chain: &'a Chain) -> Option<Self> {
+        let m = &chain.onto.matrix;
+        let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
+        let det = a * d - b * c;
+        let across = [[d / det, -b / det], [-c / det, a / det]];
+        // u at a point whose place across the axis stays: the light's place moves back by the distance.
+        let slope =
+            |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
+        Some(Self {
+            system,
+            chain,
+            off: chain.off.inverse()?,
+            across,
+            angles: [[slope(2, 0), slope(2, 1)], [slope(3, 0), slope(3, 1)]],
+            frame: system.patch.frame.decompose(&chain.frame),
+        })
+    }
+
+    /// Local coordinates of the ray at z of the plane.
+    pub(super) fn local(&self, z: [f64; 4]) -> [f64; 4] {
+        self.off.apply(z)
+    }
+
+    /// The point across the light's axis that stands for a place (s, t).
+    fn point(&self, [s, t, ..]: [f64; 4]) -> DVec3 {
+        let [offset_s, offset_t, ..] = self.chain.onto.offset;
+        let (s, t) = (s - offset_s, t - offset_t);
+        let [[a, b], [c, d]] = self.across;
+        DVec3::new(a * s + b * t, c * s + d * t, self.chain.distance)
+    }
+
+    /// All that shines on a place.
+    pub(super) fn shines(&self, local: [f64; 4], rule: &Rule) -> Vec<Shining> {
+        let point = self.point(local);
+        // Of the ray along the axis that meets the place.
+        let central = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
+        let incoming = self.system.incoming(point, rule).into_iter();
+        let shining = incoming.map(|Incoming { slopes, weight }| {
+            let [u, v] = slopes;
+            // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³.
+            let across = (1.0 + u * u).sqrt();
+            let (longitude, latitude) = (u.atan(), (v / across).atan());
+            let per_angle = (1.0 + u * u + v * v).powf(-1.5) / latitude.cos();
+            let [[a, b], [c, d]] = self.angles;
+            let [_, _, theta, phi] = central;
+            let (theta, phi) = (
+                theta + a * longitude + b * latitude,
+                phi + c * longitude + d * latitude,
+            );
+            let cosine = theta.cos().max(0.0) * phi.cos().powi(2);
+            Shining {
+                from: [theta, phi],
+                irradiance: weight * per_angle * (a * d - b * c).abs() * cosine,
+            }
+        });
+        shining.filter(|s| s.irradiance != 0.0).collect()
+    }
+
+    /// The radiance that leaves, of what shines there: Σ ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being turned about the normal.
+    pub(super) fn radiance(&self, local: [f64; 4], shines: &[Shining]) -> f64 {
+        let [s, t, theta, phi] = local;
+        let at = self.frame.to_world(DVec3::new(s, t, 0.0));
+        let brdf = self.system.reflectance.at(at.x, at.y);
+        let each = shines.iter().map(|shining| {
+            let [from_theta, from_phi] = shining.from;
+            let apart = [theta + from_theta, phi + from_phi];
+            shining.irradiance * self.kernel(&brdf, from_theta, apart)
+        });
+        each.sum()
+    }
+
+    /// The BRDF as it meets the central ray, at angles from the mirror direction; a factor of the angle of incidence stays one.
+    fn kernel(&self, brdf: &Brdf, from: f64, [theta, phi]: [f64; 2]) -> f64 {
+        let center = self.chain.incidence;
+        let away = |theta: f64, phi: f64| {
+            let ((sin, cos), (up, across)) = (theta.sin_cos(), phi.sin_cos());
+            DVec3::new(across * sin, up, across * cos)
+        };
+        let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, from.cos());
+        match brdf.lobe {
+            Lobe::Lambertian => factor() / PI,
+            // Its cosine is that of the angle from the mirror direction, wherever that is.
+            Lobe::Phong { exponent } => {
+                let cos = (theta.cos() * phi.cos()).max(0.0);
+                factor() * (exponent + 1.0) / TAU * cos.powf(exponent)
+            }
+            Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
+                brdf::value(brdf, DVec3::Z, away(center, 0.0), away(theta - center, phi))
+            }
+        }
+    }
+}

@@ -1,0 +1,70 @@
+//! Environment maps: light that depends on direction alone, on a surface that turns under it.
+//!
+//! ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx), and after the curvature step a spectrum on the line Ωx = kΩθ. Each Ωx then has
+//! one value, and the convolution with the cosine becomes a product (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the
+//! curvature in 1/m, convex positive; angles are on the surface, those of light that has been flipped. `environment` is env^.
+
+use super::cosine_hat;
+use etendue_field::Complex;
+use std::f64::consts::{PI, TAU};
+
+/// The differential irradiance dE' in the frames of the local normals: 1/|k| env^(Ωx/k) cos⁺^(Ωθ − Ωx/k).
+#[must_use]
+pub fn differential_irradiance(
+    k: f64,
+    omega: [f64; 2],
+    environment: &dyn Fn(f64) -> Complex,
+) -> Complex {
+    let [x, theta] = omega;
+    environment(x / k) * (cosine_hat(theta - x / k) / k.abs())
+}
+
+/// The differential irradiance dE'_r after the mirror step: 1/|k| env^(Ωx/k) cos⁺^(Ωθ + Ωx/k).
+///
+/// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺(Ωx/k − Ωθ), without hats and 1/|k|, and with the sign from before
+/// the mirror.
+#[must_use]
+pub fn mirrored_differential_irradiance(
+    k: f64,
+    omega: [f64; 2],
+    environment: &dyn Fn(f64) -> Complex,
+) -> Complex {
+    let [x, theta] = omega;
+    differential_irradiance(k, [x, -theta], environment)
+}
+
+/// The irradiance along the surface: 1/|k| env^(Ωx/k) cos⁺^(Ωx/k), which is E(s) = ∫ env(θ) cos⁺(θ − k s) dθ.
+///
+/// A product of spectra, and so a convolution in the primal (Ramamoorthi and Hanrahan 2001).
+#[must_use]
+pub fn irradiance(k: f64, omega_x: f64, environment: &dyn Fn(f64) -> Complex) -> Complex {
+    differential_irradiance(k, [omega_x, 0.0], environment)
+}
+
+/// A Gaussian light in an environment, A exp(−(θ − μ)²/2σ²).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glow {
+    /// A, radiance.
+    pub amplitude: f64,
+    /// μ, radians.
+    pub mean: f64,
+    /// σ, radians.
+    pub deviation: f64,
+}
+
+impl Glow {
+    /// env(θ).
+    #[must_use]
+    pub fn value(&self, theta: f64) -> f64 {
+        let z = (theta - self.mean) / self.deviation;
+        self.amplitude * (-0.5 * z * z).exp()
+    }
+
+    /// env^(Ω) = A σ √(2π) exp(−2π²σ²Ω²) e^(−2πi Ωμ).
+    #[must_use]
+    pub fn spectrum(&self, omega: f64) -> Complex {
+        let z = PI * self.deviation * omega;
+        let size = self.amplitude * self.deviation * TAU.sqrt() * (-2.0 * z * z).exp();
+        Complex::from_polar(size, -TAU * omega * self.mean)
+    }
+}

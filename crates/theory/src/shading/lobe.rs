@@ -1,0 +1,237 @@
+//! Lobes of a BRDF about the mirror direction.
+
+use super::cosine::cosine_power_hat;
+use super::panels::{doubling, even_transform};
+use crate::quadrature::integrate;
+use std::f64::consts::{FRAC_PI_2, PI};
+
+/// A lobe ρ'(δ) of unit integral over δ = θ_o' − θ_r', the angle from the mirror direction in 2D, in radians (Durand et al. 2005,
+/// Eq. 15, whose θ_o lacks its prime).
+///
+/// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of microfacet normals, whose tilt is half of
+/// δ. The factor 1/(4 cos θ_i' cos θ_o') and the shadowing of a microfacet BRDF are left out, which makes it depend on more than δ, and so
+/// is the Fresnel factor, for which there is [`Fresnel`](super::Fresnel). The distributions are the slices through the plane of incidence of those in
+/// 3D.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lobe {
+    /// cosⁿ δ on |δ| < π/2.
+    Phong {
+        /// n > 0.
+        exponent: f64,
+    },
+    /// exp(−δ²/2σ²).
+    Gaussian {
+        /// σ > 0, in radians.
+        deviation: f64,
+    },
+    /// exp(−tan² τ/α²)/cos⁴ τ, τ = δ/2 (Beckmann and Spizzichino 1963).
+    Beckmann {
+        /// α > 0, the root mean square slope of microfacets times √2.
+        roughness: f64,
+    },
+    /// 1/(α² cos² τ + sin² τ)², τ = δ/2 (Walter et al. 2007, Eq. 33, who call it GGX).
+    Ggx {
+        /// 0 < α ≤ 1.
+        roughness: f64,
+    },
+}
+
+impl Lobe {
+    /// ρ'(δ), per radian.
+    #[must_use]
+    pub fn value(&self, angle: f64) -> f64 {
+        match *self {
+            Self::Phong { exponent } => {
+                let inside = angle.abs() < FRAC_PI_2;
+                let power = if inside {
+                    angle.cos().powf(exponent)
+                } else {
+                    0.0
+                };
+                power / cosine_power_hat(exponent, 0.0)
+            }
+            Self::Gaussian { deviation } => {
+                let z = angle / deviation;
+                (-0.5 * z * z).exp() / (deviation * (2.0 * PI).sqrt())
+            }
+            Self::Beckmann { roughness } => {
+                let Some(t) = slope(angle) else { return 0.0 };
+                let area = PI.sqrt() * roughness * (2.0 + roughness * roughness);
+                let z = t / roughness;
+                (1.0 + t * t).powi(2) * (-z * z).exp() / area
+            }
+            Self::Ggx { roughness } => {
+                if angle.abs() > PI {
+                    return 0.0;
+                }
+                let (sine, cosine) = (0.5 * angle).sin_cos();
+                let a = roughness * roughness;
+                let area = PI * (1.0 + a) / (a * roughness);
+                (a * cosine * cosine + sine * sine).powi(-2) / area
+            }
+        }
+    }
+
+    /// ρ̂'(Ω), Ω in cycles per radian: real, even, 1 at zero (Durand et al. 2005, Eq. 16).
+    ///
+    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others by quadrature, to 10⁻¹².
+    #[must_use]
+    pub fn spectrum(&self, omega: f64) -> f64 {
+        match *self {
+            Self::Phong { exponent } => {
+                cosine_power_hat(exponent, omega) / cosine_power_hat(exponent, 0.0)
+            }
+            Self::Gaussian { deviation } => (-2.0 * (PI * deviation * omega).powi(2)).exp(),
+            Self::Beckmann { .. } | Self::Ggx { .. } => {
+                even_transform(&self.ends(), omega, |angle| self.value(angle))
+            }
+        }
+    }
+
+    /// The frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per radian; `fraction` in (0, 1).
+    ///
+    /// Gaussian: 0.2899/σ for 99 %, 0.2206/σ for 95 %. What Durand et al. 2005, section 6.2, call Ω_ρ and choose by hand. By summing to
+    /// 10⁻⁹; where a lobe has a jump, as GGX has at the end, the last part in 10⁶ may lie beyond what is searched, and the answer is not a number.
+    #[must_use]
+    pub fn cutoff(&self, fraction: f64) -> f64 {
+        const NODES: usize = 16;
+        const MOST: u32 = 4000;
+        let step = 0.05 / self.width();
+        let energy = |low: f64, high: f64| {
+            2.0 * integrate(NODES, [low, high], |omega| self.spectrum(omega).powi(2))
+        };
+        let mut missing = fraction * self.energy();
+        for panel in 0..MOST {
+            let low = f64::from(panel) * step;
+            let next = energy(low, low + step);
+            if next < missing {
+                missing -= next;
+                continue;
+            }
+            // Halving until the interval is rounding.
+            let (mut inside, mut outside) = (low, low + step);
+            for _ in 0..50 {
+                let middle = 0.5 * (inside + outside);
+                if energy(low, middle) < missing {
+                    inside = middle;
+                } else {
+                    outside = middle;
+                }
+            }
+            return inside;
+        }
+        f64::NAN
+    }
+
+    /// ∫ |ρ̂'|² dΩ = ∫ ρ'² dδ (Parseval).
+    fn energy(&self) -> f64 {
+        match *self {
+            Self::Phong { exponent } => {
+                cosine_power_hat(2.0 * exponent, 0.0) / cosine_power_hat(exponent, 0.0).powi(2)
+            }
+            Self::Gaussian { deviation } => 0.5 / (deviation * PI.sqrt()),
+            Self::Beckmann { .. } | Self::Ggx { .. } => {
+                even_transform(&self.ends(), 0.0, |angle| self.value(angle).powi(2))
+            }
+        }
+    }
+
+    /// A width for steps.
+    fn width(&self) -> f64 {
+        match *self {
+            Self::Phong { exponent } => exponent.max(1.0).sqrt().recip(),
+            Self::Gaussian { deviation } => deviation,
+            Self::Beckmann { roughness } | Self::Ggx { roughness } => roughness,
+        }
+    }
+
+    /// Panels over half of the lobe: poles of GGX and the scale of Beckmann's are about 2α off.
+    fn ends(&self) -> Vec<f64> {
+        doubling(self.width(), PI)
+    }
+}
+
+/// tan(δ/2); `None` where it is so large that no microfacet is so steep.
+fn slope(angle: f64) -> Option<f64> {
+    let t = (0.5 * angle).tan();
+    (angle.abs() < PI && t.abs() < 1e100).then_some(t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const LOBES: [Lobe; 8] = [
+        Lobe::Phong { exponent: 1.0 },
+        Lobe::Phong { exponent: 40.0 },
+        Lobe::Gaussian { deviation: 0.1 },
+        Lobe::Beckmann { roughness: 0.05 },
+        Lobe::Beckmann { roughness: 0.4 },
+        Lobe::Ggx { roughness: 0.02 },
+        Lobe::Ggx { roughness: 0.3 },
+        Lobe::Ggx { roughness: 1.0 },
+    ];
+
+    #[test]
+    fn unit_integrals_and_transforms() {
+        for lobe in LOBES {
+            assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // as promised
+            for omega in [0.0, 0.3, 2.0, 11.0] {
+                // Trapezoids: exponentially good for what vanishes at the ends, or is periodic at whole 2πΩ.
+                if matches!(lobe, Lobe::Ggx { .. } | Lobe::Phong { .. }) && omega != 0.0 {
+                    continue;
+                }
+                let count = 20_000;
+                let step = 2.0 * PI / f64::from(count);
+                let sum: f64 = (0..count)
+                    .map(|i| {
+                        let at = f64::from(i) * step - PI;
+                        lobe.value(at) * (2.0 * PI * omega * at).cos() * step
+                    })
+                    .sum();
+                // The corner of cos δ leaves step²/6; 3e-8.
+                let close = if lobe == LOBES[0] { 3e-8 } else { 1e-12 };
+                assert!((sum - lobe.spectrum(omega)).abs() < close, "{lobe:?}");
+            }
+        }
+    }
+
+    #[test]
+    fn ggx_at_whole_numbers_of_the_circle() {
+        // 1/(p − q cos δ)² has the Fourier coefficients of a Poisson kernel's derivative: rⁿ (1 + n s), s = √(p² − q²)/p.
+        let alpha: f64 = 0.3;
+        let lobe = Lobe::Ggx { roughness: alpha };
+        let a = alpha * alpha;
+        let (p, q) = (0.5 * (1.0 + a), 0.5 * (1.0 - a));
+        let root = (p * p - q * q).sqrt();
+        for n in 0..30 {
+            let n = f64::from(n);
+            let expected = ((p - root) / q).powf(n) * (1.0 + n * root / p);
+            let got = lobe.spectrum(n / (2.0 * PI));
+            assert!((got - expected).abs() < 1e-12, "{n}: {got} {expected}"); // as promised
+        }
+    }
+
+    #[test]
+    fn cutoffs_of_a_gaussian() {
+        let lobe = Lobe::Gaussian { deviation: 0.05 };
+        // The quantiles of the normal distribution at 99 % and 95 %, over 2√2 πσ.
+        for (fraction, quantile) in [(0.99, 2.575_829_303_5), (0.95, 1.959_963_984_5)] {
+            let expected = quantile / (2.0 * 2.0_f64.sqrt() * PI * 0.05);
+            assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // as promised
+        }
+        // A Phong lobe is nearly a Gaussian of σ² = 1/n.
+        let phong = Lobe::Phong { exponent: 400.0 }.cutoff(0.99);
+        assert!((phong / (0.29 * 20.0) - 1.0).abs() < 5e-3); // 0.27/n of ρ̂ in the tail
+    }
+
+    #[test]
+    fn beyond_the_poles_a_phong_lobe_still_has_a_spectrum() {
+        let lobe = Lobe::Phong { exponent: 5.0 };
+        let at = |omega| even_transform(&[0.0, 0.8, 1.4, FRAC_PI_2], omega, |t| lobe.value(t));
+        for omega in [1.0, 1.2, 2.0, 7.5 / PI, 9.5 / PI] {
+            assert!((lobe.spectrum(omega) - at(omega)).abs() < 1e-13, "{omega}"); // rounding
+        }
+        assert!(lobe.spectrum(2.0).abs() > 1e-5);
+    }
+}

@@ -1,0 +1,54 @@
+//! Shading in 2D: what the cosine, the BRDF, a texture and an environment do to spectra (docs/theory.md, section 9).
+//!
+//! Angles are those of the [geometry](crate::geometry): on a surface, directions point away from it, θ is counted from the normal
+//! towards T, and a mirror has θ_o = −θ_i. Frequencies are in cycles per metre and per radian. A product of a light field with a factor
+//! convolves its spectrum, a convolution over angles multiplies it, and no constant goes with either:
+//!
+//! | step | here | in Durand et al. 2005 |
+//! |---|---|---|
+//! | cosine | [`cosine_hat`] | Eq. 12, 13 |
+//! | Fresnel factor | [`Fresnel`] | section 4.3 |
+//! | BRDF lobe about the mirror direction | [`Lobe`] | Eq. 15, 16 |
+//! | separable BRDFs and their sums | [`Term`] | Eq. 17 |
+//! | texture, BRDF that varies in space | [`texture`], [`semi_convolution`] | Eq. 18, section 4.5 |
+//! | all seven steps of a reflection | [`Reflection`] | section 4.1 |
+//! | an environment map on a curved surface | [`environment`] | section 6.1, Fig. 14 |
+//! | how many samples a glossy reflection asks for | [`Criterion`] | Eq. 20, 21 |
+//! | diffuse receivers, in slopes | [`g_hat`], [`g_hat_3d`] | Eq. 7 and section 5.1 |
+//!
+//! ```
+//! use etendue_field::Complex;
+//! use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term};
+//!
+//! // A glossy cylinder, R = 2 m, in light that is a Gaussian of 0.1 m and 0.1 rad.
+//! let gloss = Term { before: Factor::Cosine, lobe: Some(Lobe::Phong { exponent: 50.0 }), after: Factor::One };
+//! let reflection = Reflection {
+//!     incidence: 0.4,
+//!     outgoing: -0.4,
+//!     curvature: 0.5,
+//!     terms: vec![gloss],
+//!     lattice: Lattice::circle(20.0),
+//! };
+//! let light = |[x, t]: [f64; 2]| Complex::from((-0.2 * (x * x + t * t)).exp());
+//! let [soft, sharp] = [0.0, 3.0].map(|t| reflection.spectrum(Step::Outgoing, [0.0, t], &light).norm());
+//! assert!(sharp < soft);
+//! ```
+
+mod bandwidth;
+mod cosine;
+mod diffuse;
+pub mod environment;
+mod fresnel;
+mod gamma;
+mod lobe;
+mod panels;
+mod product;
+mod reflection;
+
+pub use bandwidth::{COSINE_CUTOFF, Criterion};
+pub use cosine::{cosine_hat, cosine_power_hat, cosine_series, cosine_squared_hat};
+pub use diffuse::{g_hat, g_hat_3d};
+pub use fresnel::Fresnel;
+pub use lobe::Lobe;
+pub use product::{Lattice, Wave, angular_product, semi_convolution, texture};
+pub use reflection::{Factor, Reflection, Step, Term};

@@ -1,0 +1,132 @@
+//! Products in the primal, which are convolutions of spectra: sums on a lattice of frequencies.
+
+use etendue_field::Complex;
+use std::f64::consts::TAU;
+
+/// Frequencies n·`spacing` up to `reach` on both sides, at which spectra are summed.
+///
+/// Such a sum is not an approximation as long as light and factor end: its error is the product of the factor with copies of the light moved
+/// by 1/`spacing` along the axis (Poisson's formula), and what the light has beyond `reach`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Lattice {
+    /// Cycles per unit of the axis between two frequencies.
+    pub spacing: f64,
+    /// The largest frequency at which the *light* still has content, in cycles per unit of the axis.
+    pub reach: f64,
+}
+
+impl Lattice {
+    /// The frequencies of a Fourier series on the full circle, 1/2π apart: exact for factors on the half-circle and light that ends
+    /// before ± 3π/2.
+    #[must_use]
+    pub fn circle(reach: f64) -> Self {
+        let spacing = 1.0 / TAU;
+        Self { spacing, reach }
+    }
+
+    fn sum(&self, term: impl Fn(f64) -> Complex) -> Complex {
+        let most = (self.reach / self.spacing).ceil();
+        let mut sum = Complex::from(0.0);
+        let mut n = -most;
+        while n <= most {
+            sum += term(n * self.spacing);
+            n += 1.0;
+        }
+        sum * self.spacing
+    }
+}
+
+/// The spectrum at Ω of f(θ) ℓ(x, θ): ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al. 2005, Eq. 12, whose ⊗ with a Dirac this is).
+///
+/// `factor` is f̂, in cycles per radian; `before` is L.
+#[must_use]
+pub fn angular_product(
+    lattice: &Lattice,
+    omega: [f64; 2],
+    factor: &dyn Fn(f64) -> Complex,
+    before: &dyn Fn([f64; 2]) -> Complex,
+) -> Complex {
+    let [x, theta] = omega;
+    lattice.sum(|q| before([x, q]) * factor(theta - q))
+}
+
+/// A wave A e^(2πi f s) of a texture along the surface. A real texture has each with its conjugate at −f.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wave {
+    /// f, in cycles per metre of arc length.
+    pub frequency: f64,
+    /// A.
+    pub amplitude: Complex,
+}
+
+/// The spectrum at Ω of T(s) ℓ(s, θ) for a texture that is a sum of waves: Σ A L(Ωx − f, Ωθ) (Durand et al. 2005, Eq. 18).
+///
+/// Only positions are affected, so it may come before or after the step back from the local normals, but before the outgoing angle.
+#[must_use]
+pub fn texture(waves: &[Wave], omega: [f64; 2], before: &dyn Fn([f64; 2]) -> Complex) -> Complex {
+    let [x, theta] = omega;
+    let waves = waves.iter();
+    waves
+        .map(|wave| wave.amplitude * before([x - wave.frequency, theta]))
+        .sum()
+}
+
+/// The spectrum at Ω of the reflection by a BRDF ρ(s, δ) that varies in space: ∫ L(q, Ωθ) ρ̂(Ωx − q, Ωθ) dq, a convolution
+/// along Ωx alone (Durand et al. 2005, section 4.5, "semi-convolution").
+///
+/// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. A `brdf` that does not depend on Ωθ is a texture.
+#[must_use]
+pub fn semi_convolution(
+    lattice: &Lattice,
+    omega: [f64; 2],
+    brdf: &dyn Fn([f64; 2]) -> Complex,
+    before: &dyn Fn([f64; 2]) -> Complex,
+) -> Complex {
+    let [x, theta] = omega;
+    lattice.sum(|q| before([q, theta]) * brdf([x - q, theta]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn bell(width: f64, omega: f64) -> Complex {
+        Complex::from(width * (-PI * (width * omega).powi(2)).exp())
+    }
+
+    #[test]
+    fn gaussians_multiply_to_a_gaussian() {
+        let lattice = Lattice::circle(60.0);
+        let light = |[x, t]: [f64; 2]| bell(1.0, x) * bell(0.1, t);
+        let width = (100.0_f64 + 4.0).sqrt().recip();
+        for t in [0.0, 0.7, 5.0] {
+            let got = angular_product(&lattice, [0.3, t], &|q| bell(0.5, q), &light);
+            let expected = bell(1.0, 0.3) * bell(width, t);
+            assert!((got - expected).norm() < 1e-15); // rounding
+        }
+    }
+
+    #[test]
+    fn a_texture_is_a_brdf_that_varies_in_space() {
+        let light = |[x, t]: [f64; 2]| bell(1.0, x) * bell(0.3, t);
+        let omega = [0.4, 1.0];
+        let lattice = Lattice {
+            spacing: 0.05,
+            reach: 6.0,
+        };
+        // A wide Gaussian modulation of frequency 2 against the wave itself.
+        let slow = |[x, _]: [f64; 2]| bell(1e3, x - 2.0);
+        let fine = Lattice {
+            spacing: 1e-4,
+            ..lattice
+        };
+        let wave = Wave {
+            frequency: 2.0,
+            amplitude: Complex::from(1.0),
+        };
+        let smooth = semi_convolution(&fine, omega, &slow, &light);
+        let line = texture(&[wave], omega, &light);
+        assert!((smooth - line).norm() < 1e-4 * light([0.0, 0.0]).norm()); // a modulation 10³ wide
+    }
+}

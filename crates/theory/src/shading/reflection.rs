@@ -1,0 +1,209 @@
+//! The seven steps of a reflection.
+
+use super::product::{Lattice, angular_product};
+use super::{Fresnel, Lobe, cosine_hat};
+use crate::geometry::Map;
+use etendue_field::Complex;
+use std::fmt;
+
+/// The spectrum of a light field, L(Ωx, Ωθ).
+type Spectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
+
+/// Steps of a reflection in the order of light (Durand et al. 2005, section 4.1 and Fig. 10).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Step {
+    /// 1, onto the surface: [`Map::incidence`](Map::<2>::incidence).
+    Incidence,
+    /// 2, into the frames of the local normals: [`Map::curvature`](Map::<2>::curvature).
+    Curvature,
+    /// 3, times cosine and other factors of the direction of incidence.
+    Cosine,
+    /// 4, mirrored: [`Map::mirror`].
+    Mirror,
+    /// 5, convolved with the lobe, times factors of the outgoing direction.
+    Brdf,
+    /// 6, back from the local normals: [`Map::back`](Map::<2>::back).
+    Back,
+    /// 7, off the surface: [`Map::outgoing`](Map::<2>::outgoing).
+    Outgoing,
+}
+
+impl Step {
+    /// All, in order.
+    pub const ALL: [Self; 7] = [
+        Self::Incidence,
+        Self::Curvature,
+        Self::Cosine,
+        Self::Mirror,
+        Self::Brdf,
+        Self::Back,
+        Self::Outgoing,
+    ];
+}
+
+/// A factor of a local direction, as its transform.
+#[derive(Clone, Copy)]
+pub enum Factor<'a> {
+    /// 1: none. With no [`Lobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine. Nothing ends at the horizon then.
+    One,
+    /// cos⁺.
+    Cosine,
+    /// Fresnel reflectance times cos⁺.
+    Fresnel(Fresnel),
+    /// Any other, the cosine included where one is due: f̂(Ω), in cycles per radian. Asymmetric ones are complex.
+    Other(&'a dyn Fn(f64) -> Complex),
+}
+
+impl fmt::Debug for Factor<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::One => write!(f, "One"),
+            Self::Cosine => write!(f, "Cosine"),
+            Self::Fresnel(fresnel) => f.debug_tuple("Fresnel").field(fresnel).finish(),
+            Self::Other(_) => write!(f, "Other"),
+        }
+    }
+}
+
+impl Factor<'_> {
+    /// The spectrum of the product at Ω.
+    fn times(&self, lattice: &Lattice, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
+        match self {
+            Self::One => before(omega),
+            Self::Cosine => product(lattice, omega, &|q| cosine_hat(q).into(), before),
+            Self::Fresnel(f) => product(lattice, omega, &|q| f.cosine_hat(q).into(), before),
+            Self::Other(hat) => product(lattice, omega, *hat, before),
+        }
+    }
+}
+
+use angular_product as product;
+
+/// One separable term of a BRDF, f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
+#[derive(Clone, Copy, Debug)]
+pub struct Term<'a> {
+    /// f(θ_i') with the cosine.
+    pub before: Factor<'a>,
+    /// ρ'; `None` is a Dirac.
+    pub lobe: Option<Lobe>,
+    /// h(θ_o').
+    pub after: Factor<'a>,
+}
+
+/// Reflection in 2D, from the light frame before to the light frame after.
+#[derive(Clone, Debug)]
+pub struct Reflection<'a> {
+    /// θ₀, where the central light comes from; radians from the normal.
+    pub incidence: f64,
+    /// θ₁, where the central ray leaves; −θ₀ for a mirror.
+    pub outgoing: f64,
+    /// k, in 1/m, convex positive.
+    pub curvature: f64,
+    /// The BRDF, as a sum.
+    pub terms: Vec<Term<'a>>,
+    /// Frequencies along Ωθ at which products are summed. Its reach covers the content of the light in the frames of the local normals.
+    pub lattice: Lattice,
+}
+
+impl Reflection<'_> {
+    /// The spectrum at Ω after a step, of light with the spectrum `before` in the light frame.
+    ///
+    /// To first order in the size of the neighbourhood, as are the [maps](crate::geometry); cosine, lobe and factors are exact. Between the
+    /// cosine and the BRDF a sum of terms is that of their differential irradiances.
+    ///
+    /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without h (docs/theory.md, Eq. 36). For an asymmetric f that is
+    /// f̂(−Ωθ), of which Table 1 of Durand et al. 2005 drops the sign; their Eqs. 15 to 17 lack primes and hats.
+    #[must_use]
+    pub fn spectrum(&self, step: Step, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
+        let k = self.curvature;
+        let until = |step: Step| move |w: [f64; 2]| self.spectrum(step, w, before);
+        match step {
+            Step::Incidence => Map::<2>::incidence(self.incidence).spectrum(omega, before),
+            Step::Curvature => Map::<2>::curvature(k).spectrum(omega, &until(Step::Incidence)),
+            Step::Cosine => self.sum(|term| self.lit(term, omega, before)),
+            Step::Mirror => Map::mirror().spectrum(omega, &until(Step::Cosine)),
+            Step::Brdf => self.sum(|term| self.reflected(term, omega, before)),
+            Step::Back => Map::<2>::back(k).spectrum(omega, &until(Step::Brdf)),
+            Step::Outgoing => Map::<2>::outgoing(self.outgoing).spectrum(omega, &until(Step::Back)),
+        }
+    }
+
+    fn sum(&self, of: impl Fn(&Term<'_>) -> Complex) -> Complex {
+        self.terms.iter().map(of).sum()
+    }
+
+    /// Step 3 of a term.
+    fn lit(&self, term: &Term<'_>, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
+        let local = |w| self.spectrum(Step::Curvature, w, before);
+        term.before.times(&self.lattice, omega, &local)
+    }
+
+    /// Steps 3 to 5 of a term.
+    fn reflected(&self, term: &Term<'_>, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
+        let mirrored = |w| Map::mirror().spectrum(w, &|w| self.lit(term, w, before));
+        let blurred = |w: [f64; 2]| match &term.lobe {
+            Some(lobe) => mirrored(w) * lobe.spectrum(w[1]),
+            None => mirrored(w),
+        };
+        term.after.times(&self.lattice, omega, &blurred)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    fn light([x, t]: [f64; 2]) -> Complex {
+        let turn = Complex::from_polar(1.0, 0.8 * t - 0.3 * x);
+        turn * (-PI * (0.3 * x * x + 0.1 * x * t + 0.2 * t * t)).exp()
+    }
+
+    /// (1 + 0.6 sin θ) cos⁺, which tells θ from −θ.
+    fn uneven(q: f64) -> Complex {
+        let side = cosine_hat(q - 0.5 / PI) - cosine_hat(q + 0.5 / PI);
+        Complex::new(cosine_hat(q), -0.3 * side)
+    }
+
+    fn spectrum(terms: Vec<Term<'_>>) -> Complex {
+        let reflection = Reflection {
+            incidence: 0.3,
+            outgoing: -0.2,
+            curvature: 0.4,
+            terms,
+            lattice: Lattice::circle(9.0),
+        };
+        reflection.spectrum(Step::Outgoing, [0.2, -0.3], &light)
+    }
+
+    fn term<'a>(before: Factor<'a>, lobe: Option<Lobe>, after: Factor<'a>) -> Term<'a> {
+        Term {
+            before,
+            lobe,
+            after,
+        }
+    }
+
+    #[test]
+    fn at_a_mirror_factors_before_and_after_are_one_with_the_sign_turned() {
+        let turned = |q: f64| uneven(-q);
+        let one = |before, after| spectrum(vec![term(before, None, after)]);
+        let before = one(Factor::Other(&turned), Factor::One);
+        let after = one(Factor::One, Factor::Other(&uneven));
+        assert!((before - after).norm() < 1e-14 * after.norm()); // rounding of 10² terms
+        let unturned = one(Factor::Other(&uneven), Factor::One);
+        assert!((unturned - after).norm() > 0.05 * after.norm());
+    }
+
+    #[test]
+    fn terms_add_up() {
+        let phong = Some(Lobe::Phong { exponent: 20.0 });
+        let parts = [
+            term(Factor::Cosine, phong, Factor::One),
+            term(Factor::Other(&uneven), phong, Factor::Cosine),
+            term(Factor::One, None, Factor::One),
+        ];
+        let sum: Complex = parts.iter().map(|part| spectrum(vec![*part])).sum();
+        assert!((spectrum(parts.to_vec()) - sum).norm() < 1e-14 * sum.norm()); // rounding
+    }
+}

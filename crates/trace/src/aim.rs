@@ -1,0 +1,126 @@
+//! How light from far away is sent at what planes look at.
+
+use crate::ground::Ground;
+use crate::proposal::{Follower, Proposal};
+use crate::sky::Sky;
+use etendue_field::{Environment, Orientation, TwoPlane, VirtualPlane, random};
+use etendue_scene::{Emission, Scene};
+
+/// A mixture, with equal shares, of ways in which rays of an environment are drawn: a density over (x, y, u, v) at the beginning of the first leg.
+///
+/// Emission, aimed or plain, is that of rays which some plane may look at: an environment's whole flux through all space has no end.
+#[derive(Debug)]
+pub(crate) struct FromSky {
+    sky: Sky,
+    ways: Vec<Way>,
+}
+
+#[derive(Debug)]
+enum Way {
+    /// Positions and slopes by the profiles of a plane's window.
+    Window([Proposal; 2]),
+    /// Positions in a plane's window, directions by the environment.
+    Across {
+        distance: f64,
+        position: [Follower; 2],
+    },
+    /// Points of the first surface, directions by the environment.
+    Onto(Ground),
+}
+
+impl FromSky {
+    /// Aimed emission has a way for the window of each plane on the first leg, by its profiles and by the environment, and one for the part of the
+    /// first surface that each other plane looks at. Plain emission is uniform over the windows of the former and over the first surface, always
+    /// by the environment.
+    pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
+        let aimed = scene.run.emission == Emission::Aimed;
+        let mut ways = Vec::new();
+        for plane in &scene.planes {
+            if looks_across(plane) {
+                ways.extend(across(plane, aimed));
+            } else if aimed {
+                ways.extend(Ground::new(scene, Some(plane)).map(Way::Onto));
+            }
+        }
+        if !aimed && scene.planes.iter().any(|plane| !looks_across(plane)) {
+            ways.extend(Ground::new(scene, None).map(Way::Onto));
+        }
+        Self {
+            sky: Sky::new(environment),
+            ways,
+        }
+    }
+
+    /// A ray from eight random words; `None` when the direction drawn does not go forward.
+    pub(crate) fn sample(&self, words: [[u32; 4]; 2]) -> Option<TwoPlane> {
+        let [r, s] = words.map(|words| words.map(random::unit));
+        // Whatever else there is, a direction takes four numbers.
+        match self
+            .ways
+            .get(random::index(words[1][3], self.ways.len().max(1)))?
+        {
+            Way::Window([along_x, along_y]) => {
+                let [x, u] = along_x.sample([r[0], r[1]]);
+                let [y, v] = along_y.sample([r[2], r[3]]);
+                Some(TwoPlane { x, y, u, v })
+            }
+            Way::Across { distance, position } => {
+                let [u, v] = self.sky.slopes(r)?;
+                let [x, y] = [0, 1].map(|axis| position[axis].quantile(s[axis]));
+                Some(TwoPlane { x, y, u, v }.travelled(-distance))
+            }
+            Way::Onto(ground) => {
+                let [u, v] = self.sky.slopes(r)?;
+                let point = ground.sample([s[0], s[1], s[2]]);
+                let [x, y] = [point.x - point.z * u, point.y - point.z * v];
+                Some(TwoPlane { x, y, u, v })
+            }
+        }
+    }
+
+    /// The density of [`Self::sample`] with respect to dx dy du dv.
+    pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
+        let by_sky = self.sky.slope_density(ray);
+        let densities = self.ways.iter().map(|way| match way {
+            Way::Window([along_x, along_y]) => {
+                along_x.density([ray.x, ray.u]) * along_y.density([ray.y, ray.v])
+            }
+            Way::Across { distance, position } => {
+                let TwoPlane { x, y, .. } = ray.travelled(*distance);
+                by_sky * position[0].density(x) * position[1].density(y)
+            }
+            // Where no light comes from none was aimed.
+            Way::Onto(_) if by_sky <= 0.0 => 0.0,
+            Way::Onto(ground) => by_sky * ground.density(ray),
+        });
+        densities.sum::<f64>() / self.ways.len() as f64
+    }
+}
+
+/// Whether a plane lies across the first leg: what it sees need not have met anything.
+fn looks_across(plane: &VirtualPlane) -> bool {
+    plane.leg == 0 && plane.orientation == Orientation::Orthogonal
+}
+
+/// The ways through the window of a plane across the first leg.
+fn across(plane: &VirtualPlane, aimed: bool) -> Vec<Way> {
+    let (w, distance) = (&plane.window, plane.distance);
+    let space = [&w.x, &w.y];
+    if !aimed {
+        let position = space.map(|profile| Follower::constant(profile.half_width()));
+        return vec![Way::Across { distance, position }];
+    }
+    let endless = [f64::NEG_INFINITY, f64::INFINITY];
+    let slope = [&w.u, &w.v];
+    let along = |axis: usize| {
+        let (space, slope) = (Follower::new(space[axis]), Follower::new(slope[axis]));
+        Proposal::new(distance, endless, space, slope)
+    };
+    let window = along(0).zip(along(1));
+    let position = space.map(Follower::new);
+    window
+        .map(|(x, y)| Way::Window([x, y]))
+        .into_iter()
+        .chain([Way::Across { distance, position }])
+        .collect()
+}

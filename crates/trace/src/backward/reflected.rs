@@ -1,0 +1,83 @@
+//! Light that a surface with a BRDF reflects, from one direction it may have come from.
+
+use super::{Backward, Source};
+use crate::brdf;
+use crate::emit::point;
+use crate::obstacles::ray_through;
+use etendue_field::{Brdf, Frame};
+use glam::DVec3;
+
+/// A point at which light is reflected, in the frame at the light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Reflection {
+    pub(super) brdf: Brdf,
+    pub(super) point: DVec3,
+    /// D along the normal.
+    pub(super) frame: Frame,
+    /// Where light goes, of unit length, in that frame.
+    pub(super) to: DVec3,
+}
+
+impl Backward {
+    /// The radiance that is reflected at the end of a leg, from one direction: drawn by the lobe, or towards a point of the light where the leg
+    /// begins there, in equal parts; both have the density of the mixture (the balance heuristic of Veach and Guibas 1995 for one sample).
+    pub(super) fn reflected(
+        &self,
+        leg: usize,
+        at: &Reflection,
+        block: u32,
+        words: &impl Fn(u32) -> [f64; 4],
+    ) -> f64 {
+        let r = words(block);
+        let Reflection {
+            brdf, frame, to, ..
+        } = at;
+        let this = &self.legs[leg];
+        let sees_light = this.leaves.is_none();
+        let from = if sees_light && r[2] < 0.5 {
+            let towards = match &self.light {
+                Source::Area { shape, .. } => {
+                    let [x, y] = point(shape, [r[0], r[1]]);
+                    DVec3::new(x, y, 0.0) - at.point
+                }
+                Source::Sky(sky) => -sky.sample([r[0], r[1], 2.0 * r[2], r[3]]),
+            };
+            frame.vector_to_local(towards).normalize()
+        } else {
+            brdf::sample(brdf, *to, [r[0], r[1]])
+        };
+        let carried = brdf::value(brdf, from, *to) * from.z;
+        let towards = frame.vector_to_world(from);
+        let end = this.frame.to_local(at.point);
+        let came = this.frame.vector_to_local(-towards);
+        let Some(ray) = ray_through(end, came).filter(|_| carried > 0.0) else {
+            return 0.0;
+        };
+        let by_lobe = brdf::density(brdf, *to, from);
+        let density = if sees_light {
+            0.5 * (by_lobe + self.light.density_towards(at.point, towards))
+        } else {
+            by_lobe
+        };
+        carried / density * self.arriving(leg, &ray, end.z, block + 1, words)
+    }
+}
+
+impl Source {
+    /// The density per solid angle, at a point, of directions drawn towards the light.
+    fn density_towards(&self, point: DVec3, towards: DVec3) -> f64 {
+        let shape = match self {
+            Self::Sky(sky) => return sky.density(-towards),
+            Self::Area { shape, .. } => shape,
+        };
+        let way = -point.z / towards.z;
+        let on = point + way * towards;
+        let is_on = way > 0.0 && shape.contains(on.x, on.y);
+        // r² dω = cos θ dA.
+        if is_on {
+            way * way / (towards.z.abs() * shape.area())
+        } else {
+            0.0
+        }
+    }
+}

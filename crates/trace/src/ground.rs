@@ -1,0 +1,198 @@
+//! Points of the first surface that light meets, for light from far away to be aimed at.
+
+use crate::bvh::{Form, Target, Targets};
+use crate::obstacles::{Around, direction, start};
+use crate::pieces::{Piece, Pieces};
+use crate::reach::footprint;
+use etendue_field::{Frame, Patch, TwoPlane, VirtualPlane};
+use etendue_scene::{Object, Scene};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// A surface, and a density over its points; in the frame at the light.
+#[derive(Debug)]
+pub(crate) struct Ground {
+    targets: Targets<()>,
+    points: Points,
+}
+
+#[derive(Debug)]
+enum Points {
+    /// Uniform over an area.
+    Flat(Pieces),
+    /// Uniform over the disc in the tangent plane at the vertex.
+    Smooth(Patch),
+}
+
+impl Ground {
+    /// Of the whole first surface, or of the part of it that matters for a plane; `None` if none does.
+    pub(crate) fn new(scene: &Scene, plane: Option<&VirtualPlane>) -> Option<Self> {
+        let around = Around(Frame::IDENTITY);
+        let target = |form| Target { form, tag: () };
+        let (targets, points) = match scene.path.ends_at(0)?.object {
+            Object::Surface(i) => {
+                let mut surface = scene.surfaces[i].clone();
+                if let Some(plane) = plane {
+                    let [low, high] = footprint(scene, plane, &surface)?;
+                    let middle = 0.5 * (low + high);
+                    surface.frame.origin = surface.frame.to_world(middle.extend(0.0));
+                    surface.size = (high - low).to_array();
+                }
+                let [a, b, _, d] = surface.corners();
+                let piece = Piece::new(a, [b, d], false);
+                (
+                    vec![target(around.surface(&surface))],
+                    Points::Flat(Pieces::new(vec![piece])),
+                )
+            }
+            Object::Mesh(i) => {
+                let mesh = &scene.meshes[i];
+                let pieces = mesh.triangles.iter();
+                let pieces = pieces.map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
+                let pieces = Pieces::new(pieces.collect());
+                (
+                    around.mesh(mesh).map(target).collect(),
+                    Points::Flat(pieces),
+                )
+            }
+            Object::Patch(i) => {
+                let patch = scene.patches[i].patch;
+                (vec![target(Form::Smooth(patch))], Points::Smooth(patch))
+            }
+        };
+        Some(Self {
+            targets: Targets::new(&targets, 0.0),
+            points,
+        })
+    }
+
+    /// A point of it, from three numbers in (0, 1).
+    pub(crate) fn sample(&self, r: [f64; 3]) -> DVec3 {
+        match &self.points {
+            Points::Flat(pieces) => pieces.point(r).0,
+            Points::Smooth(patch) => {
+                let (sin, cos) = (TAU * r[1]).sin_cos();
+                let radius = patch.aperture * r[0].sqrt();
+                patch.point(radius * cos, radius * sin)
+            }
+        }
+    }
+
+    /// The density of lines through a sampled point, with respect to the dx dy in which they cross the beginning of the leg: a line that goes
+    /// through several points of the surface can be made in as many ways.
+    pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
+        let along = direction(ray);
+        let mut sum = 0.0;
+        self.targets.each(ray, |at, target| {
+            let point = start(ray) + at * along;
+            let normal = target.form.normal(point);
+            // Per area of the surface.
+            let density = match &self.points {
+                Points::Flat(pieces) => 1.0 / pieces.area(),
+                Points::Smooth(patch) => {
+                    normal.dot(patch.frame.d) / (PI * patch.aperture * patch.aperture)
+                }
+            };
+            // An area dA is seen, along the line, in |n · (u, v, 1)| dA of the plane.
+            sum += density / normal.dot(along).abs();
+        });
+        sum
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_field::random::{self, Stream};
+    use etendue_scene::{SceneFile, resolve};
+
+    fn scene(surface: &str) -> Scene {
+        let text = format!(
+            r#"(
+                light: Environment(center: (0, 0, 0), map: Lobes([(from: (0, 0, -1), width: 0.3)])),
+                surfaces: [{surface}],
+                path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["s"]),
+                planes: [(name: "a", at: After("s"))],
+                window: (x: Hann(0.2), u: Hann(0.2)),
+                frequencies: (rho: (max: 4), nu: (max: 4)),
+            )"#
+        );
+        resolve(
+            "test",
+            SceneFile::parse(&text).unwrap(),
+            ".".as_ref(),
+            u64::MAX,
+        )
+        .unwrap()
+    }
+
+    /// For any direction the density over (x, y) integrates to 1, also where lines meet the surface twice, and points follow it: their mean of a
+    /// function over the density is the integral of the function.
+    #[test]
+    fn lines_follow_the_density() {
+        for (surface, slopes) in [
+            (
+                r#"Rectangle(name: "s", center: (0, 0, 2), size: (0.8, 0.6), facing: (0.5, 0.2, -1))"#,
+                [0.3, -0.2],
+            ),
+            (
+                r#"Smooth(name: "s", center: (0, 0, 1.5), facing: (0.3, 0.1, -1), form: Sphere(-0.5), aperture: 0.5, event: Mirror)"#,
+                [0.1, 0.2],
+            ),
+            (
+                r#"Smooth(name: "s", center: (0, 0, 1.5), facing: (0, 0, -1), form: Sphere(-1.8), aperture: 0.5, event: Mirror)"#,
+                [2.5, 0.2],
+            ),
+            (
+                r#"Mesh(name: "s", center: (0, 0, 2), mesh: Star(radius: 0.4, relief: 0.3, lobes: 4, rings: 20))"#,
+                [0.4, 0.1],
+            ),
+        ] {
+            let scene = scene(surface);
+            let ground = Ground::new(&scene, None).unwrap();
+            let [u, v] = slopes;
+            let line = |point: DVec3| TwoPlane {
+                x: point.x - point.z * u,
+                y: point.y - point.z * v,
+                u,
+                v,
+            };
+            let samples: Vec<TwoPlane> = (0..20_000)
+                .map(|index| {
+                    let r = random::words(3, Stream::Photon, index, 0).map(random::unit);
+                    line(ground.sample([r[0], r[1], r[2]]))
+                })
+                .collect();
+            let bounds = |of: fn(&TwoPlane) -> f64| {
+                let values = samples.iter().map(of);
+                let low = values.clone().fold(f64::INFINITY, f64::min) - 0.01;
+                [low, values.fold(f64::NEG_INFINITY, f64::max) + 0.01]
+            };
+            let [x, y] = [bounds(|ray| ray.x), bounds(|ray| ray.y)];
+            let n = 400;
+            let cell = (x[1] - x[0]) * (y[1] - y[0]) / f64::from(n * n);
+            let (mut whole, mut covered) = (0.0, 0.0);
+            for i in 0..n * n {
+                let at = |[low, high]: [f64; 2], k: i32| {
+                    low + (high - low) * (f64::from(k) + 0.5) / f64::from(n)
+                };
+                let density = ground.density(&TwoPlane {
+                    x: at(x, i / n),
+                    y: at(y, i % n),
+                    u,
+                    v,
+                });
+                whole += density * cell;
+                covered += if density > 0.0 { cell } else { 0.0 };
+            }
+            // Mid-points: the density jumps at the outline, in 1 % of the cells, and has poles where lines graze.
+            assert!((whole - 1.0).abs() < 0.02, "{surface}: {whole}");
+            let inverse = samples.iter().map(|ray| 1.0 / ground.density(ray));
+            let mean = inverse.sum::<f64>() / samples.len() as f64;
+            assert!(
+                (mean / covered - 1.0).abs() < 0.03,
+                "{surface}: {mean} and {covered}"
+            ); // three standard errors, and as above
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! The page on glossy reflections.
+
+use crate::shading::glossy;
+use std::fs;
+use std::process::ExitCode;
+
+/// Measures, prints what was found, and writes the page, its picture and the numbers behind that, unless photons are given.
+#[expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "the report is the product"
+)]
+pub(crate) fn page(photons: Option<u64>) -> ExitCode {
+    let (section, curves) = glossy(photons);
+    println!("{}", section.markdown());
+    if photons.is_none() {
+        let written = etendue_figures::curves(&curves)
+            .map_err(|error| error.to_string())
+            .and_then(|figure| {
+                let page = format!("{HEAD}{}", section.markdown());
+                let files = [
+                    ("docs/bandwidth.svg", figure.svg),
+                    ("docs/bandwidth.csv", figure.csv),
+                    ("docs/bandwidth.md", page),
+                ];
+                files.into_iter().try_for_each(|(path, text)| {
+                    fs::write(path, text).map_err(|error| format!("{path}: {error}"))
+                })
+            });
+        if let Err(message) = written {
+            eprintln!("{message}");
+            return ExitCode::from(3);
+        }
+    }
+    ExitCode::from(u8::from(!section.passed))
+}
+
+const HEAD: &str = "\
+# How fast a glossy reflection changes with angle
+
+Written by `cargo run --release -p etendue-validation -- bandwidth`.
+
+Durand et al. 2005, section 6.2, say from the spectrum how finely a glossy reflection must be sampled: B, in cycles per unit slope at a fixed point d away from the surface, \
+for light from far away (Eq. 20), and B' with an edge at d' before the surface (Eq. 21):
+
+    corrected   B = Ω_ρ |1 + 2kd/cos θ₁|       B' = Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|
+    printed     B = Ω_ρ 2kd/cos θ₁             B' = Ω_ρ d (1/d' + 2|k|)/cos θ₁
+
+The print lacks the 1, the sign of k and a cosine. At the surface a flat mirror shows the lobe as wide as it is, so B = Ω_ρ there, not 0; and a hollow one first undoes \
+what travel does, so that B has a least value, not at k = 0. Photons say so; next to that least value the window, not the surface, sets what they show:
+
+![Bandwidth over curvature, angles, distances and the width of the BRDF: photons lie on the corrected curves, and off those of the print](bandwidth.svg)
+
+The numbers behind the curves are in [bandwidth.csv](bandwidth.csv). `etendue bandwidth SCENE.ron --measure --sweep PATH=A..B:N` sweeps any scene in this way, such as \
+[bandwidth](../scenes/bandwidth.ron) and [bandwidth_edge](../scenes/bandwidth_edge.ron).
+
+";

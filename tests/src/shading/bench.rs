@@ -1,0 +1,142 @@
+//! A plane of a sound scene, measured and predicted, for what is wrong to be held against.
+
+use crate::scenes::traced;
+use etendue_compare::{Residuals, scattered};
+use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Slices, VirtualPlane};
+use etendue_scene::{Event, Scene};
+use etendue_spectrum::{Measurement, estimate, measure};
+use etendue_theory::rays::Plane;
+use etendue_theory::scattering::{System, exact};
+use etendue_trace::Tracer;
+use glam::DVec3;
+
+/// A scene with one plane, its photons and its prediction.
+pub(super) struct Bench {
+    pub(super) scene: Scene,
+    pub(super) photons: Measurement,
+    pub(super) sound: Slices,
+}
+
+impl Bench {
+    /// # Panics
+    /// When the plane does not look at light that a BRDF has scattered.
+    pub(super) fn new(scene: Scene) -> Self {
+        let (system, at) = seen(&scene);
+        let sound = said(&system, &at, &scene.planes[0]);
+        Self::of(scene, sound)
+    }
+
+    /// With a prediction from elsewhere.
+    pub(super) fn of(scene: Scene, sound: Slices) -> Self {
+        let photons = traced(&scene);
+        Self {
+            scene,
+            photons,
+            sound,
+        }
+    }
+
+    /// The prediction of a system that was changed.
+    pub(super) fn predicted(&self, change: impl Fn(&mut System)) -> Slices {
+        let (mut system, at) = seen(&self.scene);
+        change(&mut system);
+        said(&system, &at, &self.scene.planes[0])
+    }
+
+    /// The photons of a scene that was changed, their crossings tampered with.
+    pub(super) fn tampered(
+        &self,
+        change: impl Fn(&mut Scene),
+        crossing: impl Fn(&Scene, Crossing) -> Crossing + Sync,
+    ) -> Measurement {
+        let mut scene = self.scene.clone();
+        change(&mut scene);
+        let source = Tampered {
+            tracer: Tracer::new(&scene),
+            crossing: |c| crossing(&self.scene, c),
+        };
+        measure(&source, &scene.planes, 0..scene.run.batches, &|_| ())
+    }
+
+    /// p of photons against a prediction.
+    ///
+    /// # Panics
+    /// When there is neither light nor a prediction of any.
+    pub(super) fn p_value(&self, photons: &Measurement, said: &Slices) -> f64 {
+        let p = Residuals::new(photons, 0, said).p_value(self.scene.run.seed);
+        p.expect("light")
+    }
+
+    /// ‖a − b‖ over the norm of the sound prediction.
+    pub(super) fn apart(&self, a: &Slices, b: &Slices) -> f64 {
+        let norm = |values: &mut dyn Iterator<Item = Complex>| {
+            values.map(|v| v.norm_sqr()).sum::<f64>().sqrt()
+        };
+        let pairs = a.half.iter().zip(&b.half);
+        norm(&mut pairs.map(|(a, b)| a - b)) / norm(&mut self.sound.half.iter().copied())
+    }
+}
+
+/// The measured slices.
+///
+/// # Panics
+/// When there are too few batches.
+pub(super) fn mean(photons: &Measurement) -> Slices {
+    let estimate = estimate::slices(photons, 0);
+    estimate.expect("a scene has 64 batches").mean
+}
+
+fn seen(scene: &Scene) -> (System, Plane) {
+    scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF")
+}
+
+fn said(system: &System, at: &Plane, plane: &VirtualPlane) -> Slices {
+    exact(system, at, &plane.window, &plane.grid).slices
+}
+
+/// The surface of a scene that reflects by a BRDF, for changes.
+///
+/// # Panics
+/// When it has none.
+pub(super) fn reflectance(scene: &mut Scene) -> &mut etendue_field::Reflectance {
+    match &mut scene.patches[0].event {
+        Event::Reflects(reflectance) => reflectance,
+        Event::Specular(_) => panic!("a surface with a BRDF"),
+    }
+}
+
+/// A direction at a place of a plane on a flat surface, and where the light of a projector comes from there: unit vectors along (T, B, N).
+pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
+    let plane = &scene.planes[0];
+    let ray = crossing.ray;
+    let ((sin, cos), (up, across)) = ((ray.u + plane.longitude).sin_cos(), ray.v.sin_cos());
+    let place = DVec3::new(ray.x, ray.y, 0.0);
+    let light = plane.frame.to_local(scene.path.frame.origin);
+    let away = DVec3::new(across * sin, up, across * cos);
+    [away, (light - place).normalize()]
+}
+
+/// A tracer whose crossings are tampered with before they are recorded.
+struct Tampered<F> {
+    tracer: Tracer,
+    crossing: F,
+}
+
+impl<F: Fn(Crossing) -> Crossing + Sync> PhotonSource for Tampered<F> {
+    fn emitted(&self, batch: u32) -> u64 {
+        self.tracer.emitted(batch)
+    }
+
+    fn emit(
+        &self,
+        batch: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        let mut tampered = |plane: usize, crossings: &[Crossing]| {
+            let crossings: Vec<Crossing> = crossings.iter().map(|c| (self.crossing)(*c)).collect();
+            record(plane, &crossings);
+        };
+        self.tracer.emit(batch, &mut tampered, progress)
+    }
+}

@@ -1,0 +1,344 @@
+//! Statements about blockers: replicas, combinations, wedges, averages, soft shadows.
+
+use super::primal::{about, between, integral, transform, wave};
+use super::words::Statement;
+use crate::table1::slope;
+use etendue_field::Complex;
+use std::f64::consts::{PI, TAU};
+
+/// Half the width of a light, its distance to the blockers, and from there to the receiver, in metres.
+const LIGHT: f64 = 0.2;
+const BEFORE: f64 = 1.0;
+const AFTER: f64 = 0.5;
+
+pub(super) fn statements() -> Vec<Statement> {
+    let mut all = vec![replicas()];
+    all.extend(combined());
+    all.extend(wedge());
+    all.extend(average());
+    all.extend(soft_shadow());
+    all
+}
+
+/// Light through strips, windowed: where its spectrum peaks beside the middle.
+fn replicas() -> Statement {
+    let mut worst = 0.0_f64;
+    for pitch in [0.2, 0.1, 0.05] {
+        // The light seen within slopes of 0.3, at x.
+        let seen = |x: f64| {
+            let [low, high] =
+                [x - LIGHT, x + LIGHT].map(|edge: f64| (edge / BEFORE).clamp(-0.5, 0.5));
+            integral(between([low, high], 30), |v| {
+                (-PI * (v / 0.3).powi(2)).exp()
+            })
+        };
+        let open: Vec<(f64, f64)> = (-40..40)
+            .flat_map(|n| {
+                let low = f64::from(n) * pitch;
+                between([low, low + 0.5 * pitch], 12)
+            })
+            .filter(|(x, _)| x.abs() < 1.0)
+            .map(|(x, w)| (x, w * seen(x) * (-PI * (x / 0.5).powi(2)).exp()))
+            .collect();
+        let power = |omega: f64| {
+            let sum: Complex = open.iter().map(|(x, w)| wave(omega * x) * *w).sum();
+            sum.norm_sqr()
+        };
+        let (mut low, mut high) = (0.7 / pitch, 1.3 / pitch);
+        while high - low > 1e-9 / pitch {
+            let third = (high - low) / 3.0;
+            if power(low + third) < power(high - third) {
+                low += third;
+            } else {
+                high -= third;
+            }
+        }
+        worst = worst.max((0.5 * (low + high) * pitch - 1.0).abs());
+    }
+    Statement {
+        said: "replicas sit at the blockers' frequency f (3.4)",
+        measured: "peak of a light's spectrum behind strips 0.2, 0.1, 0.05 m apart, relative to 1/pitch, largest deviation".to_owned(),
+        number: worst,
+        expected: [0.0, 1e-3],
+        holds: "holds; smaller patterns put them farther away",
+    }
+}
+
+/// Fourier coefficients −N … N of open intervals of a period of 1.
+fn coefficients(open: &[[f64; 2]]) -> Vec<Complex> {
+    (-48..=48)
+        .map(|n| {
+            let n = f64::from(n);
+            let each = open.iter().map(|[a, b]| {
+                if n.abs() < 0.5 {
+                    Complex::from(b - a)
+                } else {
+                    (wave(n * b) - wave(n * a)) * Complex::new(0.0, 1.0 / (TAU * n))
+                }
+            });
+            each.sum()
+        })
+        .collect()
+}
+
+/// 90 % bandwidth of coefficients: the smallest |n| below which so much of the energy is.
+fn bandwidth(coefficients: &[Complex]) -> usize {
+    let middle = coefficients.len() / 2;
+    let energy =
+        |n: usize| coefficients[middle + n].norm_sqr() + coefficients[middle - n].norm_sqr();
+    let total: f64 = (0..=middle).map(energy).sum();
+    let mut sum = 0.0;
+    (0..=middle)
+        .find(|n| {
+            sum += energy(*n);
+            sum >= 0.9 * total
+        })
+        .unwrap_or(middle)
+}
+
+/// Pairs of patterns in one plane: the spectrum of their product, and what magnitudes alone would make of it.
+fn combined() -> Vec<Statement> {
+    let (mut largest, mut under, mut over) = (0.0_f64, 0, 0);
+    let pairs: u32 = 200;
+    for pair in 0..pairs {
+        // Additive recurrences (Weyl): three open intervals each, sorted, the same every time.
+        let pattern = |offset: f64| -> Vec<[f64; 2]> {
+            let mut cuts: Vec<f64> = (0..6)
+                .map(|i| (0.618_034 * f64::from(6 * pair + i) + offset * f64::from(i + 1)).fract())
+                .collect();
+            cuts.sort_by(f64::total_cmp);
+            cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
+        };
+        let (a, b) = (pattern(0.137), pattern(0.414));
+        let both: Vec<[f64; 2]> = a
+            .iter()
+            .flat_map(|p| b.iter().map(|q| [p[0].max(q[0]), p[1].min(q[1])]))
+            .filter(|[low, high]| high > low)
+            .collect();
+        if both.is_empty() {
+            continue;
+        }
+        let (first, second, true_one) = (coefficients(&a), coefficients(&b), coefficients(&both));
+        let bound: Vec<Complex> = (0..first.len())
+            .map(|n| {
+                let terms = (0..first.len()).filter_map(|m| {
+                    let other = (n + first.len() / 2).checked_sub(m)?;
+                    Some(first[m].norm() * second.get(other)?.norm())
+                });
+                Complex::from(terms.sum::<f64>())
+            })
+            .collect();
+        // Within half of the coefficients the sum leaves out little that is not far away.
+        for n in 32..=64 {
+            largest = largest.max(true_one[n].norm() / bound[n].norm());
+        }
+        let [said, real] = [&bound, &true_one].map(|c| bandwidth(c));
+        under += i32::from(said < real);
+        over += i32::from(said > real);
+    }
+    vec![
+        Statement {
+            said: "combined blockers can be over-estimated, not under-estimated (3.4)",
+            measured: format!(
+                "largest |V̂₁₂|/(|V̂₁| ⊗ |V̂₂|) over {pairs} pairs of random strips, |n| ≤ 16"
+            ),
+            number: largest,
+            expected: [0.2, 1.0],
+            holds: "holds at every frequency, magnitudes without phase being a bound",
+        },
+        Statement {
+            said: "the same, of complementary half-planes in one plane",
+            measured: "largest true |V̂₁₂| over the bound without phase".to_owned(),
+            number: complementary(),
+            expected: [0.0, 1e-12],
+            holds: "the bound may be all there is: they let nothing pass",
+        },
+        Statement {
+            said: "the same, of a bandwidth that is a share of the energy",
+            measured: format!(
+                "share of the pairs whose 90 % bandwidth the magnitudes under-estimate (they over-estimate {over})"
+            ),
+            number: f64::from(under) / f64::from(pairs),
+            expected: [0.0, 0.0],
+            holds: "holds of all pairs, though shares of energy need not keep the order of magnitudes",
+        },
+    ]
+}
+
+fn complementary() -> f64 {
+    let (a, b) = (coefficients(&[[0.0, 0.5]]), coefficients(&[[0.5, 1.0]]));
+    let middle = a.len() / 2;
+    // Σ c_m d_(n−m), and of the magnitudes, with the tail of 1/m² summed: for n = 0, opposite phases.
+    let product: Complex = (0..a.len()).map(|m| a[m] * b[2 * middle - m]).sum();
+    let size: f64 = (0..a.len())
+        .map(|m| a[m].norm() * b[2 * middle - m].norm())
+        .sum();
+    // Coefficients beyond 48 are −1/(πm)² for odd m, on both sides.
+    let tail: f64 = (24..2_000_000)
+        .map(|j| 2.0 / (PI * (2.0 * f64::from(j) + 1.0)).powi(2))
+        .sum();
+    let rest = 1.0 / (2.0 * PI * PI * 2_000_000.0);
+    (product.re - tail - rest).abs() / (size + tail)
+}
+
+/// Two cosine gratings at depths 0 and 1 m.
+fn wedge() -> Vec<Statement> {
+    let frequency = 2.0;
+    let content = |modulation: f64| {
+        let grating = |y: f64| 1.0 - 0.5 * modulation * (1.0 - (TAU * frequency * y).cos());
+        let at = |omega: [f64; 2]| -> f64 {
+            let sum: Complex = about(0.0, 4.0, 160)
+                .map(|(x, w)| {
+                    let slopes = about(0.0, 4.0, 160);
+                    let bell = |t: f64| (-PI * t * t / 4.0).exp();
+                    let inner = transform(slopes, omega[1], |v| bell(v) * grating(x + v));
+                    inner * wave(omega[0] * x) * (w * bell(x) * grating(x))
+                })
+                .sum();
+            sum.norm()
+        };
+        at([0.0, frequency]) / at([0.0, 0.0])
+    };
+    let logs = [0.2_f64, 0.1, 0.05].map(|m| [m.ln(), content(m).ln()]);
+    vec![
+        Statement {
+            said: "non-planar blockers keep to a wedge of angular frequencies (3.2)",
+            measured: "content at (0, f), outside the wedge, of two full cosine gratings 1 m apart, over that at zero".to_owned(),
+            number: content(1.0),
+            expected: [0.249, 0.251],
+            holds: "not where rays meet two blockers",
+        },
+        Statement {
+            said: "the same, of faint blockers",
+            measured: "exponent with which that content falls with the modulation".to_owned(),
+            number: slope(&logs),
+            expected: [1.9, 2.2],
+            holds: "to first order in what is blocked",
+        },
+    ]
+}
+
+/// E(x) = ∫ cos θ dθ over what is seen of the light through strips, in closed form.
+fn irradiance(x: f64, pitch: f64, phase: f64) -> f64 {
+    let distance = BEFORE + AFTER;
+    let sine = |u: f64| (u - x) / (u - x).hypot(distance);
+    // The strip's plane is met at y = x + (u − x) d₂/D.
+    let onto = |y: f64| x + (y - x) * distance / AFTER;
+    let ends = [-LIGHT, LIGHT].map(|u| x + (u - x) * AFTER / distance);
+    let mut n = (ends[0] / pitch - phase).floor() - 1.0;
+    let mut sum = 0.0;
+    while (n + phase) * pitch < ends[1] {
+        let low = onto((n + phase) * pitch).max(-LIGHT);
+        let high = onto((n + phase + 0.5) * pitch).min(LIGHT);
+        if high > low {
+            sum += sine(high) - sine(low);
+        }
+        n += 1.0;
+    }
+    sum
+}
+
+fn average() -> Vec<Statement> {
+    let distance = BEFORE + AFTER;
+    let free = |x: f64| {
+        let sine = |u: f64| (u - x) / (u - x).hypot(distance);
+        sine(LIGHT) - sine(-LIGHT)
+    };
+    // Pitches of which an odd number of halves cover the light's image: there the first harmonic is largest.
+    let image = 2.0 * LIGHT * AFTER / distance;
+    let pitches = [4.5, 9.5, 18.5, 36.5].map(|count| image / count);
+    let ripple = |pitch: f64| {
+        let period = pitch * distance / BEFORE;
+        (0..64)
+            .map(|i| {
+                let x = period * f64::from(i) / 64.0;
+                (irradiance(x, pitch, 0.25) - 0.5 * free(x)).abs()
+            })
+            .fold(0.0, f64::max)
+            / (0.5 * free(0.0))
+    };
+    let logs = pitches.map(|pitch| [pitch.ln(), ripple(pitch).ln()]);
+    // The spectrum at one frequency, in a Gaussian window.
+    let at = |pitch: Option<f64>| -> Complex {
+        transform(about(0.0, 1.4, 6000), 0.7, |x| {
+            let e = pitch.map_or(0.5 * free(x), |pitch| irradiance(x, pitch, 0.25));
+            e * (-PI * (x / 0.4).powi(2)).exp()
+        })
+    };
+    let mean = at(None);
+    let spectrum = [0.3, 0.15].map(|pitch| (at(Some(pitch)) - mean).norm() / mean.norm());
+    vec![
+        Statement {
+            said: "small blockers act as their average (3.4)",
+            measured: format!(
+                "exponent with which the ripple of irradiance under strips falls with their pitch, {:.4} to {:.4} m",
+                pitches[0], pitches[3]
+            ),
+            number: slope(&logs),
+            expected: [0.9, 1.1],
+            holds: "holds, to first order in the pitch",
+        },
+        Statement {
+            said: "the same, of the spectrum at one frequency",
+            measured: format!(
+                "exponent from pitch 0.3 to 0.15 m, differences {:.1e} and {:.1e}",
+                spectrum[0], spectrum[1]
+            ),
+            number: (spectrum[0] / spectrum[1]).log2(),
+            // A Gaussian's tail at f d₁/D − 0.7: from 1.5 to 3.7 cycles per metre, in a window of 0.4 m.
+            expected: [4.0, 100.0],
+            holds: "holds, faster than any power: only replicas' tails arrive",
+        },
+    ]
+}
+
+/// ∫ light(u) B(y(u)) du, against the convolution of a scaled light and the blockers.
+fn soft_shadow() -> Vec<Statement> {
+    let distance = BEFORE + AFTER;
+    let mask = |y: f64| 0.5 + 0.5 * (TAU * 6.0 * y).cos() * (-y * y).exp();
+    let points: Vec<f64> = (0..40).map(|i| 0.05 * f64::from(i) - 1.0).collect();
+    let shadow = |x: f64, lit: &dyn Fn(f64, f64) -> f64| {
+        integral(between([-LIGHT, LIGHT], 60), |u| {
+            let v = (u - x) / distance;
+            lit(u, v) * mask(x + AFTER * v)
+        })
+    };
+    // The light's image at the blockers, a box of d₂/D the size, convolved with the blockers at x d₁/D.
+    let convolved = |x: f64| {
+        let size = AFTER / distance;
+        let at = x * BEFORE / distance;
+        integral(between([-LIGHT * size, LIGHT * size], 60), |y| mask(at + y)) / size
+    };
+    let off = |lit: &dyn Fn(f64, f64) -> f64| {
+        let each = points.iter();
+        let pairs: Vec<[f64; 2]> = each
+            .map(|x| [shadow(*x, lit), convolved(*x) * lit(0.0, -x / distance)])
+            .collect();
+        let error: f64 = pairs.iter().map(|[a, b]| (a - b).powi(2)).sum();
+        (error / pairs.iter().map(|[a, _]| a * a).sum::<f64>()).sqrt()
+    };
+    let g = |v: f64| (1.0 + v * v).powf(-1.5);
+    vec![
+        Statement {
+            said: "soft shadows are a primal convolution in a special case (6.1)",
+            measured: "∫ over a uniform light of what a planar mask lets pass, against light ⊗ mask, without g".to_owned(),
+            number: off(&|_, _| 1.0),
+            expected: [0.0, 1e-12],
+            holds: "holds for a uniform diffuse light parallel to mask and receiver",
+        },
+        Statement {
+            said: "the same, with the cosine factor g of the receiver",
+            measured: "the same, the convolution multiplied by g towards the light's centre".to_owned(),
+            number: off(&|_, v| g(v)),
+            expected: [1e-4, 0.1],
+            holds: "not exactly: g varies over the light",
+        },
+        Statement {
+            said: "the same, with a light that is not diffuse",
+            measured: "the same, for a lobe 1 + 3v".to_owned(),
+            number: off(&|_, v| 1.0 + 3.0 * v),
+            expected: [1e-4, 10.0],
+            holds: "not: its spectrum is no line",
+        },
+    ]
+}

@@ -1,0 +1,284 @@
+//! Reflections: separable BRDFs, their sums, textures, and BRDFs that vary in space.
+
+use super::light::{Surface, frequencies, light, light_hat};
+use super::operators::Comparison;
+use crate::table1::apart;
+use etendue_field::Complex;
+use etendue_theory::geometry::Map;
+use etendue_theory::shading::{
+    Factor, Fresnel, Lattice, Lobe, Reflection, Step, Term, Wave, cosine_hat, cosine_squared_hat,
+    semi_convolution, texture,
+};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+pub(super) const THETA0: f64 = 0.5;
+pub(super) const THETA1: f64 = -0.4;
+pub(super) const K: f64 = 0.5;
+
+const GLOSS: Lobe = Lobe::Gaussian { deviation: 0.12 };
+const PHONG: Lobe = Lobe::Phong { exponent: 30.0 };
+const SCHLICK: Fresnel = Fresnel::Schlick {
+    normal_reflectance: 0.04,
+};
+
+/// The theory's reflection by a sum of terms.
+pub(super) fn reflection(terms: Vec<Term<'_>>) -> Reflection<'_> {
+    Reflection {
+        incidence: THETA0,
+        outgoing: THETA1,
+        curvature: K,
+        terms,
+        // The narrowest Gaussian has 0.75 cycles per radian for one deviation.
+        lattice: Lattice::circle(12.0),
+    }
+}
+
+/// The same surface in the primal, with a clamped cosine.
+pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> Surface<'a> {
+    Surface {
+        theta0: THETA0,
+        theta1: THETA1,
+        k: K,
+        horizon: FRAC_PI_2,
+        before: &f64::cos,
+        lobe,
+        after: None,
+        texture: &|_| 1.0,
+    }
+}
+
+pub(super) fn primal(surface: &Surface<'_>) -> Vec<Complex> {
+    let each = frequencies().into_iter();
+    each.map(|omega| surface.transform(&light, omega)).collect()
+}
+
+pub(super) fn said(f: impl Fn([f64; 2]) -> Complex) -> Vec<Complex> {
+    frequencies().into_iter().map(f).collect()
+}
+
+pub(super) fn chain(reflection: &Reflection<'_>) -> Vec<Complex> {
+    said(|omega| reflection.spectrum(Step::Outgoing, omega, &light_hat))
+}
+
+pub(super) const fn term(before: Factor<'_>, lobe: Option<Lobe>) -> Term<'_> {
+    Term {
+        before,
+        lobe,
+        after: Factor::One,
+    }
+}
+
+/// cos θ (1 + 0.6 sin θ), which is not even: sin θ moves a spectrum by ± 1/2π.
+pub(super) fn lopsided(theta: f64) -> f64 {
+    theta.cos() * (1.0 + 0.6 * theta.sin())
+}
+
+/// Its transform.
+pub(super) fn lopsided_hat(q: f64) -> Complex {
+    let side = cosine_hat(q - 1.0 / TAU) - cosine_hat(q + 1.0 / TAU);
+    Complex::new(cosine_hat(q), -0.3 * side)
+}
+
+/// Rows with a surface.
+pub(super) fn all() -> Vec<Comparison> {
+    let mut rows = separable();
+    rows.push(sum());
+    rows.push(textured());
+    rows.push(varying());
+    rows
+}
+
+fn separable() -> Vec<Comparison> {
+    let gaussian = |_: f64, d: f64| GLOSS.value(d);
+    let row = |operator, surface: &Surface<'_>, right: Term<'_>, name, wrong: Term<'_>| {
+        let traced = primal(surface);
+        Comparison {
+            operator,
+            compared: "reflection, step 7".to_owned(),
+            off: apart(&chain(&reflection(vec![right])), &traced),
+            fault: (name, apart(&chain(&reflection(vec![wrong])), &traced)),
+        }
+    };
+    let squared = |q: f64| Complex::from(cosine_squared_hat(q));
+    let conjugate = |q: f64| lopsided_hat(-q);
+    let after = |t: f64| t.cos().powi(2);
+    let schlick = |t: f64| SCHLICK.reflectance(t) * t.cos();
+    let glossy = |before| term(before, Some(GLOSS));
+    vec![
+        row(
+            "ideal mirror, δ/cos θ",
+            &Surface {
+                before: &|_| 1.0,
+                horizon: PI,
+                ..surface(None)
+            },
+            term(Factor::One, None),
+            "δ without 1/cos θ",
+            term(Factor::Cosine, None),
+        ),
+        row(
+            "cosine and Gaussian lobe",
+            &surface(Some(&gaussian)),
+            glossy(Factor::Cosine),
+            "no cosine",
+            glossy(Factor::One),
+        ),
+        row(
+            "cosine and Phong lobe",
+            &surface(Some(&|_, d| PHONG.value(d))),
+            term(Factor::Cosine, Some(PHONG)),
+            "exponent 5 % off",
+            term(Factor::Cosine, Some(Lobe::Phong { exponent: 31.5 })),
+        ),
+        row(
+            "separable, f(θ_i') = Schlick",
+            &Surface {
+                before: &schlick,
+                ..surface(Some(&gaussian))
+            },
+            glossy(Factor::Fresnel(SCHLICK)),
+            "f left out",
+            glossy(Factor::Cosine),
+        ),
+        row(
+            "separable, asymmetric f(θ_i')",
+            &Surface {
+                before: &lopsided,
+                ..surface(Some(&gaussian))
+            },
+            glossy(Factor::Other(&lopsided_hat)),
+            "f̂(Ω) for f̂(−Ω)",
+            glossy(Factor::Other(&conjugate)),
+        ),
+        row(
+            "separable, h(θ_o') = cos²",
+            &Surface {
+                after: Some(&after),
+                ..surface(Some(&gaussian))
+            },
+            Term {
+                after: Factor::Other(&squared),
+                ..glossy(Factor::Cosine)
+            },
+            "h before the lobe",
+            glossy(Factor::Other(&|q| {
+                // cos θ cos² θ = (3 cos θ + cos 3θ)/4 on the half-circle.
+                let third = 3.0 / TAU;
+                let triple = |q: f64| {
+                    let half = |t: f64| {
+                        let angle = PI * PI * t;
+                        if angle.abs() < 1e-9 {
+                            PI
+                        } else {
+                            PI * angle.sin() / angle
+                        }
+                    };
+                    0.5 * (half(q - third) + half(q + third))
+                };
+                Complex::from(0.75 * cosine_hat(q) + 0.25 * triple(q))
+            })),
+        ),
+    ]
+}
+
+fn sum() -> Comparison {
+    let gaussian = |_: f64, d: f64| GLOSS.value(d);
+    let phong = |_: f64, d: f64| PHONG.value(d);
+    let schlick = |t: f64| SCHLICK.reflectance(t) * t.cos();
+    let parts = [
+        surface(Some(&gaussian)),
+        Surface {
+            before: &schlick,
+            ..surface(Some(&phong))
+        },
+        Surface {
+            before: &lopsided,
+            ..surface(None)
+        },
+    ]
+    .map(|part| primal(&part));
+    let traced: Vec<Complex> = (0..parts[0].len())
+        .map(|i| parts.iter().map(|part| part[i]).sum())
+        .collect();
+    let mut terms = vec![
+        term(Factor::Cosine, Some(GLOSS)),
+        term(Factor::Fresnel(SCHLICK), Some(PHONG)),
+        term(Factor::Other(&lopsided_hat), None),
+    ];
+    let right = chain(&reflection(terms.clone()));
+    terms.remove(1);
+    Comparison {
+        operator: "sum of three separable terms",
+        compared: "reflection, step 7".to_owned(),
+        off: apart(&right, &traced),
+        fault: (
+            "a term left out",
+            apart(&chain(&reflection(terms)), &traced),
+        ),
+    }
+}
+
+/// 1 + 0.7 cos(2π 1.5 s + 0.4) after a glossy reflection.
+fn textured() -> Comparison {
+    let gaussian = |_: f64, d: f64| GLOSS.value(d);
+    let traced = primal(&Surface {
+        texture: &|s| 1.0 + 0.7 * (TAU * 1.5 * s + 0.4).cos(),
+        ..surface(Some(&gaussian))
+    });
+    let gloss = reflection(vec![term(Factor::Cosine, Some(GLOSS))]);
+    let with = |frequency: f64| {
+        let side = Complex::from_polar(0.35, 0.4);
+        let waves = [
+            (0.0, Complex::from(1.0)),
+            (frequency, side),
+            (-frequency, side.conj()),
+        ]
+        .map(|(frequency, amplitude)| Wave {
+            frequency,
+            amplitude,
+        });
+        let back = |w: [f64; 2]| gloss.spectrum(Step::Back, w, &light_hat);
+        said(|omega| Map::<2>::outgoing(THETA1).spectrum(omega, &|w| texture(&waves, w, &back)))
+    };
+    Comparison {
+        operator: "texture",
+        compared: "reflection times 1 + 0.7 cos(2π 1.5 s + 0.4)".to_owned(),
+        off: apart(&with(1.5), &traced),
+        fault: ("its frequency 5 % off", apart(&with(1.575), &traced)),
+    }
+}
+
+/// ρ(s, δ) = exp(−½ zᵀ C⁻¹ z)/√2π σ: its lobe turns along the surface.
+fn varying() -> Comparison {
+    let bell = super::light::Bell {
+        amplitude: 3.0,
+        mean: [0.1, 0.02],
+        covariance: [[0.04, 0.008], [0.008, 0.012]],
+    };
+    let lobe = |s: f64, d: f64| bell.value([s, d]);
+    let traced = primal(&surface(Some(&lobe)));
+    let mirror = reflection(vec![term(Factor::Cosine, None)]);
+    let lit = |w: [f64; 2]| mirror.spectrum(Step::Mirror, w, &light_hat);
+    // Light 0.3 m wide and copies of it 8 m apart.
+    let lattice = Lattice {
+        spacing: 0.125,
+        reach: 12.0,
+    };
+    let through = |brdf: &dyn Fn([f64; 2]) -> Complex| {
+        let off = Map::<2>::back(K).then(&Map::<2>::outgoing(THETA1));
+        said(|omega| off.spectrum(omega, &|w| semi_convolution(&lattice, w, brdf, &lit)))
+    };
+    let straight = |[x, t]: [f64; 2]| {
+        let upright = super::light::Bell {
+            covariance: [[0.04, 0.0], [0.0, 0.012]],
+            ..bell
+        };
+        upright.spectrum([x, t])
+    };
+    Comparison {
+        operator: "space-varying BRDF, semi-convolution",
+        compared: "reflection by a lobe that turns along s".to_owned(),
+        off: apart(&through(&|w| bell.spectrum(w)), &traced),
+        fault: ("a separable ρ", apart(&through(&straight), &traced)),
+    }
+}

@@ -1,0 +1,136 @@
+//! Faults of the affine maps onto a surface that scatters and off it, judged by the rule for first-order chains.
+
+use super::scenes::{alone, changed};
+use crate::report::Section;
+use crate::scenes::{compared, traced};
+use etendue_compare::{FirstOrder, FirstOrderReport, Prediction, Verdict, scattered};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use etendue_theory::geometry::Map;
+use etendue_theory::scattering::{Chain, chain, linear};
+
+/// Of the exact prediction, which is not asked here.
+const LEVEL: f64 = 0.01;
+/// Photons, unless others are given.
+const PHOTONS: u64 = 4_000_000;
+const SCENE: &str = "textured_glossy";
+
+type Change = fn(&mut Chain);
+
+fn faults() -> Vec<(&'static str, Change)> {
+    vec![
+        ("none", |_| ()),
+        ("onto: curvature left out", |c| {
+            c.onto = c.onto.then(&Map::<4>::back(c.curvature, c.incidence));
+        }),
+        ("onto: 1/cos θ₀ beside x left out", |c| {
+            row(&mut c.onto, 0, c.incidence.cos());
+        }),
+        ("onto: 1/cos θ₀ beside x twice", |c| {
+            row(&mut c.onto, 0, 1.0 / c.incidence.cos());
+        }),
+        ("off: curvature left out", |c| {
+            let forth = Map::<4>::curvature(c.curvature, c.outgoing[0]);
+            c.off = forth.then(&c.off);
+        }),
+        ("off: sign of curvature", |c| {
+            let forth = Map::<4>::curvature(c.curvature, c.outgoing[0]);
+            c.off = forth.then(&forth).then(&c.off);
+        }),
+        ("off: cos θ₁ beside x left out", |c| {
+            row(&mut c.off, 0, 1.0 / c.outgoing[0].cos());
+        }),
+        ("off: sign of y", |c| row(&mut c.off, 1, -1.0)),
+    ]
+}
+
+fn row(map: &mut Map<4>, row: usize, by: f64) {
+    map.matrix[row] = map.matrix[row].map(|x| by * x);
+    map.offset[row] *= by;
+}
+
+/// The section.
+pub(super) fn chains(photons: Option<u64>) -> Section {
+    let photons = photons.unwrap_or(PHOTONS);
+    let mut rows = Vec::new();
+    let mut passed = true;
+    for plane in ["texture", "outgoing"] {
+        let scene = alone(changed(SCENE, Some(photons), &[]), plane);
+        let measurement = traced(&scene);
+        let sound = Prediction::new(&scene, &scene.planes[0]);
+        for (name, fault) in faults() {
+            // On the surface nothing has come off it yet.
+            if plane == "texture" && name.starts_with("off") {
+                continue;
+            }
+            let report = judged(&scene, &measurement, &sound, fault);
+            let due = if name == "none" {
+                Verdict::Pass
+            } else {
+                Verdict::Fail
+            };
+            passed &= report.verdict == due;
+            rows.push(vec![
+                SCENE.to_owned(),
+                plane.to_owned(),
+                name.to_owned(),
+                percent(report.excess),
+                percent(report.excess_bound),
+                percent(Some(report.chain.error)),
+                match report.verdict {
+                    Verdict::Pass => "accepted",
+                    Verdict::Fail => "rejected",
+                    Verdict::Undecided => "undecided",
+                }
+                .to_owned(),
+            ]);
+        }
+    }
+    Section {
+        title: "Faults planted in the first-order chain of shading".to_owned(),
+        text: format!(
+            "The affine maps onto the glossy sphere and off it, each changed alone, at {:.0e} photons. Rejected when the excess is above 1.1 times the sound chain's computed error, \
+             or 1 %, beyond its 95 % error. Required: rejected every fault, accepted without.",
+            photons as f64
+        ),
+        header: vec![
+            "scene",
+            "plane",
+            "fault",
+            "excess",
+            "bound",
+            "error of the sound chain",
+            "verdict",
+        ],
+        rows,
+        passed,
+    }
+}
+
+fn judged(
+    scene: &Scene,
+    measurement: &Measurement,
+    sound: &Prediction,
+    fault: Change,
+) -> FirstOrderReport {
+    let plane = &scene.planes[0];
+    let (system, at) = scattered(scene, plane).expect("a plane behind a BRDF");
+    let mut tampered = chain(&system, &at).expect("a central ray");
+    fault(&mut tampered);
+    let said = linear(&system, &at, &plane.window, &plane.grid, &tampered);
+    let kept = sound.first_order.as_ref().expect("a chain");
+    let tried = Prediction {
+        first_order: Some(FirstOrder {
+            slices: said.expect("a map with an inverse").slices,
+            chain: kept.chain.clone(),
+        }),
+        parameters: Vec::new(),
+        ..sound.clone()
+    };
+    let compared = compared(scene, measurement, 0, &tried, LEVEL);
+    compared.report.first_order.expect("a chain was given")
+}
+
+fn percent(x: Option<f64>) -> String {
+    x.map_or("–".to_owned(), |x| format!("{:.2} %", 100.0 * x))
+}

@@ -1,0 +1,148 @@
+//! What an eye sees of a glossy circle, by tracing rays back.
+
+use etendue_theory::shading::Criterion;
+use std::f64::consts::TAU;
+
+/// Step of differences, in slope and radians; what is left out is its fourth power.
+const STEP: f64 = 1e-3;
+
+/// A circle, an eye and a blocker, as they are.
+pub(super) struct Scene {
+    pub(super) criterion: Criterion,
+}
+
+/// Where a ray of the eye hits: arc length and local outgoing angle.
+struct Hit {
+    turn: f64,
+    point: [f64; 2],
+    local: f64,
+}
+
+impl Scene {
+    /// The ray that reaches the eye with a slope, from where it leaves the circle.
+    fn hit(&self, slope: f64) -> Hit {
+        let c = &self.criterion;
+        let (sine, cosine) = c.outgoing.sin_cos();
+        // X = cos T − sin N across the central ray, which runs along D = sin T + cos N.
+        let angle = slope.atan() + c.outgoing;
+        let along = [angle.sin(), angle.cos()];
+        let back = -slope * c.distance;
+        let [t, n] = [back * cosine, -back * sine];
+        // k (t² + n²) + 2 n = 0.
+        let k = c.curvature;
+        let q = k * (t * along[0] + n * along[1]) + along[1];
+        let e = k * (t * t + n * n) + 2.0 * n;
+        let length = -e / (q + (q * q - k * e).sqrt().copysign(q));
+        let point = [t + length * along[0], n + length * along[1]];
+        let turn = (k * point[0]).asin();
+        Hit {
+            turn,
+            point,
+            local: angle - turn,
+        }
+    }
+
+    /// Where the light of the ray of a slope comes from, mirrored: its direction, and where it crosses the plane of the blocker.
+    fn origin(&self, slope: f64) -> [f64; 2] {
+        let hit = self.hit(slope);
+        self.from(&hit, self.aside() - hit.local)
+    }
+
+    /// How far beside the mirror direction the central ray leaves; the lobe does not change that.
+    fn aside(&self) -> f64 {
+        self.criterion.incidence + self.criterion.outgoing
+    }
+
+    fn from(&self, hit: &Hit, incident: f64) -> [f64; 2] {
+        let angle = incident + hit.turn;
+        let (sine, cosine) = self.criterion.incidence.sin_cos();
+        let [t, n] = hit.point;
+        let across = t * cosine - n * sine;
+        let along = t * sine + n * cosine;
+        let distance = self.criterion.blocker_distance.unwrap_or(1.0);
+        let tangent = (angle - self.criterion.incidence).tan();
+        [angle, across + (distance - along) * tangent]
+    }
+
+    /// How phases of the environment and at the blocker change with the slope at the eye, over how they change with the local angle of
+    /// the mirrored light at one point.
+    pub(super) fn ratios(&self) -> [f64; 2] {
+        let seen = derivative(&|slope| self.origin(slope));
+        let center = self.hit(0.0);
+        let there = derivative(&|angle| self.from(&center, angle + self.aside() - center.local));
+        [0, 1].map(|i: usize| (seen[i] / there[i]).abs())
+    }
+
+    /// The bandwidths at the eye: B, B', and the largest for content at both, cut off at Ω_ρ and Ω_e.
+    pub(super) fn traced(&self) -> [f64; 3] {
+        let c = &self.criterion;
+        let seen = derivative(&|slope| self.origin(slope));
+        let center = self.hit(0.0);
+        let there = derivative(&|angle| self.from(&center, angle + self.aside() - center.local));
+        let [environment, blocker] = self.ratios();
+        // A wave g in the environment and f at the blocker, where their sum on the surface is at its limit.
+        let mut most = 0.0_f64;
+        for (limit, g) in [(1.0, 1.0), (1.0, -1.0), (-1.0, 1.0), (-1.0, -1.0)] {
+            let g = g * c.environment_cutoff;
+            let f = (limit * c.lobe_cutoff - g * there[0]) / there[1];
+            most = most.max((f * seen[1] + g * seen[0]).abs());
+        }
+        [c.lobe_cutoff * environment, c.lobe_cutoff * blocker, most]
+    }
+
+    /// The frequency below which 99 % of the energy of an image lies, over what is said of it; for a Gaussian lobe so narrow that the surface is
+    /// linear. The image is that of a distant point, or the derivative of that of an edge.
+    pub(super) fn image(&self, edge: bool, said: f64) -> f64 {
+        const DEVIATION: f64 = 1e-4;
+        const COUNT: i32 = 240;
+        // Ω_ρ = 2.5758/(2√2 πσ).
+        let cutoff = 2.575_829_303_5 * 2.0_f64.sqrt() / (2.0 * TAU * DEVIATION);
+        let said = said / self.criterion.lobe_cutoff * cutoff;
+        let width = DEVIATION * cutoff / said;
+        let value = |slope: f64| {
+            let hit = self.hit(slope);
+            let incident = if edge {
+                let distance = self.criterion.blocker_distance.unwrap_or(1.0);
+                let (sine, cosine) = self.criterion.incidence.sin_cos();
+                let to = [
+                    distance * sine - hit.point[0],
+                    distance * cosine - hit.point[1],
+                ];
+                to[0].atan2(to[1]) - hit.turn
+            } else {
+                self.criterion.incidence - hit.turn
+            };
+            let z = (hit.local + incident - self.aside()) / DEVIATION;
+            (-0.5 * z * z).exp()
+        };
+        let nodes = super::primal::about(0.0, 9.0 * width, COUNT);
+        let image: Vec<(f64, f64, f64)> = nodes.map(|(v, w)| (v, w, value(v))).collect();
+        let total: f64 = image.iter().map(|(_, w, i)| i * i * w).sum();
+        let power = |omega: f64| -> f64 {
+            let waves = image.iter();
+            let sum: etendue_field::Complex = waves
+                .map(|(v, w, i)| super::primal::wave(omega * v) * (w * i))
+                .sum();
+            sum.norm_sqr()
+        };
+        let step = said / 400.0;
+        let (mut sum, mut omega, mut last) = (0.0, 0.0, power(0.0));
+        while omega < 3.0 * said {
+            let next = power(omega + step);
+            let more = (last + next) * step;
+            if sum + more > 0.99 * total {
+                return (omega + step * (0.99 * total - sum) / more) / said;
+            }
+            sum += more;
+            omega += step;
+            last = next;
+        }
+        f64::INFINITY
+    }
+}
+
+/// By central differences, extrapolated.
+fn derivative(f: &dyn Fn(f64) -> [f64; 2]) -> [f64; 2] {
+    let slope = |h: f64, i: usize| (f(h)[i] - f(-h)[i]) / (2.0 * h);
+    [0, 1].map(|i| (4.0 * slope(0.5 * STEP, i) - slope(STEP, i)) / 3.0)
+}

@@ -1,0 +1,334 @@
+//! Cosines, Fresnel factors and lobes by themselves, diffuse irradiance, and environments.
+
+use super::operators::Comparison;
+use super::primal::{about, between, transform, wave};
+use crate::table1::apart;
+use etendue_field::Complex;
+use etendue_theory::shading::environment::{Glow, irradiance, mirrored_differential_irradiance};
+use etendue_theory::shading::{
+    Fresnel, Lattice, Lobe, angular_product, cosine_hat, cosine_series, cosine_squared_hat, g_hat,
+};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// 24 frequencies, cycles per radian.
+fn line() -> Vec<f64> {
+    (0..24).map(|i| 0.26 * f64::from(i) + 0.01).collect()
+}
+
+fn curve(f: impl Fn(f64) -> f64) -> Vec<Complex> {
+    line().into_iter().map(|omega| f(omega).into()).collect()
+}
+
+/// The transform of a function on |θ| < `end`, given where θ > 0 and even, with panels towards the middle and the end.
+fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
+    let mut cuts = vec![0.0];
+    let mut at = inner;
+    while at < end {
+        cuts.push(at);
+        at *= 2.0;
+    }
+    cuts.push(end);
+    let panels = |omega: f64| {
+        let each = cuts.windows(2).map(|cut| {
+            let half = transform(between([cut[0], cut[1]], 70), omega, f);
+            Complex::from(2.0 * half.re)
+        });
+        each.sum()
+    };
+    line().into_iter().map(panels).collect()
+}
+
+/// Rows without a surface.
+pub(super) fn all() -> Vec<Comparison> {
+    let mut rows = cosines();
+    rows.extend(fresnel());
+    rows.extend(lobes());
+    rows.push(differential_irradiance());
+    rows.extend(environments());
+    rows
+}
+
+fn cosines() -> Vec<Comparison> {
+    let clamped = plain(FRAC_PI_2, 1.0, &f64::cos);
+    let squared = plain(FRAC_PI_2, 1.0, &|t| t.cos().powi(2));
+    let orders = 0..24;
+    let series: Vec<Complex> = orders
+        .clone()
+        .map(|n| {
+            let nodes = between([-FRAC_PI_2, FRAC_PI_2], 120);
+            transform(nodes, f64::from(n) / TAU, f64::cos) / TAU
+        })
+        .collect();
+    let said: Vec<Complex> = orders.clone().map(|n| cosine_series(n).into()).collect();
+    let printed: Vec<Complex> = orders
+        .map(|n| cosine_hat(f64::from(n) / TAU).into())
+        .collect();
+    vec![
+        Comparison {
+            operator: "clamped cosine",
+            compared: "cos⁺^(Ω), ∫ cos θ e^(−2πiΩθ)".to_owned(),
+            off: apart(&curve(cosine_hat), &clamped),
+            fault: ("cosine twice", apart(&curve(cosine_squared_hat), &clamped)),
+        },
+        Comparison {
+            operator: "cosine along latitudes",
+            compared: "C₂(Ω), ∫ cos² φ e^(−2πiΩφ)".to_owned(),
+            off: apart(&curve(cosine_squared_hat), &squared),
+            fault: ("cosine once", apart(&curve(cosine_hat), &squared)),
+        },
+        Comparison {
+            operator: "full-circle series",
+            compared: "24 coefficients of cos⁺".to_owned(),
+            off: apart(&said, &series),
+            fault: ("the transform for the series", apart(&printed, &series)),
+        },
+    ]
+}
+
+fn fresnel() -> Vec<Comparison> {
+    let glass = Fresnel::Dielectric { index: 1.5 };
+    let metal = Fresnel::Conductor {
+        index: 0.96,
+        extinction: 6.69,
+    };
+    let schlick = Fresnel::Schlick {
+        normal_reflectance: 0.04,
+    };
+    let row = |operator,
+               fresnel: Fresnel,
+               share: &dyn Fn(f64) -> f64,
+               name,
+               wrong: &dyn Fn(f64) -> f64| {
+        let primal = plain(FRAC_PI_2, 0.5, &|t| share(t) * t.cos());
+        Comparison {
+            operator,
+            compared: "transform of F cos⁺".to_owned(),
+            off: apart(&curve(|omega| fresnel.cosine_hat(omega)), &primal),
+            fault: (name, apart(&curve(wrong), &primal)),
+        }
+    };
+    // Fresnel's formulas once more, in sines and tangents of the refracted angle.
+    let snell = |theta: f64| {
+        let theta = theta.max(1e-4);
+        let beyond = (theta.sin() / 1.5).asin();
+        let across = (theta - beyond).sin() / (theta + beyond).sin();
+        let along = (theta - beyond).tan() / (theta + beyond).tan();
+        0.5 * (across * across + along * along)
+    };
+    // For metals, in real numbers (Born and Wolf 1999, section 14.2).
+    let conductor = |theta: f64| {
+        let (n, k, sine, cosine) = (0.96_f64, 6.69_f64, theta.sin(), theta.cos());
+        let t0 = n * n - k * k - sine * sine;
+        let ab = (t0 * t0 + 4.0 * n * n * k * k).sqrt();
+        let a = (0.5 * (ab + t0)).sqrt();
+        let across =
+            (ab + cosine * cosine - 2.0 * a * cosine) / (ab + cosine * cosine + 2.0 * a * cosine);
+        let (s2, t) = (sine * sine, 2.0 * a * cosine * sine * sine);
+        let along =
+            across * (cosine * cosine * ab + s2 * s2 - t) / (cosine * cosine * ab + s2 * s2 + t);
+        0.5 * (across + along)
+    };
+    let approximation = |theta: f64| 0.04 + 0.96 * (1.0 - theta.cos()).powi(5);
+    vec![
+        row(
+            "Fresnel · cosine, n = 1.5",
+            glass,
+            &snell,
+            "Schlick's instead",
+            &|w| schlick.cosine_hat(w),
+        ),
+        row(
+            "Fresnel · cosine, aluminium",
+            metal,
+            &conductor,
+            "constant F",
+            &|w| metal.reflectance(0.0) * cosine_hat(w),
+        ),
+        row(
+            "Fresnel · cosine, Schlick F₀ = 0.04",
+            schlick,
+            &approximation,
+            "F₀ 5 % off",
+            &|w| {
+                let off = Fresnel::Schlick {
+                    normal_reflectance: 0.042,
+                };
+                off.cosine_hat(w)
+            },
+        ),
+    ]
+}
+
+fn lobes() -> Vec<Comparison> {
+    // Shapes written out anew, normalised by their own quadrature; end and scale.
+    let row =
+        |operator, lobe: Lobe, off: Lobe, end: f64, inner: f64, shape: &dyn Fn(f64) -> f64| {
+            let area = 2.0 * plain_integral(end, inner, shape);
+            let primal = plain(end, inner, &|t| shape(t) / area);
+            Comparison {
+                operator,
+                compared: "ρ̂'(Ω) of a lobe of unit integral".to_owned(),
+                off: apart(&curve(|w| lobe.spectrum(w)), &primal),
+                fault: (
+                    "width or exponent 5 % off",
+                    apart(&curve(|w| off.spectrum(w)), &primal),
+                ),
+            }
+        };
+    vec![
+        row(
+            "lobe, Phong n = 20",
+            Lobe::Phong { exponent: 20.0 },
+            Lobe::Phong { exponent: 21.0 },
+            FRAC_PI_2,
+            0.2,
+            &|t| t.cos().powi(20),
+        ),
+        row(
+            "lobe, Phong n = 3",
+            Lobe::Phong { exponent: 3.0 },
+            Lobe::Phong { exponent: 3.15 },
+            FRAC_PI_2,
+            0.5,
+            &|t| t.cos().powi(3),
+        ),
+        row(
+            "lobe, Gaussian σ = 0.08",
+            Lobe::Gaussian { deviation: 0.08 },
+            Lobe::Gaussian { deviation: 0.084 },
+            0.72,
+            0.09,
+            &|t| (-0.5 * (t / 0.08).powi(2)).exp(),
+        ),
+        row(
+            "lobe, Beckmann α = 0.1",
+            Lobe::Beckmann { roughness: 0.1 },
+            Lobe::Beckmann { roughness: 0.105 },
+            PI,
+            0.1,
+            &|t| {
+                let slope = (0.5 * t).tan().min(1e3);
+                (-100.0 * slope * slope).exp() / (0.5 * t).cos().powi(4)
+            },
+        ),
+        row(
+            "lobe, GGX α = 0.1",
+            Lobe::Ggx { roughness: 0.1 },
+            Lobe::Ggx { roughness: 0.105 },
+            PI,
+            0.1,
+            // Walter et al.: 1/(cos⁴ τ (α² + tan² τ)²) in cosines of δ.
+            &|t| (1.01 - 0.99 * t.cos()).powi(-2),
+        ),
+    ]
+}
+
+fn plain_integral(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> f64 {
+    let mut sum = 0.0;
+    let (mut low, mut high) = (0.0, inner.min(end));
+    loop {
+        sum += super::primal::integral(between([low, high], 70), f);
+        if high >= end {
+            return sum;
+        }
+        (low, high) = (high, (2.0 * high).min(end));
+    }
+}
+
+/// dE = ℓ g, in slopes: the convolution of Eq. 7.
+fn differential_irradiance() -> Comparison {
+    let bell = &super::light::LIGHT[0];
+    let omegas = [[0.0, 0.0], [0.4, 0.2], [-0.3, 0.5], [0.6, -0.9]];
+    let g = |v: f64| (1.0 + v * v).powf(-1.5);
+    let primal: Vec<Complex> = omegas
+        .iter()
+        .map(|[x, v]| {
+            let positions = about(bell.mean[0], 2.2, 60);
+            positions
+                .map(|(at, w)| {
+                    let slopes = about(bell.mean[1], 2.6, 100);
+                    let inner = transform(slopes, *v, |t| bell.value([at, t]) * g(t));
+                    inner * wave(x * at) * w
+                })
+                .sum()
+        })
+        .collect();
+    // g falls as 1/v³ and has no end: copies 3000 apart add 10⁻¹⁰.
+    let lattice = Lattice {
+        spacing: 1.0 / 3000.0,
+        reach: 6.0,
+    };
+    let with = |factor: &dyn Fn(f64) -> Complex| -> Vec<Complex> {
+        let each = omegas.iter();
+        each.map(|w| angular_product(&lattice, *w, factor, &|w| bell.spectrum(w)))
+            .collect()
+    };
+    let area = |q: f64| Complex::from(2.0 * g_hat(q));
+    Comparison {
+        operator: "differential irradiance, g",
+        compared: "L ⊗ ĝ, transform of ℓ (1 + v²)^(−3/2)".to_owned(),
+        off: apart(&with(&|q| g_hat(q).into()), &primal),
+        fault: ("g of twice the size", apart(&with(&area), &primal)),
+    }
+}
+
+fn environments() -> Vec<Comparison> {
+    let glows = [(1.0, 0.3, 0.4), (0.5, -0.5, 0.25)].map(|(amplitude, mean, deviation)| Glow {
+        amplitude,
+        mean,
+        deviation,
+    });
+    let hat = |w: f64| -> Complex { glows.iter().map(|glow| glow.spectrum(w)).sum() };
+    let env = |t: f64| -> f64 { glows.iter().map(|glow| glow.value(t)).sum() };
+    let mut rows = Vec::new();
+    for (operator, diffuse, k) in [
+        (
+            "environment map, convex",
+            "irradiance of an environment, convex",
+            0.6,
+        ),
+        (
+            "environment map, concave",
+            "irradiance of an environment, concave",
+            -0.4_f64,
+        ),
+    ] {
+        let omegas: Vec<[f64; 2]> = (0..12)
+            .map(|i| [0.05 * f64::from(i) - 0.2, 0.3 * f64::from(i % 5) - 0.5])
+            .collect();
+        // dE'_r(s, θ_r') = env(k s − θ_r') cos θ_r': over s it has the Gaussians' width over |k|.
+        let primal = |[x, t]: [f64; 2]| -> Complex {
+            let mirrored = between([-FRAC_PI_2, FRAC_PI_2], 60).into_iter();
+            mirrored
+                .map(|(at, w)| {
+                    let along = about(at / k, 4.0 / k.abs(), 160);
+                    let inner = transform(along, x, |s| env(k * s - at));
+                    inner * wave(t * at) * (w * at.cos())
+                })
+                .sum()
+        };
+        let of = |f: &dyn Fn([f64; 2]) -> Complex| -> Vec<Complex> {
+            omegas.iter().map(|w| f(*w)).collect()
+        };
+        let traced = of(&primal);
+        let right = |w| mirrored_differential_irradiance(k, w, &hat);
+        rows.push(Comparison {
+            operator,
+            compared: format!("dE'_r^ at k = {k} /m"),
+            off: apart(&of(&right), &traced),
+            fault: (
+                "1/|k| left out",
+                apart(&of(&|w| right(w) * k.abs()), &traced),
+            ),
+        });
+        let floor = of(&|[x, _]| primal([x, 0.0]));
+        let turned = |[x, _]: [f64; 2]| irradiance(-k, x, &hat);
+        rows.push(Comparison {
+            operator: diffuse,
+            compared: format!("E^ at k = {k} /m"),
+            off: apart(&of(&|[x, _]| irradiance(k, x, &hat)), &floor),
+            fault: ("the sign of k", apart(&of(&turned), &floor)),
+        });
+    }
+    rows
+}

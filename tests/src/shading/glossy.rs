@@ -1,0 +1,485 @@
+//! The sampling criteria of section 6.2 against photons: sweeps through every length and angle they hold.
+
+use super::verdict;
+use crate::report::Section;
+use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth};
+use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Quantity};
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::measure;
+use etendue_theory::shading::Criterion;
+use etendue_trace::Tracer;
+use std::f64::consts::SQRT_2;
+
+/// Photons of a point, unless told.
+const PHOTONS: u64 = 1_000_000;
+/// Standard errors between measured and exact.
+const MOST: f64 = 3.3;
+/// The error of a criterion, relative.
+const ERROR: f64 = 0.05;
+/// The 95 % bandwidth of a Gaussian lobe times its deviation.
+const GAUSSIAN: f64 = 0.2206;
+/// The 95 % bandwidth of a box times its half-width.
+const BOX: f64 = 1.03;
+/// Half-width of the window in x, metres.
+const ACROSS: f64 = 0.05;
+/// The widest window in slope.
+const WIDEST: f64 = 0.25;
+
+/// What lights the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lit {
+    /// From far away.
+    Beam,
+    /// A point at this distance.
+    Point(f64),
+    /// A slit at this distance, before a light that fills it.
+    Slit(f64),
+}
+
+/// Whose lobe a surface has.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Lobe {
+    Phong(f64),
+    Beckmann(f64),
+    Ggx(f64),
+}
+
+/// A glossy surface and an eye.
+#[derive(Clone, Copy, Debug)]
+struct Bench {
+    lit: Lit,
+    curvature: f64,
+    /// θ₀, radians.
+    incidence: f64,
+    /// Of the central ray that leaves, from the mirror direction, radians.
+    aside: f64,
+    distance: f64,
+    lobe: Lobe,
+}
+
+const BASE: Bench = Bench {
+    lit: Lit::Beam,
+    curvature: 0.5,
+    incidence: 0.5,
+    aside: 0.0,
+    distance: 0.5,
+    lobe: Lobe::Phong(2500.0),
+};
+
+/// What is kept of the light at the eye.
+struct Windows {
+    /// Half-widths in u and v.
+    slope: [f64; 2],
+    /// Largest frequencies, in ρ and ν.
+    most: [f64; 2],
+    /// Width of the beam.
+    beam: f64,
+}
+
+const ANY: Windows = Windows {
+    slope: [0.1, 0.1],
+    most: [60.0, 20.0],
+    beam: 1.0,
+};
+
+impl Bench {
+    fn text(&self, windows: &Windows, photons: u64, seed: u64) -> String {
+        let (sine, cosine) = self.incidence.sin_cos();
+        let (light, slit, from) = match self.lit {
+            Lit::Beam => {
+                // Farther than the eye.
+                let (w, from) = (windows.beam, 1.0_f64.max(1.5 * self.distance));
+                (
+                    format!(
+                        "Beam(center: (0, 0, {}), image: (width: ({w}, {w})))",
+                        -from
+                    ),
+                    String::new(),
+                    from,
+                )
+            }
+            Lit::Point(d) => (format!("Point(center: (0, 0, {}))", -d), String::new(), d),
+            Lit::Slit(d) => {
+                // 2 % of the distance wide: less than half of the lobe's deviation.
+                let (half, from) = (0.01 * d, 1.01 * d);
+                (
+                    format!(
+                        "Rectangle(center: (0, 0, {}), size: ({}, {half}))",
+                        -from,
+                        3.2 * half
+                    ),
+                    format!(
+                        "blockers: [Shapes(name: \"slit\", center: (0, 0, {}), shapes: [HalfPlane(axis: X, edge: {}, opaque: Below), \
+                         HalfPlane(axis: X, edge: {half}, opaque: Above)])],",
+                        -d, -half
+                    ),
+                    from,
+                )
+            }
+        };
+        // The angle from Z of the normal is π − θ₀, and of what leaves π − 2 θ₀.
+        let leaves = std::f64::consts::PI - 2.0 * self.incidence + self.aside;
+        let lobe = match self.lobe {
+            Lobe::Phong(n) => format!("Phong({n})"),
+            Lobe::Beckmann(alpha) => format!("Beckmann({alpha})"),
+            Lobe::Ggx(alpha) => format!("Ggx({alpha})"),
+        };
+        let aperture = 0.6_f64.min(0.45 / self.curvature.abs());
+        let [u, v] = windows.slope;
+        let [rho, nu] = windows.most;
+        format!(
+            "(light: {light}, {slit}
+            surfaces: [Smooth(name: \"glossy\", center: (0, 0, 0), facing: ({sine}, 0, {}), form: Sphere({}), aperture: {aperture},
+                event: Reflects(brdf: (lobe: {lobe})))],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"glossy\"], leaves: ({}, 0, {})),
+            planes: [(name: \"eye\", at: Distance({}))],
+            window: (x: Hann({ACROSS}), y: Hann({ACROSS}), u: Box({u}), v: Hann({v})),
+            frequencies: (azimuths: 1, rho: (max: {rho}), nu: (max: {nu}, spacing: {})),
+            run: (photons: {photons}, seed: {seed}))",
+            -cosine,
+            self.curvature,
+            leaves.sin(),
+            leaves.cos(),
+            from + self.distance,
+            nu / 200.0,
+        )
+    }
+
+    /// # Panics
+    /// When the scene is not sound.
+    fn scene(&self, windows: &Windows, photons: u64, seed: u64) -> Scene {
+        let text = self.text(windows, photons, seed);
+        let file = SceneFile::parse(&text).expect("a scene file");
+        resolve("glossy", file, ".".as_ref(), u64::MAX).expect("a sound scene")
+    }
+
+    /// # Panics
+    /// When the plane has none.
+    fn criterion(&self) -> Criterion {
+        let scene = self.scene(&ANY, 1000, 1);
+        criterion(&scene, &scene.planes[0]).expect("across a ray that left a glossy surface")
+    }
+
+    /// Bandwidth corrected and as printed.
+    fn says(&self, c: &Criterion) -> [f64; 2] {
+        match self.lit {
+            Lit::Beam => [c.environment(), c.printed_environment()],
+            Lit::Point(_) | Lit::Slit(_) => [c.blocker(), c.printed_blocker()],
+        }
+    }
+
+    /// Windows that hold the lobe and grids that hold the spectrum, and how far the window in u widens it.
+    fn windows(&self, c: &Criterion) -> (Windows, f64) {
+        let deviation = GAUSSIAN / c.lobe_cutoff;
+        let finer = self.says(c)[0] / c.lobe_cutoff;
+        // The lobe's middle and edges are at x/(seen slope) of the first, in angles at the surface.
+        let nearness = match self.lit {
+            Lit::Beam => 0.0,
+            Lit::Point(d) | Lit::Slit(d) => c.incidence.cos() / d,
+        };
+        let along = (2.0 * c.curvature + nearness) / c.outgoing.cos();
+        // GGX has long tails.
+        let tails = if matches!(self.lobe, Lobe::Ggx(_)) {
+            14.0
+        } else {
+            5.0
+        };
+        let wanted =
+            (tails * deviation + self.aside.abs() + 0.7 * along.abs() * ACROSS) / finer.max(1e-6);
+        let u = wanted.min(WIDEST);
+        let floor = if wanted > WIDEST { BOX / u } else { 0.0 };
+        // Across, the slice at zero integrates; a lobe that is no product is cut narrow, so that what is seen lies in the plane of incidence.
+        let across = 1.0
+            + self.distance
+                * (nearness / c.incidence.cos() + 2.0 * c.curvature * c.incidence.cos());
+        let v = match self.lobe {
+            Lobe::Phong(_) => (5.0 * deviation / across.abs().max(0.2)).min(WIDEST),
+            Lobe::Beckmann(_) | Lobe::Ggx(_) => 0.6 * deviation,
+        };
+        let said = self.says(c)[0].max(floor);
+        let windows = Windows {
+            slope: [u, v],
+            most: [2.0 * along.abs() * c.lobe_cutoff + 2.0 / ACROSS, 2.5 * said],
+            // So wide that the lobe is a seventh of it, seen from the eye.
+            beam: 18.0 * self.distance * (u / tails).max(deviation / finer.max(0.2)) + 2.0 * ACROSS,
+        };
+        (windows, floor)
+    }
+}
+
+/// A sweep: its name, what is swept, and how it changes the bench.
+struct Sweep {
+    name: &'static str,
+    quantity: Quantity,
+    bench: fn(f64) -> Bench,
+    values: &'static [f64],
+}
+
+fn sweeps() -> Vec<Sweep> {
+    let sweep = |name, symbol, unit, values, bench| Sweep {
+        name,
+        quantity: Quantity::new(symbol, unit),
+        bench,
+        values,
+    };
+    vec![
+        sweep(
+            "curvature",
+            "*k*",
+            "1/m",
+            &[-1.75, -1.4, -1.1, -0.88, -0.65, -0.35, 0.0, 0.5, 1.0],
+            |k| Bench {
+                curvature: k,
+                ..BASE
+            },
+        ),
+        sweep(
+            "view angle",
+            "*θ*_{0} = −*θ*_{1}",
+            "degrees",
+            &[0.0, 20.0, 40.0, 60.0],
+            |angle| Bench {
+                incidence: angle.to_radians(),
+                ..BASE
+            },
+        ),
+        sweep(
+            "beside the mirror direction",
+            "*θ*_{0} + *θ*_{1}",
+            "degrees",
+            &[-6.0, -3.0, 3.0, 6.0],
+            |angle| Bench {
+                aside: angle.to_radians(),
+                lobe: Lobe::Phong(400.0),
+                ..BASE
+            },
+        ),
+        sweep("distance", "*d*", "m", &[0.1, 0.25, 0.8, 1.5], |d| Bench {
+            distance: d,
+            ..BASE
+        }),
+        sweep(
+            "BRDF width",
+            "1/√*n*",
+            "radians",
+            &[0.01, 0.03, 0.05, 0.1],
+            |width| Bench {
+                lobe: Lobe::Phong(width.powi(-2)),
+                ..BASE
+            },
+        ),
+        sweep(
+            "light at d'",
+            "*d*'",
+            "m",
+            &[0.3, 0.45, 0.8, 1.6],
+            |distance| Bench {
+                lit: Lit::Point(distance),
+                ..BASE
+            },
+        ),
+        sweep(
+            "light at d', concave",
+            "*d*'",
+            "m",
+            &[0.3, 0.45, 0.8, 1.6],
+            |distance| Bench {
+                lit: Lit::Point(distance),
+                curvature: -0.5,
+                ..BASE
+            },
+        ),
+        sweep(
+            "curvature, light at 0.6 m",
+            "*k*",
+            "1/m",
+            &[-1.2, -0.6, 0.0, 0.6],
+            |k| Bench {
+                lit: Lit::Point(0.6),
+                curvature: k,
+                ..BASE
+            },
+        ),
+        sweep(
+            "view angle, light at 0.6 m",
+            "*θ*_{0} = −*θ*_{1}",
+            "degrees",
+            &[0.0, 25.0, 45.0],
+            |angle| Bench {
+                lit: Lit::Point(0.6),
+                incidence: angle.to_radians(),
+                ..BASE
+            },
+        ),
+        sweep("slit at d'", "*d*'", "m", &[0.4, 0.8], |distance| Bench {
+            lit: Lit::Slit(distance),
+            lobe: Lobe::Phong(400.0),
+            ..BASE
+        }),
+        sweep("Beckmann", "*α*", "", &[0.03], |alpha| Bench {
+            lobe: Lobe::Beckmann(alpha),
+            ..BASE
+        }),
+        sweep("GGX", "*α*", "", &[0.03], |alpha| Bench {
+            lobe: Lobe::Ggx(alpha),
+            ..BASE
+        }),
+    ]
+}
+
+/// The section and its picture.
+///
+/// # Panics
+/// When a scene cannot be measured.
+pub(crate) fn glossy(photons: Option<u64>) -> (Section, Curves) {
+    let photons = photons.unwrap_or(PHOTONS);
+    let mut rows = Vec::new();
+    let mut panels = Vec::new();
+    let (mut passed, mut worst, mut farthest) = (true, 0.0_f64, 0.0_f64);
+    let (mut count, mut told) = (0_i32, 0_i32);
+    for sweep in sweeps() {
+        let mut points = Vec::new();
+        for &value in sweep.values {
+            let bench = (sweep.bench)(value);
+            let c = bench.criterion();
+            let (windows, floor) = bench.windows(&c);
+            count += 1;
+            // One for each point, so that they are independent.
+            let scene = bench.scene(&windows, photons, count.unsigned_abs().into());
+            let plane = &scene.planes[0];
+            let exact = exact_bandwidth(&scene, plane).expect("light comes");
+            let measurement = measure(
+                &Tracer::new(&scene),
+                &scene.planes,
+                0..scene.run.batches,
+                &|_| (),
+            );
+            let found = measured_bandwidth(&measurement, 0).expect("enough batches");
+            let found = found.expect("light comes");
+            let off = (found.value - exact) / found.error;
+            let [said, printed] = bench.says(&c);
+            let noise = MOST * found.error;
+            let [ours, theirs] = [said, printed].map(|b| range(b, floor));
+            let holds =
+                |[low, high]: [f64; 2], x: f64, slack: f64| low - slack < x && x < high + slack;
+            let right = holds(ours, exact, 0.0) && holds(ours, found.value, noise);
+            // Whether some measurement with this noise could be what both say.
+            let apart = ours[1] + 2.0 * noise < theirs[0] || theirs[1] + 2.0 * noise < ours[0];
+            let rejected = !holds(theirs, found.value, noise);
+            let well = off.abs() < MOST && right && (rejected || !apart);
+            told += i32::from(rejected);
+            passed &= well;
+            worst = worst.max(off.abs());
+            if floor <= 0.0 {
+                farthest = farthest.max((exact / said - 1.0).abs());
+            }
+            points.push([value, found.value, found.error]);
+            let three = |x: f64| format!("{x:.3}");
+            rows.push(vec![
+                sweep.name.to_owned(),
+                value.to_string(),
+                three(said),
+                three(printed),
+                three(exact),
+                format!("{:.3} ± {:.3}", found.value, found.error),
+                format!("{off:+.1} σ"),
+                if floor > 0.0 {
+                    "window".to_owned()
+                } else {
+                    format!("{:+.1} %", 100.0 * (exact / said - 1.0))
+                },
+                format!("{:+.0} %", 100.0 * (printed / found.value - 1.0)),
+                format!("{:.2} to {:.2}", ours[0], ours[1]),
+                if rejected { "rejected" } else { "" }.to_owned(),
+                verdict(well),
+            ]);
+        }
+        if sweep.values.len() > 2 {
+            panels.push(panel(&sweep, points));
+        }
+    }
+    // Two-sided, of normal errors.
+    let one = libm::erfc(worst / SQRT_2);
+    let all = 1.0 - (1.0 - one).powi(count);
+    let section = Section {
+        title: "Sampling criteria against photons (section 6.2)".to_owned(),
+        text: format!(
+            "{photons} photons for each of {count} points, seeds 1 to {count}. Bandwidth in slope at a fixed point of a plane across the ray to the eye: what holds 95 % of the energy, in cycles per unit slope. A sphere with a glossy BRDF \
+             is lit by a beam (an environment with content at all frequencies, Eq. 20), or by a point or through a slit at d' (Eq. 21; an edge by itself has all frequencies). Where nothing else is said k = 0.5/m, θ₀ = −θ₁ = 0.5, d = 0.5 m, \
+             Phong n = 2500; n = 400 beside the mirror direction and behind the slit. Said: Ω_ρ |1 + 2kd/cos θ₁| and Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|, Ω_ρ being the 95 % cutoff of the lobe. Exact: quadrature through \
+             the real geometry, by the same estimator with the same windows. Measured: with its jackknife error over 64 batches. \
+             Required beforehand: measured within {MOST} errors of exact (the largest of {count} is {worst:.2}; so large or larger by chance with p = {all:.2}, Šidák); exact within the error of what is said, and \
+             measured within that and {MOST} errors; the print rejected by the same measure wherever it says something else by more than these. It is at {told} of {count} points. What is said is off by {:.1} % at most where the window holds the lobe. The error of a criterion is {:.0} %: it is first order in the neighbourhood, which the lobe \
+             opens to ±0.05 and more and x to ±{ACROSS} m; a sum over frequencies reaches half a step, 0.6 %, beyond the last; the slit has a thirtieth of the lobe's variance; the beam is wide, but a Gaussian. Where the lobe is seen wider than the window in slope may be \
+             (±{WIDEST}), as where a concave mirror undoes travel, the window widens the spectrum, and what is measured may be greater by up to the window's own bandwidth of {:.2}, in squares; those \
+             rows say `window`.",
+            100.0 * farthest,
+            100.0 * ERROR,
+            BOX / WIDEST,
+        ),
+        header: vec![
+            "sweep",
+            "at",
+            "said",
+            "printed",
+            "exact",
+            "measured",
+            "measured − exact",
+            "exact/said",
+            "printed/measured",
+            "said, with its error",
+            "the print is",
+            "verdict",
+        ],
+        rows,
+        passed,
+    };
+    let picture = Curves {
+        title: "How fast a glossy reflection changes with angle".to_owned(),
+        note: format!("Durand et al. 2005, section 6.2; {photons} photons for each point"),
+        y: Quantity::new("*B*", "cycles/slope"),
+        panels,
+    };
+    (section, picture)
+}
+
+/// What may be measured where a criterion says `bandwidth` and the window widens the spectrum by `floor` at most.
+fn range(bandwidth: f64, floor: f64) -> [f64; 2] {
+    let error = ERROR * bandwidth;
+    [bandwidth - error, bandwidth.hypot(floor) + error]
+}
+
+/// Points and the curves of the criteria.
+fn panel(sweep: &Sweep, points: Vec<[f64; 3]>) -> CurvePanel {
+    const COUNT: u32 = 80;
+    // Curves need no more.
+    let digits = |x: f64| (x * 1e4).round() / 1e4;
+    let first = points.first().map_or(0.0, |p| p[0]);
+    let last = points.last().map_or(1.0, |p| p[0]);
+    let says: Vec<[f64; 3]> = (0..=COUNT)
+        .map(|i| {
+            let x = first + f64::from(i) / f64::from(COUNT) * (last - first);
+            let bench = (sweep.bench)(x);
+            let [said, printed] = bench.says(&bench.criterion());
+            [x, said, printed].map(digits)
+        })
+        .collect();
+    let line = |kind, name: &str, i: usize| Curve {
+        kind,
+        name: name.to_owned(),
+        points: says.iter().map(|p| [p[0], p[i], 0.0]).collect(),
+    };
+    CurvePanel {
+        title: sweep.name.to_owned(),
+        x: sweep.quantity.clone(),
+        curves: vec![
+            line(CurveKind::Rival, "as printed", 2),
+            line(CurveKind::Theory, "corrected", 1),
+            Curve {
+                kind: CurveKind::Measured,
+                name: "measured with photons".to_owned(),
+                points,
+            },
+        ],
+    }
+}

@@ -1,0 +1,150 @@
+//! The misprints about shading that photons can tell.
+
+use super::arriving::Sphere;
+use super::bench::Bench;
+use super::scenes::{alone, changed};
+use crate::report::Section;
+use etendue_compare::{sidak, system};
+use etendue_field::{Complex, Light, Quantity, Slices};
+use etendue_scene::Scene;
+use etendue_theory::rays;
+use std::f64::consts::PI;
+
+/// Share of true sections that may be rejected, over all misprints.
+const ALPHA: f64 = 0.01;
+/// Photons, unless others are given.
+const PHOTONS: u64 = 4_000_000;
+/// Curvature of the sphere in the environment, as in the file, per metre.
+pub(super) const K: f64 = 1.25;
+
+struct Misprint {
+    place: &'static str,
+    printed: &'static str,
+    corrected: &'static str,
+    said: Slices,
+}
+
+/// The section.
+pub(super) fn misprints(photons: Option<u64>) -> Section {
+    let photons = photons.or(Some(PHOTONS));
+    let all = [diffuse(photons), mirror(photons), environment(photons)];
+    let count = all.len();
+    let level = sidak(ALPHA, count);
+    let mut rows = Vec::new();
+    let mut passed = true;
+    let word = |p: f64| if p < level { "rejected" } else { "accepted" }.to_owned();
+    for (bench, misprints) in all {
+        let corrected = bench.p_value(&bench.photons, &bench.sound);
+        for misprint in misprints {
+            let printed = bench.p_value(&bench.photons, &misprint.said);
+            let well = printed < level && corrected >= level;
+            passed &= well;
+            rows.push(vec![
+                misprint.place.to_owned(),
+                misprint.printed.to_owned(),
+                misprint.corrected.to_owned(),
+                bench.scene.name.clone(),
+                bench.scene.planes[0].name.clone(),
+                format!("{:.1} %", 100.0 * bench.apart(&misprint.said, &bench.sound)),
+                format!("{printed:.5}"),
+                word(printed),
+                format!("{corrected:.5}"),
+                word(corrected),
+                super::verdict(well),
+            ]);
+        }
+    }
+    Section {
+        title: "Errata of shading, with photons".to_owned(),
+        text: format!(
+            "The misprints of the table in 2D that a spectrum of photons can tell, in 4D, at {:.0e} photons. Eq. 6 on a diffuse sphere; a mirror as a BRDF without 1/cos θ, which leaves \
+             the light times cos⁺ θ cos² φ, the cosine of the plane-sphere parameterisation; section 6.1 on the light that arrives at the sphere in the environment, times the cosine and turned \
+             about the normals, where theory has no word and the corrected formula is a midpoint rule over the window. Eqs. 15, 17, 20 and 21 are about steps by themselves and \
+             stay with quadrature in 2D. Apart: printed from corrected, of the spectrum. Required: p < {level:.5}, α = {ALPHA} over {count} planes, of what is printed, and p of what is corrected not below.",
+            photons.unwrap_or_default() as f64
+        ),
+        header: vec![
+            "place",
+            "printed",
+            "corrected",
+            "scene",
+            "plane",
+            "apart",
+            "p printed",
+            "printed",
+            "p corrected",
+            "corrected",
+            "verdict",
+        ],
+        rows,
+        passed,
+    }
+}
+
+fn scaled(slices: &Slices, factor: f64) -> Slices {
+    let mut slices = slices.clone();
+    slices.half *= Complex::from(factor);
+    slices
+}
+
+fn diffuse(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
+    let bench = Bench::new(alone(changed("environment", photons, &[]), "reflection"));
+    let said = scaled(&bench.sound, PI);
+    let misprint = Misprint {
+        place: "Eq. 6",
+        printed: "ρ = albedo",
+        corrected: "albedo/π",
+        said,
+    };
+    (bench, vec![misprint])
+}
+
+fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
+    let scene = alone(changed("concave_oblique", photons, &[]), "reflection");
+    let place = &scene.planes[0];
+    let (mirror, at) = system(&scene, place).expect("a mirror alone");
+    let of = |quantity| {
+        let at = rays::Plane { quantity, ..at };
+        rays::exact(&mirror, &at, &place.window, &place.grid).slices
+    };
+    let said = of(Quantity::DifferentialIrradiance);
+    let sound = of(Quantity::Radiance);
+    let misprint = Misprint {
+        place: "section 4.2, mirror",
+        printed: "δ",
+        corrected: "δ/cos θ_i'",
+        said,
+    };
+    (Bench::of(scene, sound), vec![misprint])
+}
+
+/// The scene of the environment with a plane in the light that arrives, alone.
+pub(super) fn arriving(photons: Option<u64>) -> Scene {
+    let plane = "(name: \"arriving\", at: Before(\"sphere\"), orientation: Mirrored, quantity: DifferentialIrradiance),";
+    let texts = [["planes: [", &format!("planes: [{plane}")]];
+    alone(changed("environment", photons, &texts), "arriving")
+}
+
+fn environment(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
+    let scene = arriving(photons);
+    let Light::Environment { environment } = &scene.light else {
+        panic!("an environment");
+    };
+    let sphere = Sphere {
+        scene: &scene,
+        environment,
+        k: K,
+    };
+    let [sound, unturned] = [-1.0, 1.0].map(|turn| sphere.slices(turn));
+    let misprint = |printed, said| Misprint {
+        place: "section 6.1",
+        printed,
+        corrected: "env^(Ωx/k) cos⁺^(Ωx/k + Ωθ)/|k|",
+        said,
+    };
+    let misprints = vec![
+        misprint("cos⁺^(Ωx/k − Ωθ)", unturned),
+        misprint("no 1/|k|", scaled(&sound, K)),
+    ];
+    (Bench::of(scene, sound), misprints)
+}

@@ -1,0 +1,58 @@
+//! Shading: what cosines, BRDFs, textures and environments do to spectra, in 2D against plain quadrature and traced rays, in 4D against photons.
+
+mod arriving;
+mod bandwidth;
+mod bench;
+mod blockers;
+mod brdfs;
+mod chains;
+mod errata;
+mod eye;
+mod factors;
+mod glossy;
+mod light;
+mod misprints;
+mod operators;
+mod photons;
+mod planted;
+mod primal;
+mod scenes;
+mod spreading;
+mod tamper;
+mod traced;
+mod words;
+
+pub(crate) use glossy::glossy;
+
+use crate::report::Section;
+
+/// All sections. Those in 2D need no photons; the others have those of their files, or `photons` for each scene.
+pub(crate) fn shading(photons: Option<u64>) -> Vec<Section> {
+    let mut sections = vec![
+        operators::operators(),
+        traced::traced(),
+        errata::errata(),
+        words::words(),
+        bandwidth::bandwidths(),
+    ];
+    sections.extend(with_photons(photons));
+    sections
+}
+
+/// Sections that trace photons.
+fn with_photons(photons: Option<u64>) -> Vec<Section> {
+    vec![
+        photons::photons(photons),
+        planted::planted(photons),
+        chains::chains(photons),
+        misprints::misprints(photons),
+    ]
+}
+
+fn verdict(well: bool) -> String {
+    if well { "pass" } else { "FAIL" }.to_owned()
+}
+
+fn small(x: f64) -> String {
+    format!("{x:.1e}")
+}

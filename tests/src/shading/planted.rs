@@ -1,0 +1,280 @@
+//! Faults of shading, planted in the prediction or in the photons: a comparison is judged by what it rejects.
+
+use super::arriving::Sphere;
+use super::bench::{Bench, mean, reflectance};
+use super::misprints;
+use super::scenes::{alone, changed};
+use super::tamper::{around_the_normal, cosine, polarised, scaled, textured_here};
+use crate::report::Section;
+use etendue_compare::sidak;
+use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Slices};
+use etendue_scene::Scene;
+use etendue_theory::scattering::{Parameter, System};
+use glam::DQuat;
+use std::f64::consts::TAU;
+
+/// Share of true sections that may be rejected, over all benches.
+const ALPHA: f64 = 0.01;
+/// Photons of a bench, unless others are given: those by which the subtlest faults are seen.
+const PHOTONS: u64 = 4_000_000;
+/// A pixel of an environment of 256 pixels all around, radians.
+const PIXEL: f64 = TAU / 256.0;
+
+/// What is wrong.
+enum Plant {
+    /// The prediction, of a system that was changed.
+    System(fn(&mut System)),
+    /// The prediction, by a factor.
+    Factor(f64),
+    /// The photons: those of a scene that was changed, and what is made of their crossings.
+    Photons(fn(&mut Scene), fn(&Scene, Crossing) -> Crossing),
+}
+
+/// A plane, what is changed in the text of its scene, and the faults held against its photons.
+struct Stand {
+    scene: &'static str,
+    plane: &'static str,
+    texts: &'static [[&'static str; 2]],
+    faults: Vec<(&'static str, Plant)>,
+}
+
+/// The section.
+pub(super) fn planted(photons: Option<u64>) -> Section {
+    let stands = stands();
+    // And the one in the light that arrives.
+    let count = stands.len() + 1;
+    let level = sidak(ALPHA, count);
+    let mut rows = Vec::new();
+    let mut passed = true;
+    for stand in stands {
+        let scene = changed(stand.scene, photons.or(Some(PHOTONS)), stand.texts);
+        let bench = Bench::new(alone(scene, stand.plane));
+        let sound = bench.p_value(&bench.photons, &bench.sound);
+        passed &= sound >= level;
+        for (name, plant) in stand.faults {
+            let judged = plant.judged(&bench);
+            let place = match plant {
+                Plant::Photons(..) => "photons",
+                _ => "prediction",
+            };
+            passed &= judged.0 < level;
+            rows.push(row([name, place], &bench, sound, judged, level));
+        }
+    }
+    let (bench, turned) = turned(photons.or(Some(PHOTONS)));
+    let sound = bench.p_value(&bench.photons, &bench.sound);
+    passed &= sound >= level;
+    for (name, said) in turned {
+        let p = bench.p_value(&bench.photons, &said);
+        let judged = (p, bench.apart(&said, &bench.sound));
+        passed &= p < level;
+        rows.push(row([name, "prediction"], &bench, sound, judged, level));
+    }
+    Section {
+        title: "Planted faults of shading".to_owned(),
+        text: format!(
+            "Each fault alone, in the prediction or in the photons, of a scene with one of its planes, at {:.0e} photons; p sound is of the same plane without a fault. \
+             Change: of the spectrum, relative to it. In the row of the lobe around the normal the tiles are met at 5°: at 37° no light of it would be in \
+             the window. The environment is turned in the light that arrives at the sphere: of what the diffuse sphere reflects the spectrum would change by 0.3 %, which these photons do not tell. Required: p < {level:.5}, α = {ALPHA} over {count} planes, for every fault, and p sound not below; p is not below 0.00005.",
+            photons.unwrap_or(PHOTONS) as f64
+        ),
+        header: vec![
+            "fault",
+            "planted in",
+            "scene",
+            "plane",
+            "p sound",
+            "p planted",
+            "change",
+            "verdict",
+        ],
+        rows,
+        passed,
+    }
+}
+
+impl Plant {
+    /// p, and how far the spectrum is changed.
+    fn judged(&self, bench: &Bench) -> (f64, f64) {
+        let by_prediction = |said: &Slices| {
+            let p = bench.p_value(&bench.photons, said);
+            (p, bench.apart(said, &bench.sound))
+        };
+        match self {
+            Self::System(change) => by_prediction(&bench.predicted(change)),
+            Self::Factor(factor) => {
+                let mut said = bench.sound.clone();
+                said.half.mapv_inplace(|value| value * factor);
+                by_prediction(&said)
+            }
+            Self::Photons(change, crossing) => {
+                let photons = bench.tampered(change, crossing);
+                let p = bench.p_value(&photons, &bench.sound);
+                (p, bench.apart(&mean(&photons), &mean(&bench.photons)))
+            }
+        }
+    }
+}
+
+fn stands() -> Vec<Stand> {
+    let crossings = |crossing| Plant::Photons(|_| (), crossing);
+    vec![
+        Stand {
+            scene: "fresnel_grazing",
+            plane: "reflection",
+            texts: &[],
+            faults: vec![
+                (
+                    "cosine missing",
+                    crossings(|s, c| scaled(c, 1.0 / cosine(s, &c))),
+                ),
+                ("cosine twice", crossings(|s, c| scaled(c, cosine(s, &c)))),
+                (
+                    "cosine of the central ray for all",
+                    crossings(|s, c| scaled(c, s.planes[0].longitude.cos() / cosine(s, &c))),
+                ),
+                (
+                    "Fresnel factor of s alone",
+                    crossings(|s, c| scaled(c, polarised(cosine(s, &c))[0])),
+                ),
+                (
+                    "Fresnel factor of p alone",
+                    crossings(|s, c| scaled(c, polarised(cosine(s, &c))[1])),
+                ),
+                (
+                    "index + 2 %",
+                    Plant::System(|s| {
+                        s.reflectance.brdf.fresnel = Fresnel::Dielectric { index: 1.53 };
+                    }),
+                ),
+            ],
+        },
+        Stand {
+            scene: "textured_glossy",
+            plane: "texture",
+            texts: &[],
+            faults: vec![
+                ("exponent + 5 %", Plant::System(|s| lobe(s, 1.05))),
+                ("exponent − 5 %", Plant::System(|s| lobe(s, 0.95))),
+                (
+                    "frequency of the texture + 1 %",
+                    Plant::System(|s| texture(s, 1.01)),
+                ),
+                (
+                    "frequency of the texture − 1 %",
+                    Plant::System(|s| texture(s, 0.99)),
+                ),
+                (
+                    "albedo forgotten",
+                    Plant::System(|s| s.reflectance.brdf.albedo = 1.0),
+                ),
+            ],
+        },
+        Stand {
+            scene: "textured_glossy",
+            plane: "beyond",
+            texts: &[],
+            faults: vec![(
+                "texture multiplied in at this plane",
+                Plant::Photons(|s| reflectance(s).texture = None, textured_here),
+            )],
+        },
+        Stand {
+            scene: "checkerboard",
+            plane: "reflection",
+            texts: &[[
+                "(0.605186406, 0, -0.796083799)",
+                "(0.0871557427, 0, -0.996194698)",
+            ]],
+            faults: vec![("lobe around the normal", crossings(around_the_normal))],
+        },
+        Stand {
+            scene: "ggx_sphere",
+            plane: "reflection",
+            texts: &[],
+            faults: vec![(
+                "α² for α",
+                Plant::Photons(
+                    |s| {
+                        if let Lobe::Ggx { roughness } = &mut reflectance(s).brdf.lobe {
+                            *roughness *= *roughness;
+                        }
+                    },
+                    |_, c| c,
+                ),
+            )],
+        },
+        Stand {
+            scene: "environment",
+            plane: "reflection",
+            texts: &[],
+            // k is 1.25 /m.
+            faults: vec![("missing 1/|k|", Plant::Factor(1.25))],
+        },
+    ]
+}
+
+fn lobe(system: &mut System, factor: f64) {
+    if let Some(value) = system.value(Parameter::Lobe)
+        && let Some(changed) = system.with(Parameter::Lobe, factor * value)
+    {
+        *system = changed;
+    }
+}
+
+fn texture(system: &mut System, factor: f64) {
+    if let Some(Pattern::Cosine(grating)) = &mut system.reflectance.texture {
+        grating.frequency *= factor;
+    }
+}
+
+/// Light of the environment that arrives at the sphere, times the cosine: of it as it is, and turned.
+fn turned(photons: Option<u64>) -> (Bench, [(&'static str, Slices); 2]) {
+    let scene = misprints::arriving(photons);
+    let Light::Environment { environment } = &scene.light else {
+        panic!("an environment");
+    };
+    let of = |angle: f64| {
+        let mut environment = environment.clone();
+        let frame = &mut environment.frame;
+        let turn = DQuat::from_axis_angle(frame.y, angle);
+        (frame.x, frame.d) = (turn * frame.x, turn * frame.d);
+        let sphere = Sphere {
+            scene: &scene,
+            environment: &environment,
+            k: misprints::K,
+        };
+        sphere.slices(-1.0)
+    };
+    let sound = of(0.0);
+    let turned = [
+        ("environment turned by + 1/256", of(PIXEL)),
+        ("environment turned by − 1/256", of(-PIXEL)),
+    ];
+    (Bench::of(scene, sound), turned)
+}
+
+/// A fault with where it is planted.
+fn row(
+    [name, place]: [&str; 2],
+    bench: &Bench,
+    sound: f64,
+    (p, change): (f64, f64),
+    level: f64,
+) -> Vec<String> {
+    let verdict = match (sound >= level, p < level) {
+        (true, true) => "rejected",
+        (true, false) => "FAIL: accepted",
+        (false, _) => "FAIL: sound rejected",
+    };
+    vec![
+        name.to_owned(),
+        place.to_owned(),
+        bench.scene.name.clone(),
+        bench.scene.planes[0].name.clone(),
+        format!("{sound:.5}"),
+        format!("{p:.5}"),
+        format!("{:.2} %", 100.0 * change),
+        verdict.to_owned(),
+    ]
+}

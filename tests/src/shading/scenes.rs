@@ -1,0 +1,61 @@
+//! The scenes of shading in 4D.
+
+use etendue_scene::{Scene, SceneFile, resolve};
+
+macro_rules! scene {
+    ($name:literal, $file:literal) => {
+        (
+            $name,
+            include_str!(concat!("../../../scenes/", $file, ".ron")),
+        )
+    };
+}
+
+const SCENES: &[(&str, &str)] = &[
+    scene!("fig10", "fig10"),
+    scene!("textured_glossy", "table1/textured_glossy"),
+    scene!("fresnel_grazing", "table1/fresnel_grazing"),
+    scene!("checkerboard", "table1/checkerboard"),
+    scene!("environment", "table1/environment"),
+    scene!("twisted_glossy", "table1/twisted_glossy"),
+    scene!("ggx_sphere", "table1/ggx_sphere"),
+    // For a misprint about mirrors; it has its place in Table 1.
+    scene!("concave_oblique", "table1/concave_oblique"),
+];
+
+/// How many of them scatter light: all but the last.
+const SHADED: usize = 7;
+
+/// Every scene that scatters, with the photons of its file unless others are given.
+pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
+    let shaded = SCENES[..SHADED].iter();
+    shaded
+        .map(|(name, _)| changed(name, photons, &[]))
+        .collect()
+}
+
+/// A scene with the texts of its file replaced, one after the other.
+///
+/// # Panics
+/// When there is no such scene, a text is not in it, or it is not sound then.
+pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> Scene {
+    let found = SCENES.iter().find(|(known, _)| *known == name);
+    let (_, text) = found.expect("a scene of shading");
+    let text = texts.iter().fold((*text).to_owned(), |text, [old, new]| {
+        assert!(text.contains(old), "{name} has no {old}");
+        text.replace(old, new)
+    });
+    let mut file = SceneFile::parse(&text).expect("a scene of shading is a scene file");
+    file.run.photons = photons.unwrap_or(file.run.photons);
+    resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of shading is sound")
+}
+
+/// A scene with one of its planes alone: all photons are aimed at its window.
+///
+/// # Panics
+/// When there is no such plane.
+pub(super) fn alone(mut scene: Scene, plane: &str) -> Scene {
+    scene.planes.retain(|p| p.name == plane);
+    assert_eq!(scene.planes.len(), 1, "{} has no {plane}", scene.name);
+    scene
+}

@@ -1,0 +1,55 @@
+//! What the paper says in words, as numbers.
+
+use super::verdict;
+use super::{blockers, spreading};
+use crate::report::Section;
+
+/// A statement, and what was measured.
+pub(super) struct Statement {
+    pub(super) said: &'static str,
+    pub(super) measured: String,
+    pub(super) number: f64,
+    /// Where the number must lie, known beforehand.
+    pub(super) expected: [f64; 2],
+    /// "holds", or in which part.
+    pub(super) holds: &'static str,
+}
+
+/// The section.
+pub(super) fn words() -> Section {
+    let mut passed = true;
+    let all = blockers::statements()
+        .into_iter()
+        .chain(spreading::statements());
+    let rows = all.map(|s| {
+        let [low, high] = s.expected;
+        let well = s.number >= low && s.number <= high;
+        passed &= well;
+        vec![
+            s.said.to_owned(),
+            s.measured,
+            format!("{:.4e}", s.number),
+            format!("{} … {}", bound(low), bound(high)),
+            s.holds.to_owned(),
+            verdict(well),
+        ]
+    });
+    let rows = rows.collect();
+    Section {
+        title: "What the paper says in words".to_owned(),
+        text: "No photons: quadratures of the primal and closed forms of strips. Where a statement holds only in part, the rows after it show where it does not. Required beforehand: the \
+               number within the bounds beside it."
+            .to_owned(),
+        header: vec!["statement", "measured", "number", "required", "holds", "verdict"],
+        rows,
+        passed,
+    }
+}
+
+fn bound(x: f64) -> String {
+    if x > 0.0 && x < 1e-3 {
+        format!("{x:.0e}")
+    } else {
+        x.to_string()
+    }
+}
