@@ -12,7 +12,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let planes = on_threads(&args.threads, || Ok(shrunk(&scene)))?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
-            "no plane of this scene has a first-order prediction: its path meets no mirror, interface or lens",
+            "no plane of this scene lies behind mirrors, interfaces and lenses alone: what BRDFs scatter is not shrunk",
         ));
     }
     say(&format!(
