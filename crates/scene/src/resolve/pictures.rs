@@ -9,10 +9,13 @@ use etendue_field::{
     Environment, EnvironmentMap, Frame, LatLong, Light, Pattern, Picture, Raster, SphericalGaussian,
 };
 use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
 use std::sync::Arc;
 
 /// Narrowest lobe of light, radians, and the widest: it is even to a millionth.
 const WIDTHS: [f64; 2] = [1e-4, 1e3];
+/// Widths from the middle of a lobe at which next to nothing is left of it.
+const REACH: f64 = 6.0;
 
 impl Resolver<'_> {
     /// Light from far away; the axes are directions of the world, `light` is the frame at the light.
@@ -72,11 +75,26 @@ impl Resolver<'_> {
                 EnvironmentMap::LatLong(Arc::new(scaled.map_or_else(dark, LatLong::new)))
             }
         };
+        let frame = frame.unwrap_or(Frame::IDENTITY);
+        if let EnvironmentMap::Lobes(lobes) = &map {
+            self.behind(&frame, lobes);
+        }
         Light::Environment {
-            environment: Environment {
-                frame: frame.unwrap_or(Frame::IDENTITY),
-                map,
-            },
+            environment: Environment { frame, map },
+        }
+    }
+
+    /// Lobes of which nothing goes forward.
+    fn behind(&mut self, frame: &Frame, lobes: &[SphericalGaussian]) {
+        for (i, lobe) in lobes.iter().enumerate() {
+            let from = frame.vector_to_world(lobe.from);
+            let reach = REACH * lobe.width;
+            if reach < FRAC_PI_2 && from.z > reach.sin() {
+                let allowed = "a direction before the central ray: an environment shines forward, along path.direction";
+                let DVec3 { x, y, z } = lobe.from;
+                self.faults
+                    .add(format!("light.map[{i}].from"), show((x, y, z)), allowed);
+            }
         }
     }
 
@@ -85,7 +103,8 @@ impl Resolver<'_> {
         let direction = DVec3::from(direction);
         direction.try_normalize().unwrap_or_else(|| {
             if direction.is_finite() {
-                self.faults.add(of, show(direction), "a direction");
+                let DVec3 { x, y, z } = direction;
+                self.faults.add(of, show((x, y, z)), "a direction");
             }
             DVec3::Z
         })
