@@ -227,6 +227,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (LOBES, "Lobes([])", "light.map is no lobe"),
     ("width: 0.3", "width: 0", "light.map[0].width is 0.0"),
     ("width: 0.3", "width: inf", "light.map[0].width is inf"),
+    ("width: 0.3", "width: 0.1", "light.map[0].from is"), // it comes from behind, and is narrow
     (
         "radiance: 2",
         "radiance: -2",

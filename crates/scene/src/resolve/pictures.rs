@@ -89,7 +89,9 @@ impl Resolver<'_> {
         for (i, lobe) in lobes.iter().enumerate() {
             let from = frame.vector_to_world(lobe.from);
             let reach = REACH * lobe.width;
-            if reach < FRAC_PI_2 && from.z > reach.sin() {
+            // A width at fault has been named already.
+            let is_narrow = lobe.width >= WIDTHS[0] && reach < FRAC_PI_2;
+            if is_narrow && from.z > reach.sin() {
                 let allowed = "a direction before the central ray: an environment shines forward, along path.direction";
                 let DVec3 { x, y, z } = lobe.from;
                 self.faults
