@@ -47,16 +47,16 @@ impl Prediction {
         let chain = scattering::chain(system, at);
         let linear = chain
             .as_ref()
-            .and_then(|chain| scattering::linear(system, at, window, grid, chain));
-        let first_order = chain.zip(linear).map(|(chain, linear)| FirstOrder {
+            .and_then(|chain| scattering::linear(system, at, window, grid, chain, &exact));
+        let first_order = chain.zip(linear).map(|(chain, slices)| FirstOrder {
             chain: FirstOrderChain {
-                error: distance(&linear.slices, &exact.slices),
+                error: distance(&slices, &exact.slices),
                 matrix: chain.rays().matrix,
                 covariance: [exact.covariance, None],
                 foci: Vec::new(),
                 as_printed: false,
             },
-            slices: linear.slices,
+            slices,
         });
         let parameters = system.parameters().into_iter().filter_map(|parameter| {
             Some(PredictedParameter {

@@ -1,8 +1,15 @@
 use std::f64::consts::PI;
+use std::sync::OnceLock;
+
+/// Rules are found once.
+static RULES: [OnceLock<Vec<(f64, f64)>>; 256] = [const { OnceLock::new() }; 256];
 
 /// Nodes and weights of Gauss-Legendre quadrature on (−1, 1), exact for polynomials of degree 2n − 1.
 pub(crate) fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
-    (0..n).map(|i| node(n, i)).collect()
+    let found = || (0..n).map(|i| node(n, i)).collect();
+    RULES
+        .get(n)
+        .map_or_else(found, |rule| rule.get_or_init(found).clone())
 }
 
 /// Root i of the Legendre polynomial of degree n by Newton's method, and its weight 2/((1 − x²) P'(x)²).

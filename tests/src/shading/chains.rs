@@ -4,10 +4,11 @@ use super::scenes::{alone, changed};
 use crate::report::Section;
 use crate::scenes::{compared, traced};
 use etendue_compare::{FirstOrder, FirstOrderReport, Prediction, Verdict, scattered};
+use etendue_field::Slices;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::Map;
-use etendue_theory::scattering::{Chain, chain, linear};
+use etendue_theory::scattering::{Chain, chain, exact, linear};
 
 /// Of the exact prediction, which is not asked here.
 const LEVEL: f64 = 0.01;
@@ -57,13 +58,20 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
     for plane in ["texture", "outgoing"] {
         let scene = alone(changed(SCENE, Some(photons), &[]), plane);
         let measurement = traced(&scene);
-        let sound = Prediction::new(&scene, &scene.planes[0]);
+        let place = &scene.planes[0];
+        let sound = Prediction::new(&scene, place);
+        let (system, at) = scattered(&scene, place).expect("a plane behind a BRDF");
+        let exact = exact(&system, &at, &place.window, &place.grid);
         for (name, fault) in faults() {
             // On the surface nothing has come off it yet.
             if plane == "texture" && name.starts_with("off") {
                 continue;
             }
-            let report = judged(&scene, &measurement, &sound, fault);
+            let mut tampered = chain(&system, &at).expect("a central ray");
+            fault(&mut tampered);
+            let said = linear(&system, &at, &place.window, &place.grid, &tampered, &exact);
+            let said = said.expect("a map with an inverse");
+            let report = judged(&scene, &measurement, &sound, said);
             let due = if name == "none" {
                 Verdict::Pass
             } else {
@@ -107,21 +115,17 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
     }
 }
 
+/// With the slices that a tampered chain predicts.
 fn judged(
     scene: &Scene,
     measurement: &Measurement,
     sound: &Prediction,
-    fault: Change,
+    slices: Slices,
 ) -> FirstOrderReport {
-    let plane = &scene.planes[0];
-    let (system, at) = scattered(scene, plane).expect("a plane behind a BRDF");
-    let mut tampered = chain(&system, &at).expect("a central ray");
-    fault(&mut tampered);
-    let said = linear(&system, &at, &plane.window, &plane.grid, &tampered);
     let kept = sound.first_order.as_ref().expect("a chain");
     let tried = Prediction {
         first_order: Some(FirstOrder {
-            slices: said.expect("a map with an inverse").slices,
+            slices,
             chain: kept.chain.clone(),
         }),
         parameters: Vec::new(),

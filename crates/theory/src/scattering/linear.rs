@@ -73,10 +73,10 @@ impl<'a> Linear<'a> {
         let incoming = self.system.incoming(point, rule).into_iter();
         let shining = incoming.map(|Incoming { slopes, weight }| {
             let [u, v] = slopes;
-            // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³.
+            // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³, and tan φ = v cos θ.
             let across = (1.0 + u * u).sqrt();
             let (longitude, latitude) = (u.atan(), (v / across).atan());
-            let per_angle = (1.0 + u * u + v * v).powf(-1.5) / latitude.cos();
+            let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
             let [[a, b], [c, d]] = self.angles;
             let [_, _, theta, phi] = central;
             let (theta, phi) = (
@@ -97,21 +97,18 @@ impl<'a> Linear<'a> {
         let [s, t, theta, phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
         let brdf = self.system.reflectance.at(at.x, at.y);
+        let center = away(self.chain.incidence, 0.0);
         let each = shines.iter().map(|shining| {
             let [from_theta, from_phi] = shining.from;
             let apart = [theta + from_theta, phi + from_phi];
-            shining.irradiance * self.kernel(&brdf, from_theta, apart)
+            shining.irradiance * self.kernel(&brdf, center, from_theta, apart)
         });
         each.sum()
     }
 
-    /// The BRDF as it meets the central ray, at angles from the mirror direction; a factor of the angle of incidence stays one.
-    fn kernel(&self, brdf: &Brdf, from: f64, [theta, phi]: [f64; 2]) -> f64 {
-        let center = self.chain.incidence;
-        let away = |theta: f64, phi: f64| {
-            let ((sin, cos), (up, across)) = (theta.sin_cos(), phi.sin_cos());
-            DVec3::new(across * sin, up, across * cos)
-        };
+    /// The BRDF as it meets the central ray, which comes from `center`, at angles from the mirror direction; a factor of the angle of incidence
+    /// stays one.
+    fn kernel(&self, brdf: &Brdf, center: DVec3, from: f64, [theta, phi]: [f64; 2]) -> f64 {
         let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, from.cos());
         match brdf.lobe {
             Lobe::Lambertian => factor() / PI,
@@ -121,8 +118,15 @@ impl<'a> Linear<'a> {
                 factor() * (exponent + 1.0) / TAU * cos.powf(exponent)
             }
             Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-                brdf::value(brdf, DVec3::Z, away(center, 0.0), away(theta - center, phi))
+                let to = away(theta - self.chain.incidence, phi);
+                brdf::value(brdf, DVec3::Z, center, to)
             }
         }
     }
+}
+
+/// The direction at a longitude and a latitude, from the normal.
+fn away(theta: f64, phi: f64) -> DVec3 {
+    let ((sin, cos), (up, across)) = (theta.sin_cos(), phi.sin_cos());
+    DVec3::new(across * sin, up, across * cos)
 }

@@ -35,6 +35,8 @@ const LEFT: f64 = 2.0;
 const MOST: f64 = 6e7;
 /// Nodes along each coordinate of the rule by which the one over the light is judged.
 const TRIAL: usize = 12;
+/// Nodes across a picture: enough for a window and what changes slowly in it.
+const ACROSS: usize = 6;
 
 /// The slices of the windowed spectrum of what a surface scatters, as it is.
 ///
@@ -43,10 +45,131 @@ const TRIAL: usize = 12;
 /// of threads.
 #[must_use]
 pub fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Prediction {
-    predict(&Exact(system, plane), system, plane, window, grid)
+    let search = Search {
+        field: Exact(system, plane),
+        window,
+        grid,
+    };
+    let (rule, light) = search.over_light(search.first());
+    search.over_plane(rule, light)
 }
 
-/// The slices that the first-order [`chain`](super::chain) predicts, by the same rule; `None` where it cannot be inverted.
+/// The search for a rule that is good enough.
+struct Search<'a> {
+    field: Exact<'a>,
+    window: &'a Window,
+    grid: &'a SliceGrid,
+}
+
+impl Search<'_> {
+    /// What frequencies and tiles ask for.
+    fn first(&self) -> Rule {
+        let Exact(system, plane) = self.field;
+        let Self { window, grid, .. } = self;
+        let widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
+        let cycles = [grid.rho.max(), grid.rho.max(), grid.nu.max(), grid.nu.max()];
+        let along: [f64; 4] = std::array::from_fn(|i| FEWEST + 4.0 * widths[i] * cycles[i]);
+        Rule {
+            plane: along.map(whole),
+            light: if has_extent(&system.light) { FEW } else { 1 },
+            tiles: [0, 1].map(|axis| tiles(system, plane, window, axis)),
+        }
+        .aligned()
+    }
+
+    fn table(&self, rule: Rule) -> Table {
+        Table::new(&self.field, self.field.1, self.window, rule)
+    }
+
+    fn slices(&self, rule: Rule) -> Slices {
+        self.table(rule).slices(self.grid)
+    }
+
+    /// How many nodes over the light a place sees.
+    fn seen(&self, rule: Rule) -> f64 {
+        let light = LightRule::new(rule.light, &self.field.0.light);
+        let leaving = self.field.leaving([0.0; 4]);
+        leaving.map_or(1, |leaving| self.field.shines(&leaving, &light).len()) as f64
+    }
+
+    /// A rule with as many nodes over the light as are needed, and the error they leave.
+    fn over_light(&self, mut rule: Rule) -> (Rule, f64) {
+        let error = |rule: Rule| {
+            let few = Rule {
+                plane: rule.plane.map(|n| n.min(TRIAL)),
+                ..rule
+            }
+            .aligned();
+            LEFT * distance(&self.slices(few), &self.slices(few.finer_light()))
+        };
+        if !has_extent(&self.field.0.light) {
+            return (rule, 0.0);
+        }
+        let mut left = error(rule);
+        while left > 0.5 * ENOUGH && rule.places() * self.seen(rule.finer_light()) < MOST {
+            rule = rule.finer_light();
+            left = error(rule);
+        }
+        (rule, left)
+    }
+
+    /// With as many nodes over the plane as are needed; `light` is the error that those over the light leave.
+    fn over_plane(&self, mut rule: Rule, light: f64) -> Prediction {
+        let (few, each) = (rule.coarser(), self.seen(rule));
+        // Along one axis, with fewer nodes along the rest.
+        let along = |axis: usize, rule: Rule| {
+            let mut along = few;
+            along.plane[axis] = rule.plane[axis];
+            along
+        };
+        // The slices of a finer rule, and how far they are from these.
+        let tried = |axis: usize, rule: Rule, slices: &Slices| {
+            let finer = self.slices(along(axis, rule).finer_along(axis));
+            let error = LEFT * distance(slices, &finer);
+            (finer, error)
+        };
+        let mut trials: [(Slices, f64); 4] =
+            std::array::from_fn(|axis| tried(axis, rule, &self.slices(along(axis, rule))));
+        loop {
+            let mut next = rule;
+            for (axis, (_, error)) in trials.iter().enumerate() {
+                if *error > 0.25 * ENOUGH {
+                    next = next.finer_along(axis);
+                }
+            }
+            if next == rule || next.places() * each > MOST {
+                break;
+            }
+            for axis in (0..4).filter(|&axis| next.plane[axis] != rule.plane[axis]) {
+                trials[axis] = tried(axis, next, &trials[axis].0);
+            }
+            rule = next;
+        }
+        let table = self.table(rule);
+        let inside: f64 = trials.iter().map(|(_, error)| error).sum();
+        Prediction {
+            slices: table.slices(self.grid),
+            // Of a dark field nothing can be said.
+            quadrature_error: if inside.is_finite() {
+                inside + light
+            } else {
+                f64::INFINITY
+            },
+            covariance: table.covariance(),
+            rule,
+        }
+    }
+}
+
+/// Whether light comes to a point from more than one direction.
+fn has_extent(light: &Light) -> bool {
+    !matches!(
+        light,
+        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. }
+    )
+}
+
+/// The slices that the first-order [`chain`](super::chain) predicts, by the rule of the exact prediction; `None` where it cannot be inverted.
 #[must_use]
 pub fn linear(
     system: &System,
@@ -54,9 +177,10 @@ pub fn linear(
     window: &Window,
     grid: &SliceGrid,
     chain: &Chain,
-) -> Option<Prediction> {
+    exact: &Prediction,
+) -> Option<Slices> {
     let field = Linear::new(system, chain)?;
-    Some(predict(&field, system, plane, window, grid))
+    Some(Table::new(&field, plane, window, exact.rule).slices(grid))
 }
 
 /// The derivative of the exact slices by a parameter, per unit of it: a central difference of the rule of the prediction.
@@ -94,7 +218,7 @@ pub fn projection(
     grid: &ProjectionGrid,
 ) -> Projection {
     let rule = Rule {
-        plane: [grid.bins, TRIAL, grid.bins, TRIAL],
+        plane: [grid.bins, ACROSS, grid.bins, ACROSS],
         light: FEW,
         tiles: [1; 2],
     };
@@ -102,84 +226,5 @@ pub fn projection(
     Projection {
         grid: *grid,
         values: table.projected() / grid.cell_area(),
-    }
-}
-
-fn predict(
-    field: &impl Field,
-    system: &System,
-    plane: &Plane,
-    window: &Window,
-    grid: &SliceGrid,
-) -> Prediction {
-    let widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
-    let cycles = [grid.rho.max(), grid.rho.max(), grid.nu.max(), grid.nu.max()];
-    let along: [f64; 4] = std::array::from_fn(|i| FEWEST + 4.0 * widths[i] * cycles[i]);
-    let tiles = [0, 1].map(|axis| tiles(system, plane, window, axis));
-    let has_extent = !matches!(
-        system.light,
-        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. }
-    );
-    let mut rule = Rule {
-        plane: along.map(whole),
-        light: if has_extent { FEW } else { 1 },
-        tiles,
-    }
-    .aligned();
-    let table = |rule: Rule| Table::new(field, plane, window, rule);
-    let of = |rule: Rule| table(rule).slices(grid);
-    // How many parts of the light a place sees.
-    let parts = |rule: Rule| {
-        let light = LightRule::new(rule.light, &system.light);
-        let seen = field.leaving([0.0; 4]);
-        seen.map_or(1, |leaving| field.shines(&leaving, &light).len()) as f64
-    };
-    let light_error = |rule: Rule| {
-        let coarse = Rule {
-            plane: rule.plane.map(|n| n.min(TRIAL)),
-            ..rule
-        }
-        .aligned();
-        LEFT * distance(&of(coarse), &of(coarse.finer_light()))
-    };
-    let mut light = if has_extent { light_error(rule) } else { 0.0 };
-    while light > 0.5 * ENOUGH && rule.places() * parts(rule.finer_light()) < MOST {
-        rule = rule.finer_light();
-        light = light_error(rule);
-    }
-    let few = |rule: Rule| Rule {
-        light: rule.light.min(FEW),
-        ..rule
-    };
-    let (first, each) = (rule, parts(rule));
-    loop {
-        // Along one axis after the other, with fewer nodes along the rest.
-        let errors: [f64; 4] = std::array::from_fn(|axis| {
-            let mut thin = few(first.coarser());
-            thin.plane[axis] = rule.plane[axis];
-            LEFT * distance(&of(thin), &of(thin.finer_along(axis)))
-        });
-        let mut next = rule;
-        for (axis, error) in errors.iter().enumerate() {
-            if *error > 0.25 * ENOUGH {
-                next = next.finer_along(axis);
-            }
-        }
-        if next == rule || next.places() * each > MOST {
-            let table = table(rule);
-            let inside: f64 = errors.iter().sum();
-            return Prediction {
-                slices: table.slices(grid),
-                // Of a dark field nothing can be said.
-                quadrature_error: if inside.is_finite() {
-                    inside + light
-                } else {
-                    f64::INFINITY
-                },
-                covariance: table.covariance(),
-                rule,
-            };
-        }
-        rule = next;
     }
 }

@@ -5,11 +5,12 @@ use crate::rays::Plane;
 use crate::testing::{chain_of, opaque, window};
 use crate::{Operator, slices};
 use etendue_field::{
-    Brdf, Frame, FrequencyAxis, Fresnel, Image, Lobe, Orientation, Profile, Quantity, Rectangle,
-    Shape, SliceGrid, Window,
+    Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Image, LatLong, Lobe, Orientation,
+    Profile, Quantity, Rectangle, Shape, SliceGrid, Window,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 const DISTANCE: f64 = 1.0;
 
@@ -214,13 +215,13 @@ fn errors(theta0: f64, k: f64, lobe: impl Fn(f64) -> Lobe, orientation: Orientat
             let grid = grid([1.2 * e; 2]);
             let chain = chain(&system, &plane).unwrap();
             let right = exact(&system, &plane, &window, &grid);
-            let near = linear(&system, &plane, &window, &grid, &chain).unwrap();
+            let near = linear(&system, &plane, &window, &grid, &chain, &right).unwrap();
             assert!(
                 right.quadrature_error < 1e-3,
                 "{:e}",
                 right.quadrature_error
             );
-            distance(&near.slices, &right.slices)
+            distance(&near, &right.slices)
         })
         .to_vec()
 }
@@ -270,8 +271,8 @@ fn wrong_operators_are_seen() {
     let right = exact(&system, &plane, &window, &grid);
     let sound = chain(&system, &plane).unwrap();
     let error = |system: &System, chain: &Chain| {
-        let near = linear(system, &plane, &window, &grid, chain).unwrap();
-        distance(&near.slices, &right.slices)
+        let near = linear(system, &plane, &window, &grid, chain, &right).unwrap();
+        distance(&near, &right.slices)
     };
     let least = error(&system, &sound);
     let mut turned = sound.clone();
@@ -337,25 +338,40 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         radiance: 1.0,
         width,
     };
-    let environment = etendue_field::Environment {
-        frame: Frame::IDENTITY,
-        map: etendue_field::EnvironmentMap::Lobes(vec![lobe]),
+    let under = |map: EnvironmentMap| {
+        let frame = Frame::IDENTITY;
+        let environment = etendue_field::Environment { frame, map };
+        let light = Light::Environment { environment };
+        system(light, 0.0, [0.8; 3], white(Lobe::Lambertian))
     };
-    let light = Light::Environment { environment };
-    let system = system(light, 0.0, [0.8; 3], white(Lobe::Lambertian));
-    let plane = Plane {
+    let on_it = |system: &System| Plane {
         longitude: 0.0,
-        ..on(&system, 0.0, Orientation::LocalNormals)
+        ..on(system, 0.0, Orientation::LocalNormals)
     };
-    let rule = incoming::Rule::new(24, &system.light);
-    for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
-        let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
-        let radiance = system.radiance(&leaving, &system.shines(&leaving, &rule));
-        let gamma = leaving.normal.dot(from).acos();
-        let expected = 0.7 / PI * harmonic_irradiance(width, gamma);
-        let off = (radiance / expected - 1.0).abs();
-        assert!(off < 1e-5, "{off:e} at {s} {t}"); // lobes are cut at five widths, 4e-6
+    let map = |[w, h]: [usize; 2]| {
+        let map = LatLong::from_fn(w, h, |from| lobe.radiance_from(from));
+        EnvironmentMap::LatLong(Arc::new(map))
+    };
+    for (map, nodes, most) in [
+        (EnvironmentMap::Lobes(vec![lobe]), 24, 1e-5), // lobes are cut at five widths, 4e-6
+        (map([1024, 512]), 4, 1e-5), // pixels of 0.006 rad over widths of 0.25: (1/40)²/24 and the like
+        (map([200, 100]), 4, 4e-4), // bilinear between centres, 0.03 rad apart: (1/8)²/12 of the lobe's curvature
+        (map([200, 100]), 40, 4e-4), // likewise, by quarters of pixels
+    ] {
+        let system = under(map);
+        let rule = incoming::Rule::new(nodes, &system.light);
+        let plane = on_it(&system);
+        for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
+            let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
+            let radiance = system.radiance(&leaving, &system.shines(&leaving, &rule));
+            let gamma = leaving.normal.dot(from).acos();
+            let expected = 0.7 / PI * harmonic_irradiance(width, gamma);
+            let off = (radiance / expected - 1.0).abs();
+            assert!(off < most, "{off:e} at {s} {t}, {nodes} nodes");
+        }
     }
+    let system = under(EnvironmentMap::Lobes(vec![lobe]));
+    let plane = on_it(&system);
     // The same environment turned by the width of a pixel of 256 along is another light.
     assert!(
         (harmonic_irradiance(width, 0.3) / harmonic_irradiance(width, 0.3 + TAU / 256.0) - 1.0)
@@ -366,7 +382,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     let grid = grid([0.1, 0.4]);
     let chain = chain(&system, &plane).unwrap();
     let right = exact(&system, &plane, &window, &grid);
-    let near = linear(&system, &plane, &window, &grid, &chain).unwrap();
-    let error = distance(&near.slices, &right.slices);
+    let near = linear(&system, &plane, &window, &grid, &chain, &right).unwrap();
+    let error = distance(&near, &right.slices);
     assert!(error < 3e-3, "{error}"); // (k s)³ of 0.08³, and what tilts of both axes do to each other
 }
