@@ -255,9 +255,14 @@ pub(crate) struct ExportArgs {
   etendue bandwidth scenes/bandwidth.ron --sweep surfaces.0.facing.0=0..1:5      tan of the angle of incidence
   etendue bandwidth scenes/bandwidth_edge.ron --measure --csv edge.csv
 
-One row for each plane across the ray that leaves a smooth surface with a BRDF, and each value of the sweep; several sweeps go in step. B (Eq. 20) is
-for light from far away, B' (Eq. 21) for an edge or a narrow light at d' before the surface. They say nothing of windows: those of the scene must hold the lobe, and its
-frequencies the spectrum.")]
+One row for each plane across the ray that leaves a smooth surface with a BRDF, and each value of the sweep; several sweeps go in step.
+  k           curvature of the surface in the plane of incidence, 1/m, convex positive
+  θ0, θ1      angles of incidence and of view, degrees, signed alike: in the mirror direction θ1 = −θ0
+  d, d'       distance from the surface to the plane, and from the last blockers (without any, from the light) to the surface, m
+  lobe        what holds 95 % of the energy of the lobe's spectrum, cycles per radian
+  B, B'       what the reflection at d needs, cycles per unit slope: Eq. 20, light from far away, and Eq. 21, an edge or a narrow light at d'
+  exact       with --measure: that of the predicted spectrum, window and light included; beside it the measured one and its standard error
+Criteria say nothing of windows: those of the scene must hold the lobe, and its frequencies the spectrum.")]
 pub(crate) struct BandwidthArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,

@@ -39,9 +39,16 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     }
     let csv = args.csv.as_deref().map(Csv::open).transpose()?;
     let rows = on_threads(&args.threads, || {
-        let each = scenes.iter().zip(&points);
-        let rows: Result<Vec<_>, Failure> =
-            each.map(|(scene, point)| of(args, scene, point)).collect();
+        let is_long = args.measure && scenes.len() > 1;
+        let bar = progress::steps("measuring", scenes.len(), "scenes", args.quiet || !is_long);
+        let each = scenes.iter().zip(&points).map(|(scene, point)| {
+            bar.set_message(shown(point));
+            let rows = of(args, scene, point, args.quiet || is_long);
+            bar.inc(1);
+            rows
+        });
+        let rows: Result<Vec<_>, Failure> = each.collect();
+        bar.finish_and_clear();
         rows.map(|rows| rows.concat())
     })?;
     if rows.is_empty() {
@@ -78,9 +85,9 @@ fn header(args: &BandwidthArgs) -> Vec<String> {
         "d' [m]",
         "lobe",
         "B (Eq. 20)",
-        "as printed",
+        "Eq. 20 as printed",
         "B' (Eq. 21)",
-        "as printed",
+        "Eq. 21 as printed",
     ];
     header.extend(numbers.map(str::to_owned));
     if args.measure {
@@ -181,14 +188,19 @@ fn points(sweeps: &[Sweep]) -> Result<Vec<Vec<(String, f64)>>, Failure> {
 }
 
 /// A row for each plane with a criterion.
-fn of(args: &BandwidthArgs, scene: &Scene, point: &[(String, f64)]) -> Result<Vec<Row>, Failure> {
+fn of(
+    args: &BandwidthArgs,
+    scene: &Scene,
+    point: &[(String, f64)],
+    quiet: bool,
+) -> Result<Vec<Row>, Failure> {
     let all = scene.planes.iter().enumerate();
     let planes: Vec<(usize, Criterion)> = all
         .filter_map(|(i, plane)| Some((i, criterion(scene, plane)?)))
         .collect();
     let measurement = if args.measure && !planes.is_empty() {
         let batches = 0..scene.run.batches;
-        Some(measured(scene, args.photons.method, batches, args.quiet)?)
+        Some(measured(scene, args.photons.method, batches, quiet)?)
     } else {
         None
     };
@@ -213,15 +225,20 @@ fn of(args: &BandwidthArgs, scene: &Scene, point: &[(String, f64)]) -> Result<Ve
             warnings: Vec::new(),
         };
         if let Some(measurement) = &measurement {
-            let stage = progress::stage("predicting", args.quiet);
+            let stage = progress::stage("predicting", quiet);
             let exact = exact_bandwidth(scene, plane);
             stage.finish_and_clear();
             let found = measured_bandwidth(measurement, i).map_err(Failure::cannot_run)?;
             let (value, error) = (found.map(|f| f.value), found.map(|f| f.error));
             row.numbers.extend([exact, value, error]);
             let most = exact.into_iter().chain(value).fold(0.0, f64::max);
-            row.warnings
-                .extend(warning(plane, most).map(|text| place(point) + &text));
+            row.warnings.extend(warning(plane, most).map(|text| {
+                if point.is_empty() {
+                    text
+                } else {
+                    format!("{}: {text}", shown(point))
+                }
+            }));
         }
         Ok(row)
     };
@@ -229,13 +246,9 @@ fn of(args: &BandwidthArgs, scene: &Scene, point: &[(String, f64)]) -> Result<Ve
 }
 
 /// Where a sweep is, for texts.
-fn place(point: &[(String, f64)]) -> String {
+fn shown(point: &[(String, f64)]) -> String {
     let parts: Vec<String> = point.iter().map(|(p, x)| format!("{p}={x:?}")).collect();
-    if parts.is_empty() {
-        String::new()
-    } else {
-        parts.join(", ") + ": "
-    }
+    parts.join(", ")
 }
 
 /// A bandwidth at the end of the grid is that of the grid. Of a spectrum that is even all over it, it is 95 % of the largest frequency.

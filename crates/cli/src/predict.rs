@@ -48,17 +48,22 @@ pub(crate) fn predicted(
         let all = 0..scene.run.batches;
         Some(measured(&referred, method.other(), all, quiet)?)
     };
-    let stage = progress::stage("predicting", quiet);
+    let bar = progress::steps("predicting", scene.planes.len(), "planes", quiet);
     let mut at = 0..;
     let planes = scene.planes.iter().enumerate();
-    let predictions = planes.map(|(i, plane)| match (class(plane), &reference) {
-        (Class::Reference, Some(reference)) => {
-            let at = at.next().unwrap_or_default();
-            Prediction::reference(scene, i, reference, at).map_err(Failure::cannot_run)
-        }
-        _ => Ok(Prediction::new(scene, plane)),
+    let predictions = planes.map(|(i, plane)| {
+        bar.set_message(plane.name.clone());
+        let prediction = match (class(plane), &reference) {
+            (Class::Reference, Some(reference)) => {
+                let at = at.next().unwrap_or_default();
+                Prediction::reference(scene, i, reference, at).map_err(Failure::cannot_run)
+            }
+            _ => Ok(Prediction::new(scene, plane)),
+        };
+        bar.inc(1);
+        prediction
     });
     let predictions = predictions.collect();
-    stage.finish_and_clear();
+    bar.finish_and_clear();
     predictions
 }

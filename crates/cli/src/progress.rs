@@ -18,6 +18,27 @@ pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {
     bar
 }
 
+/// Things done, the one at hand by its name, and time left: on a terminal, where there are several.
+pub(crate) fn steps(
+    verb: &'static str,
+    total: usize,
+    things: &'static str,
+    quiet: bool,
+) -> ProgressBar {
+    if quiet {
+        return ProgressBar::hidden();
+    }
+    let bar = ProgressBar::new(total as u64).with_prefix(verb);
+    let style = format!(
+        "{{spinner}} {{prefix}} {{msg}}  {{bar:40}} {{pos}} of {{len}} {things}  {{eta}} left"
+    );
+    if let Ok(style) = ProgressStyle::with_template(&style) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(std::time::Duration::from_millis(100));
+    bar
+}
+
 /// A stage whose length is not known beforehand.
 pub(crate) fn stage(name: &'static str, quiet: bool) -> ProgressBar {
     if quiet {

@@ -37,7 +37,7 @@ pub enum SceneError {
         message: String,
     },
     /// An override names no field, or gives it a value of the wrong kind.
-    #[error("--set {path}: {message}")]
+    #[error("{path}: {message}")]
     Override {
         /// The path as given.
         path: String,

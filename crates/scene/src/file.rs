@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 /// A scene file as written, in RON. Lengths in metres; slopes are tangents of angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Scene", deny_unknown_fields)]
 pub struct SceneFile {
     /// What the scene shows, for the reader.
     #[serde(default)]
@@ -45,7 +45,7 @@ pub struct SceneFile {
 
 /// Black blockers, most of them in one plane orthogonal to the central ray.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Blockers", deny_unknown_fields)]
 pub enum BlockersFile {
     /// `count[0]` × `count[1]` squares on a jittered grid, edges along X and Y.
     JitteredSquares {
@@ -121,7 +121,7 @@ impl BlockersFile {
 
 /// A shape in the plane of its blockers.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Shape", deny_unknown_fields)]
 pub enum ShapeFile {
     /// A rectangle, edges along X and Y.
     Rectangle {
@@ -180,7 +180,7 @@ pub enum HalfName {
 /// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
 /// next.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Path", deny_unknown_fields)]
 pub struct PathFile {
     /// Direction in which it leaves the light; any length.
     pub direction: [f64; 3],
@@ -195,7 +195,7 @@ pub struct PathFile {
 
 /// A virtual plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Plane", deny_unknown_fields)]
 pub struct PlaneFile {
     /// Name: the folder of its results.
     pub name: String,
@@ -230,7 +230,7 @@ pub enum Place {
 
 /// The window: a profile for each coordinate; y and v are as x and u unless stated.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Window", deny_unknown_fields)]
 pub struct WindowFile {
     /// Along x, metres.
     pub x: Profile,
@@ -246,7 +246,7 @@ pub struct WindowFile {
 
 /// The frequencies of the slices.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Frequencies", deny_unknown_fields)]
 pub struct FrequenciesFile {
     /// Number K of azimuths πk/K.
     #[serde(default = "eight")]
@@ -259,7 +259,7 @@ pub struct FrequenciesFile {
 
 /// A frequency axis from −max to +max.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Axis", deny_unknown_fields)]
 pub struct AxisFile {
     /// Highest frequency, rounded up to a multiple of the spacing.
     pub max: f64,
@@ -270,7 +270,7 @@ pub struct AxisFile {
 
 /// How the scene is measured.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields, default)]
+#[serde(rename = "Run", deny_unknown_fields, default)]
 pub struct RunFile {
     /// Photons emitted.
     pub photons: u64,

@@ -16,7 +16,7 @@ impl SceneFile {
         let mut tree = serde_json::to_value(&self).map_err(|e| fault(e.to_string()))?;
         let mut place = &mut tree;
         for name in path.split('.') {
-            let available = names(place);
+            let available = allowed(place, name);
             place = step(place, name)
                 .ok_or_else(|| fault(format!("no field `{name}` here; allowed: {available}")))?;
         }
@@ -43,11 +43,23 @@ fn is_variant(fields: &serde_json::Map<String, Value>) -> bool {
     fields.len() == 1 && fields.keys().all(|k| k.starts_with(char::is_uppercase))
 }
 
-fn names(node: &Value) -> String {
+/// What may stand below a node, where `name` does not.
+fn allowed(node: &Value, name: &str) -> String {
+    let whole = |here: &str| format!("{here}, or another as a whole, =\"{name}(…)\"");
     match node {
         Value::Array(items) => format!("0 to {}", items.len().saturating_sub(1)),
-        Value::Object(fields) if is_variant(fields) => fields.values().map(names).collect(),
+        Value::Object(fields) if is_variant(fields) => {
+            let here: String = fields.keys().cloned().collect();
+            if name.starts_with(char::is_uppercase) {
+                whole(&here)
+            } else {
+                let below = fields.values().map(|node| allowed(node, name));
+                below.collect()
+            }
+        }
         Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
+        // A variant with nothing in it.
+        Value::String(here) if name.starts_with(char::is_uppercase) => whole(here),
         _ => "nothing below a value".to_owned(),
     }
 }

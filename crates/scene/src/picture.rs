@@ -25,10 +25,7 @@ pub(crate) fn load(file: &Path, extensions: &[&str]) -> Result<Raster, Fault> {
         let shown = format!("{extension:?}");
         return Err(fault("the extension", shown, extensions.join(", ")));
     }
-    let unreadable = |error| {
-        let allowed = format!("a picture; {} cannot be read: {error}", file.display());
-        fault("the file", "unreadable", allowed)
-    };
+    let unreadable = |error| fault("the file", format!("unreadable ({error})"), "a picture");
     // A pipe or a device might never end.
     if !fs::metadata(file).map_err(unreadable)?.is_file() {
         return Err(fault("the path", "not a file", "a file"));
@@ -68,7 +65,13 @@ fn raster(width: usize, height: usize, values: Vec<f64>) -> Result<Raster, Fault
 }
 
 fn exr(bytes: &[u8]) -> Result<Raster, Fault> {
-    let unsound = |error: exr::error::Error| fault("the file", error, "an OpenEXR picture");
+    let unsound = |error: exr::error::Error| {
+        fault(
+            "the file",
+            format!("damaged ({error})"),
+            "an OpenEXR picture",
+        )
+    };
     let meta = MetaData::read_from_buffered(bytes, false).map_err(unsound)?;
     let sizes = meta.headers.iter().map(|header| {
         let pixels = header.layer_size.0.checked_mul(header.layer_size.1)?;
@@ -126,7 +129,9 @@ fn weigh(rgb: [f64; 3]) -> f64 {
 }
 
 fn png(bytes: &[u8]) -> Result<Raster, Fault> {
-    let unsound = |error: png::DecodingError| fault("the file", error, "a PNG picture");
+    let unsound = |error: png::DecodingError| {
+        fault("the file", format!("damaged ({error})"), "a PNG picture")
+    };
     let mut decoder = png::Decoder::new(Cursor::new(bytes));
     // Palettes and levels of less than 8 bits become bytes.
     decoder.set_transformations(png::Transformations::EXPAND);

@@ -34,7 +34,7 @@ pub enum MeshSource {
 
 /// A Lambertian surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Surface", deny_unknown_fields)]
 pub enum SurfaceFile {
     /// A rectangle, edges along X and Y unless it faces elsewhere.
     Rectangle {
@@ -105,6 +105,7 @@ impl SurfaceFile {
 
 /// The form of a smooth surface around its vertex; curvatures per metre, positive if it is convex seen from where it faces.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Form")]
 pub enum FormFile {
     /// Flat.
     Plane,
@@ -118,7 +119,7 @@ pub enum FormFile {
 
 /// What a smooth surface does to light.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Event", deny_unknown_fields)]
 pub enum EventFile {
     /// Reflects it all.
     Mirror,
@@ -149,7 +150,7 @@ pub enum EventFile {
 
 /// A BRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Brdf", deny_unknown_fields)]
 pub struct BrdfFile {
     /// Its lobe.
     pub lobe: LobeFile,
@@ -163,6 +164,7 @@ pub struct BrdfFile {
 
 /// The lobe of a BRDF.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename = "Lobe")]
 pub enum LobeFile {
     /// Alike in all directions.
     Lambertian,
@@ -176,7 +178,7 @@ pub enum LobeFile {
 
 /// The share of light that is reflected, by the angle of incidence.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Fresnel", deny_unknown_fields)]
 pub enum FresnelFile {
     /// All of it.
     #[default]
@@ -194,7 +196,7 @@ pub enum FresnelFile {
 
 /// A number from 0 to 1 at each place of a surface.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Pattern", deny_unknown_fields)]
 pub enum PatternFile {
     /// ½ (1 + m cos(2π f t + p)), t along `along` or across it.
     Cosine {
