@@ -1,13 +1,15 @@
 //! Statistical validation of Étendue.
 //!
-//! `short` is a few minutes, for every change; `suite` goes through all scenes and writes `docs/suite.md`; `table1` through the
-//! operators of the paper and `shading` through what surfaces do to light, and both write `docs/validation.md`; `all` is the full account of the main scene and writes `docs/validation.md`.
+//! `short` is a few minutes, for every change; `suite` goes through all scenes without smooth surfaces and writes `docs/suite.md`; `table1` through the
+//! operators of the paper, `shading` through what surfaces do to light, and `main` is the full account of the main scene: each writes its part of
+//! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
 
 mod bandwidth;
 mod calibration;
 mod faults;
 mod noise;
 mod report;
+mod rows;
 mod scenes;
 mod shading;
 mod statistics;
@@ -58,7 +60,7 @@ enum Command {
         #[arg(long, default_value_t = 1_000_000_000)]
         most: u64,
     },
-    /// Every scene of the repository, predicted and traced both ways, and the faults only they can show; into docs/suite.md.
+    /// Every scene without smooth surfaces, predicted and traced both ways, and the faults only they can show; into docs/suite.md.
     Suite {
         /// Photons for each scene, instead of those in the files.
         #[arg(long)]
@@ -84,7 +86,7 @@ enum Command {
     },
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
-    /// The whole of docs/validation.md: `main`, `table1` and `shading`.
+    /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
     All,
 }
 
@@ -102,33 +104,42 @@ fn main() -> ExitCode {
         return bandwidth::page(photons);
     }
     let parts = match command {
-        Command::All => vec![
+        Command::All => &[
             Command::Main,
             Command::Table1 { photons: None },
             Command::Shading { photons: None },
-        ],
-        other => vec![other],
+        ][..],
+        ref other => std::slice::from_ref(other),
     };
-    let mut passed = true;
-    for part in &parts {
-        let sections = sections(part);
+    let report = |command: &Command, sections: Vec<Section>| {
         let text: Vec<String> = sections.iter().map(Section::markdown).collect();
         let text = text.join("\n");
         println!("{text}");
-        passed &= sections.iter().all(|section| section.passed);
-        if let Some([path, title, name, of]) = page(part) {
+        if let Some([path, title, name, of]) = page(command) {
             let page = format!(
                 "# {title}\n\nWritten by `cargo run --release -p etendue-validation -- {name}`. \
                  {of}, seed {SEED} unless said.\n\n{text}"
             );
             let before = std::fs::read_to_string(path).unwrap_or_default();
-            if let Err(error) = std::fs::write(path, with_part(&before, title, &page)) {
-                eprintln!("{path}: {error}");
-                return ExitCode::from(3);
-            }
+            std::fs::write(path, with_part(&before, title, &page))
+                .map_err(|error| eprintln!("{path}: {error}"))?;
         }
+        Ok(sections)
+    };
+    let reported = || -> Result<Vec<Section>, ()> {
+        let mut all = Vec::new();
+        for part in parts {
+            all.extend(report(part, sections(part))?);
+        }
+        if matches!(command, Command::All) {
+            all.extend(report(&command, vec![rows::rows(&all)])?);
+        }
+        Ok(all)
+    };
+    match reported() {
+        Ok(all) => ExitCode::from(u8::from(!all.iter().all(|section| section.passed))),
+        Err(()) => ExitCode::from(3),
     }
-    ExitCode::from(u8::from(!passed))
 }
 
 /// The page that a command writes a part of: its file, the title of the part, the command's name and what is shown.
@@ -136,7 +147,7 @@ fn page(command: &Command) -> Option<[&'static str; 4]> {
     Some(match command {
         Command::Main => [
             "docs/validation.md",
-            "Validation",
+            "The main scene",
             "main",
             "Scene: `scenes/fig9b.ron`",
         ],
@@ -144,7 +155,7 @@ fn page(command: &Command) -> Option<[&'static str; 4]> {
             "docs/suite.md",
             "The suite",
             "suite",
-            "Scenes: all of `scenes/`",
+            "Scenes: all of `scenes/` without smooth surfaces",
         ],
         Command::Table1 { photons: None } => [
             "docs/validation.md",
@@ -157,6 +168,12 @@ fn page(command: &Command) -> Option<[&'static str; 4]> {
             "Shading",
             "shading",
             "In 2D and without photons where no scene is named",
+        ],
+        Command::All => [
+            "docs/validation.md",
+            "Every row of Table 1",
+            "all",
+            "Of the parts of this page",
         ],
         _ => return None,
     })

@@ -12,7 +12,7 @@ macro_rules! scene {
     };
 }
 
-/// Every scene of the repository with a verdict of its own, and its text.
+/// Every scene of the repository without smooth surfaces that has a verdict of its own, and its text.
 pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("travel"),
     scene!("fig1"),
