@@ -16,9 +16,8 @@ impl SceneFile {
         let mut tree = serde_json::to_value(&self).map_err(|e| fault(e.to_string()))?;
         let mut place = &mut tree;
         for name in path.split('.') {
-            let available = allowed(place, name);
-            place = step(place, name)
-                .ok_or_else(|| fault(format!("no field `{name}` here; allowed: {available}")))?;
+            let refusal = refusal(place, name);
+            place = step(place, name).ok_or_else(|| fault(refusal))?;
         }
         *place = parsed(value);
         serde_json::from_value(tree).map_err(|e| fault(e.to_string()))
@@ -40,28 +39,30 @@ fn step<'a>(node: &'a mut Value, name: &str) -> Option<&'a mut Value> {
 }
 
 fn is_variant(fields: &serde_json::Map<String, Value>) -> bool {
-    fields.len() == 1 && fields.keys().all(|k| k.starts_with(char::is_uppercase))
+    fields.len() == 1 && fields.keys().all(|k| is_name_of_variant(k))
 }
 
-/// What may stand below a node, where `name` does not.
-fn allowed(node: &Value, name: &str) -> String {
-    let whole = |here: &str| format!("{here}, or another as a whole, =\"{name}(…)\"");
-    match node {
+fn is_name_of_variant(name: &str) -> bool {
+    name.starts_with(char::is_uppercase)
+}
+
+/// Why `name` cannot stand below a node.
+fn refusal(node: &Value, name: &str) -> String {
+    let allowed = match node {
         Value::Array(items) => format!("0 to {}", items.len().saturating_sub(1)),
-        Value::Object(fields) if is_variant(fields) => {
-            let here: String = fields.keys().cloned().collect();
-            if name.starts_with(char::is_uppercase) {
-                whole(&here)
-            } else {
-                let below = fields.values().map(|node| allowed(node, name));
-                below.collect()
-            }
+        Value::Object(fields) if is_variant(fields) && !is_name_of_variant(name) => {
+            return fields.values().map(|below| refusal(below, name)).collect();
         }
         Value::Object(fields) => fields.keys().cloned().collect::<Vec<_>>().join(", "),
-        // A variant with nothing in it.
-        Value::String(here) if name.starts_with(char::is_uppercase) => whole(here),
+        Value::String(here) if is_name_of_variant(name) => here.clone(),
         _ => "nothing below a value".to_owned(),
-    }
+    };
+    let another = if is_name_of_variant(name) {
+        ", or another set as a whole, such as blockers.0=\"Grating(…)\""
+    } else {
+        ""
+    };
+    format!("no field `{name}` here; allowed: {allowed}{another}")
 }
 
 /// A value as it is written in a scene file or in JSON; whole numbers such as 1e6 are integers, and what is

@@ -227,6 +227,12 @@ fn overrides_reach_every_kind_of_field() {
         ("run.photon", "3", "photons"),
         ("planes.9.name", "a", "0 to 4"),
         ("run.photons", "many", "invalid type"),
+        (
+            "window.x.Box",
+            "0.2",
+            "allowed: Hann, or another set as a whole",
+        ),
+        ("description.a", "b", "nothing below a value"),
     ] {
         let message = set(path, value).unwrap_err().to_string();
         assert!(message.contains(part), "{part} not in: {message}");

@@ -97,7 +97,7 @@ pub enum EnvironmentFile {
 
 /// A lobe of light, radiance · exp((cos γ − 1)/width²), γ being the angle to `from`.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(rename = "lobe of light", deny_unknown_fields)]
+#[serde(rename = "LightLobe", deny_unknown_fields)]
 pub struct SphericalGaussianFile {
     /// The direction most of it comes from, any length.
     pub from: [f64; 3],
