@@ -441,7 +441,7 @@ impl Leaves {
                         reflectance: Box::new(reflectance.clone()),
                     },
                 };
-                (vec![target(Form::Smooth(patch))], how)
+                (vec![target(Form::Smooth(Box::new(patch)))], how)
             }
         };
         Self {

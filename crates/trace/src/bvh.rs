@@ -15,39 +15,46 @@ use std::fmt;
 use std::time::Duration;
 
 /// Something that ends a ray, and what it is.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Target<T> {
     pub(crate) form: Form,
     pub(crate) tag: T,
 }
 
-/// Its form, in the frame of a leg.
-#[derive(Clone, Copy, Debug)]
+/// Its form, in the frame of a leg. What is large is elsewhere: flat shapes, by far the most, are to stay in the processor's cache.
+#[derive(Clone, Debug)]
 pub(crate) enum Form {
     /// A flat shape across the central ray.
     Flat { distance: f64, shape: Shape },
     /// A flat shape in the plane of X and Y of a frame.
-    Oblique { frame: Frame, shape: Shape },
+    Oblique { frame: Box<Frame>, shape: Shape },
     /// A triangle.
     Triangle([DVec3; 3]),
     /// A triangle of a smooth mesh, with the normals at its corners.
     Shaded {
         corners: [DVec3; 3],
-        normals: [DVec3; 3],
+        normals: Box<[DVec3; 3]>,
     },
     /// A smooth surface.
-    Smooth(Patch),
+    Smooth(Box<Patch>),
 }
 
 impl Form {
     /// The distance, along the central ray, at which a ray meets it; where it can meet it twice, the first beyond `from`.
     #[inline]
     fn meets(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
+        if let Self::Flat { distance, shape } = self {
+            let at = ray.travelled(*distance);
+            return shape.contains(at.x, at.y).then_some(*distance);
+        }
+        self.meets_elsewhere(ray, from)
+    }
+
+    /// [`Self::meets`] of what is not flat: kept out of the loops that mostly meet flat shapes.
+    #[inline(never)]
+    fn meets_elsewhere(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
         match self {
-            Self::Flat { distance, shape } => {
-                let at = ray.travelled(*distance);
-                shape.contains(at.x, at.y).then_some(*distance)
-            }
+            Self::Flat { .. } => None,
             Self::Oblique { frame, shape } => {
                 let (start, direction) = (start(ray), direction(ray));
                 let distance = (frame.origin - start).dot(frame.d) / direction.dot(frame.d);
@@ -162,7 +169,7 @@ impl<T: fmt::Debug> fmt::Debug for Targets<T> {
 /// Boxes grow by this share of the scene's extent: f32 rounding is 6e-8 of it, a ray adds a few of those.
 const PADDING: f64 = 1e-5;
 
-impl<T: Copy> Targets<T> {
+impl<T: Clone> Targets<T> {
     /// `origins` is the largest coordinate a ray starts from.
     pub(crate) fn new(targets: &[Target<T>], origins: f64) -> Self {
         let extent = targets.iter().map(extent).fold(origins, f64::max);
@@ -179,7 +186,7 @@ impl<T: Copy> Targets<T> {
         let targets = bvh
             .primitive_indices
             .iter()
-            .map(|i| targets[*i as usize])
+            .map(|i| targets[*i as usize].clone())
             .collect();
         Self {
             bvh,
@@ -365,6 +372,7 @@ mod tests {
                 radius: 0.1,
             });
             let frame = Frame::new(corner(i + 3), d, DVec3::X).unwrap_or(Frame::IDENTITY);
+            let frame = Box::new(frame);
             Form::Oblique { frame, shape }
         }));
         let tags = 0u32..;
@@ -398,8 +406,9 @@ mod tests {
                     unreachable!("a flat form scales to a flat form")
                 };
                 let origin = frame.origin * scale;
+                let frame = Frame { origin, ..**frame };
                 Form::Oblique {
-                    frame: Frame { origin, ..*frame },
+                    frame: Box::new(frame),
                     shape,
                 }
             }

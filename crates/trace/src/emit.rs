@@ -73,25 +73,26 @@ impl Emitter {
         }
     }
 
-    /// A ray from eight random words; `None` when what was drawn goes nowhere.
+    /// A ray from the random words of two blocks; `None` when what was drawn goes nowhere.
     #[inline]
     #[must_use]
-    pub fn sample(&self, words: [[u32; 4]; 2]) -> Option<TwoPlane> {
+    pub fn sample(&self, words: impl Fn(u32) -> [u32; 4]) -> Option<TwoPlane> {
         if let Some(sky) = &self.sky {
-            return sky.sample(words);
+            return sky.sample([words(0), words(1)]);
         }
-        let r = words[0].map(random::unit);
-        if self.proposals.is_empty() {
-            return Some(self.plain(r));
-        }
-        let which = random::index(words[1][0], self.proposals.len());
-        let [along_x, along_y] = &self.proposals[which];
+        let r = words(0).map(random::unit);
+        let [along_x, along_y] = match self.proposals.as_slice() {
+            [] => return Some(self.plain(r)),
+            [only] => only,
+            several => &several[random::index(words(1)[0], several.len())],
+        };
         let [x, u] = along_x.sample([r[0], r[1]]);
         let [y, v] = along_y.sample([r[2], r[3]]);
         Some(TwoPlane { x, y, u, v })
     }
 
     /// Uniform over the light's area, by radiance and cosine over direction; a point's by solid angle, forwards.
+    #[inline(never)]
     fn plain(&self, r: [f64; 4]) -> TwoPlane {
         let (sin, cos) = (TAU * r[3]).sin_cos();
         let (position, slope) = match self.light {

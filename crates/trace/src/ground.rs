@@ -57,7 +57,10 @@ impl Ground {
             }
             Object::Patch(i) => {
                 let patch = scene.patches[i].patch;
-                (vec![target(Form::Smooth(patch))], Points::Smooth(patch))
+                (
+                    vec![target(Form::Smooth(Box::new(patch)))],
+                    Points::Smooth(patch),
+                )
             }
         };
         Some(Self {

@@ -122,7 +122,7 @@ impl Obstacles {
                 Event::Reflects(_) => Material::Reflects,
             };
             targets.push(Target {
-                form: Form::Smooth(object.patch.seen_from(&leg.frame)),
+                form: Form::Smooth(Box::new(object.patch.seen_from(&leg.frame))),
                 tag: Meeting::Surface {
                     object: Object::Patch(i),
                     material,
@@ -235,7 +235,7 @@ const ROUNDING: f64 = 1e-9;
 const FARTHEST: f64 = 3.0;
 
 /// What a ray meets in a half-plane.
-const HALF_PLANE: Target<Meeting> = Target {
+static HALF_PLANE: Target<Meeting> = Target {
     form: Form::Triangle([DVec3::ZERO; 3]),
     tag: Meeting::Blocker,
 };
@@ -295,7 +295,7 @@ impl Around {
                 None => Form::Triangle(corners),
                 Some(smooth) => Form::Shaded {
                     corners,
-                    normals: smooth.normals[i].map(|n| self.0.vector_to_local(n)),
+                    normals: Box::new(smooth.normals[i].map(|n| self.0.vector_to_local(n))),
                 },
             }
         })
@@ -310,7 +310,7 @@ impl Around {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;
         if !across {
             return Form::Oblique {
-                frame: *frame,
+                frame: Box::new(*frame),
                 shape: *shape,
             };
         }

@@ -200,8 +200,9 @@ impl Proposal {
     /// Cumulative of the position in the window at the ends of the light's image at slope `u`.
     #[inline]
     fn image(&self, u: f64) -> [f64; 2] {
-        self.light
-            .map(|x| self.space.cumulative(x + self.distance * u))
+        // One by one: `map` over the array is not inlined here, and this is asked of each photon four times.
+        let at = |x: f64| self.space.cumulative(x + self.distance * u);
+        [at(self.light[0]), at(self.light[1])]
     }
 
     /// Position on the light and slope, from two numbers in (0, 1).

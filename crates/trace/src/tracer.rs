@@ -88,7 +88,7 @@ impl Tracer {
     #[inline]
     fn photon(&self, index: u64, crossings: &mut [Vec<Crossing>], ledger: &mut Ledger) {
         let words = |block| random::words(self.seed, Stream::Photon, index, block);
-        let Some(ray) = self.emitter.sample([words(0), words(1)]) else {
+        let Some(ray) = self.emitter.sample(words) else {
             return;
         };
         let weight = self.emitter.weight(&ray);
@@ -102,8 +102,7 @@ impl Tracer {
         // Scattered light is aimed at windows: what becomes of it is in no account.
         let mut beyond = Ledger::default();
         let mut account = ledger;
-        let mut legs = self.legs.iter().zip(1..).peekable();
-        while let Some((this, block)) = legs.next() {
+        for ((i, this), block) in self.legs.iter().enumerate().zip(2..) {
             let Flight { ray, from, weight } = flight;
             let met = this.obstacles.first(&ray, from);
             if met.is_some_and(|(_, target)| target.tag.is(this.leaves)) {
@@ -123,24 +122,21 @@ impl Tracer {
                 account.absorbed += arrives;
                 return;
             };
-            let next = legs
-                .peek()
-                .map(|(next, _)| *next)
-                .filter(|_| target.tag.is(this.ends));
-            let arrival = Arrival::new(&ray, distance, target, arrives);
+            let next = self.legs.get(i + 1).filter(|_| target.tag.is(this.ends));
+            let arrival = || Arrival::new(&ray, distance, target, arrives);
             if let Material::Lambertian { albedo } = material {
                 account.stopped += albedo * arrives;
                 account.absorbed += (1.0 - albedo) * arrives;
                 account = &mut beyond;
             } else if material == Material::Reflects {
-                if arrival.is_on_front() {
+                if arrival().is_on_front() {
                     account.stopped += arrives;
                 } else {
                     account.absorbed += arrives;
                 }
                 account = &mut beyond;
             }
-            let onwards = next.and_then(|next| next.begin(this, &arrival, words(block + 1)));
+            let onwards = next.and_then(|next| next.begin(this, &arrival(), words(block)));
             let Some(next) = onwards else {
                 if let Material::Specular(_) = material {
                     account.stopped += arrives;
@@ -209,7 +205,7 @@ impl Leg {
     }
 
     /// How a photon that arrives at the end of the leg before begins this one; `None` when it does not.
-    #[inline]
+    #[inline(never)]
     fn begin(&self, before: &Self, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
         let arrival = arrival.moved(&before.frame, &self.frame);
         let (ray, weight) = self.bounce.as_ref()?.sample(&arrival, words)?;
