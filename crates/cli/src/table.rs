@@ -187,9 +187,12 @@ pub(crate) fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
 }
 
 fn verdict_text(summary: &Summary) -> String {
-    let at = |verdict: Verdict| -> String {
-        let planes = summary.planes.iter().filter(|p| p.verdict == verdict);
-        let names: Vec<&str> = planes.map(|p| p.name.as_str()).collect();
+    let with = |verdict: Verdict| -> Vec<&PlaneReport> {
+        let planes = summary.planes.iter();
+        planes.filter(|p| p.verdict == verdict).collect()
+    };
+    let names = |planes: &[&PlaneReport]| -> String {
+        let names: Vec<&str> = planes.iter().map(|p| p.name.as_str()).collect();
         names.join(", ")
     };
     let alpha = 100.0 * summary.alpha;
@@ -199,19 +202,28 @@ fn verdict_text(summary: &Summary) -> String {
         }
         Verdict::Fail => format!(
             "fail: measured and predicted disagree at {}",
-            at(Verdict::Fail)
+            names(&with(Verdict::Fail))
         ),
         Verdict::Undecided => {
-            let needed = summary
-                .planes
-                .iter()
-                .filter_map(|p| p.photons_needed)
-                .fold(0.0, f64::max);
-            format!(
-                "undecided: too much noise at {}; needs {:.0e} photons",
-                at(Verdict::Undecided),
-                rounded_up(needed)
-            )
+            let undecided = with(Verdict::Undecided).into_iter();
+            let (noisy, blurred): (Vec<_>, Vec<_>) =
+                undecided.partition(|p| p.photons_needed.is_some());
+            let mut reasons = Vec::new();
+            if !noisy.is_empty() {
+                let needed = noisy.iter().filter_map(|p| p.photons_needed);
+                reasons.push(format!(
+                    "too much noise at {}; needs {:.0e} photons",
+                    names(&noisy),
+                    rounded_up(needed.fold(0.0, f64::max))
+                ));
+            }
+            if !blurred.is_empty() {
+                reasons.push(format!(
+                    "the error of the prediction's quadrature is not below the noise at {}; more photons do not help",
+                    names(&blurred)
+                ));
+            }
+            format!("undecided: {}", reasons.join(", and "))
         }
     }
 }

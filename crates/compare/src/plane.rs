@@ -78,7 +78,13 @@ pub fn compare(
     let first_order = prediction.first_order.as_ref();
     let first_order =
         first_order.map(|f| f.report(measurement, index, (&predicted, &residuals), seed));
-    let verdict = verdict(&predicted, &tally, p_value, level, agreement.noise_limit());
+    let agrees = agrees(&predicted, &tally, p_value, level);
+    let is_blurred = agreement.is_blurred(prediction.quadrature_error, agrees);
+    let verdict = if is_blurred {
+        Verdict::Undecided
+    } else {
+        agreement.verdict(agrees)
+    };
     // The worse of the two: what rays do, and what the first-order chain makes of it.
     let verdict = first_order
         .as_ref()
@@ -127,7 +133,7 @@ pub fn compare(
                 share: pair(&|p| high_frequency_share(p, grid, cut)),
             })
             .collect(),
-        photons_needed: (verdict == Verdict::Undecided).then(|| {
+        photons_needed: (verdict == Verdict::Undecided && !is_blurred).then(|| {
             let noise = agreement.noise_limit().unwrap_or_default();
             let enough = first_order.as_ref().map_or(1.0, FirstOrderReport::more);
             photons_needed(measurement.emitted(), noise).max(measurement.emitted() as f64 * enough)
@@ -210,26 +216,17 @@ fn without_rounding(prediction: &Prediction) -> Slices {
 /// The largest noise, as a share of the spectrum, with which agreement means something.
 const RESOLVED: f64 = 0.5;
 
-/// An exact prediction passes when p reaches the level and noise does not drown it; a dark one when not a
-/// single photon came.
-fn verdict(
-    predicted: &Slices,
-    tally: &PlaneTally,
-    p_value: Option<f64>,
-    level: f64,
-    noise: Option<f64>,
-) -> Verdict {
+/// The largest error of a quadrature, as a share of the noise, with which agreement means something: it is an upper estimate, and adds a
+/// quarter to χ² at the most.
+const BLURRED: f64 = 0.5;
+
+/// Whether p reaches the level; of a dark prediction, whether not a single photon came.
+fn agrees(predicted: &Slices, tally: &PlaneTally, p_value: Option<f64>, level: f64) -> bool {
     let dark = predicted.half.iter().all(|f| f.norm_sqr() <= 0.0);
-    let agrees = if dark {
+    if dark {
         tally.inside == 0
     } else {
         p_value.is_some_and(|p| p >= level)
-    };
-    // With noise like that batches hold a handful of photons, and their residuals are not symmetric.
-    match (noise.is_some_and(|noise| noise > RESOLVED), agrees) {
-        (true, _) => Verdict::Undecided,
-        (false, true) => Verdict::Pass,
-        (false, false) => Verdict::Fail,
     }
 }
 
@@ -283,9 +280,36 @@ impl Agreement {
     fn excess(&self) -> Option<f64> {
         self.relative(self.difference - self.noise)
     }
+
+    fn verdict(&self, agrees: bool) -> Verdict {
+        // With noise like that batches hold a handful of photons, and their residuals are not symmetric.
+        match (
+            self.noise_limit().is_some_and(|noise| noise > RESOLVED),
+            agrees,
+        ) {
+            (true, _) => Verdict::Undecided,
+            (false, true) => Verdict::Pass,
+            (false, false) => Verdict::Fail,
+        }
+    }
+
+    /// Whether the error of the prediction's own quadrature leaves nothing to be decided: agreement, if it is not below the noise; disagreement, if
+    /// it may be all of that.
+    fn is_blurred(&self, quadrature: Option<f64>, agrees: bool) -> bool {
+        let (Some(error), Some(noise), Some(excess)) =
+            (quadrature, self.noise_limit(), self.excess())
+        else {
+            return false;
+        };
+        if agrees {
+            error > BLURRED * noise
+        } else {
+            error > excess.max(QUADRATURE * noise)
+        }
+    }
 }
 
-/// The largest error of a quadrature that goes without a warning, as a share of the noise.
+/// The largest error of a quadrature that cannot be seen, and goes without a warning, as a share of the noise: it adds a thousandth to χ².
 const QUADRATURE: f64 = 1.0 / 30.0;
 
 /// The highest predicted power on the border of the grid that goes without a warning, below the peak.
@@ -300,7 +324,7 @@ fn warnings(
     let mut warnings = Vec::new();
     if let Some((error, noise)) = quadrature.filter(|(error, noise)| *error > QUADRATURE * noise) {
         warnings.push(format!(
-            "the prediction's quadrature is off by {:.4} % of the spectrum, noise is {:.4} %: not small beside it",
+            "the prediction's quadrature may be off by {:.4} % of the spectrum; noise is {:.4} %",
             100.0 * error,
             100.0 * noise
         ));

@@ -125,7 +125,7 @@ pub struct PlaneReport {
     pub first_order: Option<FirstOrderReport>,
     /// What it comes to.
     pub verdict: Verdict,
-    /// Photons that would decide an undecided plane.
+    /// Photons that would decide an undecided plane; `None` where it is the prediction that is not exact enough.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,
