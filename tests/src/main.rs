@@ -29,7 +29,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
-  cargo run --release -p etendue-validation -- all          an hour; writes docs/validation.md")]
+  cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
     command: Command,
