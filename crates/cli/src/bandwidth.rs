@@ -5,8 +5,8 @@ use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{load, method, progress, say};
 use atomic_write_file::AtomicWriteFile;
-use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth};
-use etendue_field::VirtualPlane;
+use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth, scattered};
+use etendue_field::{Lobe, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_theory::shading::Criterion;
 use std::io::Write;
@@ -60,7 +60,8 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     if let Some(csv) = csv {
         csv.write(&header, &rows)?;
     }
-    let warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
+    let mut warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
+    warnings.dedup();
     let cells = rows.iter().map(Row::cells);
     let table: Vec<Vec<String>> = std::iter::once(header).chain(cells).collect();
     say(
@@ -222,7 +223,7 @@ fn of(
                 edge(c.blocker()),
                 edge(c.printed_blocker()),
             ],
-            warnings: Vec::new(),
+            warnings: beyond_criteria(scene, plane),
         };
         if let Some(measurement) = &measurement {
             let stage = progress::stage("predicting", quiet);
@@ -249,6 +250,28 @@ fn of(
 fn shown(point: &[(String, f64)]) -> String {
     let parts: Vec<String> = point.iter().map(|(p, x)| format!("{p}={x:?}")).collect();
     parts.join(", ")
+}
+
+/// What the criteria do not know of.
+fn beyond_criteria(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+    let Some((system, _)) = scattered(scene, plane) else {
+        return Vec::new();
+    };
+    let (name, reflectance) = (&system.name, &system.reflectance);
+    let mut warnings = Vec::new();
+    if reflectance.blend.is_some() || reflectance.texture.is_some() {
+        warnings.push(format!(
+            "{}: the BRDF of {name} varies over it; criteria know `brdf` alone",
+            plane.name
+        ));
+    }
+    if reflectance.brdf.lobe == Lobe::Lambertian {
+        warnings.push(format!(
+            "{}: {name} is Lambertian; criteria are of lobes",
+            plane.name
+        ));
+    }
+    warnings
 }
 
 /// A bandwidth at the end of the grid is that of the grid. Of a spectrum that is even all over it, it is 95 % of the largest frequency.

@@ -272,7 +272,8 @@ pub struct AxisFile {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename = "Run", deny_unknown_fields, default)]
 pub struct RunFile {
-    /// Photons emitted.
+    /// Photons emitted; 1e7 is a number too.
+    #[serde(deserialize_with = "count")]
     pub photons: u64,
     /// Seed of the photons.
     pub seed: u64,
@@ -294,6 +295,34 @@ impl Default for RunFile {
             emission: Emission::Aimed,
         }
     }
+}
+
+/// A whole number, in whatever way it is written.
+fn count<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
+    struct Count;
+    impl serde::de::Visitor<'_> for Count {
+        type Value = u64;
+
+        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+            f.write_str("a whole number, such as 10_000_000 or 1e7")
+        }
+
+        fn visit_u64<E>(self, value: u64) -> Result<u64, E> {
+            Ok(value)
+        }
+
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a whole number that f64 holds exactly"
+        )]
+        fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<u64, E> {
+            let fits = (0.0..=9.0e15).contains(&value) && value.fract() == 0.0;
+            let refused = || E::invalid_value(serde::de::Unexpected::Float(value), &self);
+            fits.then_some(value as u64).ok_or_else(refused)
+        }
+    }
+    deserializer.deserialize_any(Count)
 }
 
 /// How photons leave the light.

@@ -253,6 +253,26 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
 }
 
 #[test]
+fn counts_are_written_as_people_write_them() {
+    for (count, photons) in [
+        ("1e6", Some(1_000_000)),
+        ("2_000", Some(2_000)),
+        ("1.5", None),
+        ("-1", None),
+    ] {
+        let run = format!("run: (photons: {count}), window:");
+        let file = SceneFile::parse(&text().replacen("window:", &run, 1));
+        match photons {
+            Some(photons) => assert_eq!(file.unwrap().run.photons, photons, "{count}"),
+            None => {
+                let message = file.unwrap_err().to_string();
+                assert!(message.contains("whole number"), "{message}");
+            }
+        }
+    }
+}
+
+#[test]
 fn unknown_words_are_named_with_the_known_ones() {
     for (from, to, part) in [
         ("exponent: 8", "exponnt: 8", "exponent"),

@@ -82,9 +82,17 @@ impl Resolver<'_> {
             None => Frame::new(origin, d, DVec3::X).or_else(|| Frame::new(origin, d, DVec3::Y)),
         };
         if frame.is_none() && d.is_finite() {
-            let allowed = "a direction, with `along` not parallel to it";
-            self.faults
-                .add(format!("{of}.facing"), show(facing), allowed);
+            match along {
+                Some(along) if DVec3::from(*along) == DVec3::ZERO => {
+                    let allowed = "a direction";
+                    self.faults.add(format!("{of}.along"), show(along), allowed);
+                }
+                _ => {
+                    let allowed = "a direction, with `along` not parallel to it";
+                    let field = format!("{of}.facing");
+                    self.faults.add(field, show(facing), allowed);
+                }
+            }
         }
         Some(PatchObject {
             name: name.clone(),

@@ -4,7 +4,7 @@ use super::System;
 use crate::geometry::{Map, Matrix};
 use crate::rays::words::{self, degrees, number};
 use crate::rays::{Incidence, Plane, Ray};
-use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern};
+use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity};
 use glam::DVec3;
 
 /// What the central ray does, to first order in the neighbourhood.
@@ -72,7 +72,14 @@ pub fn chain(system: &System, plane: &Plane) -> Option<Chain> {
     let [.., longitude, latitude] = leaves([0.0; 4])?;
     let outgoing = [longitude, latitude];
     let curvature = incidence.shape(&system.patch, arriving.origin);
-    let steps = steps(system, plane, &incidence, distance, outgoing);
+    let mut steps = steps(system, plane, &incidence, distance, outgoing);
+    if plane.quantity == Quantity::DifferentialIrradiance {
+        let cosine = match plane.orientation {
+            Orientation::Orthogonal => "multiply  cosine, G = (1 + u² + v²)⁻²",
+            _ => "multiply  cosine, cos⁺ θ cos² φ",
+        };
+        steps.push(cosine.to_owned());
+    }
     Some(Chain {
         onto,
         off,
