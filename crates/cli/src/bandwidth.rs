@@ -28,7 +28,10 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
                 path: args.scene.path.clone(),
                 set,
             };
-            load::scene(&scene, |run| args.photons.set(run))
+            load::scene(&scene, |run| args.photons.set(run)).map_err(|failure| Failure {
+                message: said_at(point, failure.message),
+                ..failure
+            })
         })
         .collect();
     let scenes = scenes?;
@@ -233,13 +236,8 @@ fn of(
             let (value, error) = (found.map(|f| f.value), found.map(|f| f.error));
             row.numbers.extend([exact, value, error]);
             let most = exact.into_iter().chain(value).fold(0.0, f64::max);
-            row.warnings.extend(warning(plane, most).map(|text| {
-                if point.is_empty() {
-                    text
-                } else {
-                    format!("{}: {text}", shown(point))
-                }
-            }));
+            row.warnings
+                .extend(warning(plane, most).map(|text| said_at(point, text)));
         }
         Ok(row)
     };
@@ -250,6 +248,15 @@ fn of(
 fn shown(point: &[(String, f64)]) -> String {
     let parts: Vec<String> = point.iter().map(|(p, x)| format!("{p}={x:?}")).collect();
     parts.join(", ")
+}
+
+/// A text about a point of the sweep, which it names.
+fn said_at(point: &[(String, f64)], text: String) -> String {
+    if point.is_empty() {
+        text
+    } else {
+        format!("{}: {text}", shown(point))
+    }
 }
 
 /// What the criteria do not know of.

@@ -60,7 +60,7 @@ fn bad_sweeps_and_scenes_are_refused() {
     let refusals: [(&str, &[&str]); 4] = [
         (
             "bandwidth glossy.ron --csv out --sweep surfaces.0.from.Sphere=0..1:3",
-            &["surfaces.0.from.Sphere", "no field `from`"],
+            &["surfaces.0.from.Sphere=0.0: no field `from`"],
         ),
         (
             "bandwidth glossy.ron --csv out --sweep surfaces.0.form.Sphere=0..1:3 --sweep surfaces.0.facing.0=0..1:2",
