@@ -250,9 +250,9 @@ fn shown(point: &[(String, f64)]) -> String {
     parts.join(", ")
 }
 
-/// A text about a point of the sweep, which it names.
+/// A text about a point of the sweep, which it then names.
 fn said_at(point: &[(String, f64)], text: String) -> String {
-    if point.is_empty() {
+    if point.is_empty() || text.contains(&shown(point)) {
         text
     } else {
         format!("{}: {text}", shown(point))
