@@ -15,6 +15,8 @@ use std::f64::consts::TAU;
 const NODES: usize = 5;
 /// Nodes for each cycle.
 const NODES_PER_CYCLE: f64 = 5.0;
+/// Nodes beyond which bars so fine that a cell of a picture holds dozens are only sampled.
+const MOST_NODES: f64 = 200.0;
 
 /// The windowed light field integrated over y and v, as means over cells of (x, u).
 ///
@@ -119,7 +121,7 @@ impl<'a> Cells<'a> {
         let cycles = gratings
             .iter()
             .map(|(g, h)| g.frequency.abs() * (cell[0] + h.abs() * cell[1]));
-        let nodes = NODES + whole(cycles.sum::<f64>() * NODES_PER_CYCLE);
+        let nodes = NODES + whole((cycles.sum::<f64>() * NODES_PER_CYCLE).min(MOST_NODES));
         let nodes = gauss_legendre(nodes).into_iter();
         Self {
             window,
