@@ -192,7 +192,7 @@ fn a_wrong_parameter_is_rejected_and_measured() {
 /// A quadrature whose error is as large as the disagreement, or not below the noise where there is none, decides nothing; smaller ones change nothing.
 #[test]
 fn a_coarse_quadrature_decides_nothing() {
-    let judged = |truth: f64, share: Option<f64>| {
+    let judged = |truth: f64, share: f64| {
         let [truth, _] = spectrum(truth);
         let measurement = measurement(&truth, 0.02, 2);
         let compared = |quadrature_error| {
@@ -205,7 +205,7 @@ fn a_coarse_quadrature_decides_nothing() {
         };
         let plain = compared(None);
         let [noise, excess] = [plain.noise_limit, plain.excess].map(Option::unwrap);
-        compared(share.map(|share| share * excess.max(noise)))
+        compared(Some(share * excess.max(noise)))
     };
     for (truth, share, verdict) in [
         (1.0, 0.4, Verdict::Pass),
@@ -213,7 +213,7 @@ fn a_coarse_quadrature_decides_nothing() {
         (1.02, 0.9, Verdict::Fail),
         (1.02, 1.1, Verdict::Undecided),
     ] {
-        let report = judged(truth, Some(share));
+        let report = judged(truth, share);
         assert_eq!(report.verdict, verdict, "{truth} {share}: {report:?}");
         assert_eq!(report.photons_needed, None);
     }

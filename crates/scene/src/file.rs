@@ -9,6 +9,7 @@ pub use surface::{
 };
 
 use crate::SceneError;
+use crate::overrides::whole;
 use etendue_field::{Orientation, Profile, Quantity};
 use serde::{Deserialize, Serialize};
 
@@ -311,15 +312,9 @@ fn count<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u64, D::Er
             Ok(value)
         }
 
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a whole number that f64 holds exactly"
-        )]
         fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<u64, E> {
-            let fits = (0.0..=9.0e15).contains(&value) && value.fract() == 0.0;
             let refused = || E::invalid_value(serde::de::Unexpected::Float(value), &self);
-            fits.then_some(value as u64).ok_or_else(refused)
+            whole(value).ok_or_else(refused)
         }
     }
     deserializer.deserialize_any(Count)
