@@ -23,6 +23,7 @@ mod file;
 mod mesh;
 mod overrides;
 mod picture;
+mod read;
 mod resolve;
 mod scene;
 
@@ -33,9 +34,10 @@ pub use file::{
     MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, SceneFile, ShapeFile,
     SphericalGaussianFile, SurfaceFile, WindowFile,
 };
-pub use mesh::{Mesh, MeshError};
+pub use mesh::Mesh;
+pub use read::{ReadError, read_below, read_file};
 pub use resolve::resolve;
 pub use scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene,
-    SmoothMesh, Surface,
+    SmoothMesh, Surface, scene_hash,
 };

@@ -13,12 +13,9 @@ mod ply;
 mod star;
 mod text;
 
-pub use error::MeshError;
-
 use crate::fault::Fault;
 use error::fault;
 use glam::{DAffine3, DVec3};
-use std::fs;
 use std::path::Path;
 
 /// The largest coordinate, as everywhere in a scene.
@@ -65,7 +62,7 @@ impl Mesh {
         })
     }
 
-    /// Reads an OBJ or a PLY file, told apart by the extension in any case.
+    /// Reads the bytes of an OBJ or a PLY file, told apart by the extension of `file` in any case.
     ///
     /// OBJ: `v` and `f` make the mesh, all objects and groups together; normals, texture coordinates, colors,
     /// weights, materials, points and lines are passed over, free-form surfaces are refused. PLY: ASCII and
@@ -74,28 +71,11 @@ impl Mesh {
     /// for convex ones. Triangles of zero area are dropped where others remain.
     ///
     /// # Errors
-    /// The first fault found: the file, the place in it, the value and what is allowed. Elements are counted
+    /// The first fault found: the place in the file, the value and what is allowed. Elements are counted
     /// as the format counts them, OBJ from 1 and PLY from 0; lines and corners from 1.
-    pub fn load(file: &Path) -> Result<Self, MeshError> {
-        let unreadable = |source| MeshError::Unreadable {
-            file: file.into(),
-            source,
-        };
-        // A pipe or a device might never end.
-        if !fs::metadata(file).map_err(unreadable)?.is_file() {
-            let fault = fault("this path", "not a file", "a file");
-            return Err(MeshError::value(file, fault));
-        }
-        Self::parse(file, &fs::read(file).map_err(unreadable)?)
-    }
-
-    /// As [`Mesh::load`], of bytes already read; `file` gives the format, and its name to the messages.
-    ///
-    /// # Errors
-    /// As [`Mesh::load`].
-    pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, MeshError> {
+    pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
         let extension = file.extension().unwrap_or_default().to_string_lossy();
-        let mesh = match extension.to_ascii_lowercase().as_str() {
+        match extension.to_ascii_lowercase().as_str() {
             "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
             "obj" => obj::read(bytes),
             "ply" => ply::read(bytes),
@@ -104,8 +84,7 @@ impl Mesh {
                 text::quoted(extension.as_bytes()),
                 "obj, ply",
             )),
-        };
-        mesh.map_err(|fault| MeshError::value(file, fault))
+        }
     }
 
     /// The mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices as `uint`.

@@ -4,7 +4,6 @@ use crate::fault::Fault;
 use etendue_field::Raster;
 use exr::meta::MetaData;
 use exr::prelude::{AnyChannels, FlatSamples, ReadChannels, ReadLayers};
-use std::fs;
 use std::io::Cursor;
 use std::path::Path;
 
@@ -14,26 +13,25 @@ const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 /// Most numbers in a file: 8192 × 4096 pixels of red, green, blue and alpha.
 const MOST: usize = 1 << 27;
 
-/// Reads a picture, its format told by the extension in any case.
+/// Most numbers in a byte of a file: DEFLATE makes at most 1032 bytes of one (RFC 1951; zlib's technical
+/// notes), which are as many numbers of a PNG file and half as many of an OpenEXR file. So memory is
+/// taken for what a file can hold, not for what its header claims.
+const MOST_PER_BYTE: usize = 1032;
+
+/// Reads the bytes of a picture, its format told by the extension of `file` in any case.
 ///
 /// OpenEXR: the first layer with channels R, G and B, whose luminance it is, or Y; all its data window. PNG: grey or colour of 8 or 16 bits, its
 /// levels as they are with full at 1: no transfer curve is undone; alpha is passed over.
-pub(crate) fn load(file: &Path, extensions: &[&str]) -> Result<Raster, Fault> {
+pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Raster, Fault> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     let extension = extension.to_ascii_lowercase();
     if !extensions.contains(&extension.as_str()) {
         let shown = format!("{extension:?}");
         return Err(fault("the extension", shown, extensions.join(", ")));
     }
-    let unreadable = |error| fault("the file", format!("unreadable ({error})"), "a picture");
-    // A pipe or a device might never end.
-    if !fs::metadata(file).map_err(unreadable)?.is_file() {
-        return Err(fault("the path", "not a file", "a file"));
-    }
-    let bytes = fs::read(file).map_err(unreadable)?;
     match extension.as_str() {
-        "png" => png(&bytes),
-        _ => exr(&bytes),
+        "png" => png(bytes),
+        _ => exr(bytes),
     }
 }
 
@@ -46,13 +44,14 @@ fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<Stri
     }
 }
 
-/// Refuses a picture that is too large.
-fn limited(numbers: Option<usize>) -> Result<(), Fault> {
+/// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.
+fn limited(numbers: Option<usize>, length: usize) -> Result<(), Fault> {
+    let most = MOST.min(length.saturating_mul(MOST_PER_BYTE));
     match numbers {
-        Some(numbers) if numbers <= MOST => Ok(()),
+        Some(numbers) if numbers <= most => Ok(()),
         _ => {
             let shown = numbers.map_or("countless".to_owned(), |n| n.to_string());
-            let allowed = format!("at most {MOST} numbers");
+            let allowed = format!("at most {most} numbers in a file of {length} bytes");
             Err(fault("the number of pixels times channels", shown, allowed))
         }
     }
@@ -77,7 +76,7 @@ fn exr(bytes: &[u8]) -> Result<Raster, Fault> {
         let pixels = header.layer_size.0.checked_mul(header.layer_size.1)?;
         pixels.checked_mul(header.channels.list.len())
     });
-    limited(sizes.sum::<Option<usize>>())?;
+    limited(sizes.sum::<Option<usize>>(), bytes.len())?;
     let image = exr::prelude::read()
         .no_deep_data()
         .largest_resolution_level()
@@ -137,10 +136,12 @@ fn png(bytes: &[u8]) -> Result<Raster, Fault> {
     decoder.set_transformations(png::Transformations::EXPAND);
     let info = decoder.read_header_info().map_err(unsound)?;
     let [width, height] = [info.width, info.height].map(|n| usize::try_from(n).unwrap_or(MOST));
-    limited(width.checked_mul(height).and_then(|n| n.checked_mul(4)))?;
+    let pixels = width.checked_mul(height);
+    limited(pixels, bytes.len())?;
+    limited(pixels.and_then(|n| n.checked_mul(4)), usize::MAX)?;
     let mut reader = decoder.read_info().map_err(unsound)?;
     let size = reader.output_buffer_size();
-    limited(size.map(|bytes| bytes / 2))?;
+    limited(size.map(|bytes| bytes / 2), bytes.len())?;
     let mut buffer = vec![0; size.unwrap_or_default()];
     let frame = reader.next_frame(&mut buffer).map_err(unsound)?;
     let levels: Vec<f64> = match frame.bit_depth {

@@ -12,11 +12,13 @@ mod surfaces;
 
 use crate::fault::SceneError;
 use crate::file::{RunFile, SceneFile};
+use crate::read::read_below;
 use crate::scene::{CentralRay, Object, Run, Scene};
 use etendue_field::{Frame, tidy};
 use faults::{Faults, show};
 use glam::DVec3;
 use path::Things;
+use std::collections::BTreeMap;
 use std::path::Path;
 
 /// Checks a scene file and resolves it to a scene; paths of meshes and pictures are relative to `folder`, `memory` is what
@@ -34,6 +36,7 @@ pub fn resolve(
     let scene = Resolver {
         faults: &mut faults,
         folder,
+        inputs: BTreeMap::new(),
     }
     .scene(name, file, memory);
     match scene {
@@ -47,9 +50,14 @@ const LEAST_LEVEL: f64 = 5e-4;
 /// Relative distance below which two planes across the path are one.
 const SAME_PLANE: f64 = 1e-9;
 
+/// Most bytes of a mesh or a picture.
+const MOST_BYTES: u64 = 1 << 30;
+
 struct Resolver<'a> {
     faults: &'a mut Faults,
     folder: &'a Path,
+    /// The BLAKE3 hashes of the files read from it, by the names the scene has for them.
+    inputs: BTreeMap<String, String>,
 }
 
 impl Resolver<'_> {
@@ -90,6 +98,7 @@ impl Resolver<'_> {
             meshes,
             patches,
             planes,
+            inputs: std::mem::take(&mut self.inputs),
             run: Run {
                 photons: file.run.photons,
                 seed: file.run.seed,
@@ -99,6 +108,23 @@ impl Resolver<'_> {
             },
             file,
         })
+    }
+
+    /// The bytes of a file that the scene names.
+    fn named_file(&mut self, of: &str, name: &str) -> Option<Vec<u8>> {
+        match read_below(self.folder, name, MOST_BYTES) {
+            Ok(bytes) => {
+                let hash = blake3::hash(&bytes).to_hex().to_string();
+                self.inputs.insert(name.to_owned(), hash);
+                Some(bytes)
+            }
+            Err(error) => {
+                let allowed = "a file in the folder of the scene file or below, links followed";
+                self.faults
+                    .add(of, format!("{} ({error})", show(name)), allowed);
+                None
+            }
+        }
     }
 
     fn frame(&mut self, file: &SceneFile) -> Option<Frame> {

@@ -3,6 +3,7 @@ use etendue_field::{
     Frame, Light, Lobe, Mask, Patch, Rectangle, Reflectance, Specular, VirtualPlane,
 };
 use glam::DVec3;
+use std::collections::BTreeMap;
 
 /// A checked experiment. Distances are along the central ray from the light, blockers lie across its first leg, and
 /// all coordinates are those of the frame at the light.
@@ -26,6 +27,8 @@ pub struct Scene {
     pub meshes: Vec<MeshObject>,
     /// Where light is looked at, in the order of the file.
     pub planes: Vec<VirtualPlane>,
+    /// BLAKE3 of each mesh and picture read, by the name the file has for it.
+    pub inputs: BTreeMap<String, String>,
     /// How it is measured.
     pub run: Run,
 }
@@ -250,6 +253,13 @@ impl Surface {
 }
 
 impl Scene {
+    /// BLAKE3 of all that makes the scene: of its file, defaults and overrides included, as JSON, and after it
+    /// the name and hash of each mesh and picture it names.
+    #[must_use]
+    pub fn hash(&self) -> String {
+        scene_hash(&self.file, &self.inputs)
+    }
+
     /// The name of a surface.
     #[must_use]
     pub fn name_of(&self, object: Object) -> &str {
@@ -274,4 +284,17 @@ pub struct Run {
     pub alpha: f64,
     /// How photons leave the light.
     pub emission: Emission,
+}
+
+/// [`Scene::hash`] of a file and of the hashes of what it names.
+#[must_use]
+pub fn scene_hash(file: &SceneFile, inputs: &BTreeMap<String, String>) -> String {
+    let mut hasher = blake3::Hasher::new();
+    // Cannot fail: a scene file is plain data with finite numbers.
+    hasher.update(&serde_json::to_vec(file).unwrap_or_default());
+    for (name, hash) in inputs {
+        // Names hold no NUL, so no two lists of files give the same bytes.
+        hasher.update(format!("\0{name}\0{hash}").as_bytes());
+    }
+    hasher.finalize().to_hex().to_string()
 }

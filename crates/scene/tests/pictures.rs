@@ -237,17 +237,17 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         LOBES,
         "File(\"nowhere.exr\")",
-        "light.map, \"nowhere.exr\": the file is unreadable",
+        "light.map is \"nowhere.exr\" (No such file",
     ),
     (
         LOBES,
         "File(\"../sky.exr\")",
-        "light.map is \"../sky.exr\"; allowed: a relative path inside",
+        "light.map is \"../sky.exr\" (outside of the folder",
     ),
     (
         LOBES,
         "File(\"/sky.exr\")",
-        "light.map is \"/sky.exr\"; allowed: a relative path inside",
+        "light.map is \"/sky.exr\" (outside of the folder",
     ),
     (
         LOBES,
@@ -257,7 +257,7 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         LOBES,
         "File(\"folder.exr\")",
-        "light.map, \"folder.exr\": the path is not a file",
+        "light.map is \"folder.exr\" (not a regular file)",
     ),
     (
         LOBES,
@@ -332,6 +332,7 @@ fn each_bad_value_is_named() {
         write_exr(&at(name), [2, 2], channels, Encoding::UNCOMPRESSED);
     }
     std::fs::create_dir(at("folder.exr")).unwrap();
+    std::fs::write(at("wall.jpg"), []).unwrap();
     std::fs::write(at("empty.exr"), []).unwrap();
     for (from, to) in [("bright.exr", "cut.exr"), ("wall.png", "cut.png")] {
         let bytes = std::fs::read(at(from)).unwrap();

@@ -1,12 +1,12 @@
 use super::Resolver;
 use super::faults::show;
+use crate::Mesh;
 use crate::fault::Fault;
 use crate::file::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
 use crate::scene::{MeshObject, SmoothMesh};
-use crate::{Mesh, MeshError};
 use etendue_field::Frame;
 use glam::DVec3;
-use std::path::{Component, Path};
+use std::path::Path;
 
 /// A mesh as the file has it.
 struct Placed<'a> {
@@ -134,24 +134,15 @@ impl Resolver<'_> {
 
     fn source(&mut self, of: &str, source: &MeshSource) -> Option<Mesh> {
         match source {
-            MeshSource::File(path) if !stays_inside(path) => {
-                let allowed = "a relative path inside the folder of the scene file";
-                self.faults.add(format!("{of}.mesh"), show(path), allowed);
-                None
-            }
-            MeshSource::File(path) => match Mesh::load(&self.folder.join(path)) {
-                Ok(mesh) => Some(mesh),
-                Err(MeshError::Value { fault, .. }) => {
-                    let field = format!("{of}.mesh, {path:?}: {}", fault.field);
+            MeshSource::File(path) => {
+                let of = format!("{of}.mesh");
+                let bytes = self.named_file(&of, path)?;
+                let fault = |fault: Fault| {
+                    let field = format!("{of}, {path:?}: {}", fault.field);
                     self.faults.add(field, fault.value, fault.allowed);
-                    None
-                }
-                Err(unreadable @ MeshError::Unreadable { .. }) => {
-                    let allowed = format!("a mesh file; {unreadable}");
-                    self.faults.add(format!("{of}.mesh"), show(path), allowed);
-                    None
-                }
-            },
+                };
+                Mesh::parse(Path::new(path), &bytes).map_err(fault).ok()
+            }
             &MeshSource::Paraboloid {
                 curvatures,
                 half,
@@ -173,10 +164,4 @@ impl Resolver<'_> {
         })
         .ok()
     }
-}
-
-/// Whether a path leads nowhere but down: then a scene and its meshes can be moved together.
-pub(super) fn stays_inside(path: &str) -> bool {
-    let mut components = Path::new(path).components();
-    components.all(|c| matches!(c, Component::Normal(_)))
 }

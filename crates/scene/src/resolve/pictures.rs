@@ -2,7 +2,6 @@
 
 use super::Resolver;
 use super::faults::show;
-use super::meshes::stays_inside;
 use crate::file::EnvironmentFile;
 use crate::picture;
 use etendue_field::{
@@ -10,6 +9,7 @@ use etendue_field::{
 };
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
+use std::path::Path;
 use std::sync::Arc;
 
 /// Narrowest lobe of light, radians, and the widest: it is even to a millionth.
@@ -125,12 +125,8 @@ impl Resolver<'_> {
 
     /// The picture in a file, of numbers from 0 to `most`.
     fn picture(&mut self, of: &str, path: &str, extensions: &[&str], most: f64) -> Option<Raster> {
-        if !stays_inside(path) {
-            let allowed = "a relative path inside the folder of the scene file";
-            self.faults.add(of, show(path), allowed);
-            return None;
-        }
-        let raster = picture::load(&self.folder.join(path), extensions).map_err(|fault| {
+        let bytes = self.named_file(of, path)?;
+        let raster = picture::parse(Path::new(path), &bytes, extensions).map_err(|fault| {
             let field = format!("{of}, {path:?}: {}", fault.field);
             self.faults.add(field, fault.value, fault.allowed);
         });

@@ -1,0 +1,76 @@
+//! Files as bytes: regular ones only, of a bounded length, and below a folder where a scene names them.
+
+use std::fs::{self, File};
+use std::io::{self, Read};
+use std::path::{Component, Path};
+
+/// Why a file is not read.
+#[derive(Debug, thiserror::Error)]
+pub enum ReadError {
+    /// The system does not give its content.
+    #[error("{0}")]
+    Io(#[from] io::Error),
+    /// A folder, a pipe or a device: the last two might never end.
+    #[error("not a regular file")]
+    NotRegular,
+    /// Its path, links followed, leads out of the folder.
+    #[error("outside of the folder it must be in, links followed")]
+    Outside,
+    /// Longer than what is read of such a file.
+    #[error("{length} bytes long; at most {most} are read")]
+    TooLong {
+        /// Its length, bytes.
+        length: u64,
+        /// The most allowed, bytes.
+        most: u64,
+    },
+}
+
+/// The bytes of a regular file, at most `most` of them.
+///
+/// # Errors
+/// [`ReadError`]; a path outside of every folder is no error here.
+pub fn read_file(path: &Path, most: u64) -> Result<Vec<u8>, ReadError> {
+    // Asked before it is opened: opening a pipe waits for the other end.
+    if !fs::metadata(path)?.is_file() {
+        return Err(ReadError::NotRegular);
+    }
+    let file = File::open(path)?;
+    let length = file.metadata()?.len();
+    if length > most {
+        return Err(ReadError::TooLong { length, most });
+    }
+    let mut bytes = Vec::new();
+    // What grows while it is read is cut one byte beyond the limit.
+    file.take(most.saturating_add(1)).read_to_end(&mut bytes)?;
+    match bytes.len() as u64 {
+        length if length > most => Err(ReadError::TooLong { length, most }),
+        _ => Ok(bytes),
+    }
+}
+
+/// The bytes of the regular file `name`, which must be below `folder` when all links are followed.
+///
+/// # Errors
+/// [`ReadError`].
+pub fn read_below(folder: &Path, name: &str, most: u64) -> Result<Vec<u8>, ReadError> {
+    if !leads_down(name) {
+        return Err(ReadError::Outside);
+    }
+    // The folder of a path without one is the current one.
+    let folder = match folder.as_os_str() {
+        empty if empty.is_empty() => Path::new(".").canonicalize()?,
+        _ => folder.canonicalize()?,
+    };
+    let path = folder.join(name).canonicalize()?;
+    if !path.starts_with(&folder) {
+        return Err(ReadError::Outside);
+    }
+    read_file(&path, most)
+}
+
+/// Whether a path, as written, leads nowhere but down.
+pub(crate) fn leads_down(path: &str) -> bool {
+    let mut components = Path::new(path).components();
+    components.all(|c| matches!(c, Component::Normal(_)))
+}
