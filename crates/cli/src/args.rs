@@ -62,6 +62,9 @@ pub(crate) struct RunArgs {
     pub(crate) photons: PhotonArgs,
 
     #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 
     /// What else to keep
@@ -100,6 +103,9 @@ pub(crate) struct MeasureArgs {
     pub(crate) batches: Option<Range<u32>>,
 
     #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 
     /// Print nothing but errors
@@ -124,6 +130,9 @@ pub(crate) struct PredictArgs {
     /// Those of the measurement: where there is no theory, the other method measures as many
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
 
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
@@ -151,6 +160,9 @@ pub(crate) struct CompareArgs {
     /// Folder for the results
     #[arg(long, value_name = "DIR")]
     pub(crate) out: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
 
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
@@ -204,6 +216,13 @@ impl PhotonArgs {
 }
 
 #[derive(Debug, Args)]
+pub(crate) struct ForceArgs {
+    /// Replace files that etendue did not write, or that were changed since; each is named
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
 pub(crate) struct ThreadArgs {
     /// Threads [default: one for each core]; the results do not depend on it
     #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
@@ -218,6 +237,9 @@ pub(crate) struct CheckArgs {
     /// Draw the scene with its central ray and planes into this file (.png or .svg)
     #[arg(long, value_name = "FILE")]
     pub(crate) draw: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
 }
 
 #[derive(Debug, Args)]
@@ -246,6 +268,9 @@ pub(crate) struct ExportArgs {
     /// Folder for its files [default: out/NAME-mitsuba]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
 }
 
 #[derive(Debug, Args)]
@@ -281,6 +306,9 @@ pub(crate) struct BandwidthArgs {
 
     #[command(flatten)]
     pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
 
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,

@@ -1,16 +1,15 @@
 use crate::args::{BandwidthArgs, SceneArgs, Sweep};
 use crate::failure::Failure;
 use crate::measure::measured;
+use crate::output::OutputFile;
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{load, method, progress, say};
-use atomic_write_file::AtomicWriteFile;
 use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth, scattered};
 use etendue_field::{Lobe, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_theory::shading::Criterion;
-use std::io::Write;
-use std::path::Path;
+use std::path::PathBuf;
 
 /// `etendue bandwidth`: returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
@@ -40,7 +39,12 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
             method::check(scene, args.photons.method)?;
         }
     }
-    let csv = args.csv.as_deref().map(Csv::open).transpose()?;
+    let inputs: Vec<_> = scenes
+        .iter()
+        .flat_map(|scene| load::inputs(&args.scene, scene))
+        .collect();
+    let claim = |path: &PathBuf| OutputFile::claim(path, args.force.force, &inputs);
+    let csv = args.csv.as_ref().map(claim).transpose()?;
     let rows = on_threads(&args.threads, || {
         let is_long = args.measure && scenes.len() > 1;
         let bar = progress::steps("measuring", scenes.len(), "scenes", args.quiet || !is_long);
@@ -60,8 +64,8 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
         ));
     }
     let header = header(args);
-    if let Some(csv) = csv {
-        csv.write(&header, &rows)?;
+    if let Some(file) = csv {
+        file.write(csv_text(&header, &rows).as_bytes())?;
     }
     let mut warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
     warnings.dedup();
@@ -131,32 +135,14 @@ impl Row {
     }
 }
 
-/// A file that is there when it is whole, and not before.
-#[derive(Debug)]
-struct Csv<'a> {
-    path: &'a Path,
-    file: AtomicWriteFile,
-}
-
-impl<'a> Csv<'a> {
-    /// Proves that the file can be written, so that a long sweep does not end in vain.
-    fn open(path: &'a Path) -> Result<Self, Failure> {
-        let file = AtomicWriteFile::open(path).map_err(|e| Failure::write(path, e))?;
-        Ok(Self { path, file })
-    }
-
-    fn write(mut self, header: &[String], rows: &[Row]) -> Result<(), Failure> {
-        let line = |cells: &[String]| {
-            let cells: Vec<String> = cells.iter().map(|cell| quoted(cell)).collect();
-            cells.join(",") + "\n"
-        };
-        let lines = rows.iter().map(|row| line(&row.record()));
-        let text: String = std::iter::once(line(header)).chain(lines).collect();
-        self.file
-            .write_all(text.as_bytes())
-            .and_then(|()| self.file.commit())
-            .map_err(|e| Failure::write(self.path, e))
-    }
+/// The table as CSV.
+fn csv_text(header: &[String], rows: &[Row]) -> String {
+    let line = |cells: &[String]| {
+        let cells: Vec<String> = cells.iter().map(|cell| quoted(cell)).collect();
+        cells.join(",") + "\n"
+    };
+    let lines = rows.iter().map(|row| line(&row.record()));
+    std::iter::once(line(header)).chain(lines).collect()
 }
 
 /// A cell of a CSV file.

@@ -29,6 +29,12 @@ fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/batches.npz", plane.name)
 }
 
+/// The names of the files of a measurement.
+pub(crate) fn names(planes: &[VirtualPlane]) -> Vec<String> {
+    let each = planes.iter().map(file_of);
+    each.chain([LEDGER.to_owned()]).collect()
+}
+
 /// Writes all batches of a measurement.
 pub(crate) fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Failure> {
     let flux = measurement.batches().map(|batch| {
@@ -99,6 +105,10 @@ where
 /// Reads the batches of a stage of `planes`.
 pub(crate) fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Measurement, Failure> {
     let held = &stored.index.content;
+    let seed = stored.index.scene_file.run.seed;
+    if held.seed != seed {
+        return Err(stored.fault(format!("seed {}; that of its scene is {seed}", held.seed)));
+    }
     let mut file = stored.npz(LEDGER)?;
     let rows = Rows::read(&mut file, held)?;
     let ledger: Array2<f64> = file.array("ledger", [rows.numbers.len(), 4])?;
@@ -160,6 +170,7 @@ fn plane_batches(
     if Rows::read(file, held)? != *rows {
         return Err(file.fault("emitted", format!("must be as in {LEDGER}")));
     }
+    file.check_half_axes(&plane.grid)?;
     let count = rows.numbers.len();
     let [azimuths, rho, nu] = plane.grid.half_shape();
     let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);

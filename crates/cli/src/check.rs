@@ -1,5 +1,6 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
+use crate::output::OutputFile;
 use crate::{load, pictures, say};
 use etendue_compare::{Class, affine_chain, steps};
 use etendue_field::{Orientation, tidy};
@@ -9,9 +10,19 @@ use etendue_theory::rays::FirstOrder;
 /// `etendue check`: returns the exit code.
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |_| ())?;
+    let inputs = load::inputs(&args.scene, &scene);
+    let picture = args.draw.as_ref().map(|path| {
+        let bytes = pictures::drawn_scene(&scene, path)?;
+        Ok((
+            path,
+            bytes,
+            OutputFile::claim(path, args.force.force, &inputs)?,
+        ))
+    });
+    let picture = picture.transpose()?;
     say(&description(&scene));
-    if let Some(path) = &args.draw {
-        pictures::draw_scene(&scene, path)?;
+    if let Some((path, bytes, file)) = picture {
+        file.write(&bytes)?;
         say(&format!("\ndrawn in {}", path.display()));
     }
     Ok(0)

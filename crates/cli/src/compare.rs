@@ -1,9 +1,9 @@
 use crate::args::CompareArgs;
 use crate::batches::{self, Held};
-use crate::conclude::{Case, Ending, conclude};
+use crate::conclude::{Case, Ending, conclude, plan};
 use crate::failure::Failure;
-use crate::results::{Results, SUMMARY};
-use crate::stored::{MEASUREMENT, PREDICTION, Stored};
+use crate::results::{MEASUREMENT, PREDICTION, Results};
+use crate::stored::Stored;
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
 use crate::{predictions, progress, say};
@@ -11,6 +11,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use serde_json::json;
 use std::ops::Range;
+use std::path::PathBuf;
 
 /// The fewest batches errors are taken from, as in a scene.
 const LEAST_BATCHES: usize = 32;
@@ -19,10 +20,11 @@ const LEAST_BATCHES: usize = 32;
 pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     let stage = progress::stage("reading", args.quiet);
-    let case = read(args)?;
+    let (case, inputs) = read(args)?;
     stage.finish_and_clear();
     watch.lap("read");
-    let results = Results::create(&args.out, SUMMARY)?;
+    let plan = plan(&case.scene, &[], inputs, args.force.force);
+    let results = Results::claim(&args.out, plan)?;
     let (held, all) = (case.measurement.batches().len(), case.scene.run.batches);
     if !args.quiet && held < all as usize {
         say(&format!("{held} of {all} batches were measured"));
@@ -35,8 +37,8 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     on_threads(&args.threads, || conclude(&case, &ending, results, watch))
 }
 
-/// All that was measured and predicted, if it fits together.
-fn read(args: &CompareArgs) -> Result<Case, Failure> {
+/// All that was measured and predicted, if it fits together, and the files it was read from.
+fn read(args: &CompareArgs) -> Result<(Case, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();
     let shards: Vec<Stored<Held>> = shards
         .map(|folder| Stored::read(folder, MEASUREMENT))
@@ -49,12 +51,19 @@ fn read(args: &CompareArgs) -> Result<Case, Failure> {
     first.check_scene(&predicted, false)?;
     let scene = first.scene()?;
     let measurement = merged(&shards, &scene)?;
-    Ok(Case {
-        method: first.index.content.method,
-        predictions: predictions::read(&predicted, &scene)?,
+    let method = first.index.content.method;
+    let inputs = shards
+        .iter()
+        .flat_map(Stored::paths)
+        .chain(predicted.paths());
+    let inputs = inputs.collect();
+    let case = Case {
+        method,
+        predictions: predictions::read(&predicted, &scene, method)?,
         measurement,
         scene,
-    })
+    };
+    Ok((case, inputs))
 }
 
 /// Batches of different experiments are no replicates of each other.

@@ -1,10 +1,11 @@
 use crate::args::{Expect, Save};
 use crate::failure::Failure;
 use crate::method::Method;
-use crate::results::Results;
+use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
 use crate::{field, files, photons, pictures, progress, say, table};
 use etendue_compare::{PlaneComparison, Prediction, Verdict, compare, sidak};
+use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use std::path::PathBuf;
@@ -27,6 +28,34 @@ pub(crate) struct Ending<'a> {
     pub(crate) quiet: bool,
 }
 
+/// What a comparison of a scene writes.
+pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> Plan {
+    let of_plane = |plane: &VirtualPlane| {
+        let mut names = [files::NAMES.as_slice(), pictures::NAMES.as_slice()].concat();
+        if save.contains(&Save::Photons) {
+            names.extend(photons::NAMES);
+        }
+        if save.contains(&Save::Field) {
+            names.extend(field::NAMES);
+        }
+        let names = names.into_iter();
+        let names = names.map(|name| format!("{}/{name}", plane.name));
+        names.collect::<Vec<_>>()
+    };
+    let beside = pictures::PATH_NAMES.into_iter().chain([TIMING]);
+    Plan {
+        index: SUMMARY,
+        files: scene
+            .planes
+            .iter()
+            .flat_map(of_plane)
+            .chain(beside.map(str::to_owned))
+            .collect(),
+        inputs,
+        force,
+    }
+}
+
 /// Compares, draws and writes the result; returns the exit code.
 pub(crate) fn conclude(
     case: &Case,
@@ -39,14 +68,15 @@ pub(crate) fn conclude(
     watch.lap("compare");
     stage.set_message("writing results");
     let summary = Summary::new(case, &planes);
-    let mut removed = results.begin()?;
-    let folder = written(case, ending, results, &summary, &planes, watch)?;
+    let finished = written(case, ending, results, &summary, &planes, watch)?;
     stage.finish_and_clear();
+    finished.tell_replaced(ending.quiet);
     if !ending.quiet {
-        table::print(&summary, &folder);
-        removed.retain(|name| name.ends_with(".npy") && !folder.join(name).exists());
-        if !removed.is_empty() {
-            let names = removed.join(", ");
+        table::print(&summary, &finished.folder);
+        let mut gone = finished.gone.clone();
+        gone.retain(|name| name.ends_with(".npy"));
+        if !gone.is_empty() {
+            let names = gone.join(", ");
             say(&format!(
                 "removed with the earlier result, not saved again: {names}"
             ));
@@ -79,7 +109,7 @@ fn written(
     summary: &Summary,
     planes: &[PlaneComparison],
     mut watch: Stopwatch,
-) -> Result<PathBuf, Failure> {
+) -> Result<Finished, Failure> {
     let each = case.predictions.iter().zip(planes);
     for ((prediction, plane), at) in each.zip(&case.scene.planes) {
         files::write(&mut results, summary, plane)?;
@@ -93,6 +123,6 @@ fn written(
         field::save(&mut results, case, ending.quiet)?;
     }
     watch.lap("write");
-    results.write_unlisted("timing.json", &watch.json(summary.photons))?;
+    results.write_unlisted(TIMING, &watch.json(summary.photons))?;
     results.finish(|files| summary.json(files))
 }

@@ -1,7 +1,10 @@
 use crate::args::ExportArgs;
 use crate::failure::Failure;
+use crate::results::{EXPORT, Plan, Results};
+use crate::stored::VERSION;
+use crate::summary::json;
 use crate::{load, say};
-use std::fs;
+use serde_json::json as tree_of;
 use std::path::Path;
 
 /// `etendue export`: returns the exit code.
@@ -13,11 +16,25 @@ pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("out").join(format!("{}-mitsuba", scene.name)));
-    fs::create_dir_all(&folder).map_err(|e| Failure::write(&folder, e))?;
+    let plan = Plan {
+        index: EXPORT,
+        files: export.files.iter().map(|(name, _)| name.clone()).collect(),
+        inputs: load::inputs(&args.scene, &scene),
+        force: args.force.force,
+    };
+    let mut results = Results::claim(&folder, plan)?;
     for (name, bytes) in &export.files {
-        let path = folder.join(name);
-        fs::write(&path, bytes).map_err(|e| Failure::write(&path, e))?;
+        results.write(name, bytes)?;
     }
+    let finished = results.finish(|files| {
+        json(&tree_of!({
+            "scene": scene.name,
+            "scene_hash": scene.hash(),
+            "version": VERSION,
+            "files": files,
+        }))
+    })?;
+    finished.tell_replaced(false);
     say(&format!("{}: exported to {}", scene.name, folder.display()));
     Ok(0)
 }

@@ -18,6 +18,9 @@ use ndarray_npy::WriteNpyExt;
 use serde::Serialize;
 use std::io;
 
+/// The files of a plane.
+pub(crate) const NAMES: [&str; 3] = ["field.npy", "field.json", "full_radial.npz"];
+
 /// `field.json`.
 #[derive(Serialize)]
 struct Index {

@@ -13,6 +13,9 @@ use exr::prelude::{
 use ndarray::{Array1, Array2};
 use std::io::Cursor;
 
+/// The files of a plane.
+pub(crate) const NAMES: [&str; 3] = ["slices.npz", "radial.npz", "radial.exr"];
+
 pub(crate) fn write(
     results: &mut Results,
     summary: &Summary,

@@ -2,9 +2,12 @@ use crate::args::SceneArgs;
 use crate::failure::Failure;
 use crate::machine;
 use crate::results::Results;
-use etendue_scene::{RunFile, Scene, SceneError, SceneFile, resolve};
-use std::fs;
-use std::path::Path;
+use crate::stored::copy_of;
+use etendue_scene::{RunFile, Scene, SceneError, SceneFile, read_below, read_file, resolve};
+use std::path::{Path, PathBuf};
+
+/// Most bytes of a scene file.
+const MOST_SCENE: u64 = 1 << 24;
 
 /// Reads, overrides and resolves the scene named on the command line; `options` are overrides of the command
 /// line's own.
@@ -14,10 +17,12 @@ pub(crate) fn scene(
 ) -> Result<Scene, Failure> {
     let path = &args.path;
     let shown = path.display();
-    let text = fs::read_to_string(path)
-        .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+    let unreadable =
+        |e: &dyn std::fmt::Display| Failure::bad_input(format!("cannot read {shown}: {e}"));
+    let bytes = read_file(path, MOST_SCENE).map_err(|e| unreadable(&e))?;
+    let text = str::from_utf8(&bytes).map_err(|e| unreadable(&e))?;
     let mut file =
-        SceneFile::parse(&text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
+        SceneFile::parse(text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
     for (field, value) in &args.set {
         file = file.with(field, value).map_err(Failure::bad_input)?;
     }
@@ -31,18 +36,37 @@ fn folder(args: &SceneArgs) -> &Path {
     args.path.parent().unwrap_or(Path::new(""))
 }
 
+/// The scene file, and all that it names.
+pub(crate) fn inputs(args: &SceneArgs, scene: &Scene) -> Vec<PathBuf> {
+    let named = scene.inputs.keys().map(|name| folder(args).join(name));
+    named.chain([args.path.clone()]).collect()
+}
+
+/// The names of the copies that [`copy_inputs`] makes.
+pub(crate) fn copies<'a>(scene: &'a Scene, index: &str) -> impl Iterator<Item = String> + 'a {
+    let index = index.to_owned();
+    let names = scene.inputs.keys();
+    names.map(move |name| copy_of(&index, name))
+}
+
 /// Copies the meshes and pictures of a scene into a stage's folder, where the next stage looks for them.
-pub(crate) fn copy_files(
+pub(crate) fn copy_inputs(
     results: &mut Results,
+    index: &str,
     scene: &Scene,
     args: &SceneArgs,
 ) -> Result<(), Failure> {
-    for name in scene.file.named_files() {
+    for (name, hash) in &scene.inputs {
         let path = folder(args).join(name);
         let shown = path.display();
-        let bytes =
-            fs::read(&path).map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
-        results.write(name, &bytes)?;
+        let bytes = read_below(folder(args), name, u64::MAX)
+            .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+        if *hash != blake3::hash(&bytes).to_hex().as_str() {
+            return Err(Failure::bad_input(format!(
+                "{shown} changed while it was read"
+            )));
+        }
+        results.write(&copy_of(index, name), &bytes)?;
     }
     Ok(())
 }

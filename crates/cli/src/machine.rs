@@ -1,19 +1,85 @@
 //! What this machine has, as far as it says so (Linux); elsewhere nothing is known and nothing refused.
 
 use std::fs;
+use std::path::{Path, PathBuf};
 
-/// Memory that can be taken without swapping, in bytes.
+/// Memory that this process may still take without swapping, in bytes: of the machine, of the control groups it is
+/// in, and of its own limits (`ulimit -v`, `ulimit -d`).
 pub(crate) fn available_memory() -> u64 {
-    kilobytes("/proc/meminfo", "MemAvailable:").map_or(u64::MAX, |kb| kb * 1024)
+    let machine = kilobytes("/proc/meminfo", "MemAvailable:");
+    let limits = [
+        limit("Max address space").zip(kilobytes("/proc/self/status", "VmSize:")),
+        limit("Max data size").zip(kilobytes("/proc/self/status", "VmData:")),
+    ];
+    let limits = limits.into_iter().flatten();
+    let limits = limits.map(|(limit, used)| limit.saturating_sub(used));
+    let all = limits.chain(machine).chain(control_groups());
+    all.min().unwrap_or(u64::MAX)
 }
 
 /// The most memory this process has held, in bytes.
 pub(crate) fn peak_memory() -> Option<u64> {
-    kilobytes("/proc/self/status", "VmHWM:").map(|kb| kb * 1024)
+    kilobytes("/proc/self/status", "VmHWM:")
 }
 
-fn kilobytes(file: &str, field: &str) -> Option<u64> {
+/// Whether a signal was ignored when this process began, as `nohup` has it.
+pub(crate) fn ignores(signal: i32) -> bool {
+    let read = || {
+        let text = fs::read_to_string("/proc/self/status").ok()?;
+        let mask = field(&text, "SigIgn:")?;
+        let mask = u64::from_str_radix(mask, 16).ok()?;
+        Some(mask >> (signal - 1) & 1 == 1)
+    };
+    read().unwrap_or(false)
+}
+
+/// What is left in each control group around this process, of version 2 or 1.
+fn control_groups() -> impl Iterator<Item = u64> {
+    let text = fs::read_to_string("/proc/self/cgroup").unwrap_or_default();
+    let groups: Vec<PathBuf> = text.lines().flat_map(folders).collect();
+    groups.into_iter().filter_map(|folder| left_in(&folder))
+}
+
+/// The folders of a control group and those around it, from a line `number:controllers:path`.
+fn folders(line: &str) -> Vec<PathBuf> {
+    let mut parts = line.splitn(3, ':').skip(1);
+    let root = match parts.next() {
+        Some("") => "/sys/fs/cgroup",
+        Some(controllers) if controllers.split(',').any(|c| c == "memory") => {
+            "/sys/fs/cgroup/memory"
+        }
+        _ => return Vec::new(),
+    };
+    let path = parts.next().unwrap_or_default().trim_start_matches('/');
+    let ancestors = Path::new(path).ancestors();
+    ancestors.map(|path| Path::new(root).join(path)).collect()
+}
+
+/// The limit of a control group less what it uses; cached files give way and count as left.
+fn left_in(folder: &Path) -> Option<u64> {
+    let read = |name: &str| fs::read_to_string(folder.join(name)).ok();
+    let number = |name: &str| read(name)?.trim().parse::<u64>().ok();
+    let limit = number("memory.max").or_else(|| number("memory.limit_in_bytes"))?;
+    let used = number("memory.current").or_else(|| number("memory.usage_in_bytes"))?;
+    let cached = read("memory.stat").and_then(|text| field(&text, "inactive_file")?.parse().ok());
+    Some(limit.saturating_sub(used.saturating_sub(cached.unwrap_or(0))))
+}
+
+/// A limit of this process, in bytes; `None` if there is none.
+fn limit(name: &str) -> Option<u64> {
+    let text = fs::read_to_string("/proc/self/limits").ok()?;
+    field(&text, name)?.parse().ok()
+}
+
+/// A number of kilobytes, in bytes.
+fn kilobytes(file: &str, name: &str) -> Option<u64> {
     let text = fs::read_to_string(file).ok()?;
-    let line = text.lines().find(|line| line.starts_with(field))?;
-    line.split_whitespace().nth(1)?.parse().ok()
+    let kilobytes: u64 = field(&text, name)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}
+
+/// The first word behind a name that a line begins with.
+fn field<'a>(text: &'a str, name: &str) -> Option<&'a str> {
+    let rest = text.lines().find_map(|line| line.strip_prefix(name))?;
+    rest.split_whitespace().next()
 }

@@ -15,11 +15,14 @@ mod export;
 mod failure;
 mod field;
 mod files;
+mod interrupt;
 mod load;
+mod lock;
 mod machine;
 mod measure;
 mod method;
 mod npz;
+mod output;
 mod photons;
 mod pictures;
 mod predict;
@@ -27,6 +30,7 @@ mod predictions;
 mod progress;
 mod results;
 mod run;
+mod sealed;
 mod stored;
 mod summary;
 mod table;
@@ -38,7 +42,8 @@ use std::io::Write;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
-    let outcome = match Cli::parse().command {
+    let command = Cli::parse().command;
+    let outcome = interrupt::install().and_then(|()| match command {
         Command::Run(args) => run::run(&args),
         Command::Measure(args) => measure::measure(&args),
         Command::Predict(args) => predict::predict(&args),
@@ -47,7 +52,7 @@ fn main() -> ExitCode {
         Command::Converge(args) => converge::converge(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),
-    };
+    });
     match outcome {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {

@@ -2,8 +2,8 @@ use crate::args::MeasureArgs;
 use crate::batches::{self, Held};
 use crate::failure::Failure;
 use crate::method::{Method, source};
-use crate::results::Results;
-use crate::stored::{Index, MEASUREMENT};
+use crate::results::{MEASUREMENT, Plan, Results};
+use crate::stored::Index;
 use crate::table::grouped;
 use crate::threads::on_threads;
 use crate::{load, method, progress, say};
@@ -23,13 +23,19 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
             batches.start, batches.end, all.end
         )));
     }
-    let mut results = Results::create(&args.out, MEASUREMENT)?;
+    let files = batches::names(&scene.planes).into_iter();
+    let plan = Plan {
+        index: MEASUREMENT,
+        files: files.chain(load::copies(&scene, MEASUREMENT)).collect(),
+        inputs: load::inputs(&args.scene, &scene),
+        force: args.force.force,
+    };
+    let mut results = Results::claim(&args.out, plan)?;
+    load::copy_inputs(&mut results, MEASUREMENT, &scene, &args.scene)?;
     let method = args.photons.method;
     let held = on_threads(&args.threads, || {
         let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
-        results.begin()?;
         batches::write(&mut results, &measurement)?;
-        load::copy_files(&mut results, &scene, &args.scene)?;
         Ok(Held {
             seed: scene.run.seed,
             method,
@@ -38,7 +44,8 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
         })
     })?;
     let index = Index::new(&scene, held.clone());
-    let folder = index.finish(results)?;
+    let finished = index.finish(results)?;
+    finished.tell_replaced(args.quiet);
     if !args.quiet {
         say(&format!(
             "{}: measured batches {}..{} of {}, {} photons, seed {}",
@@ -49,7 +56,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
             grouped(held.photons),
             held.seed
         ));
-        say(&format!("measurement in {}", folder.display()));
+        say(&format!("measurement in {}", finished.folder.display()));
     }
     Ok(0)
 }

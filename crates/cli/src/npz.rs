@@ -38,16 +38,24 @@ impl Npz {
 
     /// Adds the frequencies of arrays [azimuth, ρ ≥ 0, ν].
     pub(crate) fn add_half_axes(self, grid: &SliceGrid) -> Result<Self, Failure> {
-        let rho = (0..=grid.rho.half).map(|i| grid.rho.value(grid.rho.half + i));
-        self.add("azimuth", &azimuths(grid))?
-            .add("rho", &rho.collect::<Array1<f64>>())?
-            .add("nu", &Array1::from(grid.nu.values()))
+        let mut axes = half_axes(grid).into_iter();
+        axes.try_fold(self, |npz, (name, values)| npz.add(name, &values))
     }
 
     pub(crate) fn bytes(self) -> Result<Vec<u8>, Failure> {
         let finished = self.0.finish().map_err(Failure::cannot_run)?;
         Ok(finished.into_inner())
     }
+}
+
+/// The axes of arrays [azimuth, ρ ≥ 0, ν].
+fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
+    let rho = (0..=grid.rho.half).map(|i| grid.rho.value(grid.rho.half + i));
+    [
+        ("azimuth", azimuths(grid)),
+        ("rho", rho.collect()),
+        ("nu", Array1::from(grid.nu.values())),
+    ]
 }
 
 /// A file to read arrays from.
@@ -87,6 +95,28 @@ impl Number for u64 {
     }
 }
 
+/// Whether the header of an NPY file is short and flat, as those of arrays of numbers are: the library takes
+/// time that doubles with each bracket inside another.
+fn has_plain_header(bytes: &[u8]) -> bool {
+    /// Those of Étendue and of NumPy have 118.
+    const LONGEST: usize = 1024;
+    let header = &bytes[..bytes.len().min(LONGEST)];
+    let length = match header {
+        // Magic, version, and the length in two or four bytes.
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 1, _, a, b, ..] => {
+            Some(10 + usize::from(u16::from_le_bytes([*a, *b])))
+        }
+        [0x93, b'N', b'U', b'M', b'P', b'Y', 2 | 3, _, a, b, 0, 0, ..] => {
+            Some(12 + usize::from(u16::from_le_bytes([*a, *b])))
+        }
+        _ => None,
+    };
+    let header = length.and_then(|length| header.get(..length));
+    // One for the dictionary and one for the shape.
+    let opening = |byte: &&u8| matches!(byte, b'{' | b'(' | b'[');
+    header.is_some_and(|header| header.iter().filter(opening).count() <= 2)
+}
+
 /// The most an NPY file has before its numbers.
 const HEADER: usize = 1 << 16;
 
@@ -112,6 +142,9 @@ impl NpzFile {
     ) -> Result<Array<A, I::Dim>, Failure> {
         let shape = shape.into_dimension();
         let bytes = self.entry(name, shape.size().saturating_mul(size_of::<A>()))?;
+        if !has_plain_header(&bytes) {
+            return Err(self.fault(name, "its header is not one of an array of numbers"));
+        }
         // A view takes no memory, whatever size the file claims the array to have: it sees that it is too short.
         let found = match ArrayView::<A, I::Dim>::view_npy(&bytes) {
             Ok(view) => view.to_owned(),
@@ -132,6 +165,17 @@ impl NpzFile {
             return Err(self.fault(name, "it holds numbers that are not finite"));
         }
         Ok(found.as_standard_layout().into_owned())
+    }
+
+    /// Its axes must be those of a grid, to the bit.
+    pub(crate) fn check_half_axes(&mut self, grid: &SliceGrid) -> Result<(), Failure> {
+        for (name, values) in half_axes(grid) {
+            let found: Array1<f64> = self.array(name, [values.len()])?;
+            if found != values {
+                return Err(self.fault(name, "must be the axis of the scene's plane"));
+            }
+        }
+        Ok(())
     }
 
     /// What is wrong with array `name`, for the user.

@@ -10,6 +10,9 @@ use etendue_scene::Scene;
 use serde::Serialize;
 use std::io::{self, Write};
 
+/// The files of a plane.
+pub(crate) const NAMES: [&str; 2] = ["photons.npy", "photons.json"];
+
 /// `photons.json`.
 #[derive(Serialize)]
 struct Index {

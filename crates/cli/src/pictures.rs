@@ -16,11 +16,22 @@ use etendue_figures::{
 };
 use etendue_scene::Scene;
 use std::cmp::Ordering;
-use std::fs;
 use std::path::Path;
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 const FLOOR: f64 = -50.0;
+
+/// The pictures of a plane, and what is behind them.
+pub(crate) const NAMES: [&str; 6] = [
+    "primal.png",
+    "primal.svg",
+    "primal.csv",
+    "spectrum.png",
+    "spectrum.svg",
+    "spectrum.csv",
+];
+/// The picture of the path, and what is behind it.
+pub(crate) const PATH_NAMES: [&str; 3] = ["path.png", "path.svg", "path.csv"];
 
 /// `primal` and `spectrum` of a plane.
 pub(crate) fn plane(
@@ -215,15 +226,15 @@ fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
 /// Metres beyond which a line is upright in any picture.
 const STEEPEST: f64 = 1e6;
 
-/// Draws the scene with its central ray and planes into a PNG or SVG file.
-pub(crate) fn draw_scene(scene: &Scene, path: &Path) -> Result<(), Failure> {
+/// Draws the scene with its central ray and planes, as a PNG or SVG file to be written at `path`.
+pub(crate) fn drawn_scene(scene: &Scene, path: &Path) -> Result<Vec<u8>, Failure> {
     let figure = section(
         &drawing::cross_section(scene, scene.planes.iter()),
         &scene.name,
         "",
     )
     .map_err(Failure::cannot_run)?;
-    let bytes = match path.extension().and_then(|e| e.to_str()) {
+    Ok(match path.extension().and_then(|e| e.to_str()) {
         Some("svg") => figure.svg.into_bytes(),
         Some("png") => figure.png().map_err(Failure::cannot_run)?,
         _ => {
@@ -233,8 +244,7 @@ pub(crate) fn draw_scene(scene: &Scene, path: &Path) -> Result<(), Failure> {
             );
             return Err(Failure::bad_input(message));
         }
-    };
-    fs::write(path, bytes).map_err(|e| Failure::write(path, e))
+    })
 }
 
 /// Writes a figure as PNG, SVG and the numbers behind it.

@@ -2,8 +2,8 @@ use crate::args::PredictArgs;
 use crate::failure::Failure;
 use crate::measure::measured;
 use crate::method::Method;
-use crate::results::Results;
-use crate::stored::{Index, PREDICTION};
+use crate::results::{PREDICTION, Plan, Results};
+use crate::stored::Index;
 use crate::threads::on_threads;
 use crate::{load, method, predictions, progress, say};
 use etendue_compare::{Class, Prediction};
@@ -14,18 +14,26 @@ use etendue_scene::Scene;
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     method::check(&scene, args.photons.method)?;
-    let mut results = Results::create(&args.out, PREDICTION)?;
+    let files = predictions::names(&scene.planes).into_iter();
+    let plan = Plan {
+        index: PREDICTION,
+        files: files.chain(load::copies(&scene, PREDICTION)).collect(),
+        inputs: load::inputs(&args.scene, &scene),
+        force: args.force.force,
+    };
+    let mut results = Results::claim(&args.out, plan)?;
+    load::copy_inputs(&mut results, PREDICTION, &scene, &args.scene)?;
     let content = on_threads(&args.threads, || {
-        let predictions = predicted(&scene, args.photons.method, args.quiet)?;
-        results.begin()?;
-        load::copy_files(&mut results, &scene, &args.scene)?;
-        predictions::write(&mut results, &scene, &predictions)
+        let method = args.photons.method;
+        let predictions = predicted(&scene, method, args.quiet)?;
+        predictions::write(&mut results, &scene, method, &predictions)
     })?;
-    let folder = Index::new(&scene, content).finish(results)?;
+    let finished = Index::new(&scene, content).finish(results)?;
+    finished.tell_replaced(args.quiet);
     if !args.quiet {
         let planes = scene.planes.len();
         say(&format!("{}: predicted {planes} planes", scene.name));
-        say(&format!("prediction in {}", folder.display()));
+        say(&format!("prediction in {}", finished.folder.display()));
     }
     Ok(0)
 }

@@ -1,6 +1,7 @@
 //! Predictions as files: `prediction.npz` for each plane.
 
 use crate::failure::Failure;
+use crate::method::Method;
 use crate::npz::Npz;
 use crate::results::Results;
 use crate::stored::Stored;
@@ -14,6 +15,8 @@ use serde::{Deserialize, Serialize};
 /// What `prediction.json` says beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
 pub(crate) struct Predicted {
+    /// Of the measurement it is for: where there is no theory, the other method took its place.
+    method: Method,
     pub(crate) planes: Vec<PredictedPlane>,
 }
 
@@ -37,10 +40,16 @@ fn file_of(plane: &VirtualPlane) -> String {
     format!("{}/prediction.npz", plane.name)
 }
 
-/// Writes the predictions of the planes of a scene; returns what the index says of them.
+/// The names of the files of a prediction.
+pub(crate) fn names(planes: &[VirtualPlane]) -> Vec<String> {
+    planes.iter().map(file_of).collect()
+}
+
+/// Writes the predictions of the planes of a scene for a measurement by `method`; returns what the index says of them.
 pub(crate) fn write(
     results: &mut Results,
     scene: &Scene,
+    method: Method,
     predictions: &[Prediction],
 ) -> Result<Predicted, Failure> {
     let mut planes = Vec::new();
@@ -98,12 +107,24 @@ pub(crate) fn write(
             replicates: replicates.len(),
         });
     }
-    Ok(Predicted { planes })
+    Ok(Predicted { method, planes })
 }
 
-/// Reads the predictions of the planes of a scene.
-pub(crate) fn read(stored: &Stored<Predicted>, scene: &Scene) -> Result<Vec<Prediction>, Failure> {
-    let planes = &stored.index.content.planes;
+/// Reads the predictions of the planes of a scene for a measurement by `method`.
+pub(crate) fn read(
+    stored: &Stored<Predicted>,
+    scene: &Scene,
+    method: Method,
+) -> Result<Vec<Prediction>, Failure> {
+    let Predicted {
+        method: predicted_for,
+        planes,
+    } = &stored.index.content;
+    // Else a reference would be held against light traced in the same way.
+    if planes.iter().any(|plane| plane.class == Class::Reference) && *predicted_for != method {
+        let what = format!("predicted for {predicted_for:?}; the measurement is of {method:?}");
+        return Err(stored.fault(what));
+    }
     let predicted: Vec<&str> = planes.iter().map(|plane| plane.name.as_str()).collect();
     let wanted: Vec<&str> = scene
         .planes
@@ -133,6 +154,7 @@ fn read_plane(
     words: &PredictedPlane,
 ) -> Result<Prediction, Failure> {
     let mut file = stored.npz(&file_of(plane))?;
+    file.check_half_axes(&plane.grid)?;
     let slices = |half| Slices {
         grid: plane.grid,
         half,

@@ -1,72 +1,108 @@
-use crate::failure::Failure;
-use atomic_write_file::AtomicWriteFile;
-use std::collections::BTreeMap;
-use std::fs;
-use std::io::{self, BufWriter, Write};
-use std::path::{Component, Path, PathBuf};
+//! A folder of results: it owns what it wrote, and nothing else.
+//!
+//! New files wait in a folder inside until all are whole, so an earlier result stays until then. An index, such
+//! as `summary.json`, lists them by their hashes and comes last. What the index of an earlier result lists, and
+//! still has that hash, is removed; anything else in the folder is somebody's, and stays (docs/files.md).
 
-/// A results folder being written: every file to a temporary name first, then renamed, and hashed.
-///
-/// Its index, such as `summary.json`, comes last and lists the hashes: a folder without a matching index is no
-/// result.
-#[derive(Debug)]
-pub(crate) struct Results {
-    folder: PathBuf,
-    index: &'static str,
-    hashes: BTreeMap<String, String>,
-}
+mod claim;
+mod commit;
+
+use crate::failure::Failure;
+use crate::lock::Lock;
+use crate::{interrupt, say, sealed};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs::{self, File};
+use std::io::{self, BufWriter, Read, Write};
+use std::path::{Path, PathBuf};
 
 /// The index of a comparison.
 pub(crate) const SUMMARY: &str = "summary.json";
+/// The index of `etendue measure`.
+pub(crate) const MEASUREMENT: &str = "measurement.json";
+/// The index of `etendue predict`.
+pub(crate) const PREDICTION: &str = "prediction.json";
+/// The index of `etendue export`.
+pub(crate) const EXPORT: &str = "export.json";
+/// Seconds of a comparison: beside the index, since they are never the same twice.
+pub(crate) const TIMING: &str = "timing.json";
+
+/// Where new files wait.
+const UNFINISHED: &str = ".etendue-unfinished";
+const LOCK: &str = ".etendue.lock";
+
+/// What a command is going to write, and what it reads.
+#[derive(Debug)]
+pub(crate) struct Plan {
+    pub(crate) index: &'static str,
+    /// Files beside the index, relative to the folder, with `/`.
+    pub(crate) files: Vec<String>,
+    /// What must not be among them.
+    pub(crate) inputs: Vec<PathBuf>,
+    /// Whether files of somebody else are replaced.
+    pub(crate) force: bool,
+}
+
+/// A results folder being written by this process alone.
+#[derive(Debug)]
+pub(crate) struct Results {
+    folder: PathBuf,
+    /// As the user has it, for messages.
+    shown: PathBuf,
+    plan: Plan,
+    hashes: BTreeMap<String, String>,
+    /// Whether there was no such folder before.
+    is_new: bool,
+    /// Released before the folder is removed; nothing afterwards.
+    lock: Option<Lock>,
+}
+
+/// What became of a results folder.
+#[derive(Debug)]
+pub(crate) struct Finished {
+    pub(crate) folder: PathBuf,
+    /// Files of the earlier result that are there no more.
+    pub(crate) gone: Vec<String>,
+    /// Files of somebody else that were replaced.
+    pub(crate) replaced: Vec<String>,
+}
+
+impl Finished {
+    /// Says which files of somebody else are no more, since `--force` was there.
+    pub(crate) fn tell_replaced(&self, quiet: bool) {
+        if !quiet && !self.replaced.is_empty() {
+            let names = self.replaced.join(", ");
+            say(&format!("replaced in {}: {names}", self.folder.display()));
+        }
+    }
+}
 
 impl Results {
-    /// Makes the folder and proves that files can be written to it, so that a long run does not end in vain.
-    pub(crate) fn create(folder: &Path, index: &'static str) -> Result<Self, Failure> {
+    /// Claims a folder, before any work is done: makes it, locks it, removes what a dead process left, and
+    /// refuses when a file of somebody else, or an input, stands where one is to be written.
+    pub(crate) fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
+        let is_new = !folder.exists();
         fs::create_dir_all(folder).map_err(failure)?;
-        AtomicWriteFile::open(folder.join(index))
-            .and_then(AtomicWriteFile::discard)
-            .map_err(failure)?;
-        Ok(Self {
-            folder: folder.to_owned(),
-            index,
+        let canonical = folder.canonicalize().map_err(failure)?;
+        let lock = Lock::take(&canonical.join(LOCK), folder)?;
+        let results = Self {
+            folder: canonical,
+            shown: folder.to_owned(),
+            plan,
             hashes: BTreeMap::new(),
-        })
-    }
-
-    /// Takes away an earlier result in this folder: first its index, then the files that lists, so that none
-    /// of them stays beside those to come. Returns the names of those files.
-    pub(crate) fn begin(&self) -> Result<Vec<String>, Failure> {
-        let index = self.folder.join(self.index);
-        let Ok(text) = fs::read(&index) else {
-            return Ok(Vec::new());
+            is_new,
+            lock: Some(lock),
         };
-        let earlier: serde_json::Value = serde_json::from_slice(&text).unwrap_or_default();
-        if earlier.get("scene_hash").is_none() {
-            return Err(Failure::write(
-                &index,
-                "the file there is not of this program",
-            ));
-        }
-        fs::remove_file(&index).map_err(|e| Failure::write(&index, e))?;
-        let mut removed = Vec::new();
-        for (name, hash) in earlier["files"].as_object().into_iter().flatten() {
-            let path = self.folder.join(name);
-            let inside = Path::new(name)
-                .components()
-                .all(|c| matches!(c, Component::Normal(_)));
-            // What someone has changed since is theirs.
-            let unchanged =
-                || fs::read(&path).is_ok_and(|b| *hash == blake3::hash(&b).to_hex().as_str());
-            if inside && unchanged() {
-                fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
-                removed.push(name.clone());
-            }
-        }
-        Ok(removed)
+        results.refuse_inputs()?;
+        results.recover()?;
+        results.refuse_foreign()?;
+        let staged = results.staged("");
+        fs::create_dir_all(&staged).map_err(|e| Failure::write(&staged, e))?;
+        interrupt::remove_when_interrupted(Some(&results.folder.join(UNFINISHED)));
+        Ok(results)
     }
 
-    /// Writes a file that the index lists; `name` is relative to the folder, with `/`.
+    /// Writes a file that the index lists.
     pub(crate) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         self.stream(name, &mut |file| file.write_all(bytes))
     }
@@ -77,51 +113,157 @@ impl Results {
         name: &str,
         content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
-        let hash = self.atomically(name, content)?;
+        let hash = self.put(name, content)?;
         self.hashes.insert(name.to_owned(), hash);
         Ok(())
     }
 
-    /// Writes a file that is not part of the promise of same bytes.
-    pub(crate) fn write_unlisted(&self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
-        self.atomically(name, &mut |file| file.write_all(bytes))
-            .map(drop)
+    /// Writes a JSON file that is not part of the promise of same bytes, with a hash of its own.
+    pub(crate) fn write_unlisted(&self, name: &str, json: &[u8]) -> Result<(), Failure> {
+        let bytes = sealed::sealed(json);
+        self.put(name, &mut |file| file.write_all(&bytes)).map(drop)
     }
 
-    /// Writes a file under a temporary name and renames it; returns its hash.
-    fn atomically(
+    /// Writes and syncs a file where new ones wait; returns its hash.
+    fn put(
         &self,
         name: &str,
         content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
     ) -> Result<String, Failure> {
-        let path = self.folder.join(name);
-        let folder = path.parent().unwrap_or(&self.folder);
+        let shown = self.shown.join(name);
+        if !self.planned().any(|planned| planned == name) {
+            return Err(Failure::write(
+                &shown,
+                "it was not announced: a fault of etendue",
+            ));
+        }
+        let path = self.staged(name);
         let mut write = || {
-            fs::create_dir_all(folder)?;
+            if let Some(folder) = path.parent() {
+                fs::create_dir_all(folder)?;
+            }
             let mut file = Hashed {
-                file: BufWriter::new(AtomicWriteFile::open(&path)?),
+                file: BufWriter::new(File::create_new(&path)?),
                 hasher: blake3::Hasher::new(),
             };
             content(&mut file)?;
-            file.file.into_inner()?.commit()?;
+            file.file.into_inner()?.sync_all()?;
             Ok(file.hasher.finalize().to_hex().to_string())
         };
-        write().map_err(|e: io::Error| Failure::write(&path, e))
+        write().map_err(|e: io::Error| Failure::write(&shown, e))
     }
 
-    /// Writes the index, which `with_files` makes of the hashes of all files so far.
+    /// Makes the index of the hashes of all files so far, and puts everything in its place.
     pub(crate) fn finish(
-        self,
-        with_files: impl FnOnce(&BTreeMap<String, String>) -> Vec<u8>,
-    ) -> Result<PathBuf, Failure> {
-        self.write_unlisted(self.index, &with_files(&self.hashes))?;
-        Ok(self.folder)
+        mut self,
+        index: impl FnOnce(&BTreeMap<String, String>) -> Vec<u8>,
+    ) -> Result<Finished, Failure> {
+        let bytes = sealed::sealed(&index(&self.hashes));
+        self.put(self.plan.index, &mut |file| file.write_all(&bytes))?;
+        // Somebody may have put a file there since the folder was claimed.
+        self.refuse_inputs()?;
+        self.refuse_foreign()?;
+        let (gone, replaced) = interrupt::undisturbed(|| self.commit())?;
+        self.is_new = false;
+        Ok(Finished {
+            folder: self.shown.clone(),
+            gone,
+            replaced,
+        })
     }
+
+    /// All that is going to be written.
+    fn planned(&self) -> impl Iterator<Item = &str> {
+        let files = self.plan.files.iter().map(String::as_str);
+        files.chain([self.plan.index])
+    }
+
+    /// Where a new file waits.
+    fn staged(&self, name: &str) -> PathBuf {
+        self.folder.join(UNFINISHED).join("new").join(name)
+    }
+
+    /// Where a new index waits when all files are whole and begin to move.
+    fn ready(&self, index: &str) -> PathBuf {
+        self.folder.join(UNFINISHED).join(index)
+    }
+
+    /// The index whose files have begun to move.
+    fn ready_index(&self) -> Option<&'static str> {
+        let mut indices = [SUMMARY, MEASUREMENT, PREDICTION, EXPORT].into_iter();
+        indices.find(|index| listed(&self.ready(index)).is_some())
+    }
+}
+
+impl Drop for Results {
+    fn drop(&mut self) {
+        // What has begun to move, the next process moves on.
+        if self.ready_index().is_none() {
+            let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
+        }
+        interrupt::remove_when_interrupted(None);
+        drop(self.lock.take());
+        if self.is_new {
+            // Where nothing was written.
+            let _ = fs::remove_dir(&self.folder);
+        }
+    }
+}
+
+/// The files an index lists, with their hashes; `None` unless it is one as Étendue wrote it.
+fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
+    if !is_regular(index) {
+        return None;
+    }
+    let bytes = fs::read(index).ok().filter(|b| sealed::is_sealed(b))?;
+    let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
+    let files = tree["files"].as_object()?.iter();
+    let files = files.map(|(name, hash)| Some((name.clone(), hash.as_str()?.to_owned())));
+    files.collect()
+}
+
+/// Whether a path is a regular file itself, not a link to one.
+fn is_regular(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok_and(|found| found.is_file())
+}
+
+/// Whether a path is a regular file with this hash.
+fn has_hash(path: &Path, hash: &str) -> bool {
+    let hashed = || {
+        let mut hasher = blake3::Hasher::new();
+        hasher.update_reader(File::open(path).ok()?).ok()?;
+        Some(hasher.finalize().to_hex())
+    };
+    is_regular(path) && hashed().is_some_and(|found| found.as_str() == hash)
+}
+
+/// Whether a path is a JSON file with a hash of its own that is right.
+fn is_sealed_file(path: &Path) -> bool {
+    /// Longer ones are not of Étendue.
+    const MOST: u64 = 1 << 20;
+    let read = || {
+        let mut bytes = Vec::new();
+        File::open(path)
+            .ok()?
+            .take(MOST)
+            .read_to_end(&mut bytes)
+            .ok()?;
+        Some(bytes)
+    };
+    is_regular(path) && read().is_some_and(|bytes| sealed::is_sealed(&bytes))
+}
+
+/// The folders, below the results folder, that hold these files.
+fn parents<'a>(names: impl Iterator<Item = &'a String>) -> BTreeSet<&'a Path> {
+    let ancestors = names.flat_map(|name| Path::new(name).ancestors().skip(1));
+    ancestors
+        .filter(|path| !path.as_os_str().is_empty())
+        .collect()
 }
 
 /// A file that is hashed as it is written.
 struct Hashed {
-    file: BufWriter<AtomicWriteFile>,
+    file: BufWriter<File>,
     hasher: blake3::Hasher,
 }
 

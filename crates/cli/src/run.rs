@@ -1,9 +1,9 @@
 use crate::args::{RunArgs, Save};
-use crate::conclude::{Case, Ending, conclude};
+use crate::conclude::{Case, Ending, conclude, plan};
 use crate::failure::Failure;
 use crate::measure::measured;
 use crate::predict::predicted;
-use crate::results::{Results, SUMMARY};
+use crate::results::Results;
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
 use crate::{field, load, method, photons, say};
@@ -18,7 +18,9 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("out").join(&scene.name));
-    let results = Results::create(&folder, SUMMARY)?;
+    let inputs = load::inputs(&args.scene, &scene);
+    let plan = plan(&scene, &args.save, inputs, args.force.force);
+    let results = Results::claim(&folder, plan)?;
     on_threads(&args.threads, || stages(args, scene, results))
 }
 

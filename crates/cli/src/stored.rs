@@ -1,23 +1,26 @@
 //! What a stage leaves in its folder for a later one: arrays, and last an index that names them.
 
 use crate::failure::Failure;
-use crate::load;
 use crate::npz::NpzFile;
-use crate::results::Results;
+use crate::results::{Finished, Results};
 use crate::summary::json;
-use etendue_scene::{Scene, SceneFile};
+use crate::{load, machine, sealed};
+use etendue_scene::{Scene, SceneFile, read_below, scene_hash};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
+use serde_json::{Value, json as tree_of};
 use std::collections::BTreeMap;
 use std::fmt::Display;
-use std::fs;
 use std::path::{Path, PathBuf};
 
-/// The index of `etendue measure`.
-pub(crate) const MEASUREMENT: &str = "measurement.json";
-/// The index of `etendue predict`.
-pub(crate) const PREDICTION: &str = "prediction.json";
+/// Most bytes of an index.
+const MOST_INDEX: u64 = 1 << 26;
+
+/// Where a stage keeps a copy of a mesh or picture, beside the index of that name.
+pub(crate) fn copy_of(index: &str, input: &str) -> String {
+    let stage = index.trim_end_matches(".json");
+    format!("{stage}.inputs/{input}")
+}
 
 /// The version of this program: stages of different ones do not mix.
 pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
@@ -32,7 +35,9 @@ pub(crate) struct Index<T> {
     #[serde(flatten)]
     pub(crate) content: T,
     /// The scene file, defaults and overrides included.
-    scene_file: SceneFile,
+    pub(crate) scene_file: SceneFile,
+    /// BLAKE3 of each mesh and picture of the scene, by the name the scene file has for it.
+    inputs: BTreeMap<String, String>,
     files: BTreeMap<String, String>,
 }
 
@@ -40,28 +45,22 @@ impl<T: Serialize> Index<T> {
     pub(crate) fn new(scene: &Scene, content: T) -> Self {
         Self {
             scene: scene.name.clone(),
-            scene_hash: scene_hash(&scene.file),
+            scene_hash: scene.hash(),
             version: VERSION.to_owned(),
             content,
             scene_file: scene.file.clone(),
+            inputs: scene.inputs.clone(),
             files: BTreeMap::new(),
         }
     }
 
-    /// Writes it after the files it lists; returns the folder.
-    pub(crate) fn finish(mut self, results: Results) -> Result<PathBuf, Failure> {
+    /// Writes it after the files it lists.
+    pub(crate) fn finish(mut self, results: Results) -> Result<Finished, Failure> {
         results.finish(|files| {
             self.files.clone_from(files);
             json(&self)
         })
     }
-}
-
-/// BLAKE3 of a scene file as JSON, defaults and overrides included.
-pub(crate) fn scene_hash(file: &SceneFile) -> String {
-    // Cannot fail: a scene file is plain data with finite numbers.
-    let text = serde_json::to_vec(file).unwrap_or_default();
-    blake3::hash(&text).to_hex().to_string()
 }
 
 /// The folder of an earlier stage.
@@ -70,16 +69,17 @@ pub(crate) struct Stored<T> {
     pub(crate) folder: PathBuf,
     /// Path of the index, for messages.
     path: PathBuf,
+    name: &'static str,
     pub(crate) index: Index<T>,
 }
 
 impl<T: DeserializeOwned> Stored<T> {
-    /// Reads the index called `name` in a folder. It must be of this version and its scene the one it was hashed with.
-    pub(crate) fn read(folder: &Path, name: &str) -> Result<Self, Failure> {
+    /// Reads the index called `name` in a folder. It must be of this version, and as it was written.
+    pub(crate) fn read(folder: &Path, name: &'static str) -> Result<Self, Failure> {
         let path = folder.join(name);
         let shown = path.display();
-        let bytes =
-            fs::read(&path).map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+        let bytes = read_below(folder, name, MOST_INDEX)
+            .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
         let tree: Value = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
         // Before the rest, which another version may write in another way.
@@ -88,55 +88,91 @@ impl<T: DeserializeOwned> Stored<T> {
                 "written by version {version}, this is {VERSION}: all stages must be of one version"
             )));
         }
+        if !sealed::is_sealed(&bytes) {
+            let what = "it was changed since it was written: its index_hash is not that of what stands before it";
+            return Err(fault(what.to_owned()));
+        }
         let index: Index<T> = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
-        if index.scene_hash != scene_hash(&index.scene_file) {
-            return Err(fault("scene_file does not match scene_hash".to_owned()));
+        if index.scene_hash != scene_hash(&index.scene_file, &index.inputs) {
+            return Err(fault(
+                "scene_hash is not that of scene_file and inputs".to_owned(),
+            ));
         }
         Ok(Self {
             folder: folder.to_owned(),
             path,
+            name,
             index,
         })
     }
 }
 
 impl<T> Stored<T> {
-    /// The scene it is of.
+    /// The scene it is of; what it names are the stage's own copies.
     pub(crate) fn scene(&self) -> Result<Scene, Failure> {
-        load::resolved(
-            &self.index.scene,
-            self.index.scene_file.clone(),
-            &self.folder,
+        let Index {
+            scene,
+            scene_file,
+            inputs,
+            ..
+        } = &self.index;
+        for name in inputs.keys() {
+            self.bytes(&copy_of(self.name, name))?;
+        }
+        let copies = self.folder.join(copy_of(self.name, ""));
+        let scene = load::resolved(
+            scene,
+            scene_file.clone(),
+            &copies,
             &self.path.display().to_string(),
-        )
+        )?;
+        if scene.inputs != *inputs {
+            return Err(self.fault("inputs are not the files in its folder"));
+        }
+        Ok(scene)
+    }
+
+    /// The paths of the index and of all files it lists.
+    pub(crate) fn paths(&self) -> Vec<PathBuf> {
+        let files = self.index.files.keys().map(|name| self.folder.join(name));
+        files.chain([self.path.clone()]).collect()
+    }
+
+    /// The arrays in the file `name`.
+    pub(crate) fn npz(&self, name: &str) -> Result<NpzFile, Failure> {
+        NpzFile::new(self.folder.join(name), self.bytes(name)?)
     }
 
     /// The file `name`, whose bytes must be those that were written.
-    pub(crate) fn npz(&self, name: &str) -> Result<NpzFile, Failure> {
-        let path = self.folder.join(name);
-        let shown = path.display();
+    fn bytes(&self, name: &str) -> Result<Vec<u8>, Failure> {
+        let shown = self.folder.join(name);
+        let shown = shown.display();
         let hash = self.index.files.get(name);
         let hash = hash.ok_or_else(|| self.fault(format!("files does not list {name}")))?;
-        let bytes =
-            fs::read(&path).map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+        let bytes = read_below(&self.folder, name, machine::available_memory())
+            .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         if *hash != blake3::hash(&bytes).to_hex().as_str() {
             let index = self.path.display();
             let message = format!("{shown} is damaged: its hash is not the one in {index}");
             return Err(Failure::bad_input(message));
         }
-        NpzFile::new(path, bytes)
+        Ok(bytes)
     }
 
     /// Fails when `other` is of another scene; with `run`, also when the scene is to be measured in another way.
     pub(crate) fn check_scene<U>(&self, other: &Stored<U>, run: bool) -> Result<(), Failure> {
-        let tree = |file: &SceneFile| {
+        let tree = |file: &SceneFile, inputs: &BTreeMap<String, String>| {
             let mut tree = serde_json::to_value(file).unwrap_or_default();
-            if let (false, Some(fields)) = (run, tree.as_object_mut()) {
-                fields.remove("run");
+            if let Some(fields) = tree.as_object_mut() {
+                if !run {
+                    fields.remove("run");
+                }
+                fields.insert("inputs".to_owned(), tree_of!(inputs));
             }
             tree
         };
-        let [own, others] = [&self.index.scene_file, &other.index.scene_file].map(tree);
+        let own = tree(&self.index.scene_file, &self.index.inputs);
+        let others = tree(&other.index.scene_file, &other.index.inputs);
         self.check_same(other, &own, &others)
     }
 

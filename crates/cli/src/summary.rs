@@ -1,7 +1,7 @@
 use crate::conclude::Case;
 use crate::machine;
 use crate::method::Method;
-use crate::stored::{VERSION, scene_hash};
+use crate::stored::VERSION;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
 use etendue_scene::Emission;
@@ -13,7 +13,7 @@ use std::time::Instant;
 #[derive(Debug, Serialize)]
 pub(crate) struct Summary {
     pub(crate) scene: String,
-    /// BLAKE3 of the scene file as JSON, defaults and overrides included.
+    /// BLAKE3 of the scene: of its file, defaults and overrides included, and of what it names.
     pub(crate) scene_hash: String,
     pub(crate) version: &'static str,
     pub(crate) seed: u64,
@@ -49,7 +49,7 @@ impl Summary {
         let photons = measurement.emitted();
         Self {
             scene: scene.name.clone(),
-            scene_hash: scene_hash(&scene.file),
+            scene_hash: scene.hash(),
             version: VERSION,
             seed: scene.run.seed,
             method: *method,

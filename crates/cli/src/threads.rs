@@ -1,23 +1,14 @@
 use crate::args::ThreadArgs;
-use crate::failure::{CANNOT_RUN, Failure};
+use crate::failure::Failure;
 
-/// Does `work` on so many threads, one for each core unless said, and lets the user interrupt it.
+/// Does `work` on so many threads, one for each core unless said.
 pub(crate) fn on_threads<T: Send>(
     threads: &ThreadArgs,
     work: impl FnOnce() -> Result<T, Failure> + Send,
 ) -> Result<T, Failure> {
-    ctrlc::set_handler(interrupted).map_err(Failure::cannot_run)?;
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads.count.unwrap_or(0).into())
         .build()
         .map_err(Failure::cannot_run)?;
     pool.install(work)
-}
-
-/// Ends the process wherever it is: files are renamed into place whole, and the one that would make the
-/// folder a result comes last.
-#[expect(clippy::print_stderr, clippy::exit, reason = "the user asked to stop")]
-fn interrupted() {
-    eprintln!("\ninterrupted: no result was written");
-    std::process::exit(i32::from(CANNOT_RUN));
 }

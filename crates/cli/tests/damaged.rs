@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{array, call, json, refused, stages};
+use common::{array, call, json, refused, sealed, stages};
 use etendue_field::Complex;
 use ndarray::{Array4, ArrayD};
 use ndarray_npy::{NpzReader, WritableElement, WriteNpyExt};
@@ -45,7 +45,7 @@ impl Drop for Swap {
 fn changed(index: &Path, change: impl FnOnce(&mut Value)) -> Swap {
     let mut tree = json(index);
     change(&mut tree);
-    Swap::new(index.to_owned(), tree.to_string().as_bytes())
+    Swap::new(index.to_owned(), &sealed(tree))
 }
 
 /// `compare` with other bytes in `file`, whose hash in the index is made to fit.

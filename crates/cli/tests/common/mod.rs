@@ -105,6 +105,15 @@ pub fn refused(folder: &Path, arguments: &str, parts: &[&str]) {
     assert!(!folder.join("out").exists(), "{arguments}: out was written");
 }
 
+/// A JSON object with the hash of itself at its end, as indices are written.
+pub fn sealed(mut tree: Value) -> Vec<u8> {
+    tree.as_object_mut().unwrap().remove("index_hash");
+    let text = tree.to_string();
+    let body = text.strip_suffix('}').unwrap();
+    let hash = blake3::hash(body.as_bytes()).to_hex();
+    format!("{body},\n  \"index_hash\": \"{hash}\"\n}}\n").into_bytes()
+}
+
 pub fn json(file: &Path) -> Value {
     serde_json::from_slice(&fs::read(file).unwrap()).unwrap()
 }

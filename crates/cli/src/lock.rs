@@ -1,0 +1,50 @@
+//! One writer at a time: a lock that the system takes away when its process ends.
+
+use crate::failure::Failure;
+use same_file::Handle;
+use std::fs::{self, File, TryLockError};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A locked file, which goes away with the lock.
+#[derive(Debug)]
+pub(crate) struct Lock {
+    pub(crate) path: PathBuf,
+    pub(crate) file: File,
+}
+
+impl Lock {
+    /// Makes and locks the file `path`, or takes over what a dead process has left there; `busy` is what a
+    /// living one is writing to, for the message.
+    pub(crate) fn take(path: &Path, busy: &Path) -> Result<Self, Failure> {
+        let failure = |error: io::Error| Failure::write(busy, error);
+        loop {
+            let mut options = File::options();
+            let options = options.read(true).write(true).create(true).truncate(false);
+            if path.is_symlink() {
+                return Err(Failure::write(path, "a link is there"));
+            }
+            let file = options.open(path).map_err(failure)?;
+            match file.try_lock() {
+                Ok(()) => {}
+                Err(TryLockError::WouldBlock) => {
+                    return Err(Failure::write(busy, "another etendue is writing there"));
+                }
+                Err(TryLockError::Error(error)) => return Err(failure(error)),
+            }
+            // Another may have removed it between opening and locking: then the lock is of nothing.
+            let held = Handle::from_file(file.try_clone().map_err(failure)?);
+            if Handle::from_path(path).is_ok_and(|there| held.is_ok_and(|held| held == there)) {
+                let path = path.to_owned();
+                return Ok(Self { path, file });
+            }
+        }
+    }
+}
+
+impl Drop for Lock {
+    fn drop(&mut self) {
+        // One that stays is harmless.
+        let _ = fs::remove_file(&self.path);
+    }
+}

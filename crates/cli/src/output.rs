@@ -1,0 +1,73 @@
+//! A single file of the user's choosing, such as a picture or a table.
+
+use crate::failure::Failure;
+use crate::lock::Lock;
+use std::fs;
+use std::io::{self, Write};
+use std::path::{Path, PathBuf};
+use tempfile::TempPath;
+
+/// A file that is there when it is whole, and not before.
+#[derive(Debug)]
+pub(crate) struct OutputFile {
+    path: PathBuf,
+    force: bool,
+    /// The file that becomes it.
+    lock: Lock,
+}
+
+impl OutputFile {
+    /// Proves that the file can be written, before any work is done. What stands at the path stays, unless
+    /// `force` is there and it is a regular file; it must not be among `inputs` in any case.
+    pub(crate) fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
+        let failure = |e: io::Error| Failure::write(path, e);
+        let Some(name) = path.file_name() else {
+            return Err(Failure::write(path, "it names no file"));
+        };
+        match fs::symlink_metadata(path) {
+            Err(_) => {}
+            Ok(found) if !found.is_file() => {
+                return Err(Failure::write(path, "what stands there is no regular file"));
+            }
+            Ok(_) => {
+                let there = path.canonicalize().map_err(failure)?;
+                let is_read = |input: &PathBuf| input.canonicalize().is_ok_and(|i| i == there);
+                if inputs.iter().any(is_read) {
+                    return Err(Failure::bad_input(format!(
+                        "{} is read by this command: choose another file to write",
+                        path.display()
+                    )));
+                }
+                if !force {
+                    let what = "a file stands there; --force replaces it";
+                    return Err(Failure::write(path, what));
+                }
+            }
+        }
+        let waiting = format!(".{}.etendue-unfinished", name.to_string_lossy());
+        let lock = Lock::take(&path.with_file_name(waiting), path)?;
+        Ok(Self {
+            path: path.to_owned(),
+            force,
+            lock,
+        })
+    }
+
+    /// Writes it whole.
+    pub(crate) fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
+        let mut write = || -> io::Result<()> {
+            self.lock.file.set_len(0)?;
+            self.lock.file.write_all(bytes)?;
+            self.lock.file.sync_all()?;
+            // What is moved away must not be removed with the lock.
+            let waiting = TempPath::try_from_path(std::mem::take(&mut self.lock.path))?;
+            let moved = if self.force {
+                waiting.persist(&self.path)
+            } else {
+                waiting.persist_noclobber(&self.path)
+            };
+            moved.map_err(|e| e.error)
+        };
+        write().map_err(|e| Failure::write(&self.path, e))
+    }
+}

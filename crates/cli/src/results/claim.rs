@@ -1,0 +1,106 @@
+//! What stands in a results folder before anything is written there.
+
+use super::{Results, TIMING, UNFINISHED, has_hash, is_sealed_file, listed};
+use crate::failure::Failure;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::{Component, Path, PathBuf};
+
+/// Names told in a message.
+const TOLD: usize = 10;
+
+impl Results {
+    /// The files of the earlier result, as its index lists them.
+    pub(super) fn earlier(&self) -> BTreeMap<String, String> {
+        listed(&self.folder.join(self.plan.index)).unwrap_or_default()
+    }
+
+    /// The path of a file of the folder; `None` if it leads out of it, by `..` or by a link.
+    pub(super) fn inside(&self, name: &str) -> Option<PathBuf> {
+        let mut path = self.folder.clone();
+        let mut components = Path::new(name).components().peekable();
+        while let Some(component) = components.next() {
+            let Component::Normal(part) = component else {
+                return None;
+            };
+            path.push(part);
+            let is_folder = || match fs::symlink_metadata(&path) {
+                Ok(found) => found.is_dir(),
+                Err(_) => true,
+            };
+            if components.peek().is_some() && !is_folder() {
+                return None;
+            }
+        }
+        Some(path)
+    }
+
+    /// Inputs are never among results.
+    pub(super) fn refuse_inputs(&self) -> Result<(), Failure> {
+        let earlier = self.earlier();
+        let earlier = earlier.keys().map(String::as_str);
+        let written: Vec<PathBuf> = self
+            .planned()
+            .chain(earlier)
+            .map(|name| self.folder.join(name))
+            .collect();
+        for input in &self.plan.inputs {
+            let Ok(canonical) = input.canonicalize() else {
+                continue;
+            };
+            let waits = canonical.starts_with(self.folder.join(UNFINISHED));
+            if waits || written.contains(&canonical) {
+                return Err(Failure::bad_input(format!(
+                    "{} is read by this command and would be replaced by its results in {}: choose another folder",
+                    input.display(),
+                    self.shown.display()
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Refuses where something of somebody else stands in the way; with `--force`, only what is no file.
+    pub(super) fn refuse_foreign(&self) -> Result<(), Failure> {
+        let earlier = self.earlier();
+        let mut foreign = Vec::new();
+        for name in self.planned() {
+            let shown = self.shown.join(name);
+            let Some(path) = self.inside(name) else {
+                let what = "a link or a file stands where a folder is to be";
+                return Err(Failure::write(&shown, what));
+            };
+            match fs::symlink_metadata(&path) {
+                Err(_) => {}
+                Ok(found) if !found.is_file() => {
+                    return Err(Failure::write(&shown, "what stands there is no file"));
+                }
+                Ok(_) if self.is_own(name, &path, &earlier) => {}
+                Ok(_) => foreign.push(name),
+            }
+        }
+        if foreign.is_empty() || self.plan.force {
+            return Ok(());
+        }
+        let told = foreign.iter().take(TOLD).copied().collect::<Vec<_>>();
+        let more = match foreign.len() - told.len() {
+            0 => String::new(),
+            more => format!(" and {more} more"),
+        };
+        Err(Failure::cannot_run(format!(
+            "{} holds files that etendue did not write, or that were changed since: {}{more}; \
+             choose another folder, or replace them with --force",
+            self.shown.display(),
+            told.join(", ")
+        )))
+    }
+
+    /// Whether a file is of an earlier result, and unchanged.
+    fn is_own(&self, name: &str, path: &Path, earlier: &BTreeMap<String, String>) -> bool {
+        match earlier.get(name) {
+            Some(hash) => has_hash(path, hash),
+            None if name == self.plan.index => listed(path).is_some(),
+            None => name == TIMING && is_sealed_file(path),
+        }
+    }
+}

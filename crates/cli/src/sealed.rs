@@ -1,0 +1,49 @@
+//! JSON files that end with a hash of themselves: indices and timings.
+//!
+//! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. What someone has edited since, in
+//! whatever way, is told apart from what Étendue wrote.
+
+/// What stands before and after the 64 digits.
+const BEFORE: &str = ",\n  \"index_hash\": \"";
+const AFTER: &str = "\"\n}\n";
+/// How a JSON object ends that is to be sealed.
+const END: &str = "\n}\n";
+
+/// Adds its hash to a JSON object in readable form, of at least one field.
+pub(crate) fn sealed(json: &[u8]) -> Vec<u8> {
+    let body = json.strip_suffix(END.as_bytes()).unwrap_or(json);
+    let hash = blake3::hash(body).to_hex();
+    [body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
+}
+
+/// Whether bytes end with the hash of themselves.
+pub(crate) fn is_sealed(bytes: &[u8]) -> bool {
+    let hash_of = || {
+        let rest = bytes.strip_suffix(AFTER.as_bytes())?;
+        let (rest, digits) = rest.split_at_checked(rest.len().checked_sub(64)?)?;
+        let body = rest.strip_suffix(BEFORE.as_bytes())?;
+        Some((blake3::hash(body), digits))
+    };
+    hash_of().is_some_and(|(hash, digits)| hash.to_hex().as_bytes() == digits)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{is_sealed, sealed};
+
+    #[test]
+    fn every_changed_bit_breaks_the_seal() {
+        let whole = sealed(b"{\n  \"a\": 1\n}\n");
+        assert!(is_sealed(&whole));
+        let json: serde_json::Value = serde_json::from_slice(&whole).unwrap();
+        assert_eq!(json["a"], 1);
+        for bit in 0..8 * whole.len() {
+            let mut changed = whole.clone();
+            changed[bit / 8] ^= 1 << (bit % 8);
+            assert!(!is_sealed(&changed), "bit {bit}");
+        }
+        for length in 0..whole.len() {
+            assert!(!is_sealed(&whole[..length]), "{length} bytes");
+        }
+    }
+}
