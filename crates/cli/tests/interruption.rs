@@ -1,0 +1,95 @@
+//! Signals end a run, whatever has become of its standard error; memory that cannot be had ends in words.
+#![cfg(unix)]
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{etendue, scene};
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// A run without end that has begun to trace.
+fn begun(out: &Path, stderr: Stdio) -> Child {
+    let child = etendue()
+        .arg("run")
+        .arg(scene("fig9b.ron"))
+        .args(["--photons", "1e12", "--quiet", "--out"])
+        .arg(out)
+        .stderr(stderr)
+        .spawn()
+        .unwrap();
+    let start = Instant::now();
+    while !out.join(".etendue-unfinished").exists() {
+        assert!(start.elapsed() < Duration::from_secs(60));
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child
+}
+
+fn send(signal: &str, to: &Child) {
+    let sent = Command::new("kill")
+        .args(["-s", signal, &to.id().to_string()])
+        .status();
+    assert!(sent.unwrap().success());
+}
+
+/// The exit code, if it ends soon.
+fn code(child: &mut Child) -> Option<i32> {
+    let start = Instant::now();
+    while start.elapsed() < Duration::from_secs(30) {
+        if let Some(status) = child.try_wait().unwrap() {
+            return status.code();
+        }
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    child.kill().unwrap();
+    None
+}
+
+#[test]
+fn signals_end_a_run_though_nobody_reads_its_errors() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    for signal in ["INT", "TERM", "HUP"] {
+        // The reader goes before anything is written.
+        let mut child = begun(&out, Stdio::piped());
+        drop(child.stderr.take());
+        send(signal, &child);
+        assert_eq!(code(&mut child), Some(3), "{signal}");
+        // Nor does it leave what it had begun, not even the folder's content.
+        assert!(!out.join(".etendue-unfinished").exists(), "{signal}");
+        assert!(!out.join("summary.json").exists(), "{signal}");
+    }
+}
+
+#[test]
+fn a_second_signal_ends_a_run_that_is_stuck() {
+    let folder = tempfile::tempdir().unwrap();
+    let out = folder.path().join("out");
+    let mut child = begun(&out, Stdio::piped());
+    for signal in ["INT", "TERM"] {
+        send(signal, &child);
+    }
+    assert_eq!(code(&mut child), Some(3));
+}
+
+#[test]
+fn memory_that_cannot_be_had_is_said() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = env!("CARGO_BIN_EXE_etendue");
+    for kilobytes in [60_000, 120_000, 300_000, 800_000] {
+        let script = format!(
+            "ulimit -v {kilobytes}; exec {program} run {} --threads 2 --photons 64 --quiet --out {}",
+            scene("fig9b.ron").display(),
+            folder.path().join("out").display()
+        );
+        let output = Command::new("sh").args(["-c", &script]).output().unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        let code = output.status.code();
+        assert!(
+            matches!(code, Some(0 | 1)) || code == Some(3) && message.contains("memory"),
+            "{kilobytes} kB: {code:?} {message}"
+        );
+    }
+}
