@@ -20,11 +20,14 @@
 mod curvature;
 mod fault;
 mod file;
+pub mod limits;
 mod mesh;
 mod overrides;
+mod parse;
 mod picture;
 mod resolve;
 mod scene;
+mod shown;
 
 pub use fault::{Fault, SceneError};
 pub use file::{
@@ -39,3 +42,4 @@ pub use scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene,
     SmoothMesh, Surface,
 };
+pub use shown::shown;
