@@ -1,7 +1,8 @@
+use crate::limits;
 use std::fmt;
 
 /// A value that cannot be used: which, what it is, and what is allowed there.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
 pub struct Fault {
     /// Path of the field, such as `blockers[0].fill`.
     pub field: String,
@@ -44,12 +45,17 @@ pub enum SceneError {
         /// What is wrong.
         message: String,
     },
-    /// Values outside their range, all of them.
+    /// Values outside their range, all of them; the first ten are shown, and how many there are.
     #[error("{}", list(.0))]
     Values(Vec<Fault>),
 }
 
 fn list(faults: &[Fault]) -> String {
-    let lines: Vec<String> = faults.iter().map(ToString::to_string).collect();
+    let told = faults.iter().take(limits::FAULTS);
+    let mut lines: Vec<String> = told.map(ToString::to_string).collect();
+    let more = faults.len() - lines.len();
+    if more > 0 {
+        lines.push(format!("and {more} more: {} faults in all", faults.len()));
+    }
     lines.join("\n")
 }

@@ -8,7 +8,6 @@ pub use surface::{
     BrdfFile, EventFile, FormFile, FresnelFile, LobeFile, MeshSource, PatternFile, SurfaceFile,
 };
 
-use crate::SceneError;
 use crate::overrides::whole;
 use etendue_field::{Orientation, Profile, Quantity};
 use serde::{Deserialize, Serialize};
@@ -383,20 +382,5 @@ impl SceneFile {
             _ => None,
         });
         meshes.chain(environment).chain(pictures)
-    }
-
-    /// Reads a scene file.
-    ///
-    /// # Errors
-    /// [`SceneError::Syntax`] with line, column and what is allowed there.
-    pub fn parse(text: &str) -> Result<Self, SceneError> {
-        ron::Options::default()
-            .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
-            .from_str(text)
-            .map_err(|error| SceneError::Syntax {
-                line: error.span.start.line,
-                column: error.span.start.col,
-                message: error.code.to_string(),
-            })
     }
 }

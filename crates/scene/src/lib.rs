@@ -20,12 +20,15 @@
 mod curvature;
 mod fault;
 mod file;
+pub mod limits;
 mod mesh;
 mod overrides;
+mod parse;
 mod picture;
 mod read;
 mod resolve;
 mod scene;
+mod shown;
 
 pub use fault::{Fault, SceneError};
 pub use file::{
@@ -41,3 +44,4 @@ pub use scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene,
     SmoothMesh, Surface, scene_hash,
 };
+pub use shown::shown;

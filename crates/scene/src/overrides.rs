@@ -1,4 +1,7 @@
-use crate::{SceneError, SceneFile};
+//! Fields set on the command line.
+
+use crate::shown::shown;
+use crate::{SceneError, SceneFile, limits};
 use serde_json::Value;
 
 impl SceneFile {
@@ -10,18 +13,53 @@ impl SceneFile {
     /// [`SceneError::Override`] when the path names no field or the value does not fit it.
     pub fn with(self, path: &str, value: &str) -> Result<Self, SceneError> {
         let fault = |message: String| SceneError::Override {
-            path: format!("{path}={value}"),
-            message,
+            path: shown(format_args!("{path}={value}"), limits::VALUE),
+            message: shown(message, limits::ALLOWED),
         };
         let mut tree = serde_json::to_value(&self).map_err(|e| fault(e.to_string()))?;
-        let mut place = &mut tree;
-        for name in path.split('.') {
-            let refusal = refusal(place, name);
-            place = step(place, name).ok_or_else(|| fault(refusal))?;
-        }
-        *place = parsed(value);
+        set(&mut tree, path, value).map_err(fault)?;
         serde_json::from_value(tree).map_err(|e| fault(e.to_string()))
     }
+
+    /// The scene file with several fields set, one after the other, each as by [`Self::with`].
+    ///
+    /// # Errors
+    /// [`SceneError::Override`] of the first that cannot be set, or of more than
+    /// [`limits::OVERRIDES`] fields.
+    pub fn with_all(self, fields: &[(String, String)]) -> Result<Self, SceneError> {
+        if fields.len() > limits::OVERRIDES {
+            return Err(SceneError::Override {
+                path: format!("{} fields set", fields.len()),
+                message: format!("allowed: at most {}", limits::OVERRIDES),
+            });
+        }
+        if let Some(file) = self.with_all_at_once(fields) {
+            return Ok(file);
+        }
+        // One after the other tells which is at fault, and reaches fields of what one before has set.
+        let mut fields = fields.iter();
+        fields.try_fold(self, |file, (path, value)| file.with(path, value))
+    }
+
+    fn with_all_at_once(&self, fields: &[(String, String)]) -> Option<Self> {
+        let mut tree = serde_json::to_value(self).ok()?;
+        for (path, value) in fields {
+            set(&mut tree, path, value).ok()?;
+        }
+        serde_json::from_value(tree).ok()
+    }
+}
+
+/// Sets what is at `path` below a node.
+fn set(tree: &mut Value, path: &str, value: &str) -> Result<(), String> {
+    let mut place = tree;
+    for name in path.split('.') {
+        let refusal = refusal(place, name);
+        place = step(place, name).ok_or(refusal)?;
+    }
+    *place = parsed(value, limits::NESTING)
+        .ok_or_else(|| format!("allowed: brackets nested at most {} deep", limits::NESTING))?;
+    Ok(())
 }
 
 /// The child `name` of a node, looking through a variant's name.
@@ -65,42 +103,45 @@ fn refusal(node: &Value, name: &str) -> String {
     format!("no field `{name}` here; allowed: {allowed}{another}")
 }
 
-/// A value as it is written in a scene file or in JSON; whole numbers such as 1e6 are integers, and what is
-/// nothing else is text.
-fn parsed(text: &str) -> Value {
+/// A value as it is written in a scene file or in JSON; whole numbers such as 1e6 are integers, and
+/// what is nothing else is text. `None` when its brackets are nested more than `deepest` deep.
+fn parsed(text: &str, deepest: usize) -> Option<Value> {
     let text = text.trim();
     if let Ok(value) = serde_json::from_str(text) {
-        return match value {
+        return Some(match value {
             Value::Number(n) => n
                 .as_f64()
                 .and_then(whole)
                 .map_or(Value::Number(n), Value::from),
             value => value,
-        };
+        });
     }
     let Some((name, inside)) = text.strip_suffix(')').and_then(|t| t.split_once('(')) else {
-        return Value::String(text.to_owned());
+        return Some(Value::String(text.to_owned()));
     };
-    match name.trim() {
-        "" => fields(inside),
-        variant => Value::Object(std::iter::once((variant.to_owned(), fields(inside))).collect()),
-    }
+    let inside = fields(inside, deepest.checked_sub(1)?)?;
+    Some(match name.trim() {
+        "" => inside,
+        variant => Value::Object(std::iter::once((variant.to_owned(), inside)).collect()),
+    })
 }
 
 /// What stands between parentheses: named fields, several values, or one.
-fn fields(text: &str) -> Value {
+fn fields(text: &str, deepest: usize) -> Option<Value> {
     let parts = separated(text);
-    let named: Option<serde_json::Map<String, Value>> = parts
-        .iter()
-        .map(|part| {
-            part.split_once(':')
-                .map(|(k, v)| (k.trim().to_owned(), parsed(v)))
-        })
-        .collect();
+    let named: Option<Vec<_>> = parts.iter().map(|part| part.split_once(':')).collect();
     match (named, parts.as_slice()) {
-        (Some(map), [_, ..]) => Value::Object(map),
-        (_, [one]) => parsed(one),
-        _ => parts.into_iter().map(parsed).collect(),
+        (Some(named), [_, ..]) => {
+            let fields = named.into_iter();
+            let fields =
+                fields.map(|(name, v)| Some((name.trim().to_owned(), parsed(v, deepest)?)));
+            fields.collect::<Option<_>>().map(Value::Object)
+        }
+        (_, [one]) => parsed(one, deepest),
+        _ => {
+            let values = parts.into_iter().map(|part| parsed(part, deepest));
+            values.collect::<Option<_>>().map(Value::Array)
+        }
     }
 }
 

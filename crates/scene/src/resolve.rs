@@ -1,8 +1,11 @@
+mod apart;
 mod blockers;
 mod faults;
 mod jitter;
 mod light;
+mod limits;
 mod meshes;
+mod names;
 mod patches;
 mod path;
 mod pictures;
@@ -25,7 +28,8 @@ use std::path::Path;
 /// this machine can hold, in bytes.
 ///
 /// # Errors
-/// [`SceneError::Values`] with every fault found.
+/// [`SceneError::Values`] with every fault found; when there are more things than [`crate::limits`]
+/// allow, with these alone.
 pub fn resolve(
     name: &str,
     file: SceneFile,
@@ -41,7 +45,7 @@ pub fn resolve(
     .scene(name, file, memory);
     match scene {
         Some(scene) if faults.0.is_empty() => Ok(scene),
-        _ => Err(SceneError::Values(faults.0)),
+        _ => Err(SceneError::Values(faults.once())),
     }
 }
 
@@ -62,6 +66,10 @@ struct Resolver<'a> {
 
 impl Resolver<'_> {
     fn scene(&mut self, name: &str, file: SceneFile, memory: u64) -> Option<Scene> {
+        if !self.counts(&file) {
+            return None;
+        }
+        self.name_of_scene(name);
         let frame = self.frame(&file);
         self.run(&file.run);
         self.level(file.run.alpha, file.planes.len());
@@ -142,31 +150,6 @@ impl Resolver<'_> {
             );
         }
         frame
-    }
-
-    fn names(&mut self, file: &SceneFile, stops: &[Stop<'_>]) {
-        for repeated in repeated(stops.iter().map(|stop| stop.name)) {
-            self.faults.add(
-                "name",
-                show(repeated),
-                "a name no other blockers or surface has",
-            );
-        }
-        // Some disks hold `Light` and `light` for one folder.
-        let folders: Vec<String> = file.planes.iter().map(|p| p.name.to_lowercase()).collect();
-        for repeated in repeated(folders.iter().map(String::as_str)) {
-            self.faults
-                .add("planes: name", show(repeated), "a name no other plane has");
-        }
-        let usable = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        for (i, plane) in file.planes.iter().enumerate() {
-            let length = plane.name.chars().count();
-            if !(1..=64).contains(&length) || !plane.name.chars().all(usable) {
-                let allowed = "1 to 64 letters, digits, - and _: it names a folder";
-                self.faults
-                    .add(format!("planes[{i}].name"), show(&plane.name), allowed);
-            }
-        }
     }
 
     /// Two flat things in one plane: which one light meets first would be left to rounding.
@@ -269,16 +252,4 @@ fn extent(points: &[DVec3]) -> [f64; 2] {
     let low = points.iter().map(|p| p.z).fold(f64::INFINITY, f64::min);
     let high = points.iter().map(|p| p.z).fold(f64::NEG_INFINITY, f64::max);
     [low, high]
-}
-
-fn repeated<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut names: Vec<&str> = names.collect();
-    names.sort_unstable();
-    let mut twice: Vec<&str> = names
-        .windows(2)
-        .filter(|w| w[0] == w[1])
-        .map(|w| w[0])
-        .collect();
-    twice.dedup();
-    twice
 }

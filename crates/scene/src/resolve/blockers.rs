@@ -1,15 +1,15 @@
+//! Blockers: layers of shapes, gratings.
+
 use super::Resolver;
+use super::apart::{Thing, overlap};
 use super::faults::show;
 use super::jitter::jittered_squares;
 use crate::file::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
+use crate::limits;
 use crate::scene::BlockerLayer;
 use etendue_field::{Disc, Frame, Grating, HalfPlane, Mask, Rectangle, Shape, tidy};
 use glam::DVec3;
 
-/// Shapes a layer may hold: the prediction of more that are seen takes many minutes.
-const MOST_BLOCKERS: u64 = 100_000;
-/// Products of shapes of several layers a prediction may have to go through.
-const MOST_PAIRS: f64 = 1e6;
 /// Rectangles a prediction makes of a disc, about.
 const STRIPS: f64 = 64.0;
 
@@ -110,11 +110,11 @@ impl Resolver<'_> {
             return Vec::new();
         };
         let total = u64::from(count[0]) * u64::from(count[1]);
-        if !(1..=MOST_BLOCKERS).contains(&total) {
+        if !(1..=limits::SHAPES as u64).contains(&total) {
             self.faults.add(
                 format!("{of}.count"),
                 format!("{} x {}", count[0], count[1]),
-                format!("1 to {MOST_BLOCKERS} squares in all"),
+                format!("1 to {} squares in all", limits::SHAPES),
             );
         }
         self.faults.positive(format!("{of}.pitch"), pitch);
@@ -138,8 +138,8 @@ impl Resolver<'_> {
 
     /// The shapes, moved to `center`.
     fn shapes(&mut self, of: &str, files: &[ShapeFile], center: [f64; 2]) -> Mask {
-        if !(1..=MOST_BLOCKERS).contains(&(files.len() as u64)) {
-            let allowed = format!("1 to {MOST_BLOCKERS} shapes");
+        if !(1..=limits::SHAPES).contains(&files.len()) {
+            let allowed = format!("1 to {} shapes", limits::SHAPES);
             self.faults.add(
                 format!("{of}.shapes"),
                 format!("{} shapes", files.len()),
@@ -150,7 +150,7 @@ impl Resolver<'_> {
         let (mut shapes, mut half_planes) = (Vec::new(), Vec::new());
         // Where each stands in the file.
         let (mut of_shapes, mut of_half_planes) = (Vec::new(), Vec::new());
-        for (i, file) in files.iter().enumerate() {
+        for (i, file) in files.iter().take(limits::SHAPES).enumerate() {
             let of = format!("{of}.shapes[{i}]");
             match file {
                 ShapeFile::HalfPlane { .. } => of_half_planes.push(i),
@@ -180,43 +180,30 @@ impl Resolver<'_> {
             }
         }
         if self.faults.0.is_empty() {
-            let shapes: Vec<_> = of_shapes.iter().zip(&shapes).collect();
-            let half_planes: Vec<_> = of_half_planes.iter().zip(&half_planes).collect();
-            self.apart(of, &shapes, &half_planes);
+            self.apart(of, &shapes, &half_planes, [&of_shapes, &of_half_planes]);
         }
         opaque(shapes, half_planes)
     }
 
-    /// What overlaps would be counted twice by the prediction. Each shape comes with its place in the file.
+    /// What overlaps would be counted twice by the prediction. `places` are those of shapes and of
+    /// half-planes in the file.
     fn apart(
         &mut self,
         of: &str,
-        shapes: &[(&usize, &Shape)],
-        half_planes: &[(&usize, &HalfPlane)],
+        shapes: &[Shape],
+        half_planes: &[HalfPlane],
+        places: [&[usize]; 2],
     ) {
-        let mut overlaps = Vec::new();
-        for (i, (a, shape)) in shapes.iter().enumerate() {
-            let others = shapes[..i]
-                .iter()
-                .filter(|(_, other)| overlap(shape, other));
-            overlaps.extend(others.map(|(b, _)| (*b, *a)));
-            let crossed = half_planes.iter().filter(|(_, half)| reaches(shape, half));
-            overlaps.extend(crossed.map(|(b, _)| (*b, *a)));
-        }
-        for (i, (a, half)) in half_planes.iter().enumerate() {
-            let both = half_planes[..i]
-                .iter()
-                .filter(|(_, other)| !facing_away(half, other));
-            overlaps.extend(both.map(|(b, _)| (*b, *a)));
-        }
-        if let Some((a, b)) = overlaps.first() {
+        if let Some([a, b]) = overlap(shapes, half_planes) {
+            let place = |thing: Thing| match thing {
+                Thing::Shape(i) => places[0][i],
+                Thing::HalfPlane(i) => places[1][i],
+            };
+            let (a, b) = (place(a), place(b));
             let (low, high) = (a.min(b), a.max(b));
             self.faults.add(
                 format!("{of}.shapes"),
-                format!(
-                    "a list in which shapes[{low}] and shapes[{high}] overlap ({} pairs do)",
-                    overlaps.len()
-                ),
+                format!("a list in which shapes[{low}] and shapes[{high}] overlap"),
                 "shapes that do not overlap; put them in two layers",
             );
         }
@@ -243,9 +230,10 @@ impl Resolver<'_> {
             _ => 1.0,
         };
         let product: f64 = light * file.blockers.iter().map(terms).product::<f64>();
-        if product > MOST_PAIRS {
+        if product > limits::PRODUCTS {
+            let most = limits::PRODUCTS;
             let allowed = format!(
-                "at most {MOST_PAIRS:.0e} in all when the shapes of light and layers are multiplied"
+                "at most {most:.0e} in all when the shapes of light and layers are multiplied"
             );
             self.faults
                 .add("blockers: count", format!("{product:.1e}"), allowed);
@@ -258,50 +246,4 @@ fn opaque(shapes: Vec<Shape>, half_planes: Vec<HalfPlane>) -> Mask {
         shapes,
         half_planes,
     }
-}
-
-/// Overlaps by less than this share of the sizes are rounding: shapes may touch.
-const TOUCH: f64 = 1e-9;
-
-fn overlap(a: &Shape, b: &Shape) -> bool {
-    let (p, q) = (a.bounds(), b.bounds());
-    let gap = |axis: usize| {
-        let between = (p.center[axis] - q.center[axis]).abs();
-        let reach = 0.5 * (p.size[axis] + q.size[axis]);
-        between - reach * (1.0 - TOUCH)
-    };
-    let bounds_meet = gap(0) < 0.0 && gap(1) < 0.0;
-    bounds_meet
-        && match (a, b) {
-            (Shape::Rectangle(_), Shape::Rectangle(_)) => true,
-            (Shape::Disc(a), Shape::Disc(b)) => {
-                let between = (a.center[0] - b.center[0]).hypot(a.center[1] - b.center[1]);
-                between < (a.radius + b.radius) * (1.0 - TOUCH)
-            }
-            (Shape::Disc(disc), Shape::Rectangle(rectangle))
-            | (Shape::Rectangle(rectangle), Shape::Disc(disc)) => {
-                // The nearest point of the rectangle.
-                let beyond = |axis: usize| {
-                    let [low, high] = rectangle.extent(axis);
-                    disc.center[axis] - disc.center[axis].clamp(low, high)
-                };
-                beyond(0).hypot(beyond(1)) < disc.radius * (1.0 - TOUCH)
-            }
-        }
-}
-
-fn reaches(shape: &Shape, half_plane: &HalfPlane) -> bool {
-    let [low, high] = shape.bounds().extent(half_plane.axis);
-    let slack = TOUCH * (high - low);
-    if half_plane.above {
-        high > half_plane.edge + slack
-    } else {
-        low < half_plane.edge - slack
-    }
-}
-
-/// Two half-planes share nothing when they face away from each other.
-fn facing_away(a: &HalfPlane, b: &HalfPlane) -> bool {
-    let (above, below) = if a.above { (a, b) } else { (b, a) };
-    a.axis == b.axis && a.above != b.above && below.edge <= above.edge
 }

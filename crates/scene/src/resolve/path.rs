@@ -1,7 +1,7 @@
 //! The central ray: straight legs from surface to surface.
 
 use super::Resolver;
-use super::faults::show;
+use super::faults::{names, show};
 use crate::file::SceneFile;
 use crate::scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Surface,
@@ -80,8 +80,8 @@ impl Resolver<'_> {
         let Some(&(object, _)) = known.iter().find(|(_, name)| name == visit) else {
             // What is at fault itself has been named already.
             if !file.surfaces.iter().any(|s| s.name() == visit) {
-                let names: Vec<&str> = known.iter().map(|(_, name)| *name).collect();
-                let allowed = format!("one of the surfaces: {}", names.join(", "));
+                let known = names(known.iter().map(|(_, name)| *name));
+                let allowed = format!("one of the surfaces: {known}");
                 self.faults.add(of, show(visit), allowed);
             }
             return None;

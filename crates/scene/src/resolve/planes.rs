@@ -1,12 +1,14 @@
 //! Virtual planes: their place on the path, their window and their frequencies.
 
-use super::faults::show;
+use super::faults::{names, show};
 use super::{Resolver, SAME_PLANE, Stop};
 use crate::fault::Fault;
 use crate::file::{
     AxisFile, BlockersFile, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
 };
+use crate::limits;
 use crate::scene::{CentralRay, Object};
+use crate::shown::shown;
 use etendue_field::{
     Frame, FrequencyAxis, Orientation, Profile, Side, SliceGrid, VirtualPlane, Window, tidy,
 };
@@ -60,13 +62,6 @@ impl Resolver<'_> {
                 grid,
             });
         }
-        // Planes share the scene's window and frequencies: say a fault of theirs once.
-        let mut seen: Vec<Fault> = Vec::new();
-        self.faults.0.retain(|fault| {
-            let new = !seen.contains(fault);
-            seen.push(fault.clone());
-            new
-        });
         planes
     }
 
@@ -197,8 +192,7 @@ impl Resolver<'_> {
             let mut written = surfaces.chain(file.blockers.iter().map(BlockersFile::name));
             // What is at fault itself has been named already.
             if !written.any(|written| written == name) {
-                let names: Vec<&str> = stops.iter().map(|s| s.name).collect();
-                let allowed = format!("one of {}", names.join(", "));
+                let allowed = format!("one of {}", names(stops.iter().map(|s| s.name)));
                 self.faults.add(of, show(place), allowed);
             }
             return None;
@@ -241,7 +235,7 @@ impl Resolver<'_> {
         let hit = hit.and_then(|leg| stops.iter().find(|s| s.ends == Some(leg)));
         let on_first = || stops.iter().filter(|_| leg == 0).find(beside);
         if let Some(stop) = hit.or_else(on_first) {
-            let name = stop.name;
+            let name = shown(stop.name, limits::NAME);
             let allowed = format!("Before(\"{name}\") or After(\"{name}\") at that distance");
             self.faults.add(of, value(), allowed);
         }

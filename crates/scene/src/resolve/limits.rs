@@ -1,0 +1,78 @@
+//! How many things there are, before any of them is looked at.
+
+use super::Resolver;
+use crate::file::{BlockersFile, EnvironmentFile, LightFile, MeshSource, SceneFile, SurfaceFile};
+use crate::limits;
+
+impl Resolver<'_> {
+    /// Names what there is too much of, and tells whether there is nothing of that.
+    pub(super) fn counts(&mut self, file: &SceneFile) -> bool {
+        let lobes = match &file.light {
+            LightFile::Environment {
+                map: EnvironmentFile::Lobes(lobes),
+                ..
+            } => lobes.len(),
+            _ => 0,
+        };
+        let visits = file.path.visits.len();
+        for (field, count, what, most) in [
+            ("blockers", file.blockers.len(), "layers", limits::LAYERS),
+            (
+                "surfaces",
+                file.surfaces.len(),
+                "surfaces",
+                limits::SURFACES,
+            ),
+            ("planes", file.planes.len(), "planes", limits::PLANES),
+            ("path.visits", visits, "visits", limits::VISITS),
+            ("light.map", lobes, "lobes", limits::LOBES),
+        ] {
+            self.at_most(field, count as u64, what, most as u64);
+        }
+        // A layer that holds too many by itself is named where it is looked at.
+        let most = limits::SHAPES as u64;
+        let shapes = file.blockers.iter().map(|b| shapes(b).min(most)).sum();
+        self.at_most("blockers: shapes of all layers", shapes, "shapes", most);
+        let triangles = meshes(file).map(triangles).sum();
+        let field = "triangles of all Star and Paraboloid meshes";
+        self.at_most(field, triangles, "triangles", limits::MADE_TRIANGLES);
+        self.faults.0.is_empty()
+    }
+
+    fn at_most(&mut self, field: &str, count: u64, what: &str, most: u64) {
+        if count > most {
+            let allowed = format!("at most {most}");
+            self.faults.add(field, format!("{count} {what}"), allowed);
+        }
+    }
+}
+
+fn shapes(blockers: &BlockersFile) -> u64 {
+    match blockers {
+        BlockersFile::JitteredSquares { count, .. } => count.map(u64::from).iter().product(),
+        BlockersFile::Shapes { shapes, .. } => shapes.len() as u64,
+        BlockersFile::Grating { .. } | BlockersFile::Mesh { .. } => 0,
+    }
+}
+
+fn meshes(file: &SceneFile) -> impl Iterator<Item = &MeshSource> {
+    let blockers = file.blockers.iter().filter_map(|b| match b {
+        BlockersFile::Mesh { mesh, .. } => Some(mesh),
+        _ => None,
+    });
+    let surfaces = file.surfaces.iter().filter_map(|s| match s {
+        SurfaceFile::Mesh { mesh, .. } => Some(mesh),
+        SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
+    });
+    blockers.chain(surfaces)
+}
+
+/// About the triangles of a mesh that is made; one that is refused is not.
+fn triangles(mesh: &MeshSource) -> u64 {
+    let square = |n: u32| u64::from(if n > 2048 { 0 } else { n }).pow(2);
+    match mesh {
+        MeshSource::Star { rings, .. } => 4 * square(*rings),
+        MeshSource::Paraboloid { cells, .. } => 2 * square(*cells),
+        MeshSource::File(_) => 0,
+    }
+}

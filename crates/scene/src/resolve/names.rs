@@ -1,0 +1,78 @@
+//! Names: of the scene, of what stands in it, and of planes.
+
+use super::faults::show;
+use super::{Resolver, Stop};
+use crate::file::{BlockersFile, SceneFile, SurfaceFile};
+use crate::limits;
+use crate::shown::is_printable;
+
+impl Resolver<'_> {
+    /// The name of the scene is a folder of results.
+    pub(super) fn name_of_scene(&mut self, name: &str) {
+        if !is_name(name) || name == "." || name == ".." || name.contains('/') {
+            let field = "the name of the scene file";
+            let allowed = format!("{}, no `/`, and neither `.` nor `..`", printable());
+            self.faults.add(field, show(name), allowed);
+        }
+    }
+
+    pub(super) fn names(&mut self, file: &SceneFile, stops: &[Stop<'_>]) {
+        let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
+        let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();
+        let blockers = blockers.map(|(i, name)| (format!("blockers[{i}].name"), name));
+        let surfaces = surfaces.map(|(i, name)| (format!("surfaces[{i}].name"), name));
+        for (field, name) in blockers.chain(surfaces) {
+            if !is_name(name) {
+                self.faults.add(field, show(name), printable());
+            }
+        }
+        for repeated in repeated(stops.iter().map(|stop| stop.name)) {
+            self.faults.add(
+                "name",
+                show(repeated),
+                "a name no other blockers or surface has",
+            );
+        }
+        self.names_of_planes(file);
+    }
+
+    fn names_of_planes(&mut self, file: &SceneFile) {
+        // Some disks hold `Light` and `light` for one folder.
+        let folders: Vec<String> = file.planes.iter().map(|p| p.name.to_lowercase()).collect();
+        for repeated in repeated(folders.iter().map(String::as_str)) {
+            self.faults
+                .add("planes: name", show(repeated), "a name no other plane has");
+        }
+        let usable = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+        for (i, plane) in file.planes.iter().enumerate() {
+            if !is_name(&plane.name) || !plane.name.chars().all(usable) {
+                let most = limits::NAME;
+                let allowed = format!("1 to {most} letters, digits, - and _: it names a folder");
+                self.faults
+                    .add(format!("planes[{i}].name"), show(&plane.name), allowed);
+            }
+        }
+    }
+}
+
+/// Whether a name can stand in messages, files and pictures.
+fn is_name(name: &str) -> bool {
+    let length = name.chars().take(limits::NAME + 1).count();
+    (1..=limits::NAME).contains(&length) && name.chars().all(is_printable)
+}
+
+fn printable() -> String {
+    format!("1 to {} printable characters of any script", limits::NAME)
+}
+
+fn repeated<'a>(names: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
+    let mut names: Vec<&str> = names.collect();
+    names.sort_unstable();
+    let mut twice: Vec<&str> = names
+        .windows(2)
+        .filter(|w| w[0] == w[1])
+        .map(|w| w[0])
+        .collect();
+    twice.dedup();
+    twice
+}

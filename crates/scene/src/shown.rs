@@ -1,0 +1,102 @@
+//! Text from outside, as a message shows it.
+
+use std::fmt::{self, Display, Write};
+
+/// What `value` reads as, in at most `most` characters that a terminal takes as they are.
+///
+/// Control and format characters (among them those that turn the direction of text), separators of
+/// lines, private-use characters and non-characters are escaped as `\u{..}`. A text that is cut off
+/// ends in `…`; what is beyond is not even formatted.
+#[must_use]
+pub fn shown(value: impl Display, most: usize) -> String {
+    let mut cut = Cut {
+        text: String::new(),
+        left: most,
+    };
+    if write!(cut, "{value}").is_err() {
+        cut.text.push('…');
+    }
+    cut.text
+}
+
+/// Text that takes so many more characters.
+struct Cut {
+    text: String,
+    left: usize,
+}
+
+impl Write for Cut {
+    fn write_str(&mut self, text: &str) -> fmt::Result {
+        for c in text.chars() {
+            let length = if is_printable(c) {
+                1
+            } else {
+                c.escape_unicode().count()
+            };
+            self.left = self.left.checked_sub(length).ok_or(fmt::Error)?;
+            if length == 1 {
+                self.text.push(c);
+            } else {
+                self.text.extend(c.escape_unicode());
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Whether a character can be seen, or is the plain space, or is a mark on the character before it.
+pub(crate) fn is_printable(c: char) -> bool {
+    if c.is_ascii() {
+        return !c.is_ascii_control();
+    }
+    // What Rust escapes in the text it shows goes by Unicode's categories. A mark is spared if it
+    // is not the first character.
+    let mut after = [b'a'; 5];
+    let end = 1 + c.encode_utf8(&mut after[1..]).len();
+    let text = std::str::from_utf8(&after[..end]);
+    text.is_ok_and(|text| text.escape_debug().count() == 2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::shown;
+
+    #[test]
+    fn what_a_terminal_obeys_is_escaped() {
+        for (text, as_shown) in [
+            ("a b é 床 पटल שלום \\ \"'", "a b é 床 पटल שלום \\ \"'"),
+            (
+                "\u{1b}[2J\r\n\t\u{7f}",
+                "\\u{1b}[2J\\u{d}\\u{a}\\u{9}\\u{7f}",
+            ),
+            ("\u{85}\u{9b}\u{a0}", "\\u{85}\\u{9b}\\u{a0}"),
+            ("\u{202e}\u{2066}\u{200f}", "\\u{202e}\\u{2066}\\u{200f}"),
+            ("\u{2028}\u{2029}\u{feff}", "\\u{2028}\\u{2029}\\u{feff}"),
+            (
+                "\u{e000}\u{fffe}\u{10ffff}",
+                "\\u{e000}\\u{fffe}\\u{10ffff}",
+            ),
+        ] {
+            assert_eq!(shown(text, 100), as_shown);
+        }
+    }
+
+    #[test]
+    fn what_is_too_long_is_cut_and_not_formatted() {
+        assert_eq!(shown("床床床", 3), "床床床");
+        assert_eq!(shown("床床床床", 3), "床床床…");
+        // An escape is shown whole or not at all.
+        assert_eq!(shown("ab\u{1b}", 7), "ab…");
+        assert_eq!(shown("ab\u{1b}", 8), "ab\\u{1b}");
+
+        struct Endless;
+        impl std::fmt::Display for Endless {
+            fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+                loop {
+                    f.write_str("more ")?;
+                }
+            }
+        }
+        assert_eq!(shown(Endless, 7), "more mo…");
+    }
+}
