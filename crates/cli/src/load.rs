@@ -3,11 +3,10 @@ use crate::failure::Failure;
 use crate::machine;
 use crate::results::Results;
 use crate::stored::copy_of;
-use etendue_scene::{RunFile, Scene, SceneError, SceneFile, read_below, read_file, resolve};
+use etendue_scene::{
+    RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
+};
 use std::path::{Path, PathBuf};
-
-/// Most bytes of a scene file.
-const MOST_SCENE: u64 = 1 << 24;
 
 /// Reads, overrides and resolves the scene named on the command line; `options` are overrides of the command
 /// line's own.
@@ -19,13 +18,11 @@ pub(crate) fn scene(
     let shown = path.display();
     let unreadable =
         |e: &dyn std::fmt::Display| Failure::bad_input(format!("cannot read {shown}: {e}"));
-    let bytes = read_file(path, MOST_SCENE).map_err(|e| unreadable(&e))?;
+    let bytes = read_file(path, limits::FILE_BYTES).map_err(|e| unreadable(&e))?;
     let text = str::from_utf8(&bytes).map_err(|e| unreadable(&e))?;
     let mut file =
         SceneFile::parse(text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
-    for (field, value) in &args.set {
-        file = file.with(field, value).map_err(Failure::bad_input)?;
-    }
+    file = file.with_all(&args.set).map_err(Failure::bad_input)?;
     options(&mut file.run);
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
     resolved(&name, file, folder(args), &shown.to_string())

@@ -38,6 +38,7 @@ mod threads;
 
 use args::{Cli, Command};
 use clap::Parser;
+use etendue_scene::shown;
 use std::io::Write;
 use std::process::ExitCode;
 
@@ -57,7 +58,8 @@ fn main() -> ExitCode {
         Ok(code) => ExitCode::from(code),
         Err(failure) => {
             // A reader that has gone does not change the exit code.
-            let _ = writeln!(std::io::stderr(), "error: {}", failure.message);
+            let message = printable(&failure.message, MOST_LINES);
+            let _ = writeln!(std::io::stderr(), "error: {message}");
             ExitCode::from(failure.code)
         }
     }
@@ -66,5 +68,24 @@ fn main() -> ExitCode {
 /// Prints to standard output. A reader that has gone, or a full disk behind it, changes nothing that was
 /// done: the result and the exit code stand.
 pub(crate) fn say(text: &str) {
-    let _ = writeln!(std::io::stdout(), "{text}");
+    let _ = writeln!(std::io::stdout(), "{}", printable(text, usize::MAX));
+}
+
+/// Lines of an error, and characters of a line.
+const MOST_LINES: usize = 20;
+const LONGEST_LINE: usize = 2000;
+
+/// Text of at most so many lines, in characters that a terminal takes as they are: names of files and what
+/// stands in them come from anywhere.
+fn printable(text: &str, lines: usize) -> String {
+    let mut all = text.split('\n');
+    let shown = all
+        .by_ref()
+        .take(lines)
+        .map(|line| shown(line, LONGEST_LINE));
+    let mut shown: Vec<String> = shown.collect();
+    if all.next().is_some() {
+        shown.push("…".to_owned());
+    }
+    shown.join("\n")
 }
