@@ -73,7 +73,7 @@ pub(crate) fn conclude(
     finished.tell_replaced(ending.quiet);
     if !ending.quiet {
         table::print(&summary, &finished.folder);
-        let mut gone = finished.gone.clone();
+        let mut gone = finished.gone;
         gone.retain(|name| name.ends_with(".npy"));
         if !gone.is_empty() {
             let names = gone.join(", ");
