@@ -7,6 +7,7 @@
 mod bandwidth;
 mod calibration;
 mod faults;
+mod hostile;
 mod noise;
 mod report;
 mod rows;
@@ -84,6 +85,8 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
+    /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if it does not bear one.
+    Hostile(hostile::Options),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
     /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
@@ -102,6 +105,9 @@ fn main() -> ExitCode {
     let command = Cli::parse().command;
     if let Command::Bandwidth { photons } = command {
         return bandwidth::page(photons);
+    }
+    if let Command::Hostile(options) = &command {
+        return attacked(hostile::hostile(options));
     }
     let parts = match command {
         Command::All => &[
@@ -139,6 +145,25 @@ fn main() -> ExitCode {
     match reported() {
         Ok(all) => ExitCode::from(u8::from(!all.iter().all(|section| section.passed))),
         Err(()) => ExitCode::from(3),
+    }
+}
+
+/// Prints what came of attacks on the program.
+#[expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "the report is the product"
+)]
+fn attacked(outcome: std::io::Result<Section>) -> ExitCode {
+    match outcome {
+        Ok(section) => {
+            println!("{}", section.markdown());
+            ExitCode::from(u8::from(!section.passed))
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(3)
+        }
     }
 }
 
@@ -219,6 +244,8 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Table1 { photons } => table1::table1(photons),
         Command::Shading { photons } => shading::shading(photons),
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
+        // Attacks have reports of their own.
+        Command::Hostile(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);
