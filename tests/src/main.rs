@@ -8,6 +8,7 @@ mod bandwidth;
 mod calibration;
 mod faults;
 mod hostile;
+mod kills;
 mod noise;
 mod report;
 mod rows;
@@ -30,6 +31,8 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
+  cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
+  cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -87,6 +90,8 @@ enum Command {
     },
     /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if it does not bear one.
     Hostile(hostile::Options),
+    /// The program killed, started twice at once and on full disks; exit code 1 if it leaves a broken result or loses a file.
+    Kills(kills::Options),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
     /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
@@ -108,6 +113,9 @@ fn main() -> ExitCode {
     }
     if let Command::Hostile(options) = &command {
         return attacked(hostile::hostile(options));
+    }
+    if let Command::Kills(options) = &command {
+        return attacked(kills::kills(options));
     }
     let parts = match command {
         Command::All => &[
@@ -245,7 +253,7 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Shading { photons } => shading::shading(photons),
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
         // Attacks have reports of their own.
-        Command::Hostile(_) => Vec::new(),
+        Command::Hostile(_) | Command::Kills(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);

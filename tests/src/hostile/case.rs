@@ -45,6 +45,8 @@ pub(crate) struct Attack {
     pub(crate) arguments: Vec<String>,
     /// What is run on it too, if the first command finds it sound.
     pub(crate) then: Option<Vec<String>>,
+    /// The files before the mutation, where these may take long too: then it is no fault.
+    pub(crate) sound: Option<Folder>,
     /// The summary that must come out if the input is accepted; `None` where it may be another.
     pub(crate) summary: Option<Vec<u8>>,
 }
@@ -111,6 +113,9 @@ pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Outc
         {
             outcome.reached = Reached::Ran;
             step(program, attack, then, at, &mut outcome)?;
+            if outcome.faults.contains(&Fault::Slow) && is_slow(program, attack, then, at)? {
+                outcome.faults.retain(|fault| *fault != Fault::Slow);
+            }
         }
         if let Some(summary) = &attack.summary
             && fs::read(work.join(OUT).join("summary.json")).ok().as_ref() != Some(summary)
@@ -135,7 +140,7 @@ fn step(
     let place = at.join("case");
     let ended = child::call(program, &place.join(WORK), arguments, at)?;
     let mut faults = faults(&ended);
-    let mut wrong = wrote(attack, &ended, &place)?;
+    let mut wrong = wrote(attack, arguments, &ended, &place)?;
     if !wrong.is_empty() {
         faults.push(Fault::Wrote);
         wrong.insert(0, "  changed on disk:".into());
@@ -155,6 +160,18 @@ fn step(
     );
     outcome.faults.extend(faults);
     Ok(ended)
+}
+
+/// Whether this takes much of the time allowed without the mutation too.
+fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::Result<bool> {
+    let Some(sound) = &attack.sound else {
+        return Ok(false);
+    };
+    let place = at.join("sound");
+    folder::write(&place, sound)?;
+    let ended = child::call(program, &place, then, at)?;
+    fs::remove_dir_all(&place)?;
+    Ok(ended.seconds > LONGEST.as_secs_f64() / 3.0)
 }
 
 /// What is wrong with the process itself.
@@ -185,8 +202,14 @@ fn faults(ended: &Ended) -> Vec<Fault> {
     .collect()
 }
 
-/// Names of what should not have changed: the results alone may, and they only if the input was not refused.
-fn wrote(attack: &Attack, ended: &Ended, place: &Path) -> io::Result<Vec<String>> {
+/// Names of what should not have changed: only results may, of a command that makes them, if the input
+/// was not refused.
+fn wrote(
+    attack: &Attack,
+    arguments: &[String],
+    ended: &Ended,
+    place: &Path,
+) -> io::Result<Vec<String>> {
     let before: Folder = folder::with_parents(&attack.files);
     let mut expected: Folder = before
         .into_iter()
@@ -195,7 +218,7 @@ fn wrote(attack: &Attack, ended: &Ended, place: &Path) -> io::Result<Vec<String>
     expected.insert(WORK.into(), None);
     let mut found = folder::read(place)?;
     let out = format!("{WORK}/{OUT}");
-    let reads = attack.arguments.first().is_some_and(|a| a == "check") && attack.then.is_none();
+    let reads = arguments.first().is_some_and(|command| command == "check");
     if ended.code != Some(2) && !reads {
         let below = format!("{out}/");
         found.retain(|name, _| *name != out && !name.starts_with(&below));

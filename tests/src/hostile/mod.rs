@@ -5,7 +5,7 @@
 mod bytes;
 mod case;
 pub(crate) mod child;
-mod dice;
+pub(crate) mod dice;
 pub(crate) mod folder;
 pub(crate) mod index;
 mod meshes;
@@ -39,6 +39,9 @@ pub(crate) struct Options {
     /// Only this case; it is kept whatever becomes of it.
     #[arg(long)]
     case: Option<u64>,
+    /// Scenes are checked only, and none is run.
+    #[arg(long)]
+    quick: bool,
     /// Cases at a time [default: one for each core].
     #[arg(long)]
     threads: Option<usize>,
@@ -102,7 +105,8 @@ pub(crate) fn hostile(options: &Options) -> io::Result<Section> {
             if number >= cases.end {
                 return Ok(());
             }
-            let attack = seeds.attack(options.seed, number)?;
+            let mut attack = seeds.attack(options.seed, number)?;
+            attack.then = attack.then.filter(|_| !options.quick);
             let outcome = case::run(&program, &attack, &at)?;
             if !outcome.faults.is_empty() || options.case.is_some() {
                 bar.println(format!("case {number}: {:?}", outcome.faults));

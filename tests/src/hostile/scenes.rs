@@ -67,7 +67,11 @@ pub(crate) fn seeds() -> io::Result<Vec<String>> {
 pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
     let scene: &String = dice.pick(seeds);
     let text = text::mutated(scene, &WORDS, dice);
-    on_scene(Folder::from([(SCENE.to_owned(), Some(text))]), dice)
+    let folder = |text| Folder::from([(SCENE.to_owned(), Some(text))]);
+    Attack {
+        sound: Some(folder(scene.clone().into_bytes())),
+        ..on_scene(folder(text), dice)
+    }
 }
 
 /// The name of a scene file.
@@ -82,6 +86,7 @@ pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
         files,
         arguments: words("check scene.ron"),
         then: dice.one_in(8).then(|| words(run)),
+        sound: None,
         summary: None,
     }
 }

@@ -108,6 +108,7 @@ fn attack(seed: &Seed, stage: &str, index: &str, dice: &mut Dice) -> io::Result<
         files,
         arguments: words(COMPARE),
         then: None,
+        sound: None,
         summary,
     })
 }
