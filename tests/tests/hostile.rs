@@ -23,7 +23,8 @@ fn attack(arguments: &[&str]) {
     assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
 }
 
-/// The program beside the validation. It is of another package: tests of this one alone do not build it.
+/// The program beside the validation. It is of another package: tests of this one alone do not
+/// build it.
 fn program() -> PathBuf {
     let path = Path::new(VALIDATION).with_file_name("etendue");
     let built = fs::metadata(&path).and_then(|file| file.modified());

@@ -150,7 +150,8 @@ fn step(
     let message = String::from_utf8_lossy(&ended.stderr);
     let message: String = message.chars().take(4000).collect();
     outcome.log += &format!(
-        "etendue {}\n  exit {:?}, signal {:?}, {:.2} s, {:.0} MB, faults {faults:?}\n{}\n{message}\n",
+        "etendue {}\n  exit {:?}, signal {:?}, {:.2} s, {:.0} MB, faults {faults:?}\n{}\n\
+         {message}\n",
         arguments.join(" "),
         ended.code,
         ended.signal,
@@ -202,8 +203,8 @@ fn faults(ended: &Ended) -> Vec<Fault> {
     .collect()
 }
 
-/// Names of what should not have changed: only results may, of a command that makes them, if the input
-/// was not refused.
+/// Names of what should not have changed: only results may, of a command that makes them, if the
+/// input was not refused.
 fn wrote(
     attack: &Attack,
     arguments: &[String],

@@ -46,7 +46,8 @@ pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
     })
 }
 
-/// Runs `program` in `folder`, what it says going to files in `scratch`, until it ends or is too long about it.
+/// Runs `program` in `folder`, what it says going to files in `scratch`, until it ends or is too
+/// long about it.
 pub(crate) fn call(
     program: &Path,
     folder: &Path,

@@ -59,7 +59,8 @@ pub(crate) fn other_scene(index: &str, dice: &mut Dice) -> Option<Value> {
     Some(scene)
 }
 
-/// An index in which `old`, the hash of a file, gives way to that of the `new` bytes; its own hash fits again.
+/// An index in which `old`, the hash of a file, gives way to that of the `new` bytes; its own hash
+/// fits again.
 pub(crate) fn with_hash_of(index: &str, old: &[u8], new: &[u8]) -> String {
     let [old, new] = [old, new].map(|bytes| blake3::hash(bytes).to_hex());
     sealed(&index.replace(old.as_str(), new.as_str()))

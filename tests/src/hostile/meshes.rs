@@ -1,4 +1,5 @@
-//! Mutated meshes: OBJ, and PLY as text and in both orders of bytes, as a blocker and as a curved mirror.
+//! Mutated meshes: OBJ, and PLY as text and in both orders of bytes, as a blocker and as a curved
+//! mirror.
 
 use super::case::Attack;
 use super::dice::Dice;
@@ -71,8 +72,11 @@ const PLY: &str = "ply\r\nformat ascii 1.0\r\ncomment made by hand\r\nobj_info n
     255 1 1 1\r\n0 -1 -1 1\r\n0 -1 1 -1\r\n7 1 -1 -1\r\n2 0.5 .5\r\n0\r\n\
     3 0 1 2 0\r\n3 0 3 1 -1\r\n3 0 2 3 5\r\n3 1 3 2 0\r\n";
 
-/// Sound meshes: for a blocker and for a mirror, names and contents.
-pub(crate) fn seeds() -> Result<[Vec<(&'static str, Vec<u8>)>; 2], Fault> {
+/// Names and contents of sound meshes.
+pub(crate) type Meshes = Vec<(&'static str, Vec<u8>)>;
+
+/// Those for a blocker and those for a mirror.
+pub(crate) fn seeds() -> Result<[Meshes; 2], Fault> {
     let star = Mesh::star(1.0, 0.3, 4, 8)?;
     let bowl = Mesh::paraboloid([-0.5, 0.3], 0.5, 16)?;
     let mut blockers = forms(&star);
@@ -82,7 +86,7 @@ pub(crate) fn seeds() -> Result<[Vec<(&'static str, Vec<u8>)>; 2], Fault> {
 }
 
 /// A mesh in every format.
-fn forms(mesh: &Mesh) -> Vec<(&'static str, Vec<u8>)> {
+fn forms(mesh: &Mesh) -> Meshes {
     let vertices = mesh.vertices().iter().map(|v| v.to_array());
     let mut obj = String::new();
     let mut ascii = header("ascii", mesh);
@@ -116,7 +120,7 @@ fn header(format: &str, mesh: &Mesh) -> String {
 }
 
 /// A mutated mesh in a sound scene.
-pub(crate) fn attack(seeds: &[Vec<(&str, Vec<u8>)>; 2], dice: &mut Dice) -> Attack {
+pub(crate) fn attack(seeds: &[Meshes; 2], dice: &mut Dice) -> Attack {
     let role = dice.below(2);
     let (name, whole) = dice.pick(&seeds[role]);
     let mut mesh = whole.clone();

@@ -1,4 +1,5 @@
-//! Attacks on the program from outside: mutated input of every kind, given to it as a child process.
+//! Attacks on the program from outside: mutated input of every kind, given to it as a child
+//! process.
 //!
 //! A case is a function of the seed and its number, so that any can be run again alone.
 
@@ -56,7 +57,7 @@ pub(crate) struct Options {
 /// All that cases are made of.
 struct Seeds {
     scenes: Vec<String>,
-    meshes: [Vec<(&'static str, Vec<u8>)>; 2],
+    meshes: [meshes::Meshes; 2],
     pictures: [Vec<Vec<u8>>; 2],
     stages: Vec<stages::Seed>,
 }
@@ -109,11 +110,10 @@ pub(crate) fn hostile(options: &Options) -> io::Result<Section> {
             attack.then = attack.then.filter(|_| !options.quick);
             let outcome = case::run(&program, &attack, &at)?;
             if !outcome.faults.is_empty() || options.case.is_some() {
-                bar.println(format!("case {number}: {:?}", outcome.faults));
                 keep(options, number, &attack, &outcome)?;
             }
             if let Ok(mut tallies) = tallies.lock() {
-                tallies.add(Kind::of(number), &outcome);
+                tallies.add(number, &outcome);
             }
             bar.inc(1);
         }

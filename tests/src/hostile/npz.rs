@@ -1,4 +1,5 @@
-//! Mutated NPZ files: their arrays one by one, the headers of those, and the structure of the archive.
+//! Mutated NPZ files: their arrays one by one, the headers of those, and the structure of the
+//! archive.
 
 use super::bytes;
 use super::dice::Dice;

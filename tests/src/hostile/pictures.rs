@@ -24,8 +24,9 @@ const SKY: &str = r#"(
 /// A picture on a glossy sphere.
 const TEXTURE: &str = r#"(
     light: Projector(center: (0, 0, 0), image: (width: (0.15, 0.15))),
-    surfaces: [Smooth(name: "sphere", center: (0, 0, 1), facing: (0, 0, -1), form: Sphere(0.5), aperture: 0.6,
-        event: Reflects(brdf: (lobe: Phong(20), albedo: 0.8), texture: Picture(file: "NAME", size: (0.4, 0.4))))],
+    surfaces: [Smooth(name: "sphere", center: (0, 0, 1), facing: (0, 0, -1), form: Sphere(0.5),
+        aperture: 0.6, event: Reflects(brdf: (lobe: Phong(20), albedo: 0.8),
+        texture: Picture(file: "NAME", size: (0.4, 0.4))))],
     path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["sphere"]),
     planes: [(name: "outgoing", at: After("sphere"))],
     window: (x: Hann(0.15), u: Hann(0.3)),

@@ -1,7 +1,7 @@
 //! Mutated folders of the stages: parts of a measurement and predictions, for `compare`.
 //!
-//! A change whose hashes were not made to fit must be refused or harmless. With hashes that fit nobody can tell, but
-//! the readers behind the hashes are reached.
+//! A change whose hashes were not made to fit must be refused or harmless. With hashes that fit
+//! nobody can tell, but the readers behind the hashes are reached.
 
 use super::case::{Attack, OUT};
 use super::child;
@@ -25,9 +25,11 @@ pub(crate) const SMALL: &str = r#"(
     run: (photons: 2000, seed: 1, batches: 32),
 )"#;
 
-/// The same with a mesh from a file: it has a reference instead of a prediction, and copies of the mesh.
+/// The same with a mesh from a file: it has a reference instead of a prediction, and copies of the
+/// mesh.
 pub(crate) fn with_mesh() -> String {
-    let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
+    let mesh = r#"blockers: [Mesh(name: "tetra", center: (0.1, 0.2, 1), 
+        mesh: File("meshes/tetra.obj"), scale: 0.1), "#;
     SMALL.replace("blockers: [", mesh)
 }
 

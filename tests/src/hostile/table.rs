@@ -2,6 +2,7 @@
 
 use super::case::{Fault, Kind, Outcome, Reached};
 use crate::report::Section;
+use std::collections::BTreeMap;
 
 /// The cases of one kind.
 #[derive(Clone, Debug, Default)]
@@ -15,11 +16,23 @@ struct Tally {
 
 /// The cases of every kind.
 #[derive(Debug, Default)]
-pub(crate) struct Tallies([Tally; Kind::ALL.len()]);
+pub(crate) struct Tallies {
+    kinds: [Tally; Kind::ALL.len()],
+    /// The bad ones by their numbers.
+    bad: BTreeMap<u64, String>,
+}
+
+/// The most bad cases that are told one by one.
+const MOST_TOLD: usize = 60;
 
 impl Tallies {
-    pub(crate) fn add(&mut self, kind: Kind, outcome: &Outcome) {
-        let tally = &mut self.0[kind as usize];
+    pub(crate) fn add(&mut self, number: u64, outcome: &Outcome) {
+        let kind = Kind::of(number);
+        if !outcome.faults.is_empty() {
+            let words = format!("* case {number}, {kind:?}: {:?}", outcome.faults);
+            self.bad.insert(number, words);
+        }
+        let tally = &mut self.kinds[kind as usize];
         tally.cases += 1;
         tally.reached[outcome.reached as usize] += 1;
         for fault in &outcome.faults {
@@ -31,15 +44,17 @@ impl Tallies {
 
     /// The table; it has passed if nothing went wrong in any case.
     pub(crate) fn section(&self, seed: u64) -> Section {
-        let pairs = Kind::ALL.iter().zip(&self.0);
+        let pairs = Kind::ALL.iter().zip(&self.kinds);
         let rows = pairs.map(|(kind, tally)| row(*kind, tally)).collect();
-        let faults = self.0.iter().flat_map(|tally| tally.faults);
+        let bad: Vec<&str> = self.bad.values().map(String::as_str).collect();
+        let told = bad[..bad.len().min(MOST_TOLD)].join("\n");
         Section {
             title: "Hostile input".into(),
             text: format!(
                 "Mutated files as input, seed {seed}. Required: a result or one clear message, at \
                  most 30 s and 1 GB, nothing written that is not a result, and no other result \
-                 from a folder that was damaged."
+                 from a folder that was damaged.{}{told}",
+                if bad.is_empty() { "" } else { "\n\n" }
             ),
             header: vec![
                 "input",
@@ -59,7 +74,7 @@ impl Tallies {
                 "worst MB",
             ],
             rows,
-            passed: faults.sum::<u64>() == 0,
+            passed: bad.is_empty(),
         }
     }
 }

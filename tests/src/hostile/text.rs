@@ -47,8 +47,8 @@ const NAMES: [&str; 14] = [
     "ä€𝄞",
 ];
 
-/// The text with one to three tokens replaced, removed, doubled or swapped, blocks of it repeated, or worse;
-/// `words` are tokens of its own language.
+/// The text with one to three tokens replaced, removed, doubled or swapped, blocks of it repeated,
+/// or worse; `words` are tokens of its own language.
 pub(crate) fn mutated(text: &str, words: &[&str], dice: &mut Dice) -> Vec<u8> {
     let mut tokens = split(text);
     let mut raw = false;

@@ -1,4 +1,5 @@
-//! Whether a folder is what its index says: a reading of the format that shares no code with the program.
+//! Whether a folder is what its index says: a reading of the format that shares no code with the
+//! program.
 
 use crate::hostile::folder::Folder;
 use crate::hostile::index::TAIL;

@@ -1,4 +1,5 @@
-//! Kills at random moments, two writers at once and full disks: what is left is a whole result or none.
+//! Kills at random moments, two writers at once and full disks: what is left is a whole result or
+//! none.
 
 mod check;
 mod disk;
@@ -87,8 +88,9 @@ fn section(options: &Options, counts: &Counts, told: &[String]) -> Section {
     });
     let mut text = format!(
         "Commands killed, started twice at once, and on full disks, in folders with an earlier \
-         result and files of the user's; seed {}. Required: every index is of a whole result, every \
-         file of the user's stays as it is, and the next run succeeds and leaves nothing behind.",
+         result and files of the user's; seed {}. Required: every index is of a whole result, \
+         every file of the user's stays as it is, and the next run succeeds and leaves nothing \
+         behind.",
         options.seed
     );
     if !told.is_empty() {

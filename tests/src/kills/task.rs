@@ -1,4 +1,5 @@
-//! The commands that are killed, and the folder they are killed in: an earlier result among the user's files.
+//! The commands that are killed, and the folder they are killed in: an earlier result among the
+//! user's files.
 
 use crate::hostile::child;
 use crate::hostile::folder::{self, Folder};
