@@ -3,6 +3,7 @@
 //! `short` is a few minutes, for every change; `suite` goes through all scenes without smooth surfaces and writes `docs/suite.md`; `table1` through the
 //! operators of the paper, `shading` through what surfaces do to light, and `main` is the full account of the main scene: each writes its part of
 //! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
+//! `hostile` and `kills` attack the program `etendue` from outside.
 
 mod bandwidth;
 mod calibration;
