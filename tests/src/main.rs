@@ -3,10 +3,13 @@
 //! `short` is a few minutes, for every change; `suite` goes through all scenes without smooth surfaces and writes `docs/suite.md`; `table1` through the
 //! operators of the paper, `shading` through what surfaces do to light, and `main` is the full account of the main scene: each writes its part of
 //! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
+//! `hostile` and `kills` attack the program `etendue` from outside.
 
 mod bandwidth;
 mod calibration;
 mod faults;
+mod hostile;
+mod kills;
 mod noise;
 mod report;
 mod rows;
@@ -29,6 +32,8 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
+  cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
+  cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -84,6 +89,10 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
+    /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if it does not bear one.
+    Hostile(hostile::Options),
+    /// The program killed, started twice at once and on full disks; exit code 1 if it leaves a broken result or loses a file.
+    Kills(kills::Options),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
     /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
@@ -102,6 +111,12 @@ fn main() -> ExitCode {
     let command = Cli::parse().command;
     if let Command::Bandwidth { photons } = command {
         return bandwidth::page(photons);
+    }
+    if let Command::Hostile(options) = &command {
+        return attacked(hostile::hostile(options));
+    }
+    if let Command::Kills(options) = &command {
+        return attacked(kills::kills(options));
     }
     let parts = match command {
         Command::All => &[
@@ -139,6 +154,25 @@ fn main() -> ExitCode {
     match reported() {
         Ok(all) => ExitCode::from(u8::from(!all.iter().all(|section| section.passed))),
         Err(()) => ExitCode::from(3),
+    }
+}
+
+/// Prints what came of attacks on the program.
+#[expect(
+    clippy::print_stdout,
+    clippy::print_stderr,
+    reason = "the report is the product"
+)]
+fn attacked(outcome: std::io::Result<Section>) -> ExitCode {
+    match outcome {
+        Ok(section) => {
+            println!("{}", section.markdown());
+            ExitCode::from(u8::from(!section.passed))
+        }
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(3)
+        }
     }
 }
 
@@ -219,6 +253,8 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Table1 { photons } => table1::table1(photons),
         Command::Shading { photons } => shading::shading(photons),
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
+        // Attacks have reports of their own.
+        Command::Hostile(_) | Command::Kills(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);

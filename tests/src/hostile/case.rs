@@ -1,0 +1,250 @@
+//! One case: input, the command run on it, and what is wrong with how that ended.
+
+use super::child::{self, Ended, LARGEST, LONGEST};
+use super::folder::{self, Folder};
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// A kind of input.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    Scene,
+    Mesh,
+    Picture,
+    Part,
+    Prediction,
+}
+
+impl Kind {
+    pub(crate) const ALL: [Self; 5] = [
+        Self::Scene,
+        Self::Mesh,
+        Self::Picture,
+        Self::Part,
+        Self::Prediction,
+    ];
+
+    /// The kind of a case: half of them are scenes.
+    pub(crate) fn of(case: u64) -> Self {
+        match case % 20 {
+            0..10 => Self::Scene,
+            10..13 => Self::Mesh,
+            13..16 => Self::Picture,
+            16..18 => Self::Part,
+            _ => Self::Prediction,
+        }
+    }
+}
+
+/// What is attacked with, and how.
+#[derive(Debug)]
+pub(crate) struct Attack {
+    /// All files that are there before.
+    pub(crate) files: Folder,
+    pub(crate) arguments: Vec<String>,
+    /// What is run on it too, if the first command finds it sound.
+    pub(crate) then: Option<Vec<String>>,
+    /// The files before the mutation, where these may take long too: then it is no fault.
+    pub(crate) sound: Option<Folder>,
+    /// The summary that must come out if the input is accepted; `None` where it may be another.
+    pub(crate) summary: Option<Vec<u8>>,
+}
+
+/// What must not be.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fault {
+    /// Also an exit code that the program does not have.
+    Panic,
+    /// Ended by a signal, or for want of memory.
+    Abort,
+    Slow,
+    Large,
+    /// Something written beside the results, or anything on exit 2.
+    Wrote,
+    /// No message, a long one, or one with control characters.
+    Message,
+    /// Damaged, accepted, and with another result.
+    Changed,
+}
+
+/// How far the program got.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Reached {
+    Syntax,
+    Values,
+    Sound,
+    Ran,
+}
+
+/// What became of a case.
+#[derive(Debug)]
+pub(crate) struct Outcome {
+    pub(crate) reached: Reached,
+    pub(crate) faults: Vec<Fault>,
+    pub(crate) seconds: f64,
+    pub(crate) peak: u64,
+    /// The command lines and how they ended, for whoever looks into it.
+    pub(crate) log: String,
+}
+
+/// The folder the input is in, within that of the case.
+const WORK: &str = "work";
+/// The only place for results, within the former.
+pub(crate) const OUT: &str = "out";
+
+/// Runs a case in a fresh folder within `at`, which is removed again.
+pub(crate) fn run(program: &Path, attack: &Attack, at: &Path) -> io::Result<Outcome> {
+    let place = at.join("case");
+    let work = place.join(WORK);
+    folder::write(&work, &attack.files)?;
+    let mut outcome = Outcome {
+        reached: Reached::Values,
+        faults: Vec::new(),
+        seconds: 0.0,
+        peak: 0,
+        log: String::new(),
+    };
+    let ended = step(program, attack, &attack.arguments, at, &mut outcome)?;
+    if matches!(ended.code, Some(0 | 1 | 4)) {
+        outcome.reached = Reached::Sound;
+        if let Some(then) = &attack.then
+            && is_small(&ended.stdout)
+        {
+            outcome.reached = Reached::Ran;
+            step(program, attack, then, at, &mut outcome)?;
+            if outcome.faults.contains(&Fault::Slow) && is_slow(program, attack, then, at)? {
+                outcome.faults.retain(|fault| *fault != Fault::Slow);
+            }
+        }
+        if let Some(summary) = &attack.summary
+            && fs::read(work.join(OUT).join("summary.json")).ok().as_ref() != Some(summary)
+        {
+            outcome.faults.push(Fault::Changed);
+        }
+    } else if is_syntax(&ended.stderr) {
+        outcome.reached = Reached::Syntax;
+    }
+    fs::remove_dir_all(&place)?;
+    Ok(outcome)
+}
+
+/// Runs one command and notes what is wrong with it.
+fn step(
+    program: &Path,
+    attack: &Attack,
+    arguments: &[String],
+    at: &Path,
+    outcome: &mut Outcome,
+) -> io::Result<Ended> {
+    let place = at.join("case");
+    let ended = child::call(program, &place.join(WORK), arguments, at)?;
+    let mut faults = faults(&ended);
+    let mut wrong = wrote(attack, arguments, &ended, &place)?;
+    if !wrong.is_empty() {
+        faults.push(Fault::Wrote);
+        wrong.insert(0, "  changed on disk:".into());
+    }
+    outcome.seconds = outcome.seconds.max(ended.seconds);
+    outcome.peak = outcome.peak.max(ended.peak);
+    let message = String::from_utf8_lossy(&ended.stderr);
+    let message: String = message.chars().take(4000).collect();
+    outcome.log += &format!(
+        "etendue {}\n  exit {:?}, signal {:?}, {:.2} s, {:.0} MB, faults {faults:?}\n{}\n\
+         {message}\n",
+        arguments.join(" "),
+        ended.code,
+        ended.signal,
+        ended.seconds,
+        ended.peak as f64 / 1e6,
+        wrong.join(" "),
+    );
+    outcome.faults.extend(faults);
+    Ok(ended)
+}
+
+/// Whether this takes much of the time allowed without the mutation too.
+fn is_slow(program: &Path, attack: &Attack, then: &[String], at: &Path) -> io::Result<bool> {
+    let Some(sound) = &attack.sound else {
+        return Ok(false);
+    };
+    let place = at.join("sound");
+    folder::write(&place, sound)?;
+    let ended = child::call(program, &place, then, at)?;
+    fs::remove_dir_all(&place)?;
+    Ok(ended.seconds > LONGEST.as_secs_f64() / 3.0)
+}
+
+/// What is wrong with the process itself.
+fn faults(ended: &Ended) -> Vec<Fault> {
+    let message = String::from_utf8_lossy(&ended.stderr);
+    let slow = ended.hung || ended.seconds > LONGEST.as_secs_f64();
+    let large = ended.peak > LARGEST;
+    let panicked = message.contains("panicked");
+    // Those that were ended from here did not abort.
+    let aborted = ended.signal.is_some() && !slow && !large;
+    let aborted = aborted || message.contains("memory allocation of");
+    let known = matches!(ended.code, None | Some(0..=4));
+    let refused = matches!(ended.code, Some(2 | 3)) && !panicked && !aborted;
+    let control = |c: char| c.is_control() && c != '\n';
+    let unfit = message.trim().is_empty()
+        || message.len() > 8192
+        || message.contains(control)
+        || std::str::from_utf8(&ended.stderr).is_err();
+    [
+        (Fault::Panic, panicked || !known),
+        (Fault::Abort, aborted),
+        (Fault::Slow, slow),
+        (Fault::Large, large),
+        (Fault::Message, refused && unfit),
+    ]
+    .into_iter()
+    .filter_map(|(fault, is)| is.then_some(fault))
+    .collect()
+}
+
+/// Names of what should not have changed: only results may, of a command that makes them, if the
+/// input was not refused.
+fn wrote(
+    attack: &Attack,
+    arguments: &[String],
+    ended: &Ended,
+    place: &Path,
+) -> io::Result<Vec<String>> {
+    let before: Folder = folder::with_parents(&attack.files);
+    let mut expected: Folder = before
+        .into_iter()
+        .map(|(name, bytes)| (format!("{WORK}/{name}"), bytes))
+        .collect();
+    expected.insert(WORK.into(), None);
+    let mut found = folder::read(place)?;
+    let out = format!("{WORK}/{OUT}");
+    let reads = arguments.first().is_some_and(|command| command == "check");
+    if ended.code != Some(2) && !reads {
+        let below = format!("{out}/");
+        found.retain(|name, _| *name != out && !name.starts_with(&below));
+    }
+    let names = folder::differences(&expected, &found);
+    Ok(names.into_iter().map(str::to_owned).collect())
+}
+
+/// Whether the message says where in the text the fault is.
+fn is_syntax(stderr: &[u8]) -> bool {
+    let message = String::from_utf8_lossy(stderr);
+    message.contains(": line ") && message.contains(", column ")
+}
+
+/// The most frequencies of a scene that is run: what takes long because it is large is no fault.
+const MOST_FREQUENCIES: u64 = 200_000;
+
+/// Whether `check` found few enough frequencies, azimuths x rho x nu at each plane.
+fn is_small(checked: &[u8]) -> bool {
+    let text = String::from_utf8_lossy(checked);
+    let planes = text.lines().filter(|line| line.contains("  looked at in "));
+    let count = |line: &str| {
+        let words = line.split_whitespace().take(9);
+        let numbers = words.filter_map(|word| word.parse::<u64>().ok());
+        numbers.fold(1, u64::saturating_mul)
+    };
+    planes.map(count).fold(0, u64::saturating_add) <= MOST_FREQUENCIES
+}

@@ -1,0 +1,107 @@
+//! The program as a child process: with a limit of time, and its peak of memory watched.
+
+use std::fs::{self, File};
+use std::io;
+use std::os::unix::process::ExitStatusExt;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// After this a child has hung.
+pub(crate) const LONGEST: Duration = Duration::from_secs(30);
+
+/// Beyond this a child takes more memory than any of these inputs is worth.
+pub(crate) const LARGEST: u64 = 1 << 30;
+
+/// Beyond this a child is ended, for the sake of the machine.
+const DANGEROUS: u64 = 4 << 30;
+
+/// How a child ended.
+#[derive(Debug)]
+pub(crate) struct Ended {
+    /// None if a signal ended it.
+    pub(crate) code: Option<i32>,
+    pub(crate) signal: Option<i32>,
+    /// It was ended because it took too long.
+    pub(crate) hung: bool,
+    pub(crate) seconds: f64,
+    /// The most memory it was seen with, bytes.
+    pub(crate) peak: u64,
+    pub(crate) stdout: Vec<u8>,
+    pub(crate) stderr: Vec<u8>,
+}
+
+/// The program to attack: the one given, or the one beside this program.
+pub(crate) fn program(given: Option<&Path>) -> io::Result<PathBuf> {
+    let path = match given {
+        Some(path) => path.to_owned(),
+        None => std::env::current_exe()?.with_file_name("etendue"),
+    };
+    // The children run in other folders.
+    path.canonicalize().map_err(|error| {
+        let shown = path.display();
+        io::Error::other(format!(
+            "{shown}: {error}; build it, or name it by --etendue"
+        ))
+    })
+}
+
+/// Runs `program` in `folder`, what it says going to files in `scratch`, until it ends or is too
+/// long about it.
+pub(crate) fn call(
+    program: &Path,
+    folder: &Path,
+    arguments: &[String],
+    scratch: &Path,
+) -> io::Result<Ended> {
+    let [out, err] = ["stdout", "stderr"].map(|name| scratch.join(name));
+    let start = Instant::now();
+    let mut child = Command::new(program)
+        .args(arguments)
+        .current_dir(folder)
+        .env_remove("RUST_BACKTRACE")
+        .stdin(Stdio::null())
+        .stdout(File::create(&out)?)
+        .stderr(File::create(&err)?)
+        .spawn()?;
+    let (peak, hung) = watch(&mut child, start)?;
+    let status = child.wait()?;
+    Ok(Ended {
+        code: status.code(),
+        signal: status.signal(),
+        hung,
+        seconds: start.elapsed().as_secs_f64(),
+        peak,
+        stdout: fs::read(&out)?,
+        stderr: fs::read(&err)?,
+    })
+}
+
+/// Waits for the end, or brings it about; returns the peak of memory, and whether it took too long.
+fn watch(child: &mut Child, start: Instant) -> io::Result<(u64, bool)> {
+    let status = format!("/proc/{}/status", child.id());
+    let mut peak = 0;
+    loop {
+        // One that has ended and was not waited for says nothing of its memory any more.
+        if let Some(now) = fs::read_to_string(&status).ok().and_then(|s| peak_of(&s)) {
+            peak = peak.max(now);
+        }
+        if child.try_wait()?.is_some() {
+            return Ok((peak, false));
+        }
+        let hung = start.elapsed() > LONGEST;
+        if hung || peak > DANGEROUS {
+            child.kill()?;
+            return Ok((peak, hung));
+        }
+        // Most end within a few milliseconds.
+        let early = start.elapsed() < Duration::from_millis(20);
+        std::thread::sleep(Duration::from_millis(if early { 1 } else { 5 }));
+    }
+}
+
+fn peak_of(status: &str) -> Option<u64> {
+    let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
+    let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
+    Some(kilobytes * 1024)
+}

@@ -1,0 +1,68 @@
+//! A folder as a map from names to bytes: written, read back and compared.
+
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Files by their names relative to the folder, with `/`; folders have no bytes.
+pub(crate) type Folder = BTreeMap<String, Option<Vec<u8>>>;
+
+/// Writes these files, and the folders they are in.
+pub(crate) fn write(at: &Path, files: &Folder) -> io::Result<()> {
+    fs::create_dir_all(at)?;
+    for (name, bytes) in files {
+        let path = at.join(name);
+        match bytes {
+            None => fs::create_dir_all(&path)?,
+            Some(bytes) => {
+                fs::create_dir_all(path.parent().unwrap_or(at))?;
+                fs::write(&path, bytes)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Everything below a folder; nothing if it is not there.
+pub(crate) fn read(at: &Path) -> io::Result<Folder> {
+    let mut found = Folder::new();
+    if at.exists() {
+        read_into(at, "", &mut found)?;
+    }
+    Ok(found)
+}
+
+fn read_into(at: &Path, before: &str, found: &mut Folder) -> io::Result<()> {
+    for entry in fs::read_dir(at)? {
+        let entry = entry?;
+        let name = format!("{before}{}", entry.file_name().to_string_lossy());
+        if entry.file_type()?.is_dir() {
+            read_into(&entry.path(), &format!("{name}/"), found)?;
+            found.insert(name, None);
+        } else {
+            found.insert(name, Some(fs::read(entry.path())?));
+        }
+    }
+    Ok(())
+}
+
+/// The names of what is in one and not, or not the same, in the other.
+pub(crate) fn differences<'a>(one: &'a Folder, other: &'a Folder) -> Vec<&'a str> {
+    let names = one
+        .keys()
+        .chain(other.keys().filter(|n| !one.contains_key(*n)));
+    let differs = |name: &&String| one.get(*name) != other.get(*name);
+    names.filter(differs).map(String::as_str).collect()
+}
+
+/// The files with all folders that they are in.
+pub(crate) fn with_parents(files: &Folder) -> Folder {
+    let mut all = files.clone();
+    for name in files.keys() {
+        for (at, _) in name.match_indices('/') {
+            all.insert(name[..at].to_owned(), None);
+        }
+    }
+    all
+}

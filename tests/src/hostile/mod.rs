@@ -1,0 +1,157 @@
+//! Attacks on the program from outside: mutated input of every kind, given to it as a child
+//! process.
+//!
+//! A case is a function of the seed and its number, so that any can be run again alone.
+
+mod bytes;
+mod case;
+pub(crate) mod child;
+pub(crate) mod dice;
+pub(crate) mod folder;
+pub(crate) mod index;
+mod meshes;
+mod npz;
+mod pictures;
+mod scenes;
+pub(crate) mod stages;
+mod table;
+mod text;
+
+use crate::report::Section;
+use case::{Attack, Kind, Outcome};
+use dice::Dice;
+use indicatif::{ProgressBar, ProgressStyle};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use table::Tallies;
+
+/// What to attack with, and where.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// Cases.
+    #[arg(long, default_value_t = 20_000)]
+    count: u64,
+    /// Another seed gives other cases.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Only this case; it is kept whatever becomes of it.
+    #[arg(long)]
+    case: Option<u64>,
+    /// Scenes are checked only, and none is run.
+    #[arg(long)]
+    quick: bool,
+    /// Cases at a time [default: one for each core].
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Where the input of bad cases is kept, with the command line.
+    #[arg(long, default_value = "target/hostile")]
+    keep: PathBuf,
+    /// The program [default: the one beside this].
+    #[arg(long)]
+    etendue: Option<PathBuf>,
+}
+
+/// All that cases are made of.
+struct Seeds {
+    scenes: Vec<String>,
+    meshes: [meshes::Meshes; 2],
+    pictures: [Vec<Vec<u8>>; 2],
+    stages: Vec<stages::Seed>,
+}
+
+impl Seeds {
+    fn new(program: &Path, at: &Path) -> io::Result<Self> {
+        Ok(Self {
+            scenes: scenes::seeds()?,
+            meshes: meshes::seeds().map_err(|fault| io::Error::other(fault.to_string()))?,
+            pictures: pictures::seeds()?,
+            stages: stages::seeds(program, at)?,
+        })
+    }
+
+    fn attack(&self, seed: u64, case: u64) -> io::Result<Attack> {
+        let mut dice = Dice::new(seed, case);
+        Ok(match Kind::of(case) {
+            Kind::Scene => scenes::attack(&self.scenes, &mut dice),
+            Kind::Mesh => meshes::attack(&self.meshes, &mut dice),
+            Kind::Picture => pictures::attack(&self.pictures, &mut dice),
+            Kind::Part => stages::part(&self.stages, &mut dice)?,
+            Kind::Prediction => stages::prediction(&self.stages, &mut dice)?,
+        })
+    }
+}
+
+/// Runs all cases.
+pub(crate) fn hostile(options: &Options) -> io::Result<Section> {
+    let program = child::program(options.etendue.as_deref())?;
+    let place = tempfile::tempdir()?;
+    let seeds = Seeds::new(&program, place.path())?;
+    let cases = match options.case {
+        Some(case) => case..case + 1,
+        None => 0..options.count,
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = options.threads.unwrap_or(cores).max(1);
+    let bar = progress(cases.end - cases.start, "cases");
+    let next = AtomicU64::new(cases.start);
+    let tallies = Mutex::new(Tallies::default());
+    let worker = |thread: usize| -> io::Result<()> {
+        let at = place.path().join(thread.to_string());
+        fs::create_dir_all(&at)?;
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= cases.end {
+                return Ok(());
+            }
+            let mut attack = seeds.attack(options.seed, number)?;
+            attack.then = attack.then.filter(|_| !options.quick);
+            let outcome = case::run(&program, &attack, &at)?;
+            if !outcome.faults.is_empty() || options.case.is_some() {
+                keep(options, number, &attack, &outcome)?;
+            }
+            if let Ok(mut tallies) = tallies.lock() {
+                tallies.add(number, &outcome);
+            }
+            bar.inc(1);
+        }
+    };
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads)
+            .map(|i| scope.spawn(move || worker(i)))
+            .collect();
+        workers.into_iter().try_for_each(|worker| {
+            let joined = worker.join();
+            joined.unwrap_or_else(|_| Err(io::Error::other("a thread has panicked")))
+        })
+    })?;
+    bar.finish_and_clear();
+    let tallies = tallies.into_inner().unwrap_or_default();
+    Ok(tallies.section(options.seed))
+}
+
+/// How many are done, and the time left.
+pub(crate) fn progress(count: u64, things: &str) -> ProgressBar {
+    let bar = ProgressBar::new(count);
+    let style = format!("{{bar:40}} {{human_pos}} of {{human_len}} {things}  {{eta}} left");
+    match ProgressStyle::with_template(&style) {
+        Ok(style) => bar.with_style(style),
+        Err(_) => bar,
+    }
+}
+
+/// Keeps the input of a case, and what became of it.
+fn keep(options: &Options, number: u64, attack: &Attack, outcome: &Outcome) -> io::Result<()> {
+    let at = options.keep.join(format!("{}-{number}", options.seed));
+    if at.exists() {
+        fs::remove_dir_all(&at)?;
+    }
+    folder::write(&at.join("work"), &attack.files)?;
+    let again = format!(
+        "etendue-validation hostile --seed {} --case {number}\n{:?}\n\n{}",
+        options.seed, outcome.faults, outcome.log
+    );
+    fs::write(at.join("case.txt"), again)
+}

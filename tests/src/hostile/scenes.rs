@@ -1,0 +1,92 @@
+//! Mutated scene files, and the scenes of the repository they come from.
+
+use super::case::Attack;
+use super::dice::Dice;
+use super::folder::Folder;
+use super::text;
+use std::fs;
+use std::io;
+use std::path::Path;
+
+/// Words of the language of scene files.
+const WORDS: [&str; 30] = [
+    "()",
+    "[]",
+    "Emission",
+    "Box(0.1)",
+    "Hann(1e-9)",
+    "Gaussian(width: 1, cut: 1e9)",
+    "After(\"blockers\")",
+    "Before(\"floor\")",
+    "Distance(1)",
+    "Distance(1e-12)",
+    "Rectangle",
+    "Mesh",
+    "Smooth",
+    "Mirror",
+    "ThinLens(1e-9)",
+    "Refraction(front: 1, back: 1.5)",
+    "Refraction(front: 1e9, back: 1e-9)",
+    "Sphere(1000)",
+    "Sphere(-2)",
+    "Cylinder(3)",
+    "Paraboloid(1e6, -1e6)",
+    "Star(radius: 0.1, relief: 0.9, lobes: 4294967295, rings: 2048)",
+    "File(\"scene.ron\")",
+    "File(\"/dev/zero\")",
+    "File(\"..\")",
+    "Phong(1e9)",
+    "LocalNormals",
+    "Tangent",
+    "Plain",
+    "true",
+];
+
+/// The texts of all scenes of the repository, without their comments.
+pub(crate) fn seeds() -> io::Result<Vec<String>> {
+    let mut texts = Vec::new();
+    let scenes = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    for folder in [scenes.clone(), scenes.join("table1")] {
+        let mut paths: Vec<_> = fs::read_dir(folder)?
+            .map(|entry| Ok(entry?.path()))
+            .collect::<io::Result<_>>()?;
+        paths.retain(|path| path.extension().is_some_and(|e| e == "ron"));
+        // The order of a folder is not the same everywhere.
+        paths.sort();
+        for path in paths {
+            let text = fs::read_to_string(path)?;
+            let lines = text.lines();
+            let code = lines.map(|line| line.split("//").next().unwrap_or_default());
+            texts.push(code.collect::<Vec<_>>().join("\n"));
+        }
+    }
+    Ok(texts)
+}
+
+/// A mutated scene file.
+pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
+    let scene: &String = dice.pick(seeds);
+    let text = text::mutated(scene, &WORDS, dice);
+    let folder = |text| Folder::from([(SCENE.to_owned(), Some(text))]);
+    Attack {
+        sound: Some(folder(scene.clone().into_bytes())),
+        ..on_scene(folder(text), dice)
+    }
+}
+
+/// The name of a scene file.
+pub(crate) const SCENE: &str = "scene.ron";
+
+/// An attack on the scene file among these files: checked, and once in eight times run.
+pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
+    let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
+    // Few azimuths: it is the values that may break something, not their number.
+    let run = "run scene.ron --photons 2000 --quiet --threads 2 --set frequencies.azimuths=2";
+    Attack {
+        files,
+        arguments: words("check scene.ron"),
+        then: dice.one_in(8).then(|| words(run)),
+        sound: None,
+        summary: None,
+    }
+}

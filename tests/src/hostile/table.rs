@@ -1,0 +1,110 @@
+//! What came of all cases: one row for each kind of input.
+
+use super::case::{Fault, Kind, Outcome, Reached};
+use crate::report::Section;
+use std::collections::BTreeMap;
+
+/// The cases of one kind.
+#[derive(Clone, Debug, Default)]
+struct Tally {
+    cases: u64,
+    reached: [u64; 4],
+    faults: [u64; 7],
+    seconds: f64,
+    peak: u64,
+}
+
+/// The cases of every kind.
+#[derive(Debug, Default)]
+pub(crate) struct Tallies {
+    kinds: [Tally; Kind::ALL.len()],
+    /// The bad ones by their numbers.
+    bad: BTreeMap<u64, String>,
+}
+
+/// The most bad cases that are told one by one.
+const MOST_TOLD: usize = 60;
+
+impl Tallies {
+    pub(crate) fn add(&mut self, number: u64, outcome: &Outcome) {
+        let kind = Kind::of(number);
+        if !outcome.faults.is_empty() {
+            let words = format!("* case {number}, {kind:?}: {:?}", outcome.faults);
+            self.bad.insert(number, words);
+        }
+        let tally = &mut self.kinds[kind as usize];
+        tally.cases += 1;
+        tally.reached[outcome.reached as usize] += 1;
+        for fault in &outcome.faults {
+            tally.faults[*fault as usize] += 1;
+        }
+        tally.seconds = tally.seconds.max(outcome.seconds);
+        tally.peak = tally.peak.max(outcome.peak);
+    }
+
+    /// The table; it has passed if nothing went wrong in any case.
+    pub(crate) fn section(&self, seed: u64) -> Section {
+        let pairs = Kind::ALL.iter().zip(&self.kinds);
+        let rows = pairs.map(|(kind, tally)| row(*kind, tally)).collect();
+        let bad: Vec<&str> = self.bad.values().map(String::as_str).collect();
+        let told = bad[..bad.len().min(MOST_TOLD)].join("\n");
+        Section {
+            title: "Hostile input".into(),
+            text: format!(
+                "Mutated files as input, seed {seed}. Required: a result or one clear message, at \
+                 most 30 s and 1 GB, nothing written that is not a result, and no other result \
+                 from a folder that was damaged.{}{told}",
+                if bad.is_empty() { "" } else { "\n\n" }
+            ),
+            header: vec![
+                "input",
+                "cases",
+                "refused: syntax",
+                "refused: values",
+                "sound",
+                "also run",
+                "panics",
+                "aborts",
+                "> 30 s",
+                "> 1 GB",
+                "written",
+                "bad message",
+                "accepted and changed",
+                "worst s",
+                "worst MB",
+            ],
+            rows,
+            passed: bad.is_empty(),
+        }
+    }
+}
+
+fn row(kind: Kind, tally: &Tally) -> Vec<String> {
+    let reached = |reached| tally.reached[reached as usize];
+    let share = |n: u64| match tally.cases {
+        0 => "0".to_owned(),
+        cases => format!("{n} ({:.0} %)", 100.0 * n as f64 / cases as f64),
+    };
+    let mut row = vec![
+        format!("{kind:?}").to_lowercase(),
+        tally.cases.to_string(),
+        share(reached(Reached::Syntax)),
+        share(reached(Reached::Values)),
+        // What was run was found sound before.
+        share(reached(Reached::Sound) + reached(Reached::Ran)),
+        share(reached(Reached::Ran)),
+    ];
+    let order = [
+        Fault::Panic,
+        Fault::Abort,
+        Fault::Slow,
+        Fault::Large,
+        Fault::Wrote,
+        Fault::Message,
+        Fault::Changed,
+    ];
+    row.extend(order.map(|fault| tally.faults[fault as usize].to_string()));
+    row.push(format!("{:.1}", tally.seconds));
+    row.push(format!("{:.0}", tally.peak as f64 / 1e6));
+    row
+}

@@ -1,0 +1,75 @@
+//! A disk that is nearly full: a small one of its own, or a limit on the size of files.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// How a full disk is made.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, clap::ValueEnum)]
+pub(crate) enum FullDisk {
+    /// A tmpfs is mounted, which only root can do.
+    Tmpfs,
+    /// The shell's `ulimit -f`.
+    Limit,
+}
+
+impl FullDisk {
+    /// The better of the two that works here.
+    pub(super) fn best() -> io::Result<Self> {
+        let place = tempfile::tempdir()?;
+        let mounted = Mount::new(place.path(), 1 << 20);
+        Ok(if mounted.is_ok() {
+            Self::Tmpfs
+        } else {
+            Self::Limit
+        })
+    }
+}
+
+/// A small disk, taken away when dropped.
+#[derive(Debug)]
+pub(super) struct Mount(PathBuf);
+
+impl Mount {
+    /// Mounts a disk of so many bytes.
+    pub(super) fn new(at: &Path, size: u64) -> io::Result<Self> {
+        let options = format!("size={size}");
+        let mut command = Command::new("mount");
+        command
+            .args(["-t", "tmpfs", "-o", &options, "tmpfs"])
+            .arg(at);
+        succeeds(&mut command)?;
+        Ok(Self(at.to_owned()))
+    }
+
+    /// Makes place on it.
+    pub(super) fn widen(&self) -> io::Result<()> {
+        let mut command = Command::new("mount");
+        succeeds(command.args(["-o", "remount,size=1g"]).arg(&self.0))
+    }
+}
+
+impl Drop for Mount {
+    fn drop(&mut self) {
+        // There is nobody left to tell.
+        let _ = succeeds(Command::new("umount").arg("-l").arg(&self.0));
+    }
+}
+
+fn succeeds(command: &mut Command) -> io::Result<()> {
+    let output = command.output()?;
+    if output.status.success() {
+        Ok(())
+    } else {
+        let message = String::from_utf8_lossy(&output.stderr);
+        Err(io::Error::other(format!("{command:?}: {message}")))
+    }
+}
+
+/// A command whose files cannot grow beyond so many blocks; writing more is an error, not a signal.
+pub(super) fn limited(program: &Path, blocks: usize) -> Command {
+    let script = format!("trap '' XFSZ; ulimit -f {blocks}; exec \"$@\"");
+    let mut command = Command::new("sh");
+    command.args(["-c", &script, "sh"]).arg(program);
+    command
+}

@@ -1,0 +1,124 @@
+//! Kills at random moments, two writers at once and full disks: what is left is a whole result or
+//! none.
+
+mod check;
+mod disk;
+mod task;
+mod trial;
+
+use crate::hostile::child;
+use crate::hostile::dice::Dice;
+use crate::hostile::progress;
+use crate::report::Section;
+use disk::FullDisk;
+use std::io;
+use std::path::PathBuf;
+use task::Verb;
+use trial::{Bench, Finding, Trouble};
+
+/// What to try, and where.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// Trials.
+    #[arg(long, default_value_t = 200)]
+    count: u64,
+    /// Another seed gives other moments.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// How a full disk is made [default: tmpfs, where one can be mounted].
+    #[arg(long)]
+    full_disk: Option<FullDisk>,
+    /// The program [default: the one beside this].
+    #[arg(long)]
+    etendue: Option<PathBuf>,
+}
+
+/// How often each was found, for each command.
+type Counts = [[u64; Finding::COUNT]; Verb::ALL.len()];
+
+/// Makes all trials.
+pub(crate) fn kills(options: &Options) -> io::Result<Section> {
+    let program = child::program(options.etendue.as_deref())?;
+    let place = tempfile::tempdir()?;
+    let tasks = task::tasks(&program, place.path())?;
+    let disk = options.full_disk.map_or_else(FullDisk::best, Ok)?;
+    let troubles = [
+        Trouble::Nothing,
+        Trouble::TwoWriters,
+        Trouble::FullDisk(disk),
+    ];
+    let bench = Bench {
+        program: &program,
+        at: place.path(),
+    };
+    let bar = progress(options.count, "trials");
+    let mut counts = Counts::default();
+    let mut told = Vec::new();
+    let all = tasks.iter().flat_map(|task| troubles.map(|t| (task, t)));
+    // Neighbours are of different commands and troubles, so that a few trials are of all.
+    let all: Vec<_> = all.collect();
+    for (number, at) in (0..options.count).zip((0..all.len()).cycle()) {
+        let (task, trouble) = all[at * 5 % all.len()];
+        let mut dice = Dice::new(options.seed, number);
+        for (finding, words) in bench.trial(task, trouble, &mut dice)? {
+            counts[task.verb as usize][finding as usize] += 1;
+            if finding.is_bad() {
+                told.push(format!(
+                    "* trial {number}, {:?}, {trouble:?}: {words}",
+                    task.verb
+                ));
+            }
+        }
+        bar.inc(1);
+    }
+    bar.finish_and_clear();
+    Ok(section(options, &counts, &told))
+}
+
+/// The most faults that are told one by one.
+const MOST_TOLD: usize = 60;
+
+fn section(options: &Options, counts: &Counts, told: &[String]) -> Section {
+    let rows = Verb::ALL.iter().zip(counts).map(|(verb, counts)| {
+        let ended = [Finding::Before, Finding::Between, Finding::After];
+        let trials: u64 = ended.iter().map(|f| counts[*f as usize]).sum();
+        let mut row = vec![format!("{verb:?}").to_lowercase(), trials.to_string()];
+        row.extend(counts.iter().map(ToString::to_string));
+        row
+    });
+    let mut text = format!(
+        "Commands killed, started twice at once, and on full disks, in folders with an earlier \
+         result and files of the user's; seed {}. Required: every index is of a whole result, \
+         every file of the user's stays as it is, and the next run succeeds and leaves nothing \
+         behind.",
+        options.seed
+    );
+    if !told.is_empty() {
+        text += "\n\n";
+        text += &told[..told.len().min(MOST_TOLD)].join("\n");
+    }
+    Section {
+        title: "Kills".into(),
+        text,
+        header: vec![
+            "command",
+            "trials",
+            "two writers",
+            "full disk",
+            "ended before the index",
+            "index gone",
+            "ended after the index",
+            "whole results",
+            "second writer refused",
+            "broken results",
+            "index without its hash",
+            "foreign files lost",
+            "strange exits",
+            "next run failed",
+            "leftovers after next run",
+            "edited file not spared",
+        ],
+        rows: rows.collect(),
+        passed: told.is_empty(),
+    }
+}

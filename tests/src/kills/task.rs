@@ -1,0 +1,132 @@
+//! The commands that are killed, and the folder they are killed in: an earlier result among the
+//! user's files.
+
+use crate::hostile::child;
+use crate::hostile::folder::{self, Folder};
+use crate::hostile::stages::{self, TETRA, words};
+use std::fs;
+use std::io;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// A command that writes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Verb {
+    Run,
+    Measure,
+    Predict,
+    Compare,
+}
+
+impl Verb {
+    pub(super) const ALL: [Self; 4] = [Self::Run, Self::Measure, Self::Predict, Self::Compare];
+
+    /// Its index.
+    pub(super) fn index(self) -> &'static str {
+        match self {
+            Self::Run | Self::Compare => "summary.json",
+            Self::Measure => "measurement.json",
+            Self::Predict => "prediction.json",
+        }
+    }
+
+    /// Its command line; another seed gives another result.
+    pub(super) fn arguments(self, seed: u64) -> Vec<String> {
+        let ending = format!("--out out --quiet --threads 2 --seed {seed}");
+        words(&match self {
+            Self::Run => format!("run out/scene.ron {ending}"),
+            Self::Measure => format!("measure out/scene.ron {ending}"),
+            Self::Predict => format!("predict out/scene.ron {ending}"),
+            Self::Compare => format!(
+                "compare --measured in/{} --predicted in/p --out out --quiet --threads 2",
+                if seed == EARLIER { "a" } else { "b" }
+            ),
+        })
+    }
+}
+
+/// The seed of the earlier result.
+pub(super) const EARLIER: u64 = 1;
+
+/// A command, what is in its folder before, and how long it takes.
+#[derive(Debug)]
+pub(super) struct Task {
+    pub(super) verb: Verb,
+    /// The earlier result and the user's files, in `out`.
+    pub(super) before: Folder,
+    /// The user's files among them.
+    pub(super) foreign: Folder,
+    /// What `compare` reads.
+    pub(super) inputs: Folder,
+    pub(super) takes: Duration,
+}
+
+/// Makes all tasks, with earlier results of this program.
+pub(super) fn tasks(program: &Path, at: &Path) -> io::Result<Vec<Task>> {
+    let place = at.join("tasks");
+    folder::write(&place.join("out"), &users())?;
+    for command in [
+        "measure out/scene.ron --seed 1 --quiet --out in/a",
+        "measure out/scene.ron --seed 2 --quiet --out in/b",
+        "predict out/scene.ron --quiet --out in/p",
+    ] {
+        good(program, &place, &words(command), at)?;
+    }
+    let inputs = folder::read(&place.join("in"))?;
+    let tasks = Verb::ALL.map(|verb| task(program, &place, verb, &inputs, at));
+    let tasks = tasks.into_iter().collect();
+    fs::remove_dir_all(place)?;
+    tasks
+}
+
+fn task(program: &Path, place: &Path, verb: Verb, inputs: &Folder, at: &Path) -> io::Result<Task> {
+    let out = place.join("out");
+    let mut arguments = verb.arguments(EARLIER);
+    if verb == Verb::Run {
+        // The earlier result has files that the next one does not.
+        arguments.extend(words("--save photons"));
+    }
+    let mut takes = Duration::MAX;
+    for _ in 0..3 {
+        fs::remove_dir_all(&out)?;
+        folder::write(&out, &users())?;
+        let start = Instant::now();
+        good(program, place, &arguments, at)?;
+        takes = takes.min(start.elapsed());
+    }
+    let mut before = folder::read(&out)?;
+    let mut foreign = users();
+    foreign.insert("notes.txt".into(), Some(b"mine".to_vec()));
+    foreign.insert("light/my.png".into(), Some(b"mine too".to_vec()));
+    let result = |name: &&String| before[*name].is_some() && !foreign.contains_key(*name);
+    if let Some(name) = before.keys().find(result).cloned() {
+        let mut edited = before[&name].clone().unwrap_or_default();
+        edited.push(b'!');
+        foreign.insert(format!("{name}.edited"), Some(edited));
+    }
+    before.extend(foreign.clone());
+    Ok(Task {
+        verb,
+        before,
+        foreign,
+        inputs: inputs.clone(),
+        takes,
+    })
+}
+
+/// The scene, which lies in the folder of its results, and the mesh that it names.
+fn users() -> Folder {
+    let scene = stages::with_mesh().replace("meshes/tetra.obj", "tetra.obj");
+    let files = [("scene.ron", scene.as_str()), ("tetra.obj", TETRA)];
+    let files = files.map(|(name, text)| (name.to_owned(), Some(text.as_bytes().to_vec())));
+    Folder::from(files)
+}
+
+fn good(program: &Path, place: &Path, arguments: &[String], scratch: &Path) -> io::Result<()> {
+    let ended = child::call(program, place, arguments, scratch)?;
+    if matches!(ended.code, Some(0 | 1 | 4)) {
+        return Ok(());
+    }
+    let (command, message) = (arguments.join(" "), String::from_utf8_lossy(&ended.stderr));
+    Err(io::Error::other(format!("etendue {command}: {message}")))
+}

@@ -1,0 +1,261 @@
+//! One trial: a command starts into a folder, something happens to it, and the folder is looked at.
+
+use super::check::{self, NO_HASH, State};
+use super::disk::{FullDisk, Mount, limited};
+use super::task::Task;
+use crate::hostile::child;
+use crate::hostile::dice::Dice;
+use crate::hostile::folder::{self, Folder};
+use std::fs;
+use std::io;
+use std::path::Path;
+use std::process::{Child, Command, Stdio};
+use std::time::{Duration, Instant};
+
+/// What happens beside a kill.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Trouble {
+    Nothing,
+    TwoWriters,
+    FullDisk(FullDisk),
+}
+
+/// Something to count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Finding {
+    TwoWriters,
+    FullDisk,
+    /// The index is still the earlier one, is gone, or is new.
+    Before,
+    Between,
+    After,
+    Whole,
+    /// A writer was refused because of the other.
+    Refused,
+    // From here on what must not be.
+    Broken,
+    NoHash,
+    Lost,
+    /// A writer that was left alone ended as none should.
+    Exit,
+    NextFailed,
+    Leftover,
+    /// A result that the user has edited was written over.
+    Overwritten,
+}
+
+impl Finding {
+    pub(super) const COUNT: usize = 14;
+
+    pub(super) fn is_bad(self) -> bool {
+        self as usize >= Self::Broken as usize
+    }
+}
+
+/// The findings of a trial, with words for those that are bad.
+pub(super) type Findings = Vec<(Finding, String)>;
+
+/// A place for trials, and the program tried.
+#[derive(Debug)]
+pub(super) struct Bench<'a> {
+    pub(super) program: &'a Path,
+    pub(super) at: &'a Path,
+}
+
+impl Bench<'_> {
+    /// Makes a trial in a fresh folder, which is removed again.
+    pub(super) fn trial(
+        &self,
+        task: &Task,
+        trouble: Trouble,
+        dice: &mut Dice,
+    ) -> io::Result<Findings> {
+        let place = self.at.join("trial");
+        let out = place.join("out");
+        fs::create_dir_all(&out)?;
+        let mount = match trouble {
+            Trouble::FullDisk(FullDisk::Tmpfs) => Some(Mount::new(&out, room(task, dice))?),
+            _ => None,
+        };
+        folder::write(&place.join("in"), &task.inputs)?;
+        folder::write(&out, &task.before)?;
+        let mut findings = Findings::new();
+        self.disturbed(task, trouble, dice, &mut findings)?;
+        let left = folder::read(&out)?;
+        judge(task, &left, "after it", &mut findings);
+        let found = if left.get(task.verb.index()) == task.before.get(task.verb.index()) {
+            Finding::Before
+        } else if left.contains_key(task.verb.index()) {
+            Finding::After
+        } else {
+            Finding::Between
+        };
+        findings.push((found, String::new()));
+        mount.as_ref().map_or(Ok(()), Mount::widen)?;
+        self.next(task, &mut findings)?;
+        self.edited(task, &mut findings)?;
+        drop(mount);
+        fs::remove_dir_all(&place)?;
+        Ok(findings)
+    }
+
+    /// Starts one writer or two and ends the first at some moment, or leaves them alone.
+    fn disturbed(
+        &self,
+        task: &Task,
+        trouble: Trouble,
+        dice: &mut Dice,
+        findings: &mut Findings,
+    ) -> io::Result<()> {
+        let blocks = 1 + dice.length(1000);
+        let command = || match trouble {
+            Trouble::FullDisk(FullDisk::Limit) => limited(self.program, blocks),
+            _ => Command::new(self.program),
+        };
+        let moment = task.takes.mul_f64(1.2 * dice.unit());
+        let wait = task.takes.mul_f64(0.5 * dice.unit() * dice.unit());
+        let alone = trouble != Trouble::Nothing && dice.one_in(2);
+        let signal = *dice.pick(&["KILL", "KILL", "KILL", "TERM", "INT"]);
+        let mut writers = vec![self.start(command(), task, 2)?];
+        let start = Instant::now();
+        if trouble == Trouble::TwoWriters {
+            std::thread::sleep(wait);
+            writers.push(self.start(command(), task, 3)?);
+        }
+        if !alone {
+            std::thread::sleep(moment.saturating_sub(start.elapsed()));
+            end(&mut writers[0], signal)?;
+        }
+        let mut codes = Vec::new();
+        for writer in &mut writers {
+            codes.push(ended(writer)?);
+        }
+        match trouble {
+            Trouble::TwoWriters => findings.push((Finding::TwoWriters, String::new())),
+            Trouble::FullDisk(_) => findings.push((Finding::FullDisk, String::new())),
+            Trouble::Nothing => (),
+        }
+        let undisturbed = if alone { &codes[..] } else { &codes[1..] };
+        let known = |code: &Option<i32>| matches!(code, Some(0 | 1 | 3 | 4));
+        let refused = |code: &Option<i32>| *code == Some(3);
+        let all_refused = trouble == Trouble::TwoWriters && alone && codes.iter().all(refused);
+        if !undisturbed.iter().all(known) || all_refused {
+            findings.push((Finding::Exit, format!("exit codes {undisturbed:?}")));
+        } else if trouble == Trouble::TwoWriters && undisturbed.iter().any(refused) {
+            findings.push((Finding::Refused, String::new()));
+        }
+        Ok(())
+    }
+
+    fn start(&self, mut command: Command, task: &Task, seed: u64) -> io::Result<Child> {
+        command
+            .args(task.verb.arguments(seed))
+            .current_dir(self.at.join("trial"))
+            .stdin(Stdio::null())
+            .stdout(Stdio::null())
+            .stderr(Stdio::null())
+            .spawn()
+    }
+
+    /// An ordinary run must succeed, and leave nothing but its result and what is the user's.
+    fn next(&self, task: &Task, findings: &mut Findings) -> io::Result<()> {
+        let place = self.at.join("trial");
+        let ended = child::call(self.program, &place, &task.verb.arguments(5), self.at)?;
+        if !matches!(ended.code, Some(0 | 1 | 4)) {
+            let message = String::from_utf8_lossy(&ended.stderr)
+                .trim()
+                .replace('\n', " ");
+            findings.push((Finding::NextFailed, format!("the next run: {message}")));
+            return Ok(());
+        }
+        let files = folder::read(&place.join("out"))?;
+        judge(task, &files, "after the next run", findings);
+        let index = files.get(task.verb.index()).cloned().flatten();
+        let listed = check::listed(&index.unwrap_or_default()).unwrap_or_default();
+        let own = [task.verb.index(), "timing.json"];
+        let belongs = |name: &str| {
+            own.contains(&name)
+                || task.foreign.contains_key(name)
+                || listed.iter().any(|(known, _)| known == name)
+        };
+        let mut stray = files.iter().filter(|(_, bytes)| bytes.is_some());
+        if let Some((name, _)) = stray.find(|(name, _)| !belongs(name)) {
+            findings.push((Finding::Leftover, format!("{name} is left over")));
+        } else if let Some(name) = files.keys().find(|name| name.contains(".etendue")) {
+            findings.push((Finding::Leftover, format!("{name} is left over")));
+        }
+        Ok(())
+    }
+
+    /// A result that the user has edited is theirs: the command is refused and changes nothing.
+    fn edited(&self, task: &Task, findings: &mut Findings) -> io::Result<()> {
+        let place = self.at.join("trial");
+        let out = place.join("out");
+        let index = fs::read(out.join(task.verb.index())).unwrap_or_default();
+        let listed = check::listed(&index).unwrap_or_default();
+        let mut theirs = listed.iter().map(|(name, _)| name);
+        let Some(name) = theirs.find(|name| !task.foreign.contains_key(*name)) else {
+            return Ok(());
+        };
+        fs::write(out.join(name), "edited")?;
+        let before = folder::read(&out)?;
+        let ended = child::call(self.program, &place, &task.verb.arguments(6), self.at)?;
+        let after = folder::read(&out)?;
+        let changed = folder::differences(&before, &after);
+        if ended.code != Some(3) || !changed.is_empty() {
+            let changed = &changed[..changed.len().min(3)];
+            let words = format!("edited {name}: exit {:?}, changed {changed:?}", ended.code);
+            findings.push((Finding::Overwritten, words));
+        }
+        Ok(())
+    }
+}
+
+/// Size of a disk that holds what is there, and some of what comes.
+fn room(task: &Task, dice: &mut Dice) -> u64 {
+    // Each file and folder takes whole pages.
+    let pages = |bytes: &Option<Vec<u8>>| 1 + bytes.as_ref().map_or(0, Vec::len).div_ceil(4096);
+    let there: usize = task.before.values().map(pages).sum();
+    let room = 4 + dice.below(there * 6 / 5);
+    4096 * (there + room) as u64
+}
+
+/// Ends a child, unless it has ended.
+fn end(child: &mut Child, signal: &str) -> io::Result<()> {
+    if signal == "KILL" {
+        return child.kill();
+    }
+    let mut kill = Command::new("kill");
+    kill.args([format!("-{signal}"), child.id().to_string()]);
+    kill.stderr(Stdio::null()).status().map(drop)
+}
+
+/// Waits for a child; its exit code, or none if it was killed or has hung.
+fn ended(child: &mut Child) -> io::Result<Option<i32>> {
+    let start = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait()? {
+            return Ok(status.code());
+        }
+        if start.elapsed() > child::LONGEST {
+            child.kill()?;
+        }
+        std::thread::sleep(Duration::from_millis(2));
+    }
+}
+
+/// Looks at the index, its files and the user's.
+fn judge(task: &Task, files: &Folder, when: &str, findings: &mut Findings) {
+    match check::state(files, task.verb.index()) {
+        State::Absent => (),
+        State::Whole => findings.push((Finding::Whole, String::new())),
+        State::Broken(reason) if reason.ends_with(NO_HASH) => {
+            findings.push((Finding::NoHash, format!("{when}: {reason}")));
+        }
+        State::Broken(reason) => findings.push((Finding::Broken, format!("{when}: {reason}"))),
+    }
+    let mut foreign = task.foreign.iter();
+    if let Some((name, _)) = foreign.find(|(name, bytes)| files.get(*name) != Some(bytes)) {
+        findings.push((Finding::Lost, format!("{when}: {name} is gone or changed")));
+    }
+}

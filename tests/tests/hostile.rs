@@ -1,0 +1,67 @@
+//! The short form of the attacks from outside: mutated input of every kind, and kills.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::SystemTime;
+
+const VALIDATION: &str = env!("CARGO_BIN_EXE_etendue-validation");
+
+/// Attacks the program and requires that it bears it.
+fn attack(arguments: &[&str]) {
+    let output = Command::new(VALIDATION)
+        .args(arguments)
+        .arg("--etendue")
+        .arg(program())
+        .output()
+        .unwrap();
+    let [report, message] = [output.stdout, output.stderr];
+    let report = String::from_utf8_lossy(&report);
+    let message = String::from_utf8_lossy(&message);
+    assert_eq!(output.status.code(), Some(0), "{report}\n{message}");
+}
+
+/// The program beside the validation. It is of another package: tests of this one alone do not
+/// build it.
+fn program() -> PathBuf {
+    let path = Path::new(VALIDATION).with_file_name("etendue");
+    let built = fs::metadata(&path).and_then(|file| file.modified());
+    let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
+    if built.is_err() || built.unwrap() < changed(&crates) {
+        let release = (!cfg!(debug_assertions)).then_some("--release");
+        let mut cargo = Command::new(env!("CARGO"));
+        cargo.args(["build", "--package", "etendue"]).args(release);
+        assert!(cargo.status().unwrap().success());
+    }
+    path
+}
+
+/// When the newest source was changed; tests do not matter.
+fn changed(folder: &Path) -> SystemTime {
+    let entries = fs::read_dir(folder).unwrap().map(|e| e.unwrap().path());
+    let times = entries.map(|path| {
+        if path.is_dir() && !path.ends_with("tests") {
+            changed(&path)
+        } else if path.extension().is_some_and(|e| e == "rs") {
+            path.metadata().unwrap().modified().unwrap()
+        } else {
+            SystemTime::UNIX_EPOCH
+        }
+    });
+    times.max().unwrap_or(SystemTime::UNIX_EPOCH)
+}
+
+#[test]
+fn mutated_input_is_borne() {
+    let kept = tempfile::tempdir().unwrap();
+    let keep = kept.path().to_str().unwrap();
+    attack(&["hostile", "--count", "300", "--quick", "--keep", keep]);
+}
+
+#[test]
+fn kills_leave_whole_results_or_none() {
+    // Nothing is mounted by an ordinary test.
+    attack(&["kills", "--count", "12", "--full-disk", "limit"]);
+}
