@@ -1,6 +1,6 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
-use crate::{load, pictures, say};
+use crate::{load, pictures, say, warnings};
 use etendue_compare::{Class, affine_chain, steps};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
@@ -10,6 +10,7 @@ use etendue_theory::rays::FirstOrder;
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |_| ())?;
     say(&description(&scene));
+    warnings::describe(&scene);
     if let Some(path) = &args.draw {
         pictures::draw_scene(&scene, path)?;
         say(&format!("\ndrawn in {}", path.display()));

@@ -31,6 +31,7 @@ mod stored;
 mod summary;
 mod table;
 mod threads;
+mod warnings;
 
 use args::{Cli, Command};
 use clap::Parser;

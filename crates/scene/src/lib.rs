@@ -26,6 +26,7 @@ mod picture;
 mod read;
 mod resolve;
 mod scene;
+mod warnings;
 
 pub use fault::{Fault, SceneError};
 pub use file::{

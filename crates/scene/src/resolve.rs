@@ -3,12 +3,14 @@ mod faults;
 mod jitter;
 mod light;
 mod meshes;
+mod normals;
 mod patches;
 mod path;
 mod pictures;
 mod planes;
 mod reflectance;
 mod surfaces;
+mod triangles;
 
 use crate::fault::SceneError;
 use crate::file::{RunFile, SceneFile};
