@@ -35,6 +35,7 @@ mod stored;
 mod summary;
 mod table;
 mod threads;
+mod warnings;
 
 use args::{Cli, Command};
 use clap::Parser;

@@ -29,6 +29,7 @@ mod read;
 mod resolve;
 mod scene;
 mod shown;
+mod warnings;
 
 pub use fault::{Fault, SceneError};
 pub use file::{

@@ -33,7 +33,8 @@ pub struct Mesh {
 }
 
 impl Mesh {
-    /// The mesh of these triangles, less those of zero area (in f64), of which real files hold a few.
+    /// The mesh of these triangles, less those of zero area (in f64), of which real files hold a few. What a scene drops or refuses beside
+    /// these depends on where it places them.
     ///
     /// # Errors
     /// A coordinate or an index out of range, or no triangle with an area.

@@ -6,12 +6,14 @@ mod light;
 mod limits;
 mod meshes;
 mod names;
+mod normals;
 mod patches;
 mod path;
 mod pictures;
 mod planes;
 mod reflectance;
 mod surfaces;
+mod triangles;
 
 use crate::fault::SceneError;
 use crate::file::{RunFile, SceneFile};

@@ -2,6 +2,9 @@
 //!
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
+//!
+//! The builder panics on what is not a number, and on boxes whose areas leave f32. So it is given boxes in a unit of its own, a power of two, in
+//! which they lie within ±2.1 and are at least 1e-5 wide: whatever lengths a scene has, its arithmetic is the same.
 
 use crate::obstacles::{direction, start};
 use etendue_field::{Frame, Patch, Shape, TwoPlane, interpolated_normal, triangle_distance};
@@ -152,7 +155,9 @@ pub(crate) struct Targets<T> {
     bvh: Bvh2,
     /// In the order of the hierarchy's leaves.
     targets: Vec<Target<T>>,
-    /// Beyond everything.
+    /// Lengths of the hierarchy over those of the scene; a power of two, so that nothing is rounded.
+    unit: f64,
+    /// Beyond everything, in the hierarchy's unit.
     far: f32,
     /// A distance along the leg beyond everything.
     front: f64,
@@ -172,11 +177,10 @@ const PADDING: f64 = 1e-5;
 impl<T: Clone> Targets<T> {
     /// `origins` is the largest coordinate a ray starts from.
     pub(crate) fn new(targets: &[Target<T>], origins: f64) -> Self {
-        let extent = targets.iter().map(extent).fold(origins, f64::max);
-        let boxes: Vec<Aabb> = targets
-            .iter()
-            .map(|t| padded(t, PADDING * extent))
-            .collect();
+        let extents = targets.iter().map(extent).filter(|at| at.is_finite());
+        let extent = extents.fold(origins, f64::max);
+        let unit = unit(extent);
+        let boxes: Vec<Aabb> = targets.iter().map(|t| padded(t, extent, unit)).collect();
         // Without pre-splits: they are for triangles.
         let parameters = BvhBuildParams {
             pre_split: false,
@@ -191,7 +195,8 @@ impl<T: Clone> Targets<T> {
         Self {
             bvh,
             targets,
-            far: single(4.0 * extent),
+            unit,
+            far: single(4.0 * extent * unit),
             front: 1.1 * extent,
         }
     }
@@ -200,8 +205,7 @@ impl<T: Clone> Targets<T> {
     #[inline]
     pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, &Target<T>)> {
         let begin = self.beside(ray, from, 1.0);
-        let start = ray.travelled(begin);
-        let origin = Vec3A::new(single(start.x), single(start.y), single(begin));
+        let origin = self.origin(ray, begin);
         let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
         let mut first = None;
         let mut nearest = f64::INFINITY;
@@ -215,7 +219,8 @@ impl<T: Clone> Targets<T> {
                         nearest = distance;
                         first = Some(target);
                         // Boxes this far are still opened: the first hit is decided in f64.
-                        single((distance - begin) * (1.0 + PADDING) + PADDING * distance.abs())
+                        let until = (distance - begin) * (1.0 + PADDING) + PADDING * distance.abs();
+                        single(until * self.unit)
                     }
                     _ => f32::INFINITY,
                 }
@@ -227,8 +232,7 @@ impl<T: Clone> Targets<T> {
     /// The last target on the line of a ray, and at what distance; looked for backwards, from beyond everything.
     pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, &Target<T>)> {
         let begin = self.beside(ray, self.front, -1.0);
-        let end = ray.travelled(begin);
-        let origin = Vec3A::new(single(end.x), single(end.y), single(begin));
+        let origin = self.origin(ray, begin);
         let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
         let mut last: Option<(f64, &Target<T>)> = None;
         self.bvh.ray_traverse(
@@ -240,7 +244,7 @@ impl<T: Clone> Targets<T> {
                     Some(at) if last.is_none_or(|(farthest, _)| at > farthest) => {
                         last = Some((at, target));
                         let back = begin - at;
-                        single(back + PADDING * (back.abs() + at.abs()))
+                        single((back + PADDING * (back.abs() + at.abs())) * self.unit)
                     }
                     _ => f32::INFINITY,
                 }
@@ -252,8 +256,7 @@ impl<T: Clone> Targets<T> {
     /// Tells every target on the line of a ray, and at what distance.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, &Target<T>)) {
         let begin = self.beside(ray, -self.front, 1.0);
-        let start = ray.travelled(begin);
-        let origin = Vec3A::new(single(start.x), single(start.y), single(begin));
+        let origin = self.origin(ray, begin);
         let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
         self.bvh.ray_traverse(
             Ray::new(origin, direction, 0.0, f32::MAX),
@@ -266,6 +269,14 @@ impl<T: Clone> Targets<T> {
                 f32::INFINITY
             },
         );
+    }
+
+    /// A point of a ray, in the hierarchy's unit.
+    #[inline]
+    fn origin(&self, ray: &TwoPlane, at: f64) -> Vec3A {
+        let TwoPlane { x, y, .. } = ray.travelled(at);
+        let scaled = |coordinate: f64| single(coordinate * self.unit);
+        Vec3A::new(scaled(x), scaled(y), scaled(at))
     }
 
     /// Where to begin looking along a ray, forward or back (`way` 1 or −1): at `from`, or, if that is far to the side of everything, where it
@@ -292,8 +303,7 @@ impl<T: Clone> Targets<T> {
         inclusive: bool,
         ignored: impl Fn(&T) -> bool,
     ) -> bool {
-        let end = ray.travelled(distance);
-        let origin = Vec3A::new(single(end.x), single(end.y), single(distance));
+        let origin = self.origin(ray, distance);
         let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
         let mut blocked = false;
         self.bvh.ray_traverse(
@@ -319,10 +329,30 @@ fn extent<T>(target: &Target<T>) -> f64 {
     low.abs().max(high.abs()).max_element()
 }
 
-fn padded<T>(target: &Target<T>, by: f64) -> Aabb {
+/// The power of two that brings an extent to between 1 and 2; 1 where there is none.
+fn unit(extent: f64) -> f64 {
+    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
+    if extent.is_normal() {
+        1.0 / f64::from_bits(extent.to_bits() & EXPONENT)
+    } else {
+        1.0
+    }
+}
+
+/// A box around a target, in the hierarchy's unit. One that has no box is looked for everywhere: whether it is hit is not decided here.
+fn padded<T>(target: &Target<T>, extent: f64, unit: f64) -> Aabb {
     let [low, high] = target.form.bounds();
-    let corner = |p: DVec3| Vec3A::new(single(p.x), single(p.y), single(p.z));
-    Aabb::new(corner(low - by), corner(high + by))
+    let by = PADDING * extent;
+    let corner = |p: DVec3| {
+        let p = p * unit;
+        Vec3A::new(single(p.x), single(p.y), single(p.z))
+    };
+    if low.is_finite() && high.is_finite() {
+        Aabb::new(corner(low - by), corner(high + by))
+    } else {
+        let everywhere = DVec3::splat(extent + by);
+        Aabb::new(corner(-everywhere), corner(everywhere))
+    }
 }
 
 #[inline]

@@ -1,5 +1,6 @@
 use super::Resolver;
 use super::faults::show;
+use super::triangles::Placement;
 use crate::Mesh;
 use crate::fault::Fault;
 use crate::file::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
@@ -67,11 +68,13 @@ impl Resolver<'_> {
                 SurfaceFile::Rectangle { .. } | SurfaceFile::Smooth { .. } => None,
             });
         let placed: Vec<_> = blockers.chain(surfaces).collect();
-        let objects = placed.into_iter().filter_map(|p| self.mesh(&p, frame));
+        let reach = reach(file);
+        let objects = placed.into_iter();
+        let objects = objects.filter_map(|p| self.mesh(&p, reach, frame));
         objects.collect()
     }
 
-    fn mesh(&mut self, placed: &Placed<'_>, frame: &Frame) -> Option<MeshObject> {
+    fn mesh(&mut self, placed: &Placed<'_>, reach: f64, frame: &Frame) -> Option<MeshObject> {
         let of = &placed.of;
         self.faults
             .coordinates(&format!("{of}.center"), placed.center);
@@ -81,8 +84,15 @@ impl Resolver<'_> {
                 .within(format!("{of}.albedo"), albedo, 0.0..=1.0);
         }
         let mesh = self.source(of, placed.mesh)?;
-        let center = DVec3::from(*placed.center);
-        let local = |i: &u32| frame.to_local(center + mesh.vertices()[*i as usize] * placed.scale);
+        let at = Placement {
+            of: placed.of.clone(),
+            source: placed.mesh,
+            center: DVec3::from(*placed.center),
+            scale: placed.scale,
+            reach,
+        };
+        let mesh = self.distinct_triangles(&at, mesh)?;
+        let local = |i: &u32| frame.to_local(at.world(mesh.vertices()[*i as usize]));
         let triangles: Vec<[DVec3; 3]> = mesh
             .triangles()
             .iter()
@@ -90,40 +100,36 @@ impl Resolver<'_> {
             .collect();
         let extent = super::extent(triangles.as_flattened());
         self.ahead(of, extent[0]);
+        let smooth = match placed.event {
+            Some(event) => Some(self.smooth(&at, event, &mesh, frame)?),
+            None => None,
+        };
         Some(MeshObject {
             name: placed.name.clone(),
-            center: frame.to_local(center),
+            center: frame.to_local(at.center),
             triangles,
             extent,
             albedo: placed.albedo,
-            smooth: placed
-                .event
-                .and_then(|event| self.smooth(of, event, &mesh, frame)),
+            smooth,
         })
     }
 
-    /// A mesh with the normals of its vertices: the mean of the triangles around each, by area.
+    /// A mesh with the normals of its vertices.
     fn smooth(
         &mut self,
-        of: &str,
+        at: &Placement<'_>,
         event: &EventFile,
         mesh: &Mesh,
         frame: &Frame,
     ) -> Option<SmoothMesh> {
-        let of = format!("{of}.event");
+        let of = format!("{}.event", at.of);
         if let EventFile::ThinLens(_) | EventFile::Reflects { .. } = event {
             self.faults.add(of, show(event), "Mirror or Refraction(…)");
             return None;
         }
         let event = self.specular(&of, event, FormFile::Plane)?;
-        let mut normals = vec![DVec3::ZERO; mesh.vertices().len()];
-        for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
-            let [a, b, c] = corners;
-            for i in indices {
-                normals[*i as usize] += (b - a).cross(c - a);
-            }
-        }
-        let local = |i: &u32| frame.vector_to_local(normals[*i as usize].normalize());
+        let normals = self.normals(at, mesh)?;
+        let local = |i: &u32| frame.vector_to_local(normals[*i as usize]);
         let normals = mesh.triangles().iter();
         let normals = normals.map(|corners| corners.each_ref().map(local));
         Some(SmoothMesh {
@@ -164,4 +170,16 @@ impl Resolver<'_> {
         })
         .ok()
     }
+}
+
+/// How far from the origin light may begin, and the surfaces on which it goes on are: rays and meshes are computed in coordinates as large.
+fn reach(file: &SceneFile) -> f64 {
+    let centers = file.surfaces.iter().map(|surface| match surface {
+        SurfaceFile::Rectangle { center, .. }
+        | SurfaceFile::Mesh { center, .. }
+        | SurfaceFile::Smooth { center, .. } => *center,
+    });
+    let centers = centers.chain([file.light.center()]);
+    let farthest = centers.map(|center| DVec3::from(center).length());
+    farthest.fold(0.0, f64::max)
 }

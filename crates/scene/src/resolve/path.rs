@@ -53,7 +53,12 @@ impl Resolver<'_> {
                 return CentralRay { frame, legs };
             };
             leg = Leg {
-                frame: leaving(&leg.frame, &hit, d, things.is_left_behind(&hit, d)),
+                frame: leaving(
+                    &leg.frame,
+                    &hit,
+                    d,
+                    things.is_left_behind(&hit, d, &leg.frame),
+                ),
                 start: leg.start + length,
                 length: f64::NAN,
                 leaves: Some(hit),
@@ -132,7 +137,7 @@ impl Resolver<'_> {
         things: Things<'_>,
     ) -> Option<DVec3> {
         let path = &file.path;
-        if let Some((event, lens, facing)) = things.specular(hit) {
+        if let Some((event, lens, facing)) = things.specular(hit, leg) {
             let name = &path.visits[i];
             if facing.dot(leg.d).abs() < GRAZING {
                 let allowed =
@@ -228,8 +233,8 @@ impl Things<'_> {
         surfaces.chain(meshes).chain(patches).collect()
     }
 
-    /// What a smooth surface does, its frame as a lens, and its normal at a hit on the side it faces.
-    fn specular(&self, hit: &Hit) -> Option<(Specular, Frame, DVec3)> {
+    /// What a smooth surface does at a hit that ends a leg, its frame as a lens, and its normal there on the side it faces.
+    fn specular(&self, hit: &Hit, leg: &Frame) -> Option<(Specular, Frame, DVec3)> {
         match hit.object {
             Object::Surface(_) => None,
             Object::Patch(i) => {
@@ -241,8 +246,9 @@ impl Things<'_> {
             }
             Object::Mesh(i) => {
                 let mesh = &self.meshes[i];
-                let facing = mesh.facing(hit)?;
-                Some((mesh.smooth.as_ref()?.event, Frame::IDENTITY, facing))
+                let event = mesh.smooth.as_ref()?.event;
+                let (_, facing) = mesh.first_on(leg)?;
+                Some((event, Frame::IDENTITY, facing))
             }
         }
     }
@@ -256,8 +262,8 @@ impl Things<'_> {
     }
 
     /// Whether light that leaves a hit along `d` has gone through.
-    fn is_left_behind(&self, hit: &Hit, d: DVec3) -> bool {
-        self.specular(hit).is_some() && d.dot(hit.normal) < 0.0
+    fn is_left_behind(&self, hit: &Hit, d: DVec3, leg: &Frame) -> bool {
+        self.specular(hit, leg).is_some() && d.dot(hit.normal) < 0.0
     }
 
     /// Where the axis of a frame meets an object first: distance, point and the normal on this side.
@@ -323,7 +329,7 @@ impl Things<'_> {
 
 impl MeshObject {
     /// Where the axis of a frame meets it first, and the normal there: of the triangle, or interpolated.
-    fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
+    pub(crate) fn first_on(&self, frame: &Frame) -> Option<(f64, DVec3)> {
         let central = TwoPlane::default();
         let hits = self
             .triangles
@@ -347,17 +353,5 @@ impl MeshObject {
                 (b - a).cross(c - a).normalize()
             }
         }
-    }
-
-    /// The outward normal at the hit of a path.
-    fn facing(&self, hit: &Hit) -> Option<DVec3> {
-        // The normal of a hit is this one, or turned over.
-        let along = Frame::new(
-            hit.point + hit.normal,
-            -hit.normal,
-            hit.normal.any_orthonormal_vector(),
-        )?;
-        let (_, outward) = self.first_on(&along)?;
-        Some(outward.dot(hit.normal).signum() * hit.normal)
     }
 }

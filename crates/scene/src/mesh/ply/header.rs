@@ -1,6 +1,7 @@
 use super::super::error::fault;
 use super::super::text::{Lines, Words, number, quoted};
 use crate::fault::Fault;
+use std::collections::HashSet;
 
 /// What a PLY file says of its data.
 pub(super) struct Header {
@@ -45,7 +46,12 @@ pub(super) enum Scalar {
 
 const FORMATS: &str =
     "format ascii 1.0, format binary_little_endian 1.0, format binary_big_endian 1.0";
-const PROPERTIES: &str = "property TYPE NAME, property list TYPE TYPE NAME; char, uchar, short, ushort, int, uint, float, double";
+const ELEMENT: &str = "element NAME COUNT, a name of at most 100 bytes";
+const PROPERTIES: &str = "property TYPE NAME, property list TYPE TYPE NAME; char, uchar, short, ushort, int, uint, float, double; a name of at most 100 bytes";
+/// Bytes of a name: messages repeat it.
+const LONGEST_NAME: usize = 100;
+/// Elements that a message lists.
+const MOST_LISTED: usize = 4;
 
 impl Header {
     /// The header, and the lines behind it.
@@ -57,6 +63,8 @@ impl Header {
         }
         let mut encoding = None;
         let mut elements: Vec<Element> = Vec::new();
+        // Names of all elements, and of the properties of the last: looked up, so that a header of any length takes time in proportion.
+        let (mut known, mut properties) = (HashSet::new(), HashSet::new());
         for (at, line) in lines.by_ref() {
             let refused = |allowed: &str| fault(format!("line {at}"), quoted(line), allowed);
             let words: Vec<&[u8]> = Words(line).collect();
@@ -69,10 +77,11 @@ impl Header {
                     encoding = Some(format(rest).ok_or_else(|| refused(FORMATS))?);
                 }
                 [b"element", rest @ ..] => {
-                    let new = element(rest).ok_or_else(|| refused("element NAME COUNT"))?;
-                    if elements.iter().any(|e| e.name == new.name) {
+                    let new = element(rest).ok_or_else(|| refused(ELEMENT))?;
+                    if !known.insert(new.name.clone()) {
                         return Err(refused("each element once"));
                     }
+                    properties.clear();
                     elements.push(new);
                 }
                 [b"property", rest @ ..] => {
@@ -80,7 +89,7 @@ impl Header {
                     let Some(element) = elements.last_mut() else {
                         return Err(refused("an element before its properties"));
                     };
-                    if element.properties.iter().any(|p| p.name == new.name) {
+                    if !properties.insert(new.name.clone()) {
                         return Err(refused("each property once"));
                     }
                     element.properties.push(new);
@@ -126,8 +135,11 @@ impl Header {
             least = least.saturating_sub(1); // the last line may lack its end
         }
         if (length as u128) < least {
-            let rows = self.elements.iter();
-            let rows: Vec<String> = rows.map(|e| format!("{} {}", e.count, e.name)).collect();
+            let rows = self.elements.iter().take(MOST_LISTED);
+            let mut rows: Vec<String> = rows.map(|e| format!("{} {}", e.count, e.name)).collect();
+            if let Some(more @ 1..) = self.elements.len().checked_sub(MOST_LISTED) {
+                rows.push(format!("{more} more elements"));
+            }
             let allowed = format!("at least {least}, for {} as announced", rows.join(", "));
             return Err(fault("number of bytes after the header", length, allowed));
         }
@@ -183,23 +195,27 @@ fn format(words: &[&[u8]]) -> Option<Encoding> {
     }
 }
 
+fn name(word: &[u8]) -> Option<String> {
+    (word.len() <= LONGEST_NAME).then(|| String::from_utf8_lossy(word).into())
+}
+
 fn element(words: &[&[u8]]) -> Option<Element> {
-    let [name, count] = words else { return None };
+    let [word, count] = words else { return None };
     Some(Element {
-        name: String::from_utf8_lossy(name).into(),
+        name: name(word)?,
         count: number(count)?,
         properties: Vec::new(),
     })
 }
 
 fn property(words: &[&[u8]]) -> Option<Property> {
-    let (name, scalar, length) = match words {
-        [b"list", length, scalar, name] => (name, scalar, Some(Scalar::named(length)?)),
-        [scalar, name] => (name, scalar, None),
+    let (word, scalar, length) = match words {
+        [b"list", length, scalar, word] => (word, scalar, Some(Scalar::named(length)?)),
+        [scalar, word] => (word, scalar, None),
         _ => return None,
     };
     Some(Property {
-        name: String::from_utf8_lossy(name).into(),
+        name: name(word)?,
         scalar: Scalar::named(scalar)?,
         length,
     })

@@ -1,0 +1,93 @@
+//! Normals at the vertices of a smooth mesh.
+
+use super::Resolver;
+use super::triangles::{Placement, others};
+use crate::Mesh;
+use glam::DVec3;
+
+/// The least cosine between the normal of a vertex and those of its triangles, 89.4°.
+///
+/// An interpolated normal is a mean, with shares from 0 to 1, of three that each go this far along the normal of the triangle, and so goes as far
+/// itself: it cannot vanish or turn over. The shares are off by at most 4e-4 each (`triangles.rs`), which leaves it eight tenths of that.
+///
+/// It is also the least length of a vertex's sum of normals times areas, over the sum of their lengths. A shorter sum has a triangle whose cosine
+/// is less, since the mean cosine, weighted by area, is that ratio. So no mesh is refused by this that would pass the other.
+const LEAST: f64 = 0.01;
+
+impl Resolver<'_> {
+    /// The normals of all vertices, the mean of the triangles around each by area; zero where no triangle is.
+    pub(super) fn normals(&mut self, at: &Placement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
+        let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
+        for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
+            let normal = across(corners);
+            for i in indices {
+                let (sum, lengths) = &mut sums[*i as usize];
+                *sum += normal;
+                *lengths += normal.length();
+            }
+        }
+        let share = |(sum, lengths): &(DVec3, f64)| sum.length() / lengths;
+        let cancel = (0u32..).zip(&sums);
+        let cancel: Vec<u32> = cancel
+            .filter(|(_, sum)| share(sum) < LEAST)
+            .map(|(i, _)| i)
+            .collect();
+        if let Some(first) = cancel.first() {
+            let field = at.field(&format!("vertex {}", at.number(*first)));
+            let left = share(&sums[*first as usize]);
+            let value = format!("where normals cancel: {left:.1e} of their sum by area is left");
+            let allowed = format!(
+                "vertices of a smooth surface, with at least {LEAST} left{}",
+                others(cancel.len())
+            );
+            self.faults.add(field, value, allowed);
+        }
+        let normals: Vec<DVec3> = sums
+            .iter()
+            .map(|sum| {
+                if share(sum) >= LEAST {
+                    sum.0.normalize()
+                } else {
+                    DVec3::ZERO
+                }
+            })
+            .collect();
+        self.one_side(at, mesh, &normals)?;
+        cancel.is_empty().then_some(normals)
+    }
+
+    /// Requires the normal of a vertex to be on the side of each triangle around it.
+    fn one_side(&mut self, at: &Placement<'_>, mesh: &Mesh, normals: &[DVec3]) -> Option<()> {
+        let mut turned = Vec::new();
+        for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
+            let normal = across(corners).normalize();
+            let cosines = indices.map(|i| (i, normals[i as usize].dot(normal)));
+            // A vertex without a normal has been named already.
+            let turned_here =
+                |(i, cosine): &(u32, f64)| *cosine < LEAST && normals[*i as usize] != DVec3::ZERO;
+            let here = cosines.into_iter().filter(turned_here);
+            turned.extend(here.map(|(i, cosine)| (i, cosine, *indices)));
+        }
+        let Some(&(vertex, cosine, triangle)) = turned.first() else {
+            return Some(());
+        };
+        let field = at.field(&format!("vertex {}", at.number(vertex)));
+        let value = format!(
+            "on a fold: its normal is {:.1}° from that of {}",
+            cosine.clamp(-1.0, 1.0).acos().to_degrees(),
+            at.triangle(triangle)
+        );
+        let allowed = format!(
+            "vertices of a smooth surface, at most {:.1}° from each triangle, all wound alike{}",
+            LEAST.acos().to_degrees(),
+            others(turned.len())
+        );
+        self.faults.add(field, value, allowed);
+        None
+    }
+}
+
+/// A vector along the normal of a triangle, as long as twice its area.
+fn across([a, b, c]: [DVec3; 3]) -> DVec3 {
+    (b - a).cross(c - a)
+}

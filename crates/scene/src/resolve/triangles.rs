@@ -1,0 +1,132 @@
+//! Triangles of a mesh where it is placed: within the coordinates of a scene, and thick enough to be told from lines.
+
+use super::Resolver;
+use crate::Mesh;
+use crate::file::MeshSource;
+use glam::DVec3;
+use std::path::Path;
+
+/// Height of a triangle over the largest coordinate below which it cannot be told from a line.
+///
+/// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height a normal leans by 4e-4 of a radian, and the shares
+/// of its corners in a point are off by as much; what is lower is noise.
+const THIN: f64 = 1e-12;
+/// The least height in metres: the smallest size of a scene times the smallest scale. Products of six lengths as small stay inside f64.
+const LEAST_HEIGHT: f64 = 1e-18;
+/// Share of a mesh's area that thin triangles may hold and be dropped: what is missing then is beneath all noise.
+const NOTHING: f64 = 1e-6;
+/// The largest coordinate, as everywhere in a scene.
+const LARGEST: f64 = 1e9;
+
+/// Where a mesh is, and how its faults are told.
+pub(super) struct Placement<'a> {
+    /// The field of the blocker or the surface.
+    pub(super) of: String,
+    pub(super) source: &'a MeshSource,
+    pub(super) center: DVec3,
+    pub(super) scale: f64,
+    /// The largest distance from the origin of anything that light begins or goes on at.
+    pub(super) reach: f64,
+}
+
+impl Placement<'_> {
+    /// A vertex in the world of the scene file.
+    pub(super) fn world(&self, vertex: DVec3) -> DVec3 {
+        self.center + vertex * self.scale
+    }
+
+    /// The number of a vertex, counted as its format does: OBJ from 1, PLY and meshes that are made from 0.
+    pub(super) fn number(&self, vertex: u32) -> u64 {
+        let extension = match self.source {
+            MeshSource::File(path) => Path::new(path).extension(),
+            _ => None,
+        };
+        u64::from(vertex) + u64::from(extension.is_some_and(|e| e.eq_ignore_ascii_case("obj")))
+    }
+
+    /// The field of something about its mesh.
+    pub(super) fn field(&self, what: &str) -> String {
+        match self.source {
+            MeshSource::File(path) => format!("{}.mesh, {path:?}: {what}", self.of),
+            _ => format!("{}.mesh, {what}", self.of),
+        }
+    }
+
+    /// A triangle by the numbers of its vertices.
+    pub(super) fn triangle(&self, corners: [u32; 3]) -> String {
+        let [a, b, c] = corners.map(|i| self.number(i));
+        format!("the triangle of vertices {a}, {b} and {c}")
+    }
+}
+
+impl Resolver<'_> {
+    /// The mesh without triangles too thin for f64, if they are next to nothing of it.
+    pub(super) fn distinct_triangles(&mut self, at: &Placement<'_>, mesh: Mesh) -> Option<Mesh> {
+        self.inside(at, &mesh)?;
+        let [low, high] = mesh.bounds();
+        let size = at.scale * low.abs().max(high.abs()).length();
+        let least = (THIN * (at.reach + at.center.length() + size)).max(LEAST_HEIGHT);
+        let (mut thin, mut kept) = (Vec::new(), Vec::new());
+        let (mut area, mut thin_area) = (0.0, 0.0);
+        for (corners, indices) in mesh.corners().zip(mesh.triangles()) {
+            let [height, twice] = height(corners);
+            area += twice;
+            if height * at.scale < least {
+                thin_area += twice;
+                thin.push((*indices, height * at.scale));
+            } else {
+                kept.push(*indices);
+            }
+        }
+        let Some(&(first, height)) = thin.first() else {
+            return Some(mesh);
+        };
+        if !kept.is_empty() && thin_area <= NOTHING * area {
+            return Mesh::new(mesh.vertices().to_vec(), kept).ok();
+        }
+        let allowed = format!(
+            "at least {least:.3e} m, {THIN:e} of the largest coordinate{}: f64 knows no normal of what is thinner",
+            others(thin.len())
+        );
+        let field = at.field(&at.triangle(first));
+        self.faults
+            .add(field, format!("{height:.3e} m high"), allowed);
+        None
+    }
+
+    /// Requires vertices within the coordinates of a scene.
+    fn inside(&mut self, at: &Placement<'_>, mesh: &Mesh) -> Option<()> {
+        let mut corners: Vec<u32> = mesh.triangles().as_flattened().to_vec();
+        corners.sort_unstable();
+        corners.dedup();
+        let world = |i: u32| at.world(mesh.vertices()[i as usize]);
+        corners.retain(|i| world(*i).abs().max_element() > LARGEST);
+        let Some(first) = corners.first() else {
+            return Some(());
+        };
+        let field = at.field(&format!("vertex {}", at.number(*first)));
+        let value = format!("at {} in the world", world(*first));
+        let allowed = format!(
+            "coordinates of {:?} to {LARGEST:?}{}",
+            -LARGEST,
+            others(corners.len())
+        );
+        self.faults.add(field, value, allowed);
+        None
+    }
+}
+
+/// The height of a triangle over its longest side, and twice its area.
+fn height([a, b, c]: [DVec3; 3]) -> [f64; 2] {
+    let longest = (b - a).length().max((c - b).length()).max((a - c).length());
+    let twice = (b - a).cross(c - a).length();
+    [twice / longest, twice]
+}
+
+/// Words for those beside the first.
+pub(super) fn others(count: usize) -> String {
+    match count {
+        0 | 1 => String::new(),
+        more => format!(" ({} more are not)", more - 1),
+    }
+}

@@ -1,0 +1,239 @@
+//! What a sound scene should still be told of: smooth meshes too coarse for their normals.
+
+use crate::scene::{Leg, MeshObject, Object, Scene, SmoothMesh};
+use etendue_field::{Frame, TwoPlane, VirtualPlane, interpolated_normal};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// Difference of a spectrum between photons and backward rays from which a mesh is warned of.
+const LEVEL: f64 = 0.01;
+/// Triangles looked at; of finer meshes every second, every third, ….
+const MOST: usize = 20_000;
+/// Pieces of a window across which triangles are cut.
+const PIECES: f64 = 8.0;
+/// Azimuths of waves, and waves along each: multiples of the spacing of a plane's frequencies, up to the largest.
+const AZIMUTHS: u32 = 4;
+const WAVES: usize = 8;
+/// Slopes at which each point is looked at, over the half-width of the window.
+const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
+
+impl Scene {
+    /// Warnings in words, one for each smooth mesh on the path that is too coarse.
+    ///
+    /// A mesh turns light by its interpolated normal n and catches it by the normal t of the triangle. Photons that come along d and leave along e
+    /// then have (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated normals do not conserve étendue. What a
+    /// plane has of this is the spectrum of the window times that factor less 1, over the spectrum of the window, both where the mesh is hit,
+    /// at the frequencies along x and y that are measured: finer facets than those average out.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        for (i, leg) in self.path.legs.iter().enumerate().skip(1) {
+            let Some(Object::Mesh(mesh)) = leg.leaves.map(|hit| hit.object) else {
+                continue;
+            };
+            let mesh = &self.meshes[mesh];
+            let Some(smooth) = &mesh.smooth else { continue };
+            let later = self.planes.iter().filter(|plane| plane.leg >= i);
+            let seen = later.map(|plane| {
+                let looked = Look::new(mesh, smooth, [&self.path.legs[i - 1], leg], plane);
+                (looked.mismatch(), &plane.name)
+            });
+            let worst = seen.max_by(|(a, _), (b, _)| a.total_cmp(b));
+            if let Some((mismatch, plane)) = worst.filter(|(mismatch, _)| *mismatch > LEVEL) {
+                warnings.push(format!(
+                    "{}: too coarse for normals interpolated between its vertices. At {plane} photons and backward rays may differ by {:.1} % of the spectrum; triangles {:.0} times shorter are fine enough for {} %",
+                    mesh.name,
+                    100.0 * mismatch,
+                    (mismatch / LEVEL).ceil(),
+                    100.0 * LEVEL
+                ));
+            }
+        }
+        warnings
+    }
+}
+
+/// What a window sees of a smooth mesh, as if surfaces after it were flat.
+struct Look<'a> {
+    mesh: &'a MeshObject,
+    smooth: &'a SmoothMesh,
+    /// At the hit, along the light that leaves it.
+    frame: Frame,
+    /// 1 where light arrives along the normals of the mesh, −1 where it arrives against them.
+    side: f64,
+    plane: &'a VirtualPlane,
+    /// From the hit to the plane.
+    along: f64,
+    /// Half the size of what is seen, along X and Y.
+    half: [f64; 2],
+}
+
+/// The window, and what photons and rays differ by in it: sums over points at once, or their spectra.
+#[derive(Clone, Copy, Debug, Default)]
+struct Sums {
+    difference: f64,
+    whole: f64,
+}
+
+/// A wave, Ω, and the spectra at its frequency.
+struct Wave {
+    frequency: [f64; 2],
+    /// 2 where its conjugate is another one.
+    times: f64,
+    difference: [f64; 2],
+    whole: [f64; 2],
+}
+
+impl Wave {
+    fn add(&mut self, at: DVec3, sums: &Sums) {
+        let [x, y] = self.frequency;
+        let (sin, cos) = (TAU * (x * at.x + y * at.y)).sin_cos();
+        let add = |to: &mut [f64; 2], sum: f64| *to = [to[0] + sum * cos, to[1] + sum * sin];
+        add(&mut self.difference, sums.difference);
+        add(&mut self.whole, sums.whole);
+    }
+}
+
+/// The waves of a plane's frequencies along x and y.
+fn waves(plane: &VirtualPlane) -> Vec<Wave> {
+    let axis = &plane.grid.rho;
+    let orders = 0..=axis.half.min(WAVES);
+    let wave = |azimuth: u32, order: usize| {
+        let (sin, cos) = (PI * f64::from(azimuth) / f64::from(AZIMUTHS)).sin_cos();
+        let rho = axis.spacing * order as f64;
+        Wave {
+            frequency: [rho * cos, rho * sin],
+            times: if order == 0 { 1.0 } else { 2.0 },
+            difference: [0.0; 2],
+            whole: [0.0; 2],
+        }
+    };
+    orders
+        .flat_map(|order| (0..AZIMUTHS).map(move |azimuth| wave(azimuth, order)))
+        .collect()
+}
+
+impl<'a> Look<'a> {
+    fn new(
+        mesh: &'a MeshObject,
+        smooth: &'a SmoothMesh,
+        [arriving, leaving]: [&Leg; 2],
+        plane: &'a VirtualPlane,
+    ) -> Self {
+        let facing = mesh.first_on(&arriving.frame).map(|(_, normal)| normal);
+        let along = plane.distance - leaving.start;
+        let w = &plane.window;
+        let half = [(&w.x, &w.u), (&w.y, &w.v)];
+        Self {
+            mesh,
+            smooth,
+            frame: leaving.frame,
+            side: facing.map_or(0.0, |n| n.dot(arriving.frame.d).signum()),
+            plane,
+            along,
+            half: half.map(|(space, slope)| space.half_width() + along * slope.half_width()),
+        }
+    }
+
+    /// The root of the energy of the difference over that of the window.
+    fn mismatch(&self) -> f64 {
+        let mut waves = waves(self.plane);
+        let stride = self.mesh.triangles.len().div_ceil(MOST);
+        let triangles = self.mesh.triangles.iter().zip(&self.smooth.normals);
+        for (corners, normals) in triangles.step_by(stride) {
+            let local = corners.map(|p| self.frame.to_local(p));
+            let normals = normals.map(|n| self.frame.vector_to_local(n));
+            self.add(&local, &normals, &local, &mut waves);
+        }
+        let energy = |part: fn(&Wave) -> [f64; 2]| {
+            let both = waves.iter().map(|wave| {
+                let [re, im] = part(wave);
+                wave.times * (re * re + im * im)
+            });
+            both.sum::<f64>()
+        };
+        let whole = energy(|wave| wave.whole);
+        if whole > 0.0 {
+            (energy(|wave| wave.difference) / whole).sqrt()
+        } else {
+            0.0
+        }
+    }
+
+    /// Adds a piece of a triangle, cut in four until it is small in the window.
+    fn add(
+        &self,
+        whole: &[DVec3; 3],
+        normals: &[DVec3; 3],
+        piece: &[DVec3; 3],
+        waves: &mut [Wave],
+    ) {
+        let [a, b, c] = *piece;
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        let [x, y] = self.half;
+        if low.x > x || high.x < -x || low.y > y || high.y < -y {
+            return;
+        }
+        let size = high - low;
+        if PIECES * size.x > 2.0 * x || PIECES * size.y > 2.0 * y {
+            let [d, e, f] = [a.midpoint(b), b.midpoint(c), c.midpoint(a)];
+            for part in [[a, d, f], [d, b, e], [f, e, c], [d, e, f]] {
+                self.add(whole, normals, &part, waves);
+            }
+            return;
+        }
+        let [p, q, r] = whole;
+        let flat = (q - p).cross(r - p).normalize();
+        let area = (b - a).cross(c - a).z.abs();
+        let mut sums = Sums::default();
+        // Three points of a triangle that integrate squares exactly.
+        for corner in piece {
+            let point = (a + b + c + 3.0 * *corner) / 6.0;
+            let normal = interpolated_normal(whole, normals, point);
+            for u in SLOPES {
+                for v in SLOPES {
+                    self.point(point, flat, normal, [u, v], area, &mut sums);
+                }
+            }
+        }
+        let middle = (a + b + c) / 3.0;
+        waves.iter_mut().for_each(|wave| wave.add(middle, &sums));
+    }
+
+    /// Adds a ray that leaves a point.
+    fn point(
+        &self,
+        point: DVec3,
+        flat: DVec3,
+        normal: DVec3,
+        [u, v]: [f64; 2],
+        area: f64,
+        sums: &mut Sums,
+    ) {
+        let window = &self.plane.window;
+        let [u, v] = [u * window.u.half_width(), v * window.v.half_width()];
+        let TwoPlane { x, y, .. } = TwoPlane {
+            x: point.x,
+            y: point.y,
+            u,
+            v,
+        }
+        .travelled(self.along - point.z);
+        let weight = area * window.value(&TwoPlane { x, y, u, v });
+        let leaves = DVec3::new(u, v, 1.0);
+        let event = &self.smooth.event;
+        let Some(back) = event.turned(&Frame::IDENTITY, normal, point, -leaves) else {
+            return;
+        };
+        if weight <= 0.0 || -back.dot(normal) * self.side <= 0.0 {
+            return;
+        }
+        let kept = |d: DVec3| d.dot(flat) / d.dot(normal);
+        // Light on the wrong side of a triangle is all lost, or gained.
+        let factor = (kept(back) / kept(leaves)).clamp(0.0, 2.0);
+        if factor.is_finite() {
+            sums.difference += weight * (factor - 1.0);
+            sums.whole += weight;
+        }
+    }
+}

@@ -1,0 +1,190 @@
+//! Meshes that a scene cannot use: which vertex or triangle is named, and what is dropped or warned of instead.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use etendue_scene::{Mesh, Scene, SceneError, SceneFile, resolve};
+use std::fmt::Write as _;
+use std::fs;
+use std::path::Path;
+
+const SQUARE: &str = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\nv 0 0 0.1\n";
+const ROOF: &str = "f 1 2 5\nf 2 3 5\nf 3 4 5\nf 4 1 5\n";
+
+/// A mesh below a light, with what else is said of it.
+fn text(mesh: &str, rest: &str) -> String {
+    format!(
+        r#"(
+            light: Disc(center: (0.3, 0.1, 2), radius: 0.2),
+            surfaces: [Mesh(name: "mesh", center: (0, 0, 0), mesh: {mesh}, {rest})],
+            path: (direction: (-0.1, 0.05, -1), x_axis: (1, 0, 0), visits: ["mesh"]),
+            planes: [(name: "after", at: After("mesh"))],
+            window: (x: Hann(0.1), u: Hann(0.1)),
+            frequencies: (rho: (max: 10), nu: (max: 10)),
+            run: (photons: 1000),
+        )"#
+    )
+}
+
+fn resolved(text: &str, folder: &Path) -> Result<Scene, SceneError> {
+    resolve("test", SceneFile::parse(text)?, folder, u64::MAX)
+}
+
+/// What is said of a file with this text.
+fn file(name: &str, content: &str, rest: &str) -> Result<Scene, SceneError> {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join(name), content).unwrap();
+    resolved(&text(&format!("File({name:?})"), rest), folder.path())
+}
+
+fn told(outcome: Result<Scene, SceneError>, words: &[&str]) {
+    let told = outcome.unwrap_err().to_string();
+    for words in words {
+        assert!(told.contains(words), "{words}: {told}");
+    }
+    assert_eq!(told.lines().count(), 1, "{told}");
+}
+
+fn ply(obj: &str) -> String {
+    let rows = |mark: char| obj.lines().filter(move |line| line.starts_with(mark));
+    let mut text = format!(
+        "ply\nformat ascii 1.0\nelement vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element face {}\nproperty list uchar int vertex_indices\nend_header\n",
+        rows('v').count(),
+        rows('f').count()
+    );
+    rows('v').for_each(|line| writeln!(text, "{}", &line[2..]).unwrap());
+    for line in rows('f') {
+        let corners = line[2..].split(' ').map(|i| i.parse::<u32>().unwrap() - 1);
+        let corners: Vec<String> = corners.map(|i| i.to_string()).collect();
+        writeln!(text, "3 {}", corners.join(" ")).unwrap();
+    }
+    text
+}
+
+#[test]
+fn vertices_whose_normals_cancel_are_named_as_the_file_counts() {
+    let both =
+        format!("{SQUARE}{ROOF}v 0.5 0.5 -1\nv 0.5 -0.5 -1\nv 0.6 0.2 -0.8\nf 6 7 8\nf 6 8 7\n");
+    told(
+        file("a.obj", &both, "event: Mirror"),
+        &[
+            "surfaces[0].mesh, \"a.obj\": vertex 6 is where normals cancel",
+            "(2 more are not)",
+        ],
+    );
+    told(
+        file("a.ply", &ply(&both), "event: Mirror"),
+        &["\"a.ply\": vertex 5 is where"],
+    );
+    assert!(
+        file("a.obj", &both, "albedo: 0.5").is_ok(),
+        "triangles have normals of their own"
+    );
+}
+
+#[test]
+fn folds_and_windings_that_disagree_are_named() {
+    let turned = format!("{SQUARE}{}", ROOF.replace("f 3 4 5", "f 4 3 5"));
+    told(
+        file("a.obj", &turned, "event: Mirror"),
+        &[
+            "vertex 5 is on a fold: its normal is",
+            "that of the triangle of vertices 4, 3 and 5",
+            "at most 89.4°",
+        ],
+    );
+    assert!(file("a.obj", &format!("{SQUARE}{ROOF}"), "event: Mirror").is_ok());
+}
+
+#[test]
+fn vertices_beyond_all_coordinates_are_named() {
+    let far = text(
+        "Star(radius: 1e8, relief: 0, lobes: 0, rings: 4)",
+        "scale: 1e9",
+    );
+    told(
+        resolved(&far, ".".as_ref()),
+        &[
+            "surfaces[0].mesh, vertex 0 is at [",
+            "1000000000.0 (25 more are not)",
+        ],
+    );
+}
+
+/// Long thin triangles of real files go; a mesh that is nothing else does not pass.
+#[test]
+fn triangles_too_thin_are_dropped_or_named() {
+    let sliver = format!("{SQUARE}v 0 -1.00000000000001 0\n{ROOF}f 1 6 2\n");
+    let scene = file("a.obj", &sliver, "event: Mirror").unwrap();
+    assert_eq!(scene.meshes[0].triangles.len(), 4);
+    let thin = SQUARE
+        .replace("-1 0", "-1e-13 0")
+        .replace(" 1 0", " 1e-13 0")
+        .replace("0 0 0.1", "0 0 0");
+    told(
+        file("a.obj", &format!("{thin}{ROOF}"), "event: Mirror"),
+        &[
+            "the triangle of vertices 1, 2 and 5 is",
+            "m high; allowed: at least",
+            "(3 more are not)",
+        ],
+    );
+}
+
+/// Another part of a mesh may stand in front of the part that is hit, and face the other way.
+#[test]
+fn the_side_of_a_hit_is_that_of_its_own_triangle() {
+    // A roof that faces down, and beside the path a plate above the hit that faces up.
+    let roof = "v -1 -1 -0.5\nv 1 -1 -0.5\nv 1 1 -0.5\nv -1 1 -0.5\nv 0 0 -0.4\n";
+    let above = "v -0.1 0.1 0.3\nv 0.1 0.1 0.3\nv 0.1 0.4 0.3\nv -0.1 0.4 0.3\n";
+    let faces = "f 2 1 5\nf 3 2 5\nf 4 3 5\nf 1 4 5\n";
+    let mesh = format!("{roof}{faces}{above}f 6 7 8 9\n");
+    let glass = "event: Refraction(front: 1, back: 1.5)";
+    let alone = file("a.obj", &format!("{roof}{faces}"), glass).unwrap();
+    let both = file("a.obj", &mesh, glass).unwrap();
+    assert_eq!(both.path.legs[1].frame, alone.path.legs[1].frame);
+}
+
+#[test]
+fn a_header_of_any_length_is_read_in_proportion() {
+    let header = |n: u32, line: &dyn Fn(u32) -> String| {
+        let lines: String = (0..n).map(line).collect();
+        format!("ply\nformat ascii 1.0\nelement vertex 3\n{lines}end_header\n")
+    };
+    let seconds = |text: &str| {
+        let start = std::time::Instant::now();
+        let fault = Mesh::parse("a.ply".as_ref(), text.as_bytes()).unwrap_err();
+        assert!(fault.to_string().len() < 500, "{fault}");
+        start.elapsed().as_secs_f64()
+    };
+    // 60,000 took 6 s when each was compared with all before.
+    let properties = header(200_000, &|i| format!("property int p{i}\n"));
+    let elements = header(200_000, &|i| format!("element e{i} 1\nproperty int p\n"));
+    assert!(seconds(&properties) < 2.0);
+    assert!(seconds(&elements) < 2.0);
+    let long = header(1, &|_| format!("property int {}\n", "p".repeat(101)));
+    let told = Mesh::parse("a.ply".as_ref(), long.as_bytes())
+        .unwrap_err()
+        .to_string();
+    assert!(told.ends_with("a name of at most 100 bytes"), "{told}");
+}
+
+/// The levels are those of photons against backward rays: 3 % with two cells, below what 4e7 photons tell with eight.
+#[test]
+fn coarse_smooth_meshes_are_warned_of() {
+    let warned = |cells: u32| {
+        let mesh = format!("Paraboloid(curvatures: (1.5, 1), half: 0.2, cells: {cells})");
+        let text = text(&mesh, "event: Mirror").replace(
+            "center: (0.3, 0.1, 2)",
+            "center: (-0.644217687, 0, 0.764842187)",
+        );
+        let text = text.replace("(-0.1, 0.05, -1)", "(0.644217687, 0, -0.764842187)");
+        resolved(&text, ".".as_ref()).unwrap().warnings()
+    };
+    let coarse = warned(2);
+    assert!(
+        coarse.len() == 1 && coarse[0].starts_with("mesh: too coarse"),
+        "{coarse:?}"
+    );
+    assert_eq!(warned(32), Vec::<String>::new());
+}
