@@ -3,8 +3,7 @@
 //! The hierarchy, in f32, only names candidates; whether and where a rectangle is hit is decided in f64.
 //! Boxes are padded by more than f32 rounding, so no candidate is missed.
 //!
-//! The builder panics on what is not a number, and on boxes whose areas leave f32. So it is given boxes in a unit of its own, a power of two, in
-//! which they lie within ±2.1 and are at least 1e-5 wide: whatever lengths a scene has, its arithmetic is the same.
+//! The builder panics on boxes that are no numbers. No legal scene has them, and none reach it: what has no box in f32 is a candidate everywhere.
 
 use crate::obstacles::{direction, start};
 use etendue_field::{Frame, Patch, Shape, TwoPlane, interpolated_normal, triangle_distance};
@@ -155,9 +154,7 @@ pub(crate) struct Targets<T> {
     bvh: Bvh2,
     /// In the order of the hierarchy's leaves.
     targets: Vec<Target<T>>,
-    /// Lengths of the hierarchy over those of the scene; a power of two, so that nothing is rounded.
-    unit: f64,
-    /// Beyond everything, in the hierarchy's unit.
+    /// Beyond everything.
     far: f32,
     /// A distance along the leg beyond everything.
     front: f64,
@@ -174,13 +171,15 @@ impl<T: fmt::Debug> fmt::Debug for Targets<T> {
 /// Boxes grow by this share of the scene's extent: f32 rounding is 6e-8 of it, a ray adds a few of those.
 const PADDING: f64 = 1e-5;
 
+/// The largest coordinate of a box, which f32 still holds four times over. The farthest corner of a patch is at 1e28.
+const LARGEST: f64 = 1e36;
+
 impl<T: Clone> Targets<T> {
     /// `origins` is the largest coordinate a ray starts from.
     pub(crate) fn new(targets: &[Target<T>], origins: f64) -> Self {
-        let extents = targets.iter().map(extent).filter(|at| at.is_finite());
+        let extents = targets.iter().map(extent).filter(|at| *at <= LARGEST);
         let extent = extents.fold(origins, f64::max);
-        let unit = unit(extent);
-        let boxes: Vec<Aabb> = targets.iter().map(|t| padded(t, extent, unit)).collect();
+        let boxes: Vec<Aabb> = targets.iter().map(|t| padded(t, extent)).collect();
         // Without pre-splits: they are for triangles.
         let parameters = BvhBuildParams {
             pre_split: false,
@@ -195,8 +194,7 @@ impl<T: Clone> Targets<T> {
         Self {
             bvh,
             targets,
-            unit,
-            far: single(4.0 * extent * unit),
+            far: single(4.0 * extent),
             front: 1.1 * extent,
         }
     }
@@ -205,7 +203,8 @@ impl<T: Clone> Targets<T> {
     #[inline]
     pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, &Target<T>)> {
         let begin = self.beside(ray, from, 1.0);
-        let origin = self.origin(ray, begin);
+        let start = ray.travelled(begin);
+        let origin = Vec3A::new(single(start.x), single(start.y), single(begin));
         let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
         let mut first = None;
         let mut nearest = f64::INFINITY;
@@ -219,8 +218,7 @@ impl<T: Clone> Targets<T> {
                         nearest = distance;
                         first = Some(target);
                         // Boxes this far are still opened: the first hit is decided in f64.
-                        let until = (distance - begin) * (1.0 + PADDING) + PADDING * distance.abs();
-                        single(until * self.unit)
+                        single((distance - begin) * (1.0 + PADDING) + PADDING * distance.abs())
                     }
                     _ => f32::INFINITY,
                 }
@@ -232,7 +230,8 @@ impl<T: Clone> Targets<T> {
     /// The last target on the line of a ray, and at what distance; looked for backwards, from beyond everything.
     pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, &Target<T>)> {
         let begin = self.beside(ray, self.front, -1.0);
-        let origin = self.origin(ray, begin);
+        let end = ray.travelled(begin);
+        let origin = Vec3A::new(single(end.x), single(end.y), single(begin));
         let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
         let mut last: Option<(f64, &Target<T>)> = None;
         self.bvh.ray_traverse(
@@ -244,7 +243,7 @@ impl<T: Clone> Targets<T> {
                     Some(at) if last.is_none_or(|(farthest, _)| at > farthest) => {
                         last = Some((at, target));
                         let back = begin - at;
-                        single((back + PADDING * (back.abs() + at.abs())) * self.unit)
+                        single(back + PADDING * (back.abs() + at.abs()))
                     }
                     _ => f32::INFINITY,
                 }
@@ -256,7 +255,8 @@ impl<T: Clone> Targets<T> {
     /// Tells every target on the line of a ray, and at what distance.
     pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, &Target<T>)) {
         let begin = self.beside(ray, -self.front, 1.0);
-        let origin = self.origin(ray, begin);
+        let start = ray.travelled(begin);
+        let origin = Vec3A::new(single(start.x), single(start.y), single(begin));
         let direction = Vec3A::new(single(ray.u), single(ray.v), 1.0);
         self.bvh.ray_traverse(
             Ray::new(origin, direction, 0.0, f32::MAX),
@@ -269,14 +269,6 @@ impl<T: Clone> Targets<T> {
                 f32::INFINITY
             },
         );
-    }
-
-    /// A point of a ray, in the hierarchy's unit.
-    #[inline]
-    fn origin(&self, ray: &TwoPlane, at: f64) -> Vec3A {
-        let TwoPlane { x, y, .. } = ray.travelled(at);
-        let scaled = |coordinate: f64| single(coordinate * self.unit);
-        Vec3A::new(scaled(x), scaled(y), scaled(at))
     }
 
     /// Where to begin looking along a ray, forward or back (`way` 1 or −1): at `from`, or, if that is far to the side of everything, where it
@@ -303,7 +295,8 @@ impl<T: Clone> Targets<T> {
         inclusive: bool,
         ignored: impl Fn(&T) -> bool,
     ) -> bool {
-        let origin = self.origin(ray, distance);
+        let end = ray.travelled(distance);
+        let origin = Vec3A::new(single(end.x), single(end.y), single(distance));
         let direction = Vec3A::new(single(-ray.u), single(-ray.v), -1.0);
         let mut blocked = false;
         self.bvh.ray_traverse(
@@ -329,26 +322,17 @@ fn extent<T>(target: &Target<T>) -> f64 {
     low.abs().max(high.abs()).max_element()
 }
 
-/// The power of two that brings an extent to between 1 and 2; 1 where there is none.
-fn unit(extent: f64) -> f64 {
-    const EXPONENT: u64 = 0x7ff0_0000_0000_0000;
-    if extent.is_normal() {
-        1.0 / f64::from_bits(extent.to_bits() & EXPONENT)
-    } else {
-        1.0
-    }
-}
-
-/// A box around a target, in the hierarchy's unit. One that has no box is looked for everywhere: whether it is hit is not decided here.
-fn padded<T>(target: &Target<T>, extent: f64, unit: f64) -> Aabb {
+/// The box around a target, which are all within `extent`.
+fn padded<T>(target: &Target<T>, extent: f64) -> Aabb {
     let [low, high] = target.form.bounds();
     let by = PADDING * extent;
-    let corner = |p: DVec3| {
-        let p = p * unit;
-        Vec3A::new(single(p.x), single(p.y), single(p.z))
-    };
-    if low.is_finite() && high.is_finite() {
-        Aabb::new(corner(low - by), corner(high + by))
+    let (low, high) = (low - by, high + by);
+    let corner = |p: DVec3| Vec3A::new(single(p.x), single(p.y), single(p.z));
+    if [low, high]
+        .iter()
+        .all(|p| p.is_finite() && p.abs().max_element() <= 2.0 * LARGEST)
+    {
+        Aabb::new(corner(low), corner(high))
     } else {
         let everywhere = DVec3::splat(extent + by);
         Aabb::new(corner(-everywhere), corner(everywhere))
@@ -449,7 +433,7 @@ mod tests {
 
     #[test]
     fn agrees_with_every_target_tried_in_turn() {
-        for scale in [1e-3, 1.0, 1e3] {
+        for scale in [1e-30, 1e-3, 1.0, 1e3, 1e30] {
             let mut all = targets();
             all.iter_mut().for_each(|t| t.form = scaled(&t.form, scale));
             let found = Targets::new(&all, 0.5 * scale);
@@ -485,6 +469,22 @@ mod tests {
             }
             assert!(hits > 10_000, "{hits} rays hit: too few to tell");
             assert!((10_000..70_000).contains(&blocked), "{blocked} of 80,000");
+        }
+    }
+
+    /// What no legal scene has: the builder is spared it, and what is sound beside it is found.
+    #[test]
+    fn forms_without_a_box_are_candidates_everywhere() {
+        for bad in [f64::NAN, f64::INFINITY, 1e300] {
+            let mut all = targets();
+            let strange = Form::Triangle([DVec3::splat(bad); 3]);
+            all.extend((0..50).map(|tag| Target {
+                form: strange.clone(),
+                tag,
+            }));
+            let found = Targets::new(&all, 0.5);
+            let straight = TwoPlane::default();
+            assert!(found.first(&straight, 0.0).is_some(), "{bad}");
         }
     }
 
