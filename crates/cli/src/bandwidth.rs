@@ -3,7 +3,7 @@ use crate::failure::Failure;
 use crate::measure::measured;
 use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{load, method, progress, say};
+use crate::{limits, load, method, progress, say};
 use atomic_write_file::AtomicWriteFile;
 use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth, scattered};
 use etendue_field::{Lobe, VirtualPlane};
@@ -38,6 +38,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     if args.measure {
         for scene in &scenes {
             method::check(scene, args.photons.method)?;
+            limits::check_work(scene)?;
         }
     }
     let csv = args.csv.as_deref().map(Csv::open).transpose()?;

@@ -15,6 +15,7 @@ mod export;
 mod failure;
 mod field;
 mod files;
+mod limits;
 mod load;
 mod machine;
 mod measure;

@@ -6,7 +6,7 @@ use crate::results::Results;
 use crate::stored::{Index, MEASUREMENT};
 use crate::table::grouped;
 use crate::threads::on_threads;
-use crate::{load, method, progress, say};
+use crate::{limits, load, method, progress, say};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use std::ops::Range;
@@ -26,6 +26,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     let mut results = Results::create(&args.out, MEASUREMENT)?;
     let method = args.photons.method;
     let held = on_threads(&args.threads, || {
+        limits::check_memory(&scene, rayon::current_num_threads())?;
         let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
         results.begin()?;
         batches::write(&mut results, &measurement)?;

@@ -5,7 +5,7 @@ use crate::method::Method;
 use crate::results::Results;
 use crate::stored::{Index, PREDICTION};
 use crate::threads::on_threads;
-use crate::{load, method, predictions, progress, say};
+use crate::{limits, load, method, predictions, progress, say};
 use etendue_compare::{Class, Prediction};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
@@ -16,6 +16,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     method::check(&scene, args.photons.method)?;
     let mut results = Results::create(&args.out, PREDICTION)?;
     let content = on_threads(&args.threads, || {
+        limits::check(&scene, rayon::current_num_threads())?;
         let predictions = predicted(&scene, args.photons.method, args.quiet)?;
         results.begin()?;
         load::copy_files(&mut results, &scene, &args.scene)?;
