@@ -4,7 +4,7 @@ use crate::measure::measured;
 use crate::output::OutputFile;
 use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{load, method, progress, say};
+use crate::{limits, load, method, progress, say};
 use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth, scattered};
 use etendue_field::{Lobe, VirtualPlane};
 use etendue_scene::Scene;
@@ -37,6 +37,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     if args.measure {
         for scene in &scenes {
             method::check(scene, args.photons.method)?;
+            limits::check_work(scene)?;
         }
     }
     let inputs: Vec<_> = scenes

@@ -1,11 +1,13 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::output::OutputFile;
-use crate::{load, pictures, say, warnings};
+use crate::{limits, load, pictures, say, warnings};
 use etendue_compare::{Class, affine_chain, steps};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
 use etendue_theory::rays::FirstOrder;
+use std::num::NonZero;
+use std::thread::available_parallelism;
 
 /// `etendue check`: returns the exit code.
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
@@ -26,6 +28,9 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         file.write(&bytes)?;
         say(&format!("\ndrawn in {}", path.display()));
     }
+    // As many threads as `run` takes unless told otherwise.
+    let threads = available_parallelism().map_or(1, NonZero::get);
+    limits::check(&scene, threads)?;
     Ok(0)
 }
 

@@ -2,13 +2,14 @@ use crate::args::ConvergeArgs;
 use crate::failure::Failure;
 use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{load, progress, say};
+use crate::{limits, load, progress, say};
 use etendue_compare::{Class, Convergence, converge as shrink};
 use etendue_scene::Scene;
 
 /// `etendue converge`: returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |_| ())?;
+    limits::check_work(&scene)?;
     let planes = on_threads(&args.threads, || Ok(shrunk(&scene)))?;
     if planes.is_empty() {
         return Err(Failure::bad_input(

@@ -16,6 +16,7 @@ mod failure;
 mod field;
 mod files;
 mod interrupt;
+mod limits;
 mod load;
 mod lock;
 mod machine;

@@ -6,7 +6,7 @@ use crate::results::{MEASUREMENT, Plan, Results};
 use crate::stored::Index;
 use crate::table::grouped;
 use crate::threads::on_threads;
-use crate::{load, method, progress, say};
+use crate::{limits, load, method, progress, say};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use std::ops::Range;
@@ -34,6 +34,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     load::copy_inputs(&mut results, MEASUREMENT, &scene, &args.scene)?;
     let method = args.photons.method;
     let held = on_threads(&args.threads, || {
+        limits::check_memory(&scene, rayon::current_num_threads())?;
         let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
         batches::write(&mut results, &measurement)?;
         Ok(Held {

@@ -5,7 +5,7 @@ use crate::method::Method;
 use crate::results::{PREDICTION, Plan, Results};
 use crate::stored::Index;
 use crate::threads::on_threads;
-use crate::{load, method, predictions, progress, say};
+use crate::{limits, load, method, predictions, progress, say};
 use etendue_compare::{Class, Prediction};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
@@ -24,6 +24,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let mut results = Results::claim(&args.out, plan)?;
     load::copy_inputs(&mut results, PREDICTION, &scene, &args.scene)?;
     let content = on_threads(&args.threads, || {
+        limits::check(&scene, rayon::current_num_threads())?;
         let method = args.photons.method;
         let predictions = predicted(&scene, method, args.quiet)?;
         predictions::write(&mut results, &scene, method, &predictions)

@@ -6,7 +6,7 @@ use crate::predict::predicted;
 use crate::results::Results;
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
-use crate::{field, load, method, photons, say, warnings};
+use crate::{field, limits, load, method, photons, say, warnings};
 use etendue_scene::Scene;
 use std::path::Path;
 
@@ -26,6 +26,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 
 fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure> {
     warnings::tell(&scene, args.quiet);
+    limits::check(&scene, rayon::current_num_threads())?;
     let mut watch = Stopwatch::start();
     if args.save.contains(&Save::Field) {
         field::check_memory(&scene)?;

@@ -26,6 +26,21 @@ pub(crate) struct Workspace {
     scratch: Vec<Complex>,
 }
 
+#[cfg(test)]
+impl Workspace {
+    pub(crate) fn bytes(&self) -> usize {
+        let Self {
+            cells,
+            columns,
+            scratch,
+        } = self;
+        [cells, columns, scratch]
+            .map(|v| size_of_val(&**v))
+            .iter()
+            .sum()
+    }
+}
+
 impl FineTransform {
     /// The transform of fine grids laid out as `placement`, at the frequencies of `grid`.
     pub(crate) fn new(kernel: &Kernel, placement: Placement, grid: SliceGrid) -> Self {
@@ -48,17 +63,26 @@ impl FineTransform {
         }
     }
 
+    /// Cells of a workspace.
+    pub(crate) fn workspace_cells(&self) -> usize {
+        let Placement { rows, columns, .. } = self.placement;
+        (columns + self.grid.nu.count()) * rows + self.scratch()
+    }
+
+    fn scratch(&self) -> usize {
+        usize::max(
+            self.along_row.get_inplace_scratch_len(),
+            self.along_column.get_inplace_scratch_len(),
+        )
+    }
+
     /// The memory it works in.
     pub(crate) fn workspace(&self) -> Workspace {
         let Placement { rows, columns, .. } = self.placement;
-        let scratch = usize::max(
-            self.along_row.get_inplace_scratch_len(),
-            self.along_column.get_inplace_scratch_len(),
-        );
         Workspace {
             cells: vec![Complex::ZERO; rows * columns],
             columns: vec![Complex::ZERO; self.grid.nu.count() * rows],
-            scratch: vec![Complex::ZERO; scratch],
+            scratch: vec![Complex::ZERO; self.scratch()],
         }
     }
 

@@ -71,6 +71,15 @@ impl SliceTransform {
         }
     }
 
+    /// Bytes of an accumulator.
+    #[must_use]
+    pub fn bytes(&self) -> f64 {
+        let [rows, columns] = self.placements[0].padded();
+        let fine = (self.grid.azimuths * rows * columns) as f64;
+        let work = self.fine.workspace_cells() as f64;
+        size_of::<f64>() as f64 * fine + size_of::<Complex>() as f64 * work
+    }
+
     /// An empty sum.
     #[must_use]
     pub fn accumulator(&self) -> Accumulator<'_> {
@@ -193,6 +202,19 @@ mod tests {
             assert_eq!(best, slices(token.level()));
         }
         assert!(best.at_zero() > 100.0);
+    }
+
+    #[test]
+    fn bytes_are_those_of_the_vectors() {
+        let axis = |half| FrequencyAxis { half, spacing: 1.0 };
+        let plan = SliceTransform::new(&SliceGrid {
+            azimuths: 3,
+            rho: axis(5),
+            nu: axis(41),
+        });
+        let sum = plan.accumulator();
+        let bytes = size_of_val(&*sum.fine) + sum.work.bytes();
+        assert_eq!(plan.bytes().to_bits(), (bytes as f64).to_bits());
     }
 
     #[test]

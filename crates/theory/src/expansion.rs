@@ -9,6 +9,8 @@ use std::collections::HashMap;
 
 /// Polygons smaller than this, in units of the window's half-widths, are left out: below rounding.
 const SMALLEST_MEASURE: f64 = 1e-15;
+/// Pairs of a term and a patch that may be looked at for each term allowed.
+const PAIRS_PER_TERM: usize = 8;
 /// A range that every ray passes.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
@@ -131,28 +133,61 @@ impl Expansion {
         slope: &Slope,
         fineness: &Fineness,
     ) -> Self {
+        let mut expansion = Self::empty(window);
+        expansion.products = products(path, window, slope, &expansion.sections);
+        expansion.multiply_out(path, fineness, usize::MAX);
+        expansion
+    }
+
+    /// The polygons and terms alone; `None` if there are more of either than `most`.
+    pub(crate) fn within(
+        path: &Path<'_>,
+        window: &Window,
+        fineness: &Fineness,
+        most: usize,
+    ) -> Option<Self> {
+        let mut expansion = Self::empty(window);
+        let fits = expansion.multiply_out(path, fineness, most);
+        fits.then_some(expansion)
+    }
+
+    /// The window, in which nothing shines yet.
+    fn empty(window: &Window) -> Self {
         let sections = [
             Section::new(&window.x, &window.u),
             Section::new(&window.y, &window.v),
         ];
-        let products = products(path, window, slope, &sections);
-        let mut expansion = Self {
+        Self {
             sections,
             terms: vec![Term {
                 weight: 1.0,
                 polygons: [0, 0],
             }],
-            products,
+            products: Vec::new(),
             brightness: 0.0,
-        };
-        expansion.shine(path, fineness.0[0]);
+        }
+    }
+
+    /// The light and the opaque masks; stops and says no where there are more terms or polygons than `most`.
+    fn multiply_out(&mut self, path: &Path<'_>, fineness: &Fineness, most: usize) -> bool {
+        self.shine(path, fineness.0[0]);
         let layers = path.layers.iter();
         let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));
         for (layer, &discs) in opaque.zip(&fineness.0[1..]) {
-            expansion.block(&patches(layer.mask, discs), layer.distance);
+            let patches = patches(layer.mask, discs);
+            // Each pair is looked at, though few may meet.
+            if self.terms.len().saturating_mul(patches.len()) > most.saturating_mul(PAIRS_PER_TERM)
+            {
+                return false;
+            }
+            self.block(&patches, layer.distance);
+            let polygons = self.sections.each_ref().map(|s| s.polygons.len());
+            if self.terms.len() > most || polygons.iter().any(|n| *n > most) {
+                return false;
+            }
         }
-        expansion.drop_unused();
-        expansion
+        self.drop_unused();
+        true
     }
 
     /// A chain of rectangles, whose numbers no fineness changes.

@@ -76,6 +76,7 @@ mod slope;
 #[cfg(test)]
 mod testing;
 mod wave;
+mod work;
 
 pub use chain::{Chain, Operator, Source};
 pub use derivative::derivative;
@@ -87,3 +88,4 @@ pub use parameter::Parameter;
 pub use plain::at;
 pub use projection::projection;
 pub use shading::{g_hat, g_hat_3d};
+pub use work::{Work, work};

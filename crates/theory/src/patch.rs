@@ -70,10 +70,15 @@ impl Fineness {
         }
     }
 
+    /// Discs as one patch each.
+    pub(crate) fn single(path: &Path<'_>) -> Self {
+        Self(vec![Discs::Rule(1); path.planes().len()])
+    }
+
     /// Fewer nodes where discs in several planes would make too many terms.
     fn affordable(self, path: &Path<'_>, window: &Window) -> Self {
         let slope = Slope::new([&window.u, &window.v], 0.0);
-        let single = Self(vec![Discs::Rule(1); self.0.len()]);
+        let single = Self::single(path);
         let seen = Expansion::new(path, window, &slope, &single).terms.len();
         let round = path
             .planes()

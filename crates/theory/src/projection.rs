@@ -107,22 +107,34 @@ struct Cells<'a> {
     nodes: Vec<(f64, f64)>,
 }
 
+/// Gratings along x, and their distances.
+fn gratings<'a>(path: &Path<'a>) -> Vec<(&'a Grating, f64)> {
+    let layers = path.layers.iter();
+    let along_x = layers.filter_map(|layer| match layer.mask {
+        Mask::Grating(grating) if grating.axis == 0 => Some((grating, layer.distance)),
+        _ => None,
+    });
+    along_x.collect()
+}
+
+/// Nodes along each direction of a piece of a cell.
+fn nodes(gratings: &[(&Grating, f64)], grid: &ProjectionGrid) -> usize {
+    let cell = [grid.half_x, grid.half_u].map(|half| 2.0 * half / grid.bins as f64);
+    let cycles = gratings
+        .iter()
+        .map(|(g, h)| g.frequency.abs() * (cell[0] + h.abs() * cell[1]));
+    NODES + whole((cycles.sum::<f64>() * NODES_PER_CYCLE).min(MOST_NODES))
+}
+
+/// The same for a path: how fine its picture is made.
+pub(crate) fn nodes_of_cells(path: &Path<'_>, grid: &ProjectionGrid) -> usize {
+    nodes(&gratings(path), grid)
+}
+
 impl<'a> Cells<'a> {
     fn new(path: &Path<'a>, window: &'a Window, slope: &Slope, grid: &ProjectionGrid) -> Self {
-        let gratings: Vec<_> = path
-            .layers
-            .iter()
-            .filter_map(|layer| match layer.mask {
-                Mask::Grating(grating) if grating.axis == 0 => Some((grating, layer.distance)),
-                _ => None,
-            })
-            .collect();
-        let cell = [grid.half_x, grid.half_u].map(|half| 2.0 * half / grid.bins as f64);
-        let cycles = gratings
-            .iter()
-            .map(|(g, h)| g.frequency.abs() * (cell[0] + h.abs() * cell[1]));
-        let nodes = NODES + whole((cycles.sum::<f64>() * NODES_PER_CYCLE).min(MOST_NODES));
-        let nodes = gauss_legendre(nodes).into_iter();
+        let gratings = gratings(path);
+        let nodes = gauss_legendre(nodes(&gratings, grid)).into_iter();
         Self {
             window,
             gratings,

@@ -25,6 +25,15 @@ pub(crate) fn is_rectangular(mask: &Mask) -> bool {
 /// The parts, with signs, whose sum is the part of `whole` that passes masks which are rectangular; gratings do not count. The first is
 /// the whole itself.
 pub(crate) fn open(whole: Sides, masks: &[Seen<'_>]) -> Vec<(f64, Sides)> {
+    open_within(whole, masks, usize::MAX).unwrap_or_default()
+}
+
+/// The same; `None` if there are more parts than `most`.
+pub(crate) fn open_within(
+    whole: Sides,
+    masks: &[Seen<'_>],
+    most: usize,
+) -> Option<Vec<(f64, Sides)>> {
     let mut parts = vec![(1.0, whole)];
     for seen in masks {
         let opaque = seen.sides();
@@ -34,10 +43,14 @@ pub(crate) fn open(whole: Sides, masks: &[Seen<'_>]) -> Vec<(f64, Sides)> {
                 let cut = opaque.iter().filter_map(|sides| common(part, sides));
                 cut.map(move |sides| (-sign, sides))
             })
+            .take(most)
             .collect();
         parts.extend(stopped);
+        if parts.len() > most {
+            return None;
+        }
     }
-    parts
+    Some(parts)
 }
 
 /// What two rectangles have in common; `None` if nothing.
@@ -85,6 +98,28 @@ impl Seen<'_> {
 mod tests {
     use super::*;
     use etendue_field::{HalfPlane, Rectangle};
+
+    /// Rectangles over each other, one in each mask: twice as many parts with each.
+    #[test]
+    fn stops_at_too_many_parts() {
+        let shape = Shape::Rectangle(Rectangle {
+            center: [0.0; 2],
+            size: [1.0; 2],
+        });
+        let mask = Mask::Opaque {
+            shapes: vec![shape],
+            half_planes: vec![],
+        };
+        let seen = Seen {
+            mask: &mask,
+            origin: [0.0; 2],
+            scale: 1.0,
+        };
+        let whole = [[-1.0, 1.0]; 2];
+        assert_eq!(open_within(whole, &[seen; 10], 1024).unwrap().len(), 1024);
+        assert_eq!(open_within(whole, &[seen; 10], 1023), None);
+        assert_eq!(open_within(whole, &[seen; 60], 1023), None);
+    }
 
     /// The signed area of the parts is that of the points that pass, by counting them.
     #[test]

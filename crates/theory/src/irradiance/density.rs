@@ -15,6 +15,8 @@ const MOST: usize = 48;
 const ARC: usize = 10;
 /// Halvings of the longest panel that have a count of their own.
 const LEVELS: usize = 24;
+/// Steps of a closed form.
+const CLOSED: f64 = 100.0;
 /// A rectangle that needs no more nodes than this is integrated by them: in the closed form its corners cancel.
 const FEW: usize = 16;
 
@@ -189,6 +191,43 @@ impl Density<'_> {
         let [u, v] = self.integrator.counts.each_ref().map(|c| c.of(length));
         let [panels, nodes] = [0, 1].map(|k| u[k].max(v[k]));
         (panels, &self.integrator.rules[nodes + ARC])
+    }
+
+    /// Steps of [`Self::rectangle`].
+    pub(crate) fn steps(&self, sides: Sides) -> f64 {
+        let [u, v] = self.along(sides);
+        let few = u * v <= FEW as f64;
+        match self.integrator.lobe {
+            Lobe::Flat if self.gratings.is_empty() => CLOSED,
+            Lobe::Cosine if self.gratings.is_empty() && !few => CLOSED,
+            _ => self.step() * (u * v + 10.0 * (u + v)),
+        }
+    }
+
+    /// Steps of [`Self::along_u`] over a length.
+    pub(crate) fn steps_along_u(&self, length: f64) -> f64 {
+        match self.integrator.lobe {
+            Lobe::Flat | Lobe::Cosine if self.gratings.is_empty() => CLOSED,
+            _ => self.step() * self.along([[0.0, length], [0.0; 2]])[0],
+        }
+    }
+
+    /// Steps for the lobe at a node.
+    fn step(&self) -> f64 {
+        match self.integrator.lobe {
+            Lobe::Flat | Lobe::Cosine => 3.0,
+            Lobe::Half(_) => 10.0,
+            Lobe::Power(_) => 40.0,
+        }
+    }
+
+    /// Nodes along the sides of a rectangle.
+    fn along(&self, sides: Sides) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let [low, high] = sides[axis];
+            let [panels, nodes] = self.integrator.counts[axis].of(high - low);
+            panels as f64 * nodes as f64
+        })
     }
 
     /// Nodes of a rectangle.

@@ -122,7 +122,7 @@ impl Receiver<'_> {
     }
 }
 
-fn axes(window: &Window, after: f64) -> [Axis; 2] {
+pub(super) fn axes(window: &Window, after: f64) -> [Axis; 2] {
     [(window.x, window.u), (window.y, window.v)].map(|(position, slope)| Axis {
         position,
         slope,

@@ -93,16 +93,21 @@ impl Axis {
         })
     }
 
-    /// A Gauss rule on (−1, 1) with nodes enough for a frequency: those of the waves, and some for 10⁻¹⁴.
+    /// A Gauss rule on (−1, 1) with nodes enough for a frequency.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a positive number, rounded up"
+        reason = "a positive whole number"
     )]
     fn rule(&self, frequency: [f64; 2]) -> Vec<(f64, f64)> {
+        gauss_legendre(self.nodes(frequency) as usize)
+    }
+
+    /// Nodes of the rule for a frequency: those of the waves, and some for 10⁻¹⁴.
+    pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
         let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
         // A node per half radian, π/2 per wave, is where Gauss rules begin to converge.
-        gauss_legendre((16.0 + 1.7 * waves).ceil() as usize)
+        (16.0 + 1.7 * waves).ceil()
     }
 
     /// The highest frequency along u of the exponential and of the window.

@@ -13,6 +13,7 @@ mod layer;
 mod region;
 #[cfg(test)]
 mod tests;
+mod work;
 
 use crate::chain::no_closed_form;
 use density::{Density, Integrator, Sides};

@@ -104,6 +104,21 @@ impl Region {
         arcs.sum::<f64>() + right - left
     }
 
+    /// Steps of [`Self::integral`], each circle being taken whole.
+    pub(crate) fn steps(&self, density: &Density<'_>) -> f64 {
+        if self.discs.is_empty() {
+            return density.steps(self.sides);
+        }
+        let bounds = self.bounds();
+        let circle = |disc: &Disc| {
+            let (panels, rule) = density.arc(FRAC_PI_2 * disc.radius);
+            4.0 * panels as f64 * rule.len() as f64
+        };
+        let nodes: f64 = self.discs.iter().map(circle).sum();
+        let edges = 2.0 * density.steps(bounds);
+        nodes * density.steps_along_u(bounds[0][1] - bounds[0][0]) + edges
+    }
+
     /// ∫ A dv up the part of the line at u inside the discs and between the lower and upper side.
     fn edge(&self, u: f64, from: f64, density: &Density<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {

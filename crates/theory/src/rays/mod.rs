@@ -76,6 +76,7 @@ mod sums;
 mod tests;
 mod trace;
 pub(crate) mod words;
+mod work;
 
 pub use chain::{FirstOrder, chain};
 pub use covariance::covariance;
@@ -83,6 +84,7 @@ pub use derivative::derivative;
 pub use parameter::Parameter;
 pub use predict::{RaySlices, exact, linear};
 pub use projection::projection;
+pub use work::work;
 
 pub(crate) use central::Incidence;
 pub(crate) use trace::Ray;

@@ -3,6 +3,7 @@
 use super::quadrature::{MOST_NODES, Rule};
 use super::region::{Field, Finder};
 use super::sums::sums;
+use super::work::Size;
 use super::{Plane, System};
 use crate::error::distance;
 use crate::geometry::{Map, SpectrumMap};
@@ -27,7 +28,7 @@ const ENOUGH: f64 = 1e-4;
 /// The slices of the windowed spectrum, rays followed through the geometry as it is.
 ///
 /// For a projector, point or beam a midpoint rule over the two coordinates of its rays, for an area light also a Gauss rule over the light.
-/// Nodes are added until they change the slices by less than 10⁻⁴, or there are four million. Unit: W m⁻² sr⁻¹ · m², on a surface
+/// Nodes are added until they change the slices by less than 10⁻⁴, or there are four million, or sums over them would take minutes. Unit: W m⁻² sr⁻¹ · m², on a surface
 /// W m⁻² sr⁻¹ · m² rad². The same bytes on any number of threads.
 #[must_use]
 pub fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> RaySlices {
@@ -99,6 +100,7 @@ fn predict(
         ..*grid
     };
     let slices = |rule| sums(&finder.nodes(rule), &trial);
+    let size = Size::new(&finder, grid);
     let mut rule = finder.rule(grid);
     loop {
         let nodes = finder.nodes(rule);
@@ -118,7 +120,7 @@ fn predict(
         if outside > 0.5 * ENOUGH {
             next = next.finer_outside().unwrap_or(next);
         }
-        if next == rule || next.nodes() > MOST_NODES {
+        if next == rule || next.nodes() > MOST_NODES || size.of(next).is_beyond() {
             return RaySlices {
                 slices: sums(&nodes, grid),
                 quadrature_error: inside + outside,

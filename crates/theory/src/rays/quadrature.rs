@@ -74,7 +74,7 @@ impl<F: Field> Finder<'_, F> {
             let along = |axis: usize| {
                 let ([low, high], whole) = (sides[axis], [a, b][axis]);
                 let share = (high - low) / (whole[1] - whole[0]);
-                let count = whole_number(FEWEST_INSIDE + 1.6 * share * count as f64);
+                let count = nodes_inside(share, count);
                 let nodes = gauss_legendre(count).into_iter();
                 nodes.map(move |(t, w)| {
                     (low + 0.5 * (t + 1.0) * (high - low), 0.5 * (high - low) * w)
@@ -93,7 +93,7 @@ impl<F: Field> Finder<'_, F> {
     }
 
     /// Opaque masks as rays from a point of the light see them.
-    fn seen(&self, from: [f64; 2]) -> Vec<Seen<'_>> {
+    pub(super) fn seen(&self, from: [f64; 2]) -> Vec<Seen<'_>> {
         let is_beam = self.emission.inner[0] == 0;
         let masks = self.opaque.iter();
         masks
@@ -142,6 +142,11 @@ impl<F: Field> Finder<'_, F> {
         }
         rule
     }
+}
+
+/// Along a side of an opaque rectangle that takes a share of the region's.
+pub(super) fn nodes_inside(share: f64, count: usize) -> usize {
+    whole_number(FEWEST_INSIDE + 1.6 * share * count as f64)
 }
 
 #[expect(

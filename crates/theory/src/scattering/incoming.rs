@@ -2,8 +2,8 @@
 
 use super::{System, sky};
 use crate::quadrature::gauss_legendre;
-use crate::shadow::{Seen, Sides, is_rectangular, open};
-use etendue_field::{Light, Mask, Shape};
+use crate::shadow::{Seen, Sides, is_rectangular, open_within};
+use etendue_field::{Light, Mask, Rectangle, Shape};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -39,6 +39,11 @@ impl Rule {
             nodes: nodes.map(|(x, w)| (0.5 * (x + 1.0), 0.5 * w)).collect(),
             sky: Vec::new(),
         }
+    }
+
+    /// From how many directions an environment shines.
+    pub(super) fn directions(&self) -> usize {
+        self.sky.len()
     }
 
     /// Nodes and weights on a rectangle.
@@ -100,25 +105,10 @@ impl System {
         rule: &Rule,
         radiance: impl Fn([f64; 2]) -> f64,
     ) -> Vec<Incoming> {
-        let DVec3 { x, y, z } = point;
-        let clear = |(_, mask): &&(f64, Mask)| is_rectangular(mask);
         let Shape::Rectangle(rectangle) = shape else {
             return self.disc(point, shape, rule, radiance);
         };
-        let [w, h] = [0, 1].map(|axis| {
-            let [low, high] = rectangle.extent(axis);
-            [([x, y][axis] - high) / z, ([x, y][axis] - low) / z]
-        });
-        let seen = self
-            .layers
-            .iter()
-            .filter(clear)
-            .map(|(distance, mask)| Seen {
-                mask,
-                origin: [x, y],
-                scale: distance - z,
-            });
-        let parts = open([w, h], &seen.collect::<Vec<_>>());
+        let parts = self.parts(point, rectangle, usize::MAX).unwrap_or_default();
         let nodes = parts.iter().flat_map(|(sign, sides)| {
             let nodes = rule.over(*sides);
             nodes.map(move |(slopes, share)| (slopes, sign * share))
@@ -129,6 +119,28 @@ impl System {
                 weight: share * radiance(slopes) * self.transmittance(point, slopes, true),
             })
             .collect()
+    }
+
+    /// What rectangular masks leave of a rectangular light, in slopes at a point, with signs; `None` if that is more parts than `most`.
+    pub(super) fn parts(
+        &self,
+        point: DVec3,
+        light: &Rectangle,
+        most: usize,
+    ) -> Option<Vec<(f64, Sides)>> {
+        let DVec3 { x, y, z } = point;
+        let clear = |(_, mask): &&(f64, Mask)| is_rectangular(mask);
+        let whole = [0, 1].map(|axis| {
+            let [low, high] = light.extent(axis);
+            [([x, y][axis] - high) / z, ([x, y][axis] - low) / z]
+        });
+        let masks = self.layers.iter().filter(clear);
+        let seen = masks.map(|(distance, mask)| Seen {
+            mask,
+            origin: [x, y],
+            scale: distance - z,
+        });
+        open_within(whole, &seen.collect::<Vec<_>>(), most)
     }
 
     /// From a disc: equal shares of the angle, and a rule in the square of the radius.

@@ -27,10 +27,12 @@ mod sky;
 mod table;
 #[cfg(test)]
 mod tests;
+mod work;
 
 pub use chain::{Chain, chain};
 pub use parameter::Parameter;
 pub use predict::{Prediction, derivative, exact, linear, projection};
+pub use work::work;
 
 use etendue_field::{Light, Mask, Patch, Reflectance};
 

@@ -8,6 +8,7 @@ use super::linear::Linear;
 use super::parameter::Parameter;
 use super::rule::{FEW, Rule, tiles, whole};
 use super::table::Table;
+use super::work::Cost;
 use crate::error::distance;
 use crate::geometry::Matrix;
 use crate::rays::Plane;
@@ -32,7 +33,7 @@ const ENOUGH: f64 = 3e-4;
 /// What is left of an error over what a finer rule takes off.
 const LEFT: f64 = 2.0;
 /// Most nodes over the plane times parts of the light that they see.
-const MOST: f64 = 6e7;
+pub(super) const MOST: f64 = 6e7;
 /// Nodes along each coordinate of the rule by which the one over the light is judged.
 const TRIAL: usize = 12;
 /// Nodes across a picture: enough for a window and what changes slowly in it.
@@ -41,29 +42,40 @@ const ACROSS: usize = 6;
 /// The slices of the windowed spectrum of what a surface scatters, as it is.
 ///
 /// A midpoint rule over the plane's four coordinates, and a Gauss rule over each part of the light; nodes are added until they change the
-/// slices by less than 3 · 10⁻⁴, or there are sixty million. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes on any number
+/// slices by less than 3 · 10⁻⁴, or there are sixty million, or they would take minutes. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes on any number
 /// of threads.
 #[must_use]
 pub fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Prediction {
-    let search = Search {
-        field: Exact(system, plane),
-        window,
-        grid,
-    };
+    let search = Search::new(system, plane, window, grid);
     let (rule, light) = search.over_light(search.first());
     search.over_plane(rule, light)
 }
 
 /// The search for a rule that is good enough.
-struct Search<'a> {
+pub(super) struct Search<'a> {
     field: Exact<'a>,
     window: &'a Window,
     grid: &'a SliceGrid,
+    cost: Cost,
 }
 
-impl Search<'_> {
+impl<'a> Search<'a> {
+    pub(super) fn new(
+        system: &'a System,
+        plane: &'a Plane,
+        window: &'a Window,
+        grid: &'a SliceGrid,
+    ) -> Self {
+        Self {
+            field: Exact(system, plane),
+            window,
+            grid,
+            cost: Cost::new(system, plane),
+        }
+    }
+
     /// What frequencies and tiles ask for.
-    fn first(&self) -> Rule {
+    pub(super) fn first(&self) -> Rule {
         let Exact(system, plane) = self.field;
         let Self { window, grid, .. } = self;
         let widths = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
@@ -92,6 +104,11 @@ impl Search<'_> {
         leaving.map_or(1, |leaving| self.field.shines(&leaving, &light).len()) as f64
     }
 
+    /// Whether a rule may take the place of a coarser one.
+    fn affords(&self, rule: Rule, seen: f64) -> bool {
+        rule.places() * seen <= MOST && !self.cost.is_beyond(rule, seen)
+    }
+
     /// A rule with as many nodes over the light as are needed, and the error they leave.
     fn over_light(&self, mut rule: Rule) -> (Rule, f64) {
         let error = |rule: Rule| {
@@ -106,7 +123,7 @@ impl Search<'_> {
             return (rule, 0.0);
         }
         let mut left = error(rule);
-        while left > 0.5 * ENOUGH && rule.places() * self.seen(rule.finer_light()) < MOST {
+        while left > 0.5 * ENOUGH && self.affords(rule, self.seen(rule.finer_light())) {
             rule = rule.finer_light();
             left = error(rule);
         }
@@ -137,7 +154,7 @@ impl Search<'_> {
                     next = next.finer_along(axis);
                 }
             }
-            if next == rule || next.places() * each > MOST {
+            if next == rule || !self.affords(next, each) {
                 break;
             }
             for axis in (0..4).filter(|&axis| next.plane[axis] != rule.plane[axis]) {

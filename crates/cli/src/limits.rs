@@ -1,0 +1,46 @@
+//! What a command takes, held against what there is, before it begins.
+
+use crate::failure::Failure;
+use crate::machine;
+use etendue_compare::{Memory, too_much_work};
+use etendue_scene::Scene;
+
+/// Fails where a run of the scene on so many threads would not end, or not fit into this machine.
+pub(crate) fn check(scene: &Scene, threads: usize) -> Result<(), Failure> {
+    check_work(scene)?;
+    check_memory(scene, threads)
+}
+
+/// Fails where a prediction of the scene would not end.
+pub(crate) fn check_work(scene: &Scene) -> Result<(), Failure> {
+    match too_much_work(scene) {
+        Some(too_much) => Err(Failure::cannot_run(format!("{}: {too_much}", scene.name))),
+        None => Ok(()),
+    }
+}
+
+/// Fails where a run of the scene on so many threads would not fit into this machine.
+pub(crate) fn check_memory(scene: &Scene, threads: usize) -> Result<(), Failure> {
+    let (needed, available) = (Memory::new(scene, threads), machine::available_memory());
+    if needed.total() <= available as f64 {
+        return Ok(());
+    }
+    let gigabytes = |bytes: f64| format!("{:.1} GB", bytes / 1e9);
+    let Memory {
+        batches,
+        threads: grids,
+        predictions,
+        comparison,
+    } = needed;
+    Err(Failure::cannot_run(format!(
+        "{}: on {threads} threads it needs {}: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare; memory holds {} here",
+        scene.name,
+        gigabytes(needed.total()),
+        gigabytes(batches),
+        scene.run.batches,
+        gigabytes(grids),
+        gigabytes(predictions),
+        gigabytes(comparison),
+        gigabytes(available as f64)
+    )))
+}

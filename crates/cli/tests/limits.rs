@@ -1,0 +1,39 @@
+//! Commands refuse what would not end or not fit, before they begin.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{etendue, scene};
+use std::process::Output;
+
+fn refused(arguments: &[&str]) -> Output {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = etendue();
+    command.current_dir(folder.path()).args(arguments);
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(3), "{arguments:?}: {output:?}");
+    let none = std::fs::read_dir(folder.path()).unwrap().count() == 0;
+    assert!(none, "{arguments:?} left something");
+    output
+}
+
+const FINE: [&str; 2] = ["--set", "blockers.0.frequency=1e6"];
+
+#[test]
+fn a_prediction_without_end() {
+    let path = scene("grating.ron");
+    let path = path.to_str().unwrap();
+    for command in [
+        &["check", path][..],
+        &["run", path, "--photons", "1e4", "--out", "out"],
+        &["predict", path, "--out", "out"],
+    ] {
+        let output = refused(&[command, &FINE].concat());
+        let said = String::from_utf8(output.stderr).unwrap();
+        assert!(said.contains("the prediction of leaving takes"), "{said}");
+        assert!(said.contains("limit"), "{said}");
+        let described = command[0] == "check";
+        assert_eq!(!output.stdout.is_empty(), described);
+    }
+}

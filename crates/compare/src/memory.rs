@@ -1,0 +1,92 @@
+//! What a run holds in memory, before it begins.
+
+use crate::chain::chain;
+use crate::class::Class;
+use crate::scattering::scattered;
+use crate::system::system;
+use crate::work::work;
+use etendue_field::{SliceGrid, VirtualPlane};
+use etendue_scene::Scene;
+use etendue_spectrum::{PROJECTION_BINS, SliceTransform};
+
+/// The parts of what a run holds, in bytes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Memory {
+    /// The spectra of all batches, kept until the errors are known, and those that are references.
+    pub batches: f64,
+    /// The fine grids that photons are spread over, those of each thread.
+    pub threads: f64,
+    /// Predictions with their derivatives, and what finding one takes.
+    pub predictions: f64,
+    /// The comparison of one plane after the other.
+    pub comparison: f64,
+}
+
+/// Bytes of a complex number.
+const COMPLEX: f64 = 16.0;
+/// Bytes that the program holds whatever the scene: its code, buffers of photons, pictures, and what is left over from one stage to the next.
+const PROGRAM: f64 = 1.5e8;
+
+impl Memory {
+    /// Of a run of a scene on so many threads.
+    #[must_use]
+    pub fn new(scene: &Scene, threads: usize) -> Self {
+        let batches = f64::from(scene.run.batches);
+        // A batch is the work of one thread.
+        let busy = (threads as f64).min(batches);
+        let planes = scene.planes.iter();
+        let sum = |of: &dyn Fn(&VirtualPlane) -> f64| planes.clone().map(of).sum::<f64>();
+        let largest =
+            |of: &dyn Fn(&VirtualPlane) -> f64| planes.clone().map(of).fold(0.0, f64::max);
+        let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
+        let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
+        // Of a reference its measurement and the copies that a prediction keeps.
+        let kept = |plane: &VirtualPlane| match Class::of(scene, plane) {
+            Class::Reference => 3.0,
+            Class::Exact | Class::FirstOrder => 1.0,
+        };
+        let found = work(scene).into_iter();
+        let found = found.map(|work| work.bytes + threads as f64 * work.bytes_each);
+        let predicted = |plane: &VirtualPlane| (3.0 + parameters(scene, plane)) * spectra(plane);
+        Self {
+            batches: batches * sum(&|plane| kept(plane) * (spectra(plane) + picture)),
+            threads: busy * sum(&|plane| SliceTransform::new(&plane.grid).bytes()),
+            predictions: sum(&predicted) + found.fold(0.0, f64::max),
+            // Residuals of all batches, means, variances, powers, and the sums that p-values are made of.
+            comparison: largest(&|plane| (batches + 8.0) * spectra(plane))
+                + sum(&|plane| 4.0 * spectra(plane)),
+        }
+    }
+
+    /// All of it.
+    #[must_use]
+    pub fn total(&self) -> f64 {
+        let Self {
+            batches,
+            threads,
+            predictions,
+            comparison,
+        } = self;
+        PROGRAM + batches + threads + predictions + comparison
+    }
+}
+
+fn cells(grid: &SliceGrid) -> f64 {
+    grid.half_shape().iter().map(|n| *n as f64).product()
+}
+
+/// Derivatives that a prediction holds.
+fn parameters(scene: &Scene, plane: &VirtualPlane) -> f64 {
+    let count = match (
+        Class::of(scene, plane),
+        system(scene, plane),
+        scattered(scene, plane),
+    ) {
+        (Class::Reference, ..) => 0,
+        (Class::Exact, ..) => chain(scene, plane).parameters().len(),
+        (_, Some((system, at)), _) => system.parameters(&at).len(),
+        (_, _, Some((system, _))) => system.parameters().len(),
+        _ => 0,
+    };
+    count as f64
+}

@@ -1,0 +1,81 @@
+//! What the predictions of a scene take, before anything is traced.
+
+use crate::chain::chain;
+use crate::class::Class;
+use crate::scattering::scattered;
+use crate::system::system;
+use etendue_field::{ProjectionGrid, VirtualPlane};
+use etendue_scene::Scene;
+use etendue_spectrum::PROJECTION_BINS;
+use etendue_theory::{Work, rays, scattering};
+use std::fmt;
+
+/// Most steps of a prediction: about ten minutes of one core.
+const MOST_STEPS: f64 = 6e11;
+/// Most bytes of a prediction on one core.
+const MOST_BYTES: f64 = 1e9;
+
+/// A plane whose prediction takes more than is allowed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct TooMuchWork {
+    plane: String,
+    work: Work,
+}
+
+impl fmt::Display for TooMuchWork {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { plane, work } = self;
+        let bytes = work.bytes + work.bytes_each;
+        let (estimate, limit) = if work.steps > MOST_STEPS {
+            let minutes = MOST_STEPS / 6e10;
+            let steps = if work.steps.is_finite() {
+                format!("{:.1e} steps", work.steps)
+            } else {
+                "more steps than can be counted".to_owned()
+            };
+            let limit = format!("{MOST_STEPS:.0e}, about {minutes} minutes of one core");
+            (steps, limit)
+        } else {
+            let limit = format!("{:.0} GB", MOST_BYTES / 1e9);
+            (format!("{:.1} GB on one core", bytes / 1e9), limit)
+        };
+        write!(
+            f,
+            "the prediction of {plane} takes {estimate}; the limit is {limit}; it is made of {}",
+            work.drivers
+        )
+    }
+}
+
+/// What the prediction of each plane takes, in the order of the scene; nothing where another measurement takes its place.
+#[must_use]
+pub fn work(scene: &Scene) -> Vec<Work> {
+    scene.planes.iter().map(|plane| of(scene, plane)).collect()
+}
+
+/// The first plane whose prediction would not end in about ten minutes, or not fit into a gigabyte.
+#[must_use]
+pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
+    let is_too_much =
+        |work: &Work| work.steps > MOST_STEPS || work.bytes + work.bytes_each > MOST_BYTES;
+    let mut each = scene.planes.iter().map(|plane| (plane, of(scene, plane)));
+    let (plane, work) = each.find(|(_, work)| is_too_much(work))?;
+    Some(TooMuchWork {
+        plane: plane.name.clone(),
+        work,
+    })
+}
+
+fn of(scene: &Scene, plane: &VirtualPlane) -> Work {
+    let (window, grid) = (&plane.window, &plane.grid);
+    let picture = ProjectionGrid::new(window, PROJECTION_BINS);
+    match Class::of(scene, plane) {
+        Class::Reference => Work::none(),
+        Class::Exact => etendue_theory::work(&chain(scene, plane), window, grid, &picture),
+        Class::FirstOrder => match (system(scene, plane), scattered(scene, plane)) {
+            (Some((system, at)), _) => rays::work(&system, &at, window, grid),
+            (None, Some((system, at))) => scattering::work(&system, &at, window, grid, &picture),
+            (None, None) => Work::none(),
+        },
+    }
+}

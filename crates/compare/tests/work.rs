@@ -1,0 +1,196 @@
+//! Work is known before it begins: scenes that would not end are told from those that do.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use etendue_compare::{Memory, too_much_work};
+use etendue_scene::{Scene, SceneFile, resolve};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+fn folder() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../scenes")
+}
+
+fn text(name: &str) -> String {
+    fs::read_to_string(folder().join(name)).unwrap()
+}
+
+fn scene_of(text: &str, folder: &Path) -> Scene {
+    let file = SceneFile::parse(text).unwrap();
+    resolve("scene", file, folder, u64::MAX).unwrap()
+}
+
+/// A scene of the repository with pieces of its text replaced.
+fn edited(name: &str, edits: &[(&str, &str)]) -> Scene {
+    let edited = edits.iter().fold(text(name), |text, (old, new)| {
+        assert!(text.contains(old), "{name}: {old}");
+        text.replace(old, new)
+    });
+    scene_of(&edited, &folder())
+}
+
+/// A square light and a floor, with something between them.
+fn below(layers: &str) -> Scene {
+    let text = format!(
+        r#"(
+            light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2)),
+            {layers} [Rectangle(name: "floor", center: (0, 0, 2), size: (6, 6))],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"]),
+            planes: [(name: "receiver", at: Before("floor"))],
+            window: (x: Hann(0.5), u: Hann(0.5)),
+            frequencies: (rho: (max: 16), nu: (max: 32)),
+        )"#
+    );
+    scene_of(&text, &folder())
+}
+
+/// What is said of a scene whose predictions take too much.
+fn refusal(scene: &Scene) -> String {
+    too_much_work(scene).expect("too much work").to_string()
+}
+
+/// Opaque layers in the place of others.
+fn layers(count: usize, layer: impl Fn(usize) -> String) -> String {
+    let layers: Vec<String> = (0..count).map(layer).collect();
+    format!("blockers: [{}],\n    surfaces:", layers.join(", "))
+}
+
+fn squares(count: u32, pitch: f64) -> String {
+    layers(1, |_| {
+        format!(
+            r#"JitteredSquares(name: "squares", center: (0, 0, 0.55), count: ({count}, {count}), pitch: {pitch}, fill: 0.5)"#
+        )
+    })
+}
+
+#[test]
+fn scenes_of_the_repository_end() {
+    let mut found = 0;
+    for sub in ["", "table1"] {
+        let folder = folder().join(sub);
+        for entry in fs::read_dir(&folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.extension().is_some_and(|e| e == "ron") {
+                let scene = scene_of(&fs::read_to_string(&path).unwrap(), &folder);
+                assert_eq!(too_much_work(&scene), None, "{}", path.display());
+                found += 1;
+            }
+        }
+    }
+    assert!(found > 40, "{found} scenes");
+}
+
+#[test]
+fn wide_lights_and_fine_gratings_before_a_receiver() {
+    let wide = edited("grating.ron", &[("size: (0.2, 0.2)", "size: (1e6, 1e6)")]);
+    let said = refusal(&wide);
+    assert!(said.contains("the prediction of leaving takes"), "{said}");
+    assert!(
+        said.contains("the limit is 6e11, about 10 minutes of one core"),
+        "{said}"
+    );
+    assert!(said.contains("384 x 384 places"), "{said}");
+    for edits in [
+        [("size: (0.2, 0.2)", "size: (1e9, 1e9)")],
+        [("frequency: 5", "frequency: 1e6")],
+        [(
+            "light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2)",
+            "light: Disc(center: (0, 0, 0), radius: 1e6",
+        )],
+    ] {
+        assert!(refusal(&edited("grating.ron", &edits)).contains("leaving"));
+    }
+}
+
+#[test]
+fn many_layers() {
+    let one = |i: usize| {
+        let at = 0.1 + 0.01 * i as f64;
+        format!(
+            r#"Shapes(name: "b{i}", center: (0, 0, {at}), shapes: [Rectangle(center: (0, 0), size: (0.05, 0.05))])"#
+        )
+    };
+    let many = layers(30, one);
+    let said = refusal(&below(&many));
+    assert!(
+        said.contains("products of shapes in different planes"),
+        "{said}"
+    );
+    let mirror = [
+        ("surfaces:", many.as_str()),
+        ("Distance(1.7)", "Distance(1.2)"),
+        (
+            "Projector(center: (0, 0, 0), image: (width: (0.45, 0.45)))",
+            "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))",
+        ),
+    ];
+    let mirror = edited("table1/convex_normal.ron", &mirror);
+    assert!(refusal(&mirror).contains("parts that shapes in different planes leave"));
+    let glossy = [
+        ("surfaces:", many.as_str()),
+        ("Distance(1.7)", "Distance(1.2)"),
+    ];
+    let glossy = edited("table1/ggx_sphere.ron", &glossy);
+    assert!(refusal(&glossy).contains("parts that shapes in different planes leave"));
+}
+
+#[test]
+fn many_gratings() {
+    let grating = |i: usize| {
+        let at = 0.2 + 0.1 * i as f64;
+        format!(r#"Grating(name: "g{i}", center: (0, 0, {at}), axis: X, frequency: 5)"#)
+    };
+    let said = refusal(&below(&layers(10, grating)));
+    assert!(said.contains("waves"), "{said}");
+}
+
+#[test]
+fn many_squares() {
+    let mirror = [
+        ("surfaces:", &*squares(300, 0.002)),
+        (
+            "Projector(center: (0, 0, 0), image: (width: (0.45, 0.45)))",
+            "Rectangle(center: (0, 0, 0), size: (0.1, 0.1))",
+        ),
+        ("Distance(1.7)", "Distance(1.2)"),
+    ];
+    let said = refusal(&edited("table1/convex_normal.ron", &mirror));
+    assert!(said.contains("90000 rectangles"), "{said}");
+    let glossy = [
+        ("surfaces:", &*squares(300, 0.002)),
+        (
+            "Projector(center: (0, 0, 0), image: (width: (0.15, 0.15)))",
+            "Rectangle(center: (0, 0, 0), size: (0.1, 0.1))",
+        ),
+    ];
+    let said = refusal(&edited("table1/textured_glossy.ron", &glossy));
+    assert!(said.contains("nodes of the light"), "{said}");
+    assert_eq!(too_much_work(&below(&squares(300, 0.002))), None);
+}
+
+#[test]
+fn a_thousand_lobes() {
+    let lobe = "(from: (0.25, 0.1, -1), width: 0.15, radiance: 3),";
+    let lobes = lobe.repeat(1000);
+    let scene = edited("table1/environment.ron", &[(lobe, &lobes)]);
+    let said = refusal(&scene);
+    assert!(said.contains("32031 nodes of the light"), "{said}");
+}
+
+#[test]
+fn fine_frequencies() {
+    let spacing = [("nu: (max: 32)", "nu: (max: 32, spacing: 1e-3)")];
+    let scene = edited("fig9b.ron", &spacing);
+    assert!(refusal(&scene).contains("64001 frequencies"));
+}
+
+#[test]
+fn memory_grows_with_threads_up_to_batches() {
+    let scene = edited("travel.ron", &[]);
+    let of = |threads| Memory::new(&scene, threads);
+    let [one, many, more] = [1, 64, 256].map(of);
+    assert!((many.threads / one.threads - 64.0).abs() < 1e-9); // rounding
+    assert_eq!(more.threads.to_bits(), many.threads.to_bits());
+    assert_eq!(more.batches.to_bits(), one.batches.to_bits());
+    assert!(more.total() >= many.total() && many.total() > one.total());
+}
