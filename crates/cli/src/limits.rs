@@ -31,9 +31,10 @@ pub(crate) fn check_memory(scene: &Scene, threads: usize) -> Result<(), Failure>
         threads: grids,
         predictions,
         comparison,
+        meshes,
     } = needed;
     Err(Failure::cannot_run(format!(
-        "{}: on {threads} threads it needs {}: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare; memory holds {} here",
+        "{}: on {threads} threads it needs {}: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; memory holds {} here",
         scene.name,
         gigabytes(needed.total()),
         gigabytes(batches),
@@ -41,6 +42,7 @@ pub(crate) fn check_memory(scene: &Scene, threads: usize) -> Result<(), Failure>
         gigabytes(grids),
         gigabytes(predictions),
         gigabytes(comparison),
+        gigabytes(meshes),
         gigabytes(available as f64)
     )))
 }

@@ -1,7 +1,7 @@
 use crate::args::SceneArgs;
 use crate::failure::Failure;
 use crate::machine;
-use crate::results::Results;
+use crate::results::{Plan, Results};
 use crate::stored::copy_of;
 use etendue_scene::{
     RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
@@ -39,33 +39,36 @@ pub(crate) fn inputs(args: &SceneArgs, scene: &Scene) -> Vec<PathBuf> {
     named.chain([args.path.clone()]).collect()
 }
 
-/// The names of the copies that [`copy_inputs`] makes.
-pub(crate) fn copies<'a>(scene: &'a Scene, index: &str) -> impl Iterator<Item = String> + 'a {
-    let index = index.to_owned();
-    let names = scene.inputs.keys();
-    names.map(move |name| copy_of(&index, name))
-}
-
-/// Copies the meshes and pictures of a scene into a stage's folder, where the next stage looks for them.
-pub(crate) fn copy_inputs(
-    results: &mut Results,
-    index: &str,
+/// Claims a folder for a stage with these files, and copies the meshes and pictures of the scene there: the next
+/// stage looks for them beside the index.
+pub(crate) fn stage(
+    out: &Path,
+    index: &'static str,
+    mut files: Vec<String>,
     scene: &Scene,
     args: &SceneArgs,
-) -> Result<(), Failure> {
+    force: bool,
+) -> Result<Results, Failure> {
+    files.extend(scene.inputs.keys().map(|name| copy_of(index, name)));
+    let plan = Plan {
+        index,
+        files,
+        inputs: inputs(args, scene),
+        force,
+    };
+    let mut results = Results::claim(out, plan)?;
     for (name, hash) in &scene.inputs {
         let path = folder(args).join(name);
         let shown = path.display();
         let bytes = read_below(folder(args), name, u64::MAX)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         if *hash != blake3::hash(&bytes).to_hex().as_str() {
-            return Err(Failure::bad_input(format!(
-                "{shown} changed while it was read"
-            )));
+            let message = format!("{shown} changed while it was read");
+            return Err(Failure::bad_input(message));
         }
         results.write(&copy_of(index, name), &bytes)?;
     }
-    Ok(())
+    Ok(results)
 }
 
 /// Resolves a scene file for this machine; its meshes are in `folder`, and `shown` is where it comes from, for messages.

@@ -2,7 +2,7 @@ use crate::args::MeasureArgs;
 use crate::batches::{self, Held};
 use crate::failure::Failure;
 use crate::method::{Method, source};
-use crate::results::{MEASUREMENT, Plan, Results};
+use crate::results::MEASUREMENT;
 use crate::stored::Index;
 use crate::table::grouped;
 use crate::threads::on_threads;
@@ -23,26 +23,27 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
             batches.start, batches.end, all.end
         )));
     }
-    let files = batches::names(&scene.planes).into_iter();
-    let plan = Plan {
-        index: MEASUREMENT,
-        files: files.chain(load::copies(&scene, MEASUREMENT)).collect(),
-        inputs: load::inputs(&args.scene, &scene),
-        force: args.force.force,
-    };
-    let mut results = Results::claim(&args.out, plan)?;
-    load::copy_inputs(&mut results, MEASUREMENT, &scene, &args.scene)?;
     let method = args.photons.method;
-    let held = on_threads(&args.threads, || {
+    let (results, held) = on_threads(&args.threads, || {
         limits::check_memory(&scene, rayon::current_num_threads())?;
+        let files = batches::names(&scene.planes);
+        let mut results = load::stage(
+            &args.out,
+            MEASUREMENT,
+            files,
+            &scene,
+            &args.scene,
+            args.force.force,
+        )?;
         let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
         batches::write(&mut results, &measurement)?;
-        Ok(Held {
+        let held = Held {
             seed: scene.run.seed,
             method,
             photons: measurement.emitted(),
             batches,
-        })
+        };
+        Ok((results, held))
     })?;
     let index = Index::new(&scene, held.clone());
     let finished = index.finish(results)?;

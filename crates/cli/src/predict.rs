@@ -2,7 +2,7 @@ use crate::args::PredictArgs;
 use crate::failure::Failure;
 use crate::measure::measured;
 use crate::method::Method;
-use crate::results::{PREDICTION, Plan, Results};
+use crate::results::PREDICTION;
 use crate::stored::Index;
 use crate::threads::on_threads;
 use crate::{limits, load, method, predictions, progress, say};
@@ -14,20 +14,21 @@ use etendue_scene::Scene;
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     method::check(&scene, args.photons.method)?;
-    let files = predictions::names(&scene.planes).into_iter();
-    let plan = Plan {
-        index: PREDICTION,
-        files: files.chain(load::copies(&scene, PREDICTION)).collect(),
-        inputs: load::inputs(&args.scene, &scene),
-        force: args.force.force,
-    };
-    let mut results = Results::claim(&args.out, plan)?;
-    load::copy_inputs(&mut results, PREDICTION, &scene, &args.scene)?;
-    let content = on_threads(&args.threads, || {
+    let (results, content) = on_threads(&args.threads, || {
         limits::check(&scene, rayon::current_num_threads())?;
+        let files = predictions::names(&scene.planes);
+        let mut results = load::stage(
+            &args.out,
+            PREDICTION,
+            files,
+            &scene,
+            &args.scene,
+            args.force.force,
+        )?;
         let method = args.photons.method;
         let predictions = predicted(&scene, method, args.quiet)?;
-        predictions::write(&mut results, &scene, method, &predictions)
+        let content = predictions::write(&mut results, &scene, method, &predictions)?;
+        Ok((results, content))
     })?;
     let finished = Index::new(&scene, content).finish(results)?;
     finished.tell_replaced(args.quiet);

@@ -20,17 +20,19 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
         .unwrap_or_else(|| Path::new("out").join(&scene.name));
     let inputs = load::inputs(&args.scene, &scene);
     let plan = plan(&scene, &args.save, inputs, args.force.force);
-    let results = Results::claim(&folder, plan)?;
-    on_threads(&args.threads, || stages(args, scene, results))
+    on_threads(&args.threads, || {
+        warnings::tell(&scene, args.quiet);
+        limits::check(&scene, rayon::current_num_threads())?;
+        if args.save.contains(&Save::Field) {
+            field::check_memory(&scene)?;
+        }
+        let results = Results::claim(&folder, plan)?;
+        stages(args, scene, results)
+    })
 }
 
 fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure> {
-    warnings::tell(&scene, args.quiet);
-    limits::check(&scene, rayon::current_num_threads())?;
     let mut watch = Stopwatch::start();
-    if args.save.contains(&Save::Field) {
-        field::check_memory(&scene)?;
-    }
     if args.save.contains(&Save::Photons) && !args.quiet {
         say(&photons::announcement(&scene));
     }
