@@ -11,7 +11,8 @@ const LEVEL: f64 = 0.01;
 const MOST: usize = 20_000;
 /// Pieces of a window across which triangles are cut.
 const PIECES: f64 = 8.0;
-/// Azimuths of waves, and waves along each: multiples of the spacing of a plane's frequencies, up to the largest.
+/// Azimuths of waves, and waves along each: multiples of the spacing of a plane's frequencies, up
+/// to the largest.
 const AZIMUTHS: u32 = 4;
 const WAVES: usize = 8;
 /// Slopes at which each point is looked at, over the half-width of the window.
@@ -20,10 +21,12 @@ const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 impl Scene {
     /// Warnings in words, one for each smooth mesh on the path that is too coarse.
     ///
-    /// A mesh turns light by its interpolated normal n and catches it by the normal t of the triangle. Photons that come along d and leave along e
-    /// then have (d·t / d·n) / (e·t / e·n) times the radiance that backward rays find: interpolated normals do not conserve étendue. What a
-    /// plane has of this is the spectrum of the window times that factor less 1, over the spectrum of the window, both where the mesh is hit,
-    /// at the frequencies along x and y that are measured: finer facets than those average out.
+    /// A mesh turns light by its interpolated normal n and catches it by the normal t of the
+    /// triangle. Photons that come along d and leave along e then have (d·t / d·n) / (e·t / e·n)
+    /// times the radiance that backward rays find: interpolated normals do not conserve étendue.
+    /// What a plane has of this is the spectrum of the window times that factor less 1, over the
+    /// spectrum of the window, both where the mesh is hit, at the frequencies along x and y that
+    /// are measured: finer facets than those average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = Vec::new();
@@ -41,7 +44,9 @@ impl Scene {
             let worst = seen.max_by(|(a, _), (b, _)| a.total_cmp(b));
             if let Some((mismatch, plane)) = worst.filter(|(mismatch, _)| *mismatch > LEVEL) {
                 warnings.push(format!(
-                    "{}: too coarse for normals interpolated between its vertices. At {plane} photons and backward rays may differ by {:.1} % of the spectrum; triangles {:.0} times shorter are fine enough for {} %",
+                    "{}: too coarse for normals interpolated between its vertices. At {plane} photons \
+                     and backward rays may differ by {:.1} % of the spectrum; triangles {:.0} times \
+                     shorter are fine enough for {} %",
                     mesh.name,
                     100.0 * mismatch,
                     (mismatch / LEVEL).ceil(),
@@ -68,7 +73,8 @@ struct Look<'a> {
     half: [f64; 2],
 }
 
-/// The window, and what photons and rays differ by in it: sums over points at once, or their spectra.
+/// The window, and what photons and rays differ by in it: sums over points at once, or their
+/// spectra.
 #[derive(Clone, Copy, Debug, Default)]
 struct Sums {
     difference: f64,

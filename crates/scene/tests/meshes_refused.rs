@@ -1,4 +1,5 @@
-//! Meshes that a scene cannot use: which vertex or triangle is named, and what is dropped or warned of instead.
+//! Meshes that a scene cannot use: which vertex or triangle is named, and what is dropped or warned
+//! of instead.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -169,7 +170,8 @@ fn a_header_of_any_length_is_read_in_proportion() {
     assert!(told.ends_with("a name of at most 100 bytes"), "{told}");
 }
 
-/// The levels are those of photons against backward rays: 3 % with two cells, below what 4e7 photons tell with eight.
+/// The levels are those of photons against backward rays: 3 % with two cells, below what 4e7
+/// photons tell with eight.
 #[test]
 fn coarse_smooth_meshes_are_warned_of() {
     let warned = |cells: u32| {

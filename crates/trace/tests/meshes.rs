@@ -1,4 +1,5 @@
-//! Random smooth meshes: each is refused in words, or has unit normals and finite frames and can be traced.
+//! Random smooth meshes: each is refused in words, or has unit normals and finite frames and can be
+//! traced.
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
@@ -259,7 +260,6 @@ fn random_smooth_meshes_are_refused_or_traced() {
             Err(other) => panic!("{other}: {text}"),
         }
     }
-    println!("sound {sound:?}, refused {refused:?}");
     // Both answers must occur often, or the meshes were too wild or too tame to ask anything.
     let often = |counts: [u32; 13]| counts.iter().sum::<u32>() > 400;
     assert!(often(sound) && often(refused), "{sound:?} and {refused:?}");

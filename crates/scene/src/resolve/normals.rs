@@ -7,15 +7,18 @@ use glam::DVec3;
 
 /// The least cosine between the normal of a vertex and those of its triangles, 89.4°.
 ///
-/// An interpolated normal is a mean, with shares from 0 to 1, of three that each go this far along the normal of the triangle, and so goes as far
-/// itself: it cannot vanish or turn over. The shares are off by at most 4e-4 each (`triangles.rs`), which leaves it eight tenths of that.
+/// An interpolated normal is a mean, with shares from 0 to 1, of three that each go this far along
+/// the normal of the triangle, and so goes as far itself: it cannot vanish or turn over. The shares
+/// are off by at most 4e-4 each (`triangles.rs`), which leaves it eight tenths of that.
 ///
-/// It is also the least length of a vertex's sum of normals times areas, over the sum of their lengths. A shorter sum has a triangle whose cosine
-/// is less, since the mean cosine, weighted by area, is that ratio. So no mesh is refused by this that would pass the other.
+/// It is also the least length of a vertex's sum of normals times areas, over the sum of their
+/// lengths. A shorter sum has a triangle whose cosine is less, since the mean cosine, weighted by
+/// area, is that ratio. So no mesh is refused by this that would pass the other.
 const LEAST: f64 = 0.01;
 
 impl Resolver<'_> {
-    /// The normals of all vertices, the mean of the triangles around each by area; zero where no triangle is.
+    /// The normals of all vertices, the mean of the triangles around each by area; zero where no
+    /// triangle is.
     pub(super) fn normals(&mut self, at: &Placement<'_>, mesh: &Mesh) -> Option<Vec<DVec3>> {
         let mut sums = vec![(DVec3::ZERO, 0.0); mesh.vertices().len()];
         for (corners, indices) in mesh.corners().zip(mesh.triangles()) {

@@ -1,4 +1,5 @@
-//! Triangles of a mesh where it is placed: within the coordinates of a scene, and thick enough to be told from lines.
+//! Triangles of a mesh where it is placed: within the coordinates of a scene, and thick enough to
+//! be told from lines.
 
 use super::Resolver;
 use crate::Mesh;
@@ -8,12 +9,15 @@ use std::path::Path;
 
 /// Height of a triangle over the largest coordinate below which it cannot be told from a line.
 ///
-/// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height a normal leans by 4e-4 of a radian, and the shares
-/// of its corners in a point are off by as much; what is lower is noise.
+/// A coordinate in the frame of a leg is rounded by up to 4e-16 of the largest. At this height a
+/// normal leans by 4e-4 of a radian, and the shares of its corners in a point are off by as much;
+/// what is lower is noise.
 const THIN: f64 = 1e-12;
-/// The least height in metres: the smallest size of a scene times the smallest scale. Products of six lengths as small stay inside f64.
+/// The least height in metres: the smallest size of a scene times the smallest scale. Products of
+/// six lengths as small stay inside f64.
 const LEAST_HEIGHT: f64 = 1e-18;
-/// Share of a mesh's area that thin triangles may hold and be dropped: what is missing then is beneath all noise.
+/// Share of a mesh's area that thin triangles may hold and be dropped: what is missing then is
+/// beneath all noise.
 const NOTHING: f64 = 1e-6;
 /// The largest coordinate, as everywhere in a scene.
 const LARGEST: f64 = 1e9;
@@ -35,7 +39,8 @@ impl Placement<'_> {
         self.center + vertex * self.scale
     }
 
-    /// The number of a vertex, counted as its format does: OBJ from 1, PLY and meshes that are made from 0.
+    /// The number of a vertex, counted as its format does: OBJ from 1, PLY and meshes that are made
+    /// from 0.
     pub(super) fn number(&self, vertex: u32) -> u64 {
         let extension = match self.source {
             MeshSource::File(path) => Path::new(path).extension(),
@@ -85,7 +90,8 @@ impl Resolver<'_> {
             return Mesh::new(mesh.vertices().to_vec(), kept).ok();
         }
         let allowed = format!(
-            "at least {least:.3e} m, {THIN:e} of the largest coordinate{}: f64 knows no normal of what is thinner",
+            "at least {least:.3e} m, {THIN:e} of the largest coordinate{}: f64 knows no normal of \
+             what is thinner",
             others(thin.len())
         );
         let field = at.field(&at.triangle(first));
