@@ -6,7 +6,7 @@ use crate::results::MEASUREMENT;
 use crate::stored::Index;
 use crate::table::grouped;
 use crate::threads::on_threads;
-use crate::{limits, load, method, progress, say};
+use crate::{limits, load, method, progress, say, warnings};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use std::ops::Range;
@@ -25,6 +25,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     }
     let method = args.photons.method;
     let (results, held) = on_threads(&args.threads, || {
+        warnings::tell(&scene, args.quiet);
         limits::check_memory(&scene, rayon::current_num_threads())?;
         let files = batches::names(&scene.planes);
         let mut results = load::stage(

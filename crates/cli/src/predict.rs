@@ -5,7 +5,7 @@ use crate::method::Method;
 use crate::results::PREDICTION;
 use crate::stored::Index;
 use crate::threads::on_threads;
-use crate::{limits, load, method, predictions, progress, say};
+use crate::{limits, load, method, predictions, progress, say, warnings};
 use etendue_compare::{Class, Prediction};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
@@ -15,6 +15,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     method::check(&scene, args.photons.method)?;
     let (results, content) = on_threads(&args.threads, || {
+        warnings::tell(&scene, args.quiet);
         limits::check(&scene, rayon::current_num_threads())?;
         let files = predictions::names(&scene.planes);
         let mut results = load::stage(
