@@ -30,9 +30,14 @@ fn program() -> PathBuf {
     let built = fs::metadata(&path).and_then(|file| file.modified());
     let crates = Path::new(env!("CARGO_MANIFEST_DIR")).join("../crates");
     if built.is_err() || built.unwrap() < changed(&crates) {
-        let release = (!cfg!(debug_assertions)).then_some("--release");
+        let folder = path.parent().and_then(Path::file_name).unwrap();
+        // The folder of a profile has its name, but for that of `dev`.
+        let profile = match folder.to_str().unwrap() {
+            "debug" => "dev",
+            profile => profile,
+        };
         let mut cargo = Command::new(env!("CARGO"));
-        cargo.args(["build", "--package", "etendue"]).args(release);
+        cargo.args(["build", "--package", "etendue", "--profile", profile]);
         assert!(cargo.status().unwrap().success());
     }
     path
