@@ -1,12 +1,10 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
-use crate::{limits, load, pictures, say};
+use crate::{limits, load, pictures, say, threads};
 use etendue_compare::{Class, affine_chain, steps};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
 use etendue_theory::rays::FirstOrder;
-use std::num::NonZero;
-use std::thread::available_parallelism;
 
 /// `etendue check`: returns the exit code.
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
@@ -17,8 +15,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         say(&format!("\ndrawn in {}", path.display()));
     }
     // As many threads as `run` takes unless told otherwise.
-    let threads = available_parallelism().map_or(1, NonZero::get);
-    limits::check(&scene, threads)?;
+    limits::check(&scene, threads::count(None))?;
     Ok(0)
 }
 

@@ -5,7 +5,7 @@ use crate::method::{Method, source};
 use crate::results::Results;
 use crate::stored::{Index, MEASUREMENT};
 use crate::table::grouped;
-use crate::threads::on_threads;
+use crate::threads::{self, on_threads};
 use crate::{limits, load, method, progress, say};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -23,10 +23,10 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
             batches.start, batches.end, all.end
         )));
     }
+    limits::check_memory(&scene, threads::count(args.threads.count))?;
     let mut results = Results::create(&args.out, MEASUREMENT)?;
     let method = args.photons.method;
     let held = on_threads(&args.threads, || {
-        limits::check_memory(&scene, rayon::current_num_threads())?;
         let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
         results.begin()?;
         batches::write(&mut results, &measurement)?;

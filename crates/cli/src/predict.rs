@@ -4,7 +4,7 @@ use crate::measure::measured;
 use crate::method::Method;
 use crate::results::Results;
 use crate::stored::{Index, PREDICTION};
-use crate::threads::on_threads;
+use crate::threads::{self, on_threads};
 use crate::{limits, load, method, predictions, progress, say};
 use etendue_compare::{Class, Prediction};
 use etendue_field::VirtualPlane;
@@ -14,9 +14,9 @@ use etendue_scene::Scene;
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     method::check(&scene, args.photons.method)?;
+    limits::check(&scene, threads::count(args.threads.count))?;
     let mut results = Results::create(&args.out, PREDICTION)?;
     let content = on_threads(&args.threads, || {
-        limits::check(&scene, rayon::current_num_threads())?;
         let predictions = predicted(&scene, args.photons.method, args.quiet)?;
         results.begin()?;
         load::copy_files(&mut results, &scene, &args.scene)?;

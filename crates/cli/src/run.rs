@@ -5,7 +5,7 @@ use crate::measure::measured;
 use crate::predict::predicted;
 use crate::results::{Results, SUMMARY};
 use crate::summary::Stopwatch;
-use crate::threads::on_threads;
+use crate::threads::{self, on_threads};
 use crate::{field, limits, load, method, photons, say};
 use etendue_scene::Scene;
 use std::path::Path;
@@ -14,6 +14,7 @@ use std::path::Path;
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     method::check(&scene, args.photons.method)?;
+    limits::check(&scene, threads::count(args.threads.count))?;
     let folder = args
         .out
         .clone()
@@ -23,7 +24,6 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 }
 
 fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure> {
-    limits::check(&scene, rayon::current_num_threads())?;
     let mut watch = Stopwatch::start();
     if args.save.contains(&Save::Field) {
         field::check_memory(&scene)?;

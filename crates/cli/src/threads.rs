@@ -1,5 +1,13 @@
 use crate::args::ThreadArgs;
 use crate::failure::{CANNOT_RUN, Failure};
+use std::num::NonZero;
+use std::thread::available_parallelism;
+
+/// How many threads that is.
+pub(crate) fn count(threads: Option<u16>) -> usize {
+    let cores = || available_parallelism().map_or(1, NonZero::get);
+    threads.map_or_else(cores, usize::from)
+}
 
 /// Does `work` on so many threads, one for each core unless said, and lets the user interrupt it.
 pub(crate) fn on_threads<T: Send>(
