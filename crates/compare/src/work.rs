@@ -20,18 +20,20 @@ const MOST_BYTES: f64 = 1e9;
 pub struct TooMuchWork {
     plane: String,
     work: Work,
+    /// Steps of all planes counted so far.
+    total: f64,
 }
 
 impl fmt::Display for TooMuchWork {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { plane, work } = self;
+        let Self { plane, work, total } = self;
         let (estimate, limit) = if work.bytes + work.bytes_each > MOST_BYTES {
             let gigabytes = (work.bytes + work.bytes_each) / 1e9;
             let limit = format!("{:.0} GB", MOST_BYTES / 1e9);
             (format!("{gigabytes:.1} GB on one core"), limit)
         } else {
             let steps = if work.steps.is_finite() {
-                format!("{:.1e} steps", work.steps)
+                format!("{:.1e} steps, of {total:.1e} or more in all", work.steps)
             } else {
                 "more steps than can be counted".to_owned()
             };
@@ -64,6 +66,7 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
         let this = TooMuchWork {
             plane: plane.name.clone(),
             work: of(scene, plane),
+            total: 0.0,
         };
         if this.work.bytes + this.work.bytes_each > MOST_BYTES {
             return Some(this);
@@ -73,7 +76,7 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
             most = Some(this);
         }
         if total > MOST_STEPS {
-            return most;
+            return most.map(|most| TooMuchWork { total, ..most });
         }
     }
     None
