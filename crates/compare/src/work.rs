@@ -10,34 +10,37 @@ use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::{Work, rays, scattering};
 use std::fmt;
 
-/// Most steps of a prediction: about ten minutes of one core.
+/// Most steps of the predictions of a scene: about ten minutes of one core.
 const MOST_STEPS: f64 = 6e11;
 /// Most bytes of a prediction on one core.
 const MOST_BYTES: f64 = 1e9;
 
-/// A plane whose prediction takes more than is allowed.
+/// A scene whose predictions take more than is allowed, and the plane to blame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TooMuchWork {
     plane: String,
     work: Work,
+    /// Steps of all planes counted so far.
+    total: f64,
 }
 
 impl fmt::Display for TooMuchWork {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let Self { plane, work } = self;
-        let bytes = work.bytes + work.bytes_each;
-        let (estimate, limit) = if work.steps > MOST_STEPS {
-            let minutes = MOST_STEPS / 6e10;
+        let Self { plane, work, total } = self;
+        let (estimate, limit) = if work.bytes + work.bytes_each > MOST_BYTES {
+            let gigabytes = (work.bytes + work.bytes_each) / 1e9;
+            let limit = format!("{:.0} GB", MOST_BYTES / 1e9);
+            (format!("{gigabytes:.1} GB on one core"), limit)
+        } else {
             let steps = if work.steps.is_finite() {
-                format!("{:.1e} steps", work.steps)
+                format!("{:.1e} steps, of {total:.1e} or more in all", work.steps)
             } else {
                 "more steps than can be counted".to_owned()
             };
-            let limit = format!("{MOST_STEPS:.0e}, about {minutes} minutes of one core");
+            let minutes = MOST_STEPS / 6e10;
+            let limit =
+                format!("{MOST_STEPS:.0e} for all planes, about {minutes} minutes of one core");
             (steps, limit)
-        } else {
-            let limit = format!("{:.0} GB", MOST_BYTES / 1e9);
-            (format!("{:.1} GB on one core", bytes / 1e9), limit)
         };
         write!(
             f,
@@ -53,17 +56,30 @@ pub fn work(scene: &Scene) -> Vec<Work> {
     scene.planes.iter().map(|plane| of(scene, plane)).collect()
 }
 
-/// The first plane whose prediction would not end in about ten minutes, or not fit into a gigabyte.
+/// The plane that takes most of the work, where the predictions of a scene would not end in about ten minutes; or the first whose
+/// prediction would not fit into a gigabyte.
 #[must_use]
 pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
-    let is_too_much =
-        |work: &Work| work.steps > MOST_STEPS || work.bytes + work.bytes_each > MOST_BYTES;
-    let mut each = scene.planes.iter().map(|plane| (plane, of(scene, plane)));
-    let (plane, work) = each.find(|(_, work)| is_too_much(work))?;
-    Some(TooMuchWork {
-        plane: plane.name.clone(),
-        work,
-    })
+    let mut total = 0.0;
+    let mut most: Option<TooMuchWork> = None;
+    for plane in &scene.planes {
+        let this = TooMuchWork {
+            plane: plane.name.clone(),
+            work: of(scene, plane),
+            total: 0.0,
+        };
+        if this.work.bytes + this.work.bytes_each > MOST_BYTES {
+            return Some(this);
+        }
+        total += this.work.steps;
+        if most.as_ref().is_none_or(|m| this.work.steps > m.work.steps) {
+            most = Some(this);
+        }
+        if total > MOST_STEPS {
+            return most.map(|most| TooMuchWork { total, ..most });
+        }
+    }
+    None
 }
 
 fn of(scene: &Scene, plane: &VirtualPlane) -> Work {

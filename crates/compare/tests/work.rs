@@ -86,7 +86,7 @@ fn wide_lights_and_fine_gratings_before_a_receiver() {
     let said = refusal(&wide);
     assert!(said.contains("the prediction of leaving takes"), "{said}");
     assert!(
-        said.contains("the limit is 6e11, about 10 minutes of one core"),
+        said.contains("the limit is 6e11 for all planes, about 10 minutes of one core"),
         "{said}"
     );
     assert!(said.contains("384 x 384 places"), "{said}");
@@ -175,6 +175,32 @@ fn a_thousand_lobes() {
     let scene = edited("table1/environment.ron", &[(lobe, &lobes)]);
     let said = refusal(&scene);
     assert!(said.contains("32031 nodes of the light"), "{said}");
+}
+
+/// Each is within the limit, all are not; the one that takes most is named.
+#[test]
+fn many_planes() {
+    let plane = r#"(name: "on_its_way", at: Distance(2.5)),"#;
+    let more: Vec<String> = (1..40)
+        .map(|i| {
+            format!(
+                r#"(name: "p{i}", at: Distance({})),"#,
+                2.5 - 0.01 * f64::from(i)
+            )
+        })
+        .collect();
+    let scene = edited(
+        "diffuse.ron",
+        &[
+            (plane, &format!("{plane} {}", more.concat())),
+            ("alpha: 0.01", "alpha: 0.1"),
+        ],
+    );
+    let said = refusal(&scene);
+    assert!(
+        said.contains("the prediction of on_its_way takes 2.0e10 steps"),
+        "{said}"
+    );
 }
 
 #[test]
