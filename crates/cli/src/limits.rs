@@ -25,7 +25,7 @@ pub(crate) fn check_memory(scene: &Scene, threads: usize) -> Result<(), Failure>
     if needed.total() <= available as f64 {
         return Ok(());
     }
-    let gigabytes = |bytes: f64| format!("{:.1} GB", bytes / 1e9);
+    let gigabytes = |bytes: f64| format!("{:.2} GB", bytes / 1e9);
     let Memory {
         batches,
         threads: grids,
