@@ -10,9 +10,10 @@ mod commit;
 use crate::failure::Failure;
 use crate::lock::Lock;
 use crate::{interrupt, say, sealed};
+use etendue_scene::read_file;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Read, Write};
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 /// The index of a comparison.
@@ -25,6 +26,9 @@ pub(crate) const PREDICTION: &str = "prediction.json";
 pub(crate) const EXPORT: &str = "export.json";
 /// Seconds of a comparison: beside the index, since they are never the same twice.
 pub(crate) const TIMING: &str = "timing.json";
+
+/// Most bytes of an index.
+pub(crate) const MOST_INDEX: u64 = 1 << 26;
 
 /// Where new files wait.
 const UNFINISHED: &str = ".etendue-unfinished";
@@ -212,10 +216,7 @@ impl Drop for Results {
 
 /// The files an index lists, with their hashes; `None` unless it is one as Étendue wrote it.
 fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
-    if !is_regular(index) {
-        return None;
-    }
-    let bytes = fs::read(index).ok().filter(|b| sealed::is_sealed(b))?;
+    let bytes = sealed_bytes(index)?;
     let tree: serde_json::Value = serde_json::from_slice(&bytes).ok()?;
     let files = tree["files"].as_object()?.iter();
     let files = files.map(|(name, hash)| Some((name.clone(), hash.as_str()?.to_owned())));
@@ -237,20 +238,11 @@ fn has_hash(path: &Path, hash: &str) -> bool {
     is_regular(path) && hashed().is_some_and(|found| found.as_str() == hash)
 }
 
-/// Whether a path is a JSON file with a hash of its own that is right.
-fn is_sealed_file(path: &Path) -> bool {
-    /// Longer ones are not of Étendue.
-    const MOST: u64 = 1 << 20;
-    let read = || {
-        let mut bytes = Vec::new();
-        File::open(path)
-            .ok()?
-            .take(MOST)
-            .read_to_end(&mut bytes)
-            .ok()?;
-        Some(bytes)
-    };
-    is_regular(path) && read().is_some_and(|bytes| sealed::is_sealed(&bytes))
+/// The content of a regular file that ends with the hash of itself.
+fn sealed_bytes(path: &Path) -> Option<Vec<u8>> {
+    let bytes = || read_file(path, MOST_INDEX).ok();
+    let bytes = is_regular(path).then(bytes).flatten();
+    bytes.filter(|bytes| sealed::is_sealed(bytes))
 }
 
 /// The folders, below the results folder, that hold these files.

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::npz::NpzFile;
-use crate::results::{Finished, Results};
+use crate::results::{Finished, MOST_INDEX, Results};
 use crate::summary::json;
 use crate::{load, machine, sealed};
 use etendue_scene::{Scene, SceneFile, read_below, scene_hash};
@@ -12,9 +12,6 @@ use serde_json::{Value, json as tree_of};
 use std::collections::BTreeMap;
 use std::fmt::Display;
 use std::path::{Path, PathBuf};
-
-/// Most bytes of an index.
-const MOST_INDEX: u64 = 1 << 26;
 
 /// Where a stage keeps a copy of a mesh or picture, beside the index of that name.
 pub(crate) fn copy_of(index: &str, input: &str) -> String {

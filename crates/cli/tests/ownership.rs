@@ -317,6 +317,12 @@ fn a_move_that_was_cut_short_is_ended() {
     }
 }
 
+/// Arguments as a shell takes them to be no syntax of its own.
+fn quoted(arguments: &str) -> String {
+    let words = arguments.split(' ').map(|word| format!("'{word}'"));
+    words.collect::<Vec<_>>().join(" ")
+}
+
 #[test]
 fn a_full_disk_takes_nothing_away() {
     let folder = folder();
@@ -324,16 +330,22 @@ fn a_full_disk_takes_nothing_away() {
     let before = files(folder.path());
     // Files may grow to 8 blocks: the arrays do not fit.
     let program = env!("CARGO_BIN_EXE_etendue");
-    let script = format!("ulimit -f 8; exec {program} run s.ron --seed 2 --quiet --out out");
-    let limited = std::process::Command::new("sh")
-        .current_dir(folder.path())
-        .args(["-c", &script])
-        .output()
-        .unwrap();
-    let message = String::from_utf8(limited.stderr).unwrap();
-    assert_eq!(limited.status.code(), Some(3), "{message}");
-    assert!(message.contains("cannot write"), "{message}");
-    assert!(files(folder.path()) == before);
+    for command in [
+        "run s.ron --seed 2 --quiet --out out",
+        "export s.ron --to mitsuba --set blockers.0.mesh=Star(radius:0.2,relief:0,lobes:0,rings:40) --out new",
+    ] {
+        let script = format!("ulimit -f 8; exec {program} {}", quoted(command));
+        let limited = std::process::Command::new("sh")
+            .current_dir(folder.path())
+            .args(["-c", &script])
+            .output()
+            .unwrap();
+        let message = String::from_utf8(limited.stderr).unwrap();
+        assert_eq!(limited.status.code(), Some(3), "{message}");
+        assert!(message.contains("cannot write"), "{message}");
+        assert!(files(folder.path()) == before, "{command}");
+        assert!(!folder.path().join("new").exists());
+    }
 }
 
 #[test]

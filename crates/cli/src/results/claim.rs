@@ -1,8 +1,8 @@
 //! What stands in a results folder before anything is written there.
 
-use super::{Results, TIMING, UNFINISHED, has_hash, is_sealed_file, listed};
+use super::{Results, TIMING, UNFINISHED, has_hash, listed, sealed_bytes};
 use crate::failure::Failure;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::{Component, Path, PathBuf};
 
@@ -39,7 +39,7 @@ impl Results {
     pub(super) fn refuse_inputs(&self) -> Result<(), Failure> {
         let earlier = self.earlier();
         let earlier = earlier.keys().map(String::as_str);
-        let written: Vec<PathBuf> = self
+        let written: HashSet<PathBuf> = self
             .planned()
             .chain(earlier)
             .map(|name| self.folder.join(name))
@@ -100,7 +100,7 @@ impl Results {
         match earlier.get(name) {
             Some(hash) => has_hash(path, hash),
             None if name == self.plan.index => listed(path).is_some(),
-            None => name == TIMING && is_sealed_file(path),
+            None => name == TIMING && sealed_bytes(path).is_some(),
         }
     }
 }

@@ -3,7 +3,7 @@
 //! Before the first one moves, all are whole and synced and their index is ready beside them: so whatever ends
 //! this process, the next one into the folder can go on. Each step may have been done already.
 
-use super::{Results, TIMING, UNFINISHED, has_hash, is_regular, is_sealed_file, listed, parents};
+use super::{Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes};
 use crate::failure::Failure;
 use std::fs::{self, File};
 use std::io;
@@ -61,7 +61,7 @@ impl Results {
             }
         }
         let timing = self.folder.join(TIMING);
-        if waits(TIMING) && is_sealed_file(&timing) {
+        if waits(TIMING) && sealed_bytes(&timing).is_some() {
             fs::remove_file(timing)?;
         }
         let timing = TIMING.to_owned();
