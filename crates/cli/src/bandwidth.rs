@@ -4,7 +4,7 @@ use crate::measure::measured;
 use crate::output::OutputFile;
 use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{limits, load, method, progress, say};
+use crate::{deliver, limits, load, method, progress, say};
 use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth, scattered};
 use etendue_field::{Lobe, VirtualPlane};
 use etendue_scene::Scene;
@@ -76,7 +76,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
         "Bandwidths hold 95 % of the energy: that of the lobe in cycles per radian, others in cycles per unit slope at a fixed point of the plane.",
     );
     say("B, B': Durand et al. 2005, Eqs. 20 and 21, corrected; as printed beside them.\n");
-    say(&aligned(table).join("\n"));
+    deliver(&aligned(table).join("\n"))?;
     for warning in warnings {
         say(&format!("warning: {warning}"));
     }

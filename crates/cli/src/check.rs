@@ -1,7 +1,7 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::output::OutputFile;
-use crate::{limits, load, pictures, say, warnings};
+use crate::{deliver, limits, load, pictures, say, warnings};
 use etendue_compare::{Class, affine_chain, steps};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
@@ -22,7 +22,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         ))
     });
     let picture = picture.transpose()?;
-    say(&description(&scene));
+    deliver(&description(&scene))?;
     warnings::describe(&scene);
     if let Some((path, bytes, file)) = picture {
         file.write(&bytes)?;

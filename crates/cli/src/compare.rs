@@ -49,6 +49,8 @@ fn read(args: &CompareArgs) -> Result<(Case, Vec<PathBuf>), Failure> {
         same_experiment(first, shard)?;
     }
     first.check_scene(&predicted, false)?;
+    shards.iter().try_for_each(Stored::check_inputs)?;
+    predicted.check_inputs()?;
     let scene = first.scene()?;
     let measurement = merged(&shards, &scene)?;
     let method = first.index.content.method;

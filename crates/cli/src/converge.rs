@@ -2,7 +2,7 @@ use crate::args::ConvergeArgs;
 use crate::failure::Failure;
 use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{limits, load, progress, say};
+use crate::{deliver, limits, load, progress, say};
 use etendue_compare::{Class, Convergence, converge as shrink};
 use etendue_scene::Scene;
 
@@ -20,7 +20,7 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
         "{}: ‖first order − exact‖/‖exact‖ with widths × e and frequencies / e\n",
         scene.name
     ));
-    say(&aligned(rows(&planes)).join("\n"));
+    deliver(&aligned(rows(&planes)).join("\n"))?;
     Ok(0)
 }
 

@@ -7,19 +7,19 @@
 
 use crate::failure::{CANNOT_RUN, Failure};
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-/// The folder of files that wait to become a result. Global as signals are.
-static UNFINISHED: Mutex<Option<PathBuf>> = Mutex::new(None);
+/// What waits to become a result, and the lock on its folder. Global as signals are.
+static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-fn unfinished() -> MutexGuard<'static, Option<PathBuf>> {
+fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Names the folder to remove when the user asks to stop.
-pub(crate) fn remove_when_interrupted(folder: Option<&Path>) {
-    *unfinished() = folder.map(Path::to_owned);
+/// Names the folder and the files to remove when the user asks to stop.
+pub(crate) fn remove_when_interrupted(paths: Vec<PathBuf>) {
+    *unfinished() = paths;
 }
 
 /// Does short work that a first signal waits for.
@@ -34,13 +34,14 @@ fn end() -> ! {
     use std::io::Write;
     use std::sync::mpsc;
     use std::time::Duration;
-    let folder = unfinished();
-    let message = match folder.as_deref() {
-        Some(folder) if folder.exists() => "interrupted: no result was written",
-        _ => "interrupted",
+    let unfinished = unfinished();
+    let message = if unfinished.first().is_some_and(|first| first.exists()) {
+        "interrupted: no result was written"
+    } else {
+        "interrupted"
     };
-    if let Some(folder) = folder.as_deref() {
-        let _ = fs::remove_dir_all(folder);
+    for path in unfinished.iter() {
+        let _ = fs::remove_dir_all(path).or_else(|_| fs::remove_file(path));
     }
     // A reader that has gone, or that reads no more, must not keep the process.
     let (told, wait) = mpsc::channel();
@@ -65,10 +66,11 @@ pub(crate) fn install() -> Result<(), Failure> {
     let install = || {
         let code = CANNOT_RUN.into();
         let asked = Arc::new(AtomicBool::new(false));
-        // `nohup` has SIGHUP ignored: so it stays.
-        let signals = [SIGINT, SIGTERM, SIGHUP];
-        let signals = signals.into_iter().filter(|s| !machine::ignores(*s));
-        let signals: Vec<_> = signals.collect();
+        let mut signals = vec![SIGINT, SIGTERM];
+        // `nohup` has it ignored: so it stays.
+        if !machine::ignores(SIGHUP) {
+            signals.push(SIGHUP);
+        }
         let mut each = Signals::new(&signals)?;
         for signal in signals {
             // In this order the first signal finds the flag down, and puts it up.

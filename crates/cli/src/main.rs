@@ -41,7 +41,9 @@ mod warnings;
 use args::{Cli, Command};
 use clap::Parser;
 use etendue_scene::shown;
+use failure::Failure;
 use std::io::Write;
+use std::path::Path;
 use std::process::ExitCode;
 
 fn main() -> ExitCode {
@@ -71,6 +73,17 @@ fn main() -> ExitCode {
 /// done: the result and the exit code stand.
 pub(crate) fn say(text: &str) {
     let _ = writeln!(std::io::stdout(), "{}", printable(text, usize::MAX));
+}
+
+/// Prints what a command is for: that it cannot be written is a failure, unless the reader has gone.
+pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
+    let text = printable(text, usize::MAX);
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::write(Path::new("to standard output"), e))
+        }
+        _ => Ok(()),
+    }
 }
 
 /// Lines of an error, and characters of a line.

@@ -56,6 +56,8 @@ pub(crate) struct Results {
     hashes: BTreeMap<String, String>,
     /// Whether there was no such folder before.
     is_new: bool,
+    /// Files of somebody else that a dead process's files replaced.
+    replaced: Vec<String>,
     /// Released before the folder is removed; nothing afterwards.
     lock: Option<Lock>,
 }
@@ -85,24 +87,31 @@ impl Results {
     /// refuses when a file of somebody else, or an input, stands where one is to be written.
     pub(crate) fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
+        if folder.symlink_metadata().is_ok() && !folder.is_dir() {
+            return Err(Failure::write(folder, "what stands there is no folder"));
+        }
         let is_new = !folder.exists();
         fs::create_dir_all(folder).map_err(failure)?;
         let canonical = folder.canonicalize().map_err(failure)?;
         let lock = Lock::take(&canonical.join(LOCK), folder)?;
-        let results = Self {
+        let mut results = Self {
             folder: canonical,
             shown: folder.to_owned(),
             plan,
             hashes: BTreeMap::new(),
             is_new,
+            replaced: Vec::new(),
             lock: Some(lock),
         };
         results.refuse_inputs()?;
-        results.recover()?;
+        results.replaced = results.recover()?.replaced;
         results.refuse_foreign()?;
         let staged = results.staged("");
         fs::create_dir_all(&staged).map_err(|e| Failure::write(&staged, e))?;
-        interrupt::remove_when_interrupted(Some(&results.folder.join(UNFINISHED)));
+        interrupt::remove_when_interrupted(vec![
+            results.folder.join(UNFINISHED),
+            results.folder.join(LOCK),
+        ]);
         Ok(results)
     }
 
@@ -167,11 +176,13 @@ impl Results {
         // Somebody may have put a file there since the folder was claimed.
         self.refuse_inputs()?;
         self.refuse_foreign()?;
-        let (gone, replaced) = interrupt::undisturbed(|| self.commit())?;
+        let moved = interrupt::undisturbed(|| self.commit())?;
         self.is_new = false;
+        let mut replaced = std::mem::take(&mut self.replaced);
+        replaced.extend(moved.replaced);
         Ok(Finished {
             folder: self.shown.clone(),
-            gone,
+            gone: moved.gone,
             replaced,
         })
     }
@@ -205,7 +216,7 @@ impl Drop for Results {
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
-        interrupt::remove_when_interrupted(None);
+        interrupt::remove_when_interrupted(Vec::new());
         drop(self.lock.take());
         if self.is_new {
             // Where nothing was written.

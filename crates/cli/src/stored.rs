@@ -78,7 +78,7 @@ impl<T: DeserializeOwned> Stored<T> {
         let bytes = read_below(folder, name, MOST_INDEX)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
-        let tree: Value = serde_json::from_slice(&bytes).map_err(|e| fault(e.to_string()))?;
+        let tree: Value = serde_json::from_slice(&bytes).unwrap_or_default();
         // Before the rest, which another version may write in another way.
         if let Some(version) = tree["version"].as_str().filter(|v| *v != VERSION) {
             return Err(fault(format!(
@@ -113,9 +113,7 @@ impl<T> Stored<T> {
             inputs,
             ..
         } = &self.index;
-        for name in inputs.keys() {
-            self.bytes(&copy_of(self.name, name))?;
-        }
+        self.check_inputs()?;
         let copies = self.folder.join(copy_of(self.name, ""));
         let scene = load::resolved(
             scene,
@@ -127,6 +125,12 @@ impl<T> Stored<T> {
             return Err(self.fault("inputs are not the files in its folder"));
         }
         Ok(scene)
+    }
+
+    /// The stage's copies of what its scene names must be those that were written.
+    pub(crate) fn check_inputs(&self) -> Result<(), Failure> {
+        let mut names = self.index.inputs.keys();
+        names.try_for_each(|name| self.bytes(&copy_of(self.name, name)).map(drop))
     }
 
     /// The paths of the index and of all files it lists.

@@ -293,8 +293,10 @@ fn a_move_that_was_cut_short_is_ended() {
         let _ = fs::remove_dir_all(at("out"));
         passes(folder.path(), "run s.ron --out out --seed 1");
         let waiting = at("out/.etendue-unfinished");
-        fs::create_dir(&waiting).unwrap();
-        fs::rename(at("out/summary.json"), waiting.join("old")).unwrap();
+        fs::create_dir_all(waiting.join("old/light")).unwrap();
+        for aside in ["summary.json", "light/primal.csv"] {
+            fs::rename(at("out").join(aside), waiting.join("old").join(aside)).unwrap();
+        }
         fs::write(waiting.join("summary.json"), &new["summary.json"]).unwrap();
         let names = new.iter().filter(|(name, _)| *name != "summary.json");
         for (i, (name, bytes)) in names.enumerate() {
@@ -321,6 +323,49 @@ fn a_move_that_was_cut_short_is_ended() {
 fn quoted(arguments: &str) -> String {
     let words = arguments.split(' ').map(|word| format!("'{word}'"));
     words.collect::<Vec<_>>().join(" ")
+}
+
+/// A move that fails is undone, with all before it.
+#[test]
+fn a_failed_move_is_undone() {
+    let folder = folder();
+    let at = |name: &str| folder.path().join(name);
+    passes(folder.path(), "run s.ron --out out --seed 1");
+    let before = files(&at("out"));
+    passes(folder.path(), "run s.ron --out new --seed 2");
+    // A dead process had begun to move; somebody's file is in the way of the last one.
+    let waiting = at("out/.etendue-unfinished");
+    fs::create_dir_all(&waiting).unwrap();
+    for (name, bytes) in files(&at("new")) {
+        let place = match name.as_str() {
+            "summary.json" => waiting.join(&name),
+            _ => waiting.join("new").join(&name),
+        };
+        fs::create_dir_all(place.parent().unwrap()).unwrap();
+        fs::write(place, bytes).unwrap();
+    }
+    fs::write(at("out/path.svg"), "mine").unwrap();
+    let output = call(folder.path(), "run s.ron --out out --seed 3");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(3), "{message}");
+    assert!(
+        message.contains("path.svg") && message.contains("--force"),
+        "{message}"
+    );
+    let mut left = files(&at("out"));
+    left.retain(|name, _| !name.starts_with(".etendue"));
+    assert_eq!(left.remove("path.svg").unwrap(), b"mine");
+    assert!(left.iter().all(|(name, bytes)| before[name] == *bytes));
+    assert_eq!(left.len() + 1, before.len());
+    // Told to, it replaces the file and says so.
+    let output = etendue()
+        .current_dir(folder.path())
+        .args(["run", "s.ron", "--out", "out", "--seed", "3", "--force"])
+        .output()
+        .unwrap();
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("replaced in out: path.svg\n"), "{told}");
+    assert!(!waiting.exists());
 }
 
 #[test]

@@ -129,7 +129,8 @@ impl Resolver<'_> {
                 Some(bytes)
             }
             Err(error) => {
-                let allowed = "a file in the folder of the scene file or below, links followed";
+                let allowed = "a regular file of at most 1 GiB in the folder of the scene file or below, \
+                    links followed, without `..`";
                 self.faults
                     .add(of, format!("{} ({error})", show(name)), allowed);
                 None

@@ -228,7 +228,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         (
             star,
             "File(\"nowhere.ply\")",
-            "blockers[2].mesh is \"nowhere.ply\" (No such file or directory (os error 2)); allowed: a file in the folder",
+            "blockers[2].mesh is \"nowhere.ply\" (No such file or directory (os error 2)); allowed: a regular file",
         ),
         (
             star,
@@ -238,7 +238,7 @@ fn a_mesh_that_cannot_be_read_is_a_fault_of_its_field() {
         (
             SURFACES,
             hill,
-            "surfaces[0].mesh is \"nowhere.ply\" (No such file or directory (os error 2)); allowed: a file in the folder",
+            "surfaces[0].mesh is \"nowhere.ply\" (No such file or directory (os error 2)); allowed: a regular file",
         ),
     ] {
         let error = resolved(&text().replacen(from, to, 1))

@@ -1,7 +1,8 @@
 //! New files take the place of earlier ones.
 //!
 //! Before the first one moves, all are whole and synced and their index is ready beside them: so whatever ends
-//! this process, the next one into the folder can go on. Each step may have been done already.
+//! this process, the next one into the folder can go on. Each step may have been done already. Earlier files
+//! move aside and are removed last: where a move fails, all that were made are undone.
 
 use super::{Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes};
 use crate::failure::Failure;
@@ -10,102 +11,165 @@ use std::io;
 use std::path::{Path, PathBuf};
 use tempfile::TempPath;
 
+/// Files that were there and are no more.
+#[derive(Debug, Default)]
+pub(super) struct Moved {
+    /// Files of the earlier result.
+    pub(super) gone: Vec<String>,
+    /// Files of somebody else.
+    pub(super) replaced: Vec<String>,
+    /// Each move, to undo it.
+    done: Vec<[PathBuf; 2]>,
+}
+
+impl Moved {
+    /// Moves a file to where nothing is.
+    fn file(&mut self, from: PathBuf, to: PathBuf) -> Result<(), Failure> {
+        let moved = || {
+            if let Some(folder) = to.parent() {
+                fs::create_dir_all(folder)?;
+            }
+            let mut file = TempPath::try_from_path(&from)?;
+            file.disable_cleanup(true);
+            file.persist_noclobber(&to).map_err(|e| e.error)
+        };
+        moved().map_err(|e| {
+            let what = match e.kind() {
+                io::ErrorKind::AlreadyExists => {
+                    "a file has come to stand there; move it away, or replace it with --force"
+                        .to_owned()
+                }
+                _ => e.to_string(),
+            };
+            let [from, to] = [&from, &to].map(|path| path.display());
+            Failure::cannot_run(format!("cannot move {from} to {to}: {what}"))
+        })?;
+        self.done.push([from, to]);
+        Ok(())
+    }
+
+    /// Moves everything back.
+    fn undo(&self) {
+        for [from, to] in self.done.iter().rev() {
+            // What cannot be moved back now, the next process moves on.
+            let _ = fs::rename(to, from);
+        }
+    }
+}
+
 impl Results {
-    /// Puts everything in its place; returns the names of earlier files that are there no more, and of files of
-    /// somebody else that were replaced.
-    pub(super) fn commit(&self) -> Result<(Vec<String>, Vec<String>), Failure> {
+    /// Puts everything in its place.
+    pub(super) fn commit(&self) -> Result<Moved, Failure> {
         let index = self.plan.index;
-        let (waiting, ready) = (self.staged(index), self.ready(index));
+        let ready = self.ready(index);
         let failure = |e| Failure::write(&self.shown, e);
         sync(&self.folder.join(UNFINISHED)).map_err(failure)?;
-        fs::rename(&waiting, &ready).map_err(failure)?;
-        self.move_all(index).map_err(failure)
+        fs::rename(self.staged(index), &ready).map_err(failure)?;
+        self.move_all(index).inspect_err(|_| {
+            if !self.aside("").exists() {
+                // All is as it was, and nothing waits for the next process.
+                let _ = fs::remove_file(&ready);
+            }
+        })
     }
 
     /// Ends what a dead process began to move, and removes what it left.
-    pub(super) fn recover(&self) -> Result<(), Failure> {
-        let failure = |e| Failure::write(&self.shown, e);
-        if let Some(index) = self.ready_index() {
-            self.move_all(index).map_err(failure)?;
-        }
-        match fs::remove_dir_all(self.folder.join(UNFINISHED)) {
-            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(failure(e)),
-            _ => Ok(()),
+    pub(super) fn recover(&self) -> Result<Moved, Failure> {
+        let moved = match self.ready_index() {
+            Some(index) => self.move_all(index)?,
+            None => Moved::default(),
+        };
+        let left = self.folder.join(UNFINISHED);
+        match fs::remove_dir_all(&left) {
+            Err(e) if e.kind() != io::ErrorKind::NotFound => Err(Failure::write(&left, e)),
+            _ => Ok(moved),
         }
     }
 
-    fn move_all(&self, index: &str) -> io::Result<(Vec<String>, Vec<String>)> {
+    fn move_all(&self, index: &str) -> Result<Moved, Failure> {
+        let mut moved = Moved::default();
+        let result = self.moves(index, &mut moved);
+        if let Err(error) = result {
+            moved.undo();
+            // Empty now, unless something could not be moved back or was aside before.
+            remove_empty(&self.aside(""));
+            return Err(error);
+        }
+        let earlier = listed(&self.aside(index)).unwrap_or_default();
+        for folder in parents(earlier.keys()).into_iter().rev() {
+            // One that still holds something stays.
+            let _ = fs::remove_dir(self.folder.join(folder));
+        }
+        let finished = || {
+            sync(&self.folder)?;
+            fs::remove_dir_all(self.folder.join(UNFINISHED))
+        };
+        finished().map_err(|e| Failure::write(&self.shown, e))?;
+        Ok(moved)
+    }
+
+    fn moves(&self, index: &str, moved: &mut Moved) -> Result<(), Failure> {
         let ready = self.ready(index);
         let new = listed(&ready).unwrap_or_default();
-        let mut replaced = Vec::new();
-
         // From here on the folder is no result, until the new index comes.
-        let (place, old) = (
-            self.folder.join(index),
-            self.folder.join(UNFINISHED).join("old"),
-        );
+        let place = self.folder.join(index);
         if listed(&place).is_some() {
-            fs::rename(&place, &old)?;
+            moved.file(place, self.aside(index))?;
         }
-        let earlier = listed(&old).unwrap_or_default();
+        let earlier = listed(&self.aside(index)).unwrap_or_default();
         let waits = |name: &str| is_regular(&self.staged(name));
-        let mut gone = Vec::new();
         for (name, hash) in &earlier {
             let was_moved = new.contains_key(name) && !waits(name);
             let path = self.inside(name).filter(|path| has_hash(path, hash));
             if let Some(path) = path.filter(|_| !was_moved) {
-                fs::remove_file(path)?;
+                moved.file(path, self.aside(name))?;
                 if !new.contains_key(name) {
-                    gone.push(name.clone());
+                    moved.gone.push(name.clone());
                 }
             }
         }
         let timing = self.folder.join(TIMING);
         if waits(TIMING) && sealed_bytes(&timing).is_some() {
-            fs::remove_file(timing)?;
+            moved.file(timing, self.aside(TIMING))?;
         }
         let timing = TIMING.to_owned();
         for name in new.keys().chain([&timing]).filter(|name| waits(name)) {
-            if self.place(&self.staged(name), name)? {
-                replaced.push(name.clone());
-            }
+            self.place(self.staged(name), name, moved)?;
         }
-        for folder in parents(earlier.keys()).into_iter().rev() {
-            // One that still holds something stays.
-            let _ = fs::remove_dir(self.folder.join(folder));
-        }
+        let failure = |e| Failure::write(&self.shown, e);
         for folder in parents(new.keys()) {
-            sync(&self.folder.join(folder))?;
+            sync(&self.folder.join(folder)).map_err(failure)?;
         }
-        sync(&self.folder)?;
-        if self.place(&ready, index)? {
-            replaced.push(index.to_owned());
-        }
-        sync(&self.folder)?;
-        fs::remove_dir_all(self.folder.join(UNFINISHED))?;
-        Ok((gone, replaced))
+        sync(&self.folder).map_err(failure)?;
+        self.place(ready, index, moved)
     }
 
-    /// Moves a file to a name where nothing stands; with `--force`, also where a file of somebody else does,
-    /// which it tells.
-    fn place(&self, from: &Path, name: &str) -> io::Result<bool> {
-        let in_the_way = || io::Error::other(format!("something has come to stand at {name}"));
-        let to: PathBuf = self.inside(name).ok_or_else(in_the_way)?;
-        if let Some(folder) = to.parent() {
-            fs::create_dir_all(folder)?;
+    /// Moves a new file to its name; with `--force`, a file of somebody else goes aside.
+    fn place(&self, from: PathBuf, name: &str, moved: &mut Moved) -> Result<(), Failure> {
+        let to = self.inside(name).ok_or_else(|| {
+            let shown = self.shown.join(name);
+            Failure::write(&shown, "a link or a file stands where a folder is to be")
+        })?;
+        if self.plan.force && is_regular(&to) {
+            let replaced = self.folder.join(UNFINISHED).join("replaced");
+            moved.file(to.clone(), replaced.join(name))?;
+            moved.replaced.push(name.to_owned());
         }
-        let is_replaced = self.plan.force && is_regular(&to);
-        if is_replaced {
-            fs::remove_file(&to)?;
-        }
-        let mut from = TempPath::try_from_path(from)?;
-        from.disable_cleanup(true);
-        match from.persist_noclobber(&to) {
-            Ok(()) => Ok(is_replaced),
-            Err(e) if e.error.kind() == io::ErrorKind::AlreadyExists => Err(in_the_way()),
-            Err(e) => Err(e.error),
-        }
+        moved.file(from, to)
     }
+
+    /// Where an earlier file waits for its end.
+    fn aside(&self, name: &str) -> PathBuf {
+        self.folder.join(UNFINISHED).join("old").join(name)
+    }
+}
+
+/// Removes a folder of folders that hold no file.
+fn remove_empty(folder: &Path) {
+    for entry in fs::read_dir(folder).into_iter().flatten().flatten() {
+        remove_empty(&entry.path());
+    }
+    let _ = fs::remove_dir(folder);
 }
 
 /// Makes the names in a folder as lasting as its files, where folders can be synced.
