@@ -72,7 +72,7 @@ fn main() -> ExitCode {
 /// Prints to standard output. A reader that has gone, or a full disk behind it, changes nothing that was
 /// done: the result and the exit code stand.
 pub(crate) fn say(text: &str) {
-    let _ = writeln!(std::io::stdout(), "{}", printable(text, usize::MAX));
+    let _ = deliver(text);
 }
 
 /// Prints what a command is for: that it cannot be written is a failure, unless the reader has gone.

@@ -6,6 +6,9 @@
 /// half of it.
 pub const FILE_BYTES: u64 = 16 << 20;
 
+/// Bytes of a mesh or a picture: it is read into memory whole.
+pub const INPUT_BYTES: u64 = 1 << 30;
+
 /// Layers of blockers: each is looked for by its name among all of them.
 pub const LAYERS: usize = 1_000;
 

@@ -17,6 +17,7 @@ mod triangles;
 
 use crate::fault::SceneError;
 use crate::file::{RunFile, SceneFile};
+use crate::limits::INPUT_BYTES;
 use crate::read::read_below;
 use crate::scene::{CentralRay, Object, Run, Scene};
 use etendue_field::{Frame, tidy};
@@ -55,9 +56,6 @@ pub fn resolve(
 const LEAST_LEVEL: f64 = 5e-4;
 /// Relative distance below which two planes across the path are one.
 const SAME_PLANE: f64 = 1e-9;
-
-/// Most bytes of a mesh or a picture.
-const MOST_BYTES: u64 = 1 << 30;
 
 struct Resolver<'a> {
     faults: &'a mut Faults,
@@ -122,7 +120,7 @@ impl Resolver<'_> {
 
     /// The bytes of a file that the scene names.
     fn named_file(&mut self, of: &str, name: &str) -> Option<Vec<u8>> {
-        match read_below(self.folder, name, MOST_BYTES) {
+        match read_below(self.folder, name, INPUT_BYTES) {
             Ok(bytes) => {
                 let hash = blake3::hash(&bytes).to_hex().to_string();
                 self.inputs.insert(name.to_owned(), hash);

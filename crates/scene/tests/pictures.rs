@@ -150,7 +150,7 @@ fn maps_come_back_as_they_were_written() {
             assert!((a - b).abs() < 1e-14, "{a} {b}");
         }
         assert_eq!(
-            scene.file.named_files().collect::<Vec<_>>(),
+            scene.inputs.keys().collect::<Vec<_>>(),
             ["sky.exr", "wall.png"]
         );
     }
