@@ -17,9 +17,21 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Names the folder and the files to remove when the user asks to stop.
-pub(crate) fn remove_when_interrupted(paths: Vec<PathBuf>) {
-    *unfinished() = paths;
+/// Makes what waits to become a result, and names all that is to be removed when the user asks to stop. A first
+/// signal waits for both.
+pub(crate) fn begin<E>(
+    paths: Vec<PathBuf>,
+    make: impl FnOnce() -> Result<(), E>,
+) -> Result<(), E> {
+    let mut unfinished = unfinished();
+    make()?;
+    *unfinished = paths;
+    Ok(())
+}
+
+/// From now on nothing waits.
+pub(crate) fn ended() {
+    unfinished().clear();
 }
 
 /// Does short work that a first signal waits for.

@@ -107,11 +107,9 @@ impl Results {
         results.replaced = results.recover()?.replaced;
         results.refuse_foreign()?;
         let staged = results.staged("");
-        fs::create_dir_all(&staged).map_err(|e| Failure::write(&staged, e))?;
-        interrupt::remove_when_interrupted(vec![
-            results.folder.join(UNFINISHED),
-            results.folder.join(LOCK),
-        ]);
+        let unfinished = [UNFINISHED, LOCK].map(|name| results.folder.join(name));
+        interrupt::begin(unfinished.to_vec(), || fs::create_dir_all(&staged))
+            .map_err(|e| Failure::write(&staged, e))?;
         Ok(results)
     }
 
@@ -152,11 +150,15 @@ impl Results {
         }
         let path = self.staged(name);
         let mut write = || {
-            if let Some(folder) = path.parent() {
-                fs::create_dir_all(folder)?;
-            }
+            // An interrupted process has removed the folder, and must not make it again.
+            let file = interrupt::undisturbed(|| {
+                if let Some(folder) = path.parent() {
+                    fs::create_dir_all(folder)?;
+                }
+                File::create_new(&path)
+            })?;
             let mut file = Hashed {
-                file: BufWriter::new(File::create_new(&path)?),
+                file: BufWriter::new(file),
                 hasher: blake3::Hasher::new(),
             };
             content(&mut file)?;
@@ -216,7 +218,7 @@ impl Drop for Results {
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
-        interrupt::remove_when_interrupted(Vec::new());
+        interrupt::ended();
         drop(self.lock.take());
         if self.is_new {
             // Where nothing was written.
