@@ -26,6 +26,7 @@ mod rectangle;
 mod reflectance;
 mod shape;
 mod slices;
+pub mod transform;
 mod window;
 
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};

@@ -28,28 +28,22 @@
 //! ```
 
 mod batch;
-mod block;
 pub mod direct;
 pub mod estimate;
 pub mod field;
-mod fine;
 mod histogram;
 mod jackknife;
-mod kernel;
 mod measure;
 mod measurement;
 pub mod moments;
-mod quadrature;
 mod radial;
 mod ray_moments;
-mod spread;
-mod transform;
 
 pub use batch::{Batch, PlaneBatch};
+pub use etendue_field::transform::{Accumulator, SliceTransform};
 pub use histogram::ProjectionHistogram;
 pub use jackknife::Uncertain;
 pub use measure::{PROJECTION_BINS, measure};
 pub use measurement::{Measurement, MergeError};
 pub use radial::{CrossPower, RadialPower};
 pub use ray_moments::{CovarianceEstimate, RayMoments, covariance};
-pub use transform::{Accumulator, SliceTransform};

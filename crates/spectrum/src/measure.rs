@@ -2,7 +2,7 @@ use crate::batch::{Batch, PlaneBatch};
 use crate::histogram::ProjectionHistogram;
 use crate::measurement::Measurement;
 use crate::ray_moments::RayMoments;
-use crate::transform::{Accumulator, SliceTransform};
+use etendue_field::transform::{Accumulator, SliceTransform};
 use etendue_field::{Crossing, PhotonSource, PlaneTally, ProjectionGrid, VirtualPlane};
 use rayon::prelude::*;
 use std::ops::Range;

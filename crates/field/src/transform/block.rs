@@ -1,4 +1,4 @@
-use etendue_field::TwoPlane;
+use crate::TwoPlane;
 
 /// Rays that are spread in one go: coordinates and positions are worked out for a group, then added.
 pub(crate) const GROUP: usize = 32;

@@ -1,6 +1,6 @@
-use crate::kernel::{Kernel, WIDTH};
-use crate::spread::Placement;
-use etendue_field::{Complex, FrequencyAxis, SliceGrid};
+use super::kernel::{Kernel, WIDTH};
+use super::spread::Placement;
+use crate::{Complex, FrequencyAxis, SliceGrid};
 use ndarray::ArrayViewMut2;
 use rustfft::{Fft, FftPlannerScalar};
 use std::sync::Arc;

@@ -1,5 +1,5 @@
-use crate::block::{Block, GROUP};
-use crate::kernel::{Kernel, WIDTH};
+use super::block::{Block, GROUP};
+use super::kernel::{Kernel, WIDTH};
 use fearless_simd::{Simd, f64x4, prelude::*};
 
 /// How the rays of one azimuth φ fall on its fine grid, a period of `rows` × `columns` cells.

@@ -1,4 +1,4 @@
-use crate::quadrature::gauss_legendre;
+use super::quadrature::gauss_legendre;
 use fearless_simd::{Simd, f64x4, prelude::*};
 use std::f64::consts::{PI, TAU};
 

@@ -1,10 +1,21 @@
-use crate::block::Block;
-use crate::fine::{FineTransform, Workspace};
-use crate::kernel::{Kernel, UPSAMPLING, WIDTH};
-use crate::spread::{Placement, spread};
-use etendue_field::{Complex, FrequencyAxis, SliceGrid, Slices, TwoPlane};
+//! The sum of weighted rays on all slices, by a non-uniform fast Fourier transform.
+//!
+//! Photons are summed by it, and so are the nodes of theory's nets. Both hold it against the plain
+//! sum, so that a fault in it cannot hide between them.
+
+mod block;
+mod fine;
+mod kernel;
+mod quadrature;
+mod spread;
+
+use crate::{Complex, FrequencyAxis, SliceGrid, Slices, TwoPlane};
+use block::Block;
 use fearless_simd::{Level, dispatch};
+use fine::{FineTransform, Workspace};
+use kernel::{Kernel, UPSAMPLING, WIDTH};
 use ndarray::{ArrayViewMut2, Axis};
+use spread::{Placement, spread};
 use std::fmt;
 
 /// The plan of the slice transform: all slices of a sum of weighted rays (docs/theory.md, Eq. 11),
