@@ -11,6 +11,7 @@ mod faults;
 mod hostile;
 mod kills;
 mod noise;
+mod predicted;
 mod report;
 mod rows;
 mod scenes;

@@ -1,7 +1,8 @@
 //! How fast a glossy reflection changes with angle, by the paper's criteria, by quadrature and as measured.
 
-use crate::scattering::scattered;
-use etendue_field::{Light, Lobe, Orientation, VirtualPlane};
+use crate::plane::crossed_power;
+use crate::scattering::{budget, scattered};
+use etendue_field::{Light, Lobe, Orientation, ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu};
@@ -50,12 +51,13 @@ fn cutoff(lobe: shading::Lobe) -> f64 {
 #[must_use]
 pub fn exact_bandwidth(scene: &Scene, plane: &VirtualPlane) -> Option<f64> {
     let (system, at) = scattered(scene, plane)?;
-    let slices = scattering::exact(&system, &at, &plane.window, &plane.grid).slices;
-    bandwidth_nu(
-        slices.radial_power().view(),
-        &plane.grid,
-        BANDWIDTH_FRACTION,
-    )
+    let (window, grid) = (&plane.window, &plane.grid);
+    let chain = scattering::chain(&system, &at);
+    let picture = ProjectionGrid::new(window, 1);
+    let over = (window, grid, &picture);
+    let exact = scattering::predict(&system, &at, chain.as_ref(), over, budget(scene));
+    let power = crossed_power(&exact.replicates);
+    bandwidth_nu(power.view(), grid, BANDWIDTH_FRACTION)
 }
 
 /// The bandwidth along ν as measured at plane `index`, with its error; `None` where no light came.

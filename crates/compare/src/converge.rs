@@ -1,8 +1,8 @@
 use crate::first_order::{distance, print};
 use crate::system::system;
-use etendue_field::{FrequencyAxis, SliceGrid, VirtualPlane, Window};
+use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::rays;
+use etendue_theory::{Budget, rays};
 use serde::Serialize;
 
 /// How the first-order chain of a plane comes closer to the exact ray-space prediction as the neighbourhood of the central ray shrinks.
@@ -16,6 +16,11 @@ pub struct Convergence {
     pub order: Option<f64>,
 }
 
+/// Rays of each step, where no rule converges.
+const BUDGET: Budget = Budget {
+    nodes: 4e6,
+    error: 1e-4,
+};
 /// Shares of the widths.
 const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Errors below this many times that of the quadrature say nothing of the chain.
@@ -43,10 +48,12 @@ pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
             ..plane.grid
         };
         let chain = rays::chain(&system, &at, print(scene))?;
-        let exact = rays::exact(&system, &at, &window, &grid);
-        let linear = rays::linear(&system, &at, &window, &grid, &chain.map);
+        let picture = ProjectionGrid::new(&window, 1);
+        let over = (&window, &grid, &picture);
+        let exact = rays::exact(&system, &at, over, BUDGET);
+        let linear = rays::linear(&system, &at, over, &chain.map, BUDGET);
         let error = distance(&linear.slices, &exact.slices);
-        clear &= error > CLEAR * exact.quadrature_error.max(linear.quadrature_error);
+        clear &= error > CLEAR * exact.error.max(linear.error);
         steps.push([e, error]);
     }
     Some(Convergence {

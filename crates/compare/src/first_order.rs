@@ -2,12 +2,13 @@
 
 use crate::report::Verdict;
 use crate::residuals::Residuals;
+use crate::scattering::budget;
 use crate::system::{follows_rays, system};
 use etendue_field::{Light, Profile, Shape, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{Map, Matrix, Print};
-use etendue_theory::rays::{self, Plane, System};
+use etendue_theory::rays::{self, Over, Plane, RaySlices, System};
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -95,27 +96,29 @@ impl FirstOrderReport {
 impl FirstOrder {
     pub(crate) fn new(
         scene: &Scene,
-        plane: &VirtualPlane,
         system: &System,
         at: &Plane,
-        exact: &Slices,
+        over: Over<'_>,
+        exact: &RaySlices,
     ) -> Option<Self> {
-        let (window, grid) = (&plane.window, &plane.grid);
-        let corrected = rays::chain(system, at, Print::Corrected)?;
-        let linear = rays::linear(system, at, window, grid, &corrected.map).slices;
+        let by = |print| {
+            let chain = rays::chain(system, at, print)?;
+            let slices = rays::linear(system, at, over, &chain.map, budget(scene)).slices;
+            Some((chain, slices))
+        };
+        let (corrected, linear) = by(Print::Corrected)?;
         let chain = FirstOrderChain {
-            error: distance(&linear, exact),
+            error: distance(&linear, &exact.slices),
             matrix: corrected.rays().matrix,
             covariance: [
-                rays::covariance(system, at, window),
-                propagated(system, &corrected.rays().matrix, window),
+                exact.covariance,
+                propagated(system, &corrected.rays().matrix, over.0),
             ],
             foci: corrected.foci,
             as_printed: scene.file.as_printed,
         };
         let slices = if scene.file.as_printed {
-            let printed = rays::chain(system, at, print(scene))?;
-            rays::linear(system, at, window, grid, &printed.map).slices
+            by(print(scene))?.1
         } else {
             linear
         };

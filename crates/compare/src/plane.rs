@@ -174,7 +174,7 @@ fn covariance(
 }
 
 /// The radial power of a reference from its batches, without their noise (docs/theory.md, Eq. 13), [ρ, ν].
-fn crossed_power(replicates: &[Slices]) -> Array2<f64> {
+pub(crate) fn crossed_power(replicates: &[Slices]) -> Array2<f64> {
     let grid = replicates[0].grid;
     let mut sum = Array3::<Complex>::zeros(grid.half_shape());
     let mut own = Array3::<f64>::zeros(grid.half_shape());

@@ -1,7 +1,7 @@
 use crate::chain::chain;
 use crate::class::{Class, without_theory};
 use crate::first_order::{FirstOrder, affine_chain};
-use crate::scattering::scattered;
+use crate::scattering::{budget, scattered};
 use crate::system::system;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -119,33 +119,37 @@ impl Prediction {
 
     /// What rays followed through the real geometry say, and the first-order chain.
     fn by_rays(scene: &Scene, plane: &VirtualPlane, system: &System, at: &Plane) -> Self {
-        let (window, grid) = (&plane.window, &plane.grid);
-        let exact = rays::exact(system, at, window, grid);
-        let first_order = FirstOrder::new(scene, plane, system, at, &exact.slices);
-        let cells = ProjectionGrid::new(window, PROJECTION_BINS);
-        let parameters = system.parameters(at).into_iter().filter_map(|parameter| {
-            // A plane at its surface has no travel to it.
-            let value = system
-                .value(at, parameter)
-                .filter(|value| value.abs() > NOTHING)?;
-            let derivative = rays::derivative(system, at, parameter, window, grid, &exact)?;
+        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+        let over = (&plane.window, &plane.grid, &cells);
+        let exact = rays::exact(system, at, over, budget(scene));
+        let first_order = FirstOrder::new(scene, system, at, over, &exact);
+        // A plane at its surface has no travel to it.
+        let value = |parameter| {
+            let value = system.value(at, parameter);
+            value.filter(|value| value.abs() > NOTHING)
+        };
+        let mut all = system.parameters(at);
+        all.retain(|parameter| value(*parameter).is_some());
+        let derivatives = rays::derivatives(system, at, &all, over);
+        let parameters = all.into_iter().zip(derivatives);
+        let parameters = parameters.filter_map(|(parameter, derivative)| {
             Some(PredictedParameter {
                 name: system.name(parameter),
                 unit: system.unit(parameter).to_owned(),
-                value,
-                derivative,
+                value: value(parameter)?,
+                derivative: derivative?,
             })
         });
         Self {
             class: Class::FirstOrder,
             steps: steps(scene, plane),
-            quadrature_error: Some(exact.quadrature_error),
+            quadrature_error: Some(exact.error),
             first_order,
-            replicates: Vec::new(),
-            unblocked: 0.0,
-            projection: rays::projection(system, at, window, &cells),
             parameters: parameters.collect(),
             slices: exact.slices,
+            replicates: exact.replicates,
+            unblocked: 0.0,
+            projection: exact.projection,
             cuts: Vec::new(),
         }
     }

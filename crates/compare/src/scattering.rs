@@ -7,6 +7,7 @@ use crate::system::{in_frame, is_free, layers_before};
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use etendue_spectrum::PROJECTION_BINS;
+use etendue_theory::Budget;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::{self, System};
 
@@ -34,6 +35,23 @@ pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)>
     Some((system, in_frame(scene, plane)))
 }
 
+/// The largest error of a prediction by nets, whatever the photons.
+const ENOUGH: f64 = 2e-3;
+/// Rays of a prediction, as a share of the photons: then it takes less time than they do.
+const SHARE: f64 = 0.25;
+/// Fewest rays, for runs with few photons.
+const FEWEST: f64 = 5e5;
+
+/// How long a prediction by nets goes on: until its error is a fraction of the photons' noise, which
+/// is some 25/√N of the spectrum, or until it has taken as long as they do.
+pub(crate) fn budget(scene: &Scene) -> Budget {
+    let photons = scene.run.photons as f64;
+    Budget {
+        nodes: (SHARE * photons).max(FEWEST),
+        error: (8.0 / photons.sqrt()).min(ENOUGH),
+    }
+}
+
 impl Prediction {
     /// What the quadrature over the plane says, and the first-order chain.
     pub(crate) fn by_scattering(
@@ -43,38 +61,44 @@ impl Prediction {
         at: &Plane,
     ) -> Self {
         let (window, grid) = (&plane.window, &plane.grid);
-        let exact = scattering::exact(system, at, window, grid);
+        let cells = ProjectionGrid::new(window, PROJECTION_BINS);
         let chain = scattering::chain(system, at);
-        let linear = chain
-            .as_ref()
-            .and_then(|chain| scattering::linear(system, at, window, grid, chain, &exact));
-        let first_order = chain.zip(linear).map(|(chain, slices)| FirstOrder {
-            chain: FirstOrderChain {
-                error: distance(&slices, &exact.slices),
-                matrix: chain.rays().matrix,
-                covariance: [exact.covariance, None],
-                foci: Vec::new(),
-                as_printed: false,
-            },
-            slices,
+        let over = (window, grid, &cells);
+        let exact = scattering::predict(system, at, chain.as_ref(), over, budget(scene));
+        let all = system.parameters();
+        let differences =
+            scattering::differences(system, at, chain.as_ref(), &all, (window, grid), &exact);
+        let first_order = chain.as_ref().zip(differences.linear);
+        let first_order = first_order.map(|(chain, mut slices)| {
+            slices.half += &exact.slices.half;
+            FirstOrder {
+                chain: FirstOrderChain {
+                    error: distance(&slices, &exact.slices),
+                    matrix: chain.rays().matrix,
+                    covariance: [exact.covariance, None],
+                    foci: Vec::new(),
+                    as_printed: false,
+                },
+                slices,
+            }
         });
-        let parameters = system.parameters().into_iter().filter_map(|parameter| {
+        let parameters = all.into_iter().zip(differences.derivatives);
+        let parameters = parameters.filter_map(|(parameter, derivative)| {
             Some(PredictedParameter {
                 name: system.name_of(parameter),
                 unit: system.unit_of(parameter).to_owned(),
                 value: system.value(parameter)?,
-                derivative: scattering::derivative(system, at, parameter, window, grid, &exact)?,
+                derivative: derivative?,
             })
         });
-        let cells = ProjectionGrid::new(window, PROJECTION_BINS);
         Self {
             class: Class::FirstOrder,
             steps: steps(scene, plane),
-            quadrature_error: Some(exact.quadrature_error),
+            quadrature_error: Some(exact.error),
             first_order,
-            replicates: Vec::new(),
+            replicates: exact.replicates,
             unblocked: 0.0,
-            projection: scattering::projection(system, at, window, &cells),
+            projection: exact.projection,
             parameters: parameters.collect(),
             slices: exact.slices,
             cuts: Vec::new(),

@@ -2,12 +2,10 @@
 
 use crate::chain::chain;
 use crate::class::Class;
-use crate::scattering::scattered;
-use crate::system::system;
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
-use etendue_theory::{Work, rays, scattering};
+use etendue_theory::Work;
 use std::fmt;
 
 /// Most steps of the predictions of a scene: about ten minutes of one core.
@@ -88,10 +86,7 @@ fn of(scene: &Scene, plane: &VirtualPlane) -> Work {
     match Class::of(scene, plane) {
         Class::Reference => Work::none(),
         Class::Exact => etendue_theory::work(&chain(scene, plane), window, grid, &picture),
-        Class::FirstOrder => match (system(scene, plane), scattered(scene, plane)) {
-            (Some((system, at)), _) => rays::work(&system, &at, window, grid),
-            (None, Some((system, at))) => scattering::work(&system, &at, window, grid, &picture),
-            (None, None) => Work::none(),
-        },
+        // Nets have a budget.
+        Class::FirstOrder => Work::none(),
     }
 }

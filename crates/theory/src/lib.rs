@@ -57,6 +57,8 @@ mod irradiance;
 mod jitter;
 #[cfg(test)]
 mod laws;
+mod mask;
+mod nets;
 mod parameter;
 mod patch;
 mod plain;
@@ -70,7 +72,6 @@ mod reflection;
 mod row;
 pub mod scattering;
 pub mod shading;
-mod shadow;
 mod sinc;
 mod slope;
 #[cfg(test)]
@@ -84,6 +85,7 @@ pub use error::quadrature_error;
 pub use fast::slices;
 pub use harmonics::Harmonics;
 pub use jitter::{JitteredArray, jittered_array_power};
+pub use nets::Budget;
 pub use parameter::Parameter;
 pub use plain::at;
 pub use projection::projection;

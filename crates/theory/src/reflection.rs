@@ -1,5 +1,5 @@
 use crate::chain::Path;
-use crate::irradiance::{self, Receiver};
+use crate::irradiance::Receiver;
 
 impl<'a> Path<'a> {
     /// The diffuse surface at the end of the path, if there is one, and what shines on it.
@@ -9,13 +9,9 @@ impl<'a> Path<'a> {
     pub(crate) fn receiver(&self) -> Option<Receiver<'a>> {
         let reflection = self.reflection?;
         assert!(self.cosines < 2, "a receiver has one cosine");
-        let layers = self.layers.iter().map(|layer| irradiance::Layer {
-            distance: layer.distance,
-            mask: layer.mask,
-        });
         Some(Receiver::new(
             self.light,
-            &layers.collect::<Vec<_>>(),
+            &self.layers,
             self.distance,
             self.cosines == 1,
             reflection.after,

@@ -1,12 +1,13 @@
 //! A plane of a sound scene, measured and predicted, for what is wrong to be held against.
 
+use crate::predicted;
 use crate::scenes::traced;
 use etendue_compare::{Residuals, scattered};
 use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Slices, VirtualPlane};
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate, measure};
 use etendue_theory::rays::Plane;
-use etendue_theory::scattering::{System, exact};
+use etendue_theory::scattering::{System, chain};
 use etendue_trace::Tracer;
 use glam::DVec3;
 
@@ -91,7 +92,11 @@ fn seen(scene: &Scene) -> (System, Plane) {
 }
 
 fn said(system: &System, at: &Plane, plane: &VirtualPlane) -> Slices {
-    exact(system, at, &plane.window, &plane.grid).slices
+    {
+        let chain = chain(system, at).expect("a central ray");
+        let [exact, _] = predicted::scattered(system, at, plane, &chain);
+        exact
+    }
 }
 
 /// The surface of a scene that reflects by a BRDF, for changes.

@@ -1,6 +1,7 @@
 //! Faults of the affine maps onto a surface that scatters and off it, judged by the rule for first-order chains.
 
 use super::scenes::{alone, changed};
+use crate::predicted;
 use crate::report::Section;
 use crate::scenes::{compared, traced};
 use etendue_compare::{FirstOrder, FirstOrderReport, Prediction, Verdict, scattered};
@@ -8,7 +9,7 @@ use etendue_field::Slices;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::Map;
-use etendue_theory::scattering::{Chain, chain, exact, linear};
+use etendue_theory::scattering::{Chain, chain};
 
 /// Of the exact prediction, which is not asked here.
 const LEVEL: f64 = 0.01;
@@ -61,7 +62,6 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
         let place = &scene.planes[0];
         let sound = Prediction::new(&scene, place);
         let (system, at) = scattered(&scene, place).expect("a plane behind a BRDF");
-        let exact = exact(&system, &at, &place.window, &place.grid);
         for (name, fault) in faults() {
             // On the surface nothing has come off it yet.
             if plane == "texture" && name.starts_with("off") {
@@ -69,8 +69,7 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
             }
             let mut tampered = chain(&system, &at).expect("a central ray");
             fault(&mut tampered);
-            let said = linear(&system, &at, &place.window, &place.grid, &tampered, &exact);
-            let said = said.expect("a map with an inverse");
+            let [_, said] = predicted::scattered(&system, &at, place, &tampered);
             let report = judged(&scene, &measurement, &sound, said);
             let due = if name == "none" {
                 Verdict::Pass

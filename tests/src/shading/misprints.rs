@@ -3,6 +3,7 @@
 use super::arriving::Sphere;
 use super::bench::Bench;
 use super::scenes::{alone, changed};
+use crate::predicted::traced;
 use crate::report::Section;
 use etendue_compare::{sidak, system};
 use etendue_field::{Complex, Light, Quantity, Slices};
@@ -105,7 +106,7 @@ fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
     let (mirror, at) = system(&scene, place).expect("a mirror alone");
     let of = |quantity| {
         let at = rays::Plane { quantity, ..at };
-        rays::exact(&mirror, &at, &place.window, &place.grid).slices
+        traced(&mirror, &at, &place.window, &place.grid).slices
     };
     let said = of(Quantity::DifferentialIrradiance);
     let sound = of(Quantity::Radiance);

@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use super::steps::Steps;
+use crate::predicted;
 use crate::scenes::compared;
 use etendue_compare::{FirstOrder, FirstOrderReport, Prediction};
 use etendue_theory::geometry::{Matrix, Print, SpectrumMap};
@@ -69,7 +70,7 @@ impl<'a> Bench<'a> {
         let sound = prediction.first_order.as_ref().expect("a chain");
         let tried = Prediction {
             first_order: Some(FirstOrder {
-                slices: rays::linear(&system, &at, &place.window, &place.grid, &map).slices,
+                slices: predicted::linear(&system, &at, &place.window, &place.grid, &map),
                 chain: sound.chain.clone(),
             }),
             parameters: Vec::new(),

@@ -1,11 +1,11 @@
 //! The foci of the solar oven, from photons alone.
 
 use super::Outcome;
+use crate::predicted;
 use crate::report::Section;
 use etendue_compare::system;
-use etendue_field::{Crossing, PhotonSource, Profile, Window};
+use etendue_field::{Crossing, PhotonSource, Profile, VirtualPlane, Window};
 use etendue_scene::{Emission, LightFile, Scene, resolve};
-use etendue_theory::rays;
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 
@@ -146,9 +146,10 @@ fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
         u: all,
         v: all,
     };
-    let variance = |plane| {
+    let variance = |plane: &VirtualPlane| {
         let (system, at) = system(scene, plane).expect("a free mirror");
-        let moments = rays::covariance(&system, &at, &window).expect("light arrives");
+        let found = predicted::traced(&system, &at, &window, &plane.grid);
+        let moments = found.covariance.expect("light arrives");
         [moments[0][0], moments[1][1]]
     };
     let variances: Vec<[f64; 2]> = scene.planes.iter().map(variance).collect();

@@ -1,6 +1,7 @@
 //! How fast the error of the first-order chain falls with the size of the neighbourhood.
 
 use super::Outcome;
+use crate::predicted;
 use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
 use etendue_theory::geometry::Print;
 use etendue_theory::rays::{self, Parameter, Plane, System};
@@ -71,8 +72,8 @@ pub(super) fn fall(outcome: &Outcome, index: usize) -> Fall {
     let errors = SIZES.map(|size| {
         let system = system.shrunk(size);
         let (window, grid) = (narrowed(&at.window, size), widened(&at.grid, size));
-        let exact = rays::exact(&system, &plane, &window, &grid).slices;
-        let linear = rays::linear(&system, &plane, &window, &grid, &map.map).slices;
+        let exact = predicted::traced(&system, &plane, &window, &grid).slices;
+        let linear = predicted::linear(&system, &plane, &window, &grid, &map.map);
         distance(&linear, &exact)
     });
     let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), errors[i].ln()]);

@@ -4,11 +4,12 @@ use super::Outcome;
 use super::bench::Bench;
 use super::errata::{percent_or_dark, word};
 use super::steps::Steps;
+use crate::predicted;
 use crate::report::Section;
 use etendue_compare::{Residuals, Verdict};
 use etendue_field::Specular;
 use etendue_theory::geometry::{Map, SpectrumMap};
-use etendue_theory::rays::{self, Parameter, Plane, System};
+use etendue_theory::rays::{Parameter, Plane, System};
 
 type Change = fn(&mut Steps, &Bench<'_>);
 
@@ -198,7 +199,7 @@ pub(super) fn exact(outcomes: &[&Outcome], level: f64) -> Section {
                 }
                 let (system, plane) = tamper(&system, &plane)?;
                 let place = &outcome.scene.planes[i];
-                let said = rays::exact(&system, &plane, &place.window, &place.grid).slices;
+                let said = predicted::traced(&system, &plane, &place.window, &place.grid).slices;
                 let residuals = Residuals::new(&outcome.measurement, i, &said);
                 Some((residuals.p_value(outcome.scene.run.seed)?, i))
             };

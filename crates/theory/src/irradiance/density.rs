@@ -1,11 +1,9 @@
 //! What is integrated over the slopes that arrive at a point: (1 + u² + v²)^(−p) times gratings.
 
+use crate::mask::Sides;
 use crate::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
-
-/// Intervals of slopes, [low, high] along u and along v.
-pub(crate) type Sides = [[f64; 2]; 2];
 
 /// −ln of the relative error of a rule: 10⁻¹².
 const NATS: f64 = 28.0;

@@ -9,17 +9,15 @@
 mod density;
 mod exitant;
 mod kernel;
-mod layer;
 mod region;
 #[cfg(test)]
 mod tests;
 mod work;
 
-use crate::chain::no_closed_form;
-use density::{Density, Integrator, Sides};
+use crate::chain::{Layer, no_closed_form};
+use crate::mask::{Barrier, Sides};
+use density::{Density, Integrator};
 use etendue_field::{Disc, Grating, Light, Rectangle, Shape};
-use layer::Barrier;
-pub(crate) use layer::Layer;
 use region::Region;
 use std::f64::consts::{PI, TAU};
 
@@ -129,7 +127,10 @@ impl<'a> Receiver<'a> {
                 no_closed_form()
             }
         };
-        let barriers: Vec<_> = layers.iter().map(Barrier::new).collect();
+        let barriers: Vec<_> = layers
+            .iter()
+            .map(|layer| Barrier::new(layer.distance, layer.mask))
+            .collect();
         let frequency = |axis: usize| {
             let gratings = barriers
                 .iter()

@@ -1,6 +1,7 @@
 //! Sets of slopes: a rectangle and discs, intersected.
 
-use super::density::{Density, Sides};
+use super::density::Density;
+use crate::mask::Sides;
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 

@@ -2,9 +2,9 @@
 
 use super::density::Density;
 use super::kernel::Axis;
-use super::layer::Barrier;
 use super::region::Region;
 use super::{Bundle, Receiver, exitant};
+use crate::mask::Barrier;
 use crate::work::Work;
 use etendue_field::{Light, ProjectionGrid, Rectangle, SliceGrid, Window};
 

@@ -2,20 +2,20 @@
 
 use super::System;
 use crate::chain::no_closed_form;
-use crate::shadow::is_rectangular;
+use crate::nets::Density;
 use etendue_field::{Light, Mask, Shape};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// What the light's rays are counted by: two of the coordinates x, y, u, v, and for an area light the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Emission {
-    /// Indices of the two coordinates that the inner rule of a quadrature covers.
+    /// Indices of those two coordinates.
     pub(super) inner: [usize; 2],
-    /// The light whose points the outer rule covers.
+    /// The area light that has the other two.
     pub(super) shape: Option<Shape>,
-    /// Where to stop looking for rays, in the inner coordinates.
+    /// Where to stop looking for rays, in those coordinates.
     pub(super) reach: [f64; 2],
-    /// Cycles per unit of the inner coordinates in the light's picture.
+    /// Cycles per unit of those coordinates in the light's picture.
     pub(super) cycles: [f64; 2],
 }
 
@@ -55,23 +55,30 @@ impl System {
         }
     }
 
-    /// The system without those opaque masks that can be taken apart into rectangles, and these masks.
-    pub(super) fn apart(&self) -> (Self, Vec<(f64, Mask)>) {
-        let goes = |mask: &Mask| matches!(mask, Mask::Opaque { .. }) && is_rectangular(mask);
-        let layers = self.layers.iter().cloned();
-        let (opaque, layers) = layers.partition(|(_, mask)| goes(mask));
-        let left = Self {
-            layers,
-            ..self.clone()
+    /// The densities of the two coordinates of a picture, in proportion to it; `None` where there is none.
+    pub(super) fn picture_densities(&self) -> Option<[Density; 2]> {
+        let (Light::Projector { image, .. } | Light::Beam { image, .. }) = self.light else {
+            return None;
         };
-        (left, opaque)
+        let along = |axis: usize| {
+            let width = image.width[axis];
+            let grating = image.grating.filter(|g| g.axis == axis);
+            let reach = GAUSSIAN * width;
+            Density::new([-reach, reach], |t| {
+                let [a, b] = if axis == 0 { [t, 0.0] } else { [0.0, t] };
+                let passes = grating.map_or(1.0, |g| g.transmittance(a, b));
+                // Between the values of the table no part of a grating is missed.
+                (-PI * (t / width).powi(2)).exp() * (passes + 0.1)
+            })
+        };
+        Some([along(0)?, along(1)?])
     }
 
-    /// Flux per unit of the emission's coordinates of the ray (x, y, u, v), masks included.
-    pub(super) fn flux(&self, ray: [f64; 4]) -> f64 {
+    /// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves the light.
+    pub(super) fn emitted(&self, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = ray;
         let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();
-        let emitted = match self.light {
+        match self.light {
             Light::Projector { intensity, image } => intensity * image.value(u, v) * cosine.powi(3),
             Light::Point { intensity } => intensity * cosine.powi(3),
             Light::Beam { irradiance, image } => irradiance * image.value(x, y),
@@ -79,34 +86,12 @@ impl System {
                 radiance, exponent, ..
             } => radiance * cosine.powi(4) * cosine.powf(exponent),
             Light::Environment { .. } => no_closed_form(),
-        };
-        emitted * passed(&self.layers, ray)
-    }
-}
-
-/// The share of a ray of the light's plane that passes masks.
-pub(super) fn passed(masks: &[(f64, Mask)], [x, y, u, v]: [f64; 4]) -> f64 {
-    let each = masks.iter();
-    each.map(|(distance, mask)| transmittance(mask, x + distance * u, y + distance * v))
-        .product()
-}
-
-fn transmittance(mask: &Mask, x: f64, y: f64) -> f64 {
-    match mask {
-        Mask::Opaque {
-            shapes,
-            half_planes,
-        } => {
-            let stopped = shapes.iter().any(|s| s.contains(x, y))
-                || half_planes.iter().any(|h| h.contains(x, y));
-            f64::from(u8::from(!stopped))
         }
-        Mask::Grating(grating) => grating.transmittance(x, y),
     }
 }
 
 /// The point of a shape at (a, b) of the unit square; equal areas of one are equal shares of the other.
-pub(super) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => {
             let [x, y] = rectangle.center;

@@ -24,7 +24,9 @@
 //! This module shares no intersection, no sampling and no transform with the tracers.
 //!
 //! ```
-//! use etendue_field::{FrequencyAxis, Frame, Image, Light, Orientation, Patch, Profile, Quantity, SliceGrid, Specular, Window};
+//! use etendue_field::{FrequencyAxis, Frame, Image, Light, Orientation, Patch, Profile,
+//! # ProjectionGrid, Quantity, SliceGrid, Specular, Window};
+//! use etendue_theory::Budget;
 //! use etendue_theory::geometry::Print;
 //! use etendue_theory::rays::{Element, Plane, System, chain, exact, linear};
 //! use glam::DVec3;
@@ -53,22 +55,23 @@
 //! let window = Window { x: profile, y: profile, u: profile, v: profile };
 //! let axis = FrequencyAxis { half: 8, spacing: 25.0 };
 //! let grid = SliceGrid { azimuths: 2, rho: axis, nu: axis };
-//! let right = exact(&system, &plane, &window, &grid);
-//! let near = linear(&system, &plane, &window, &grid, &first.map);
+//! let picture = ProjectionGrid::new(&window, 16);
+//! let over = (&window, &grid, &picture);
+//! let budget = Budget { nodes: 1e6, error: 1e-3 };
+//! let right = exact(&system, &plane, over, budget);
+//! let near = linear(&system, &plane, over, &first.map, budget);
 //! // Slopes of 0.02 are small.
 //! let off = near.slices.at_zero() / right.slices.at_zero() - 1.0;
-//! assert!(off.abs() < 1e-3 && right.quadrature_error < 1e-4);
+//! assert!(off.abs() < 1e-3 && right.error < 1e-4);
 //! ```
 
 mod central;
 mod chain;
 mod coordinates;
-mod covariance;
-mod derivative;
+mod draw;
 mod emission;
 mod parameter;
 mod predict;
-mod projection;
 mod quadrature;
 mod region;
 mod sums;
@@ -76,17 +79,13 @@ mod sums;
 mod tests;
 mod trace;
 pub(crate) mod words;
-mod work;
 
 pub use chain::{FirstOrder, chain};
-pub use covariance::covariance;
-pub use derivative::derivative;
 pub use parameter::Parameter;
-pub use predict::{RaySlices, exact, linear};
-pub use projection::projection;
-pub use work::work;
+pub use predict::{Over, RaySlices, derivatives, exact, linear};
 
 pub(crate) use central::Incidence;
+pub(crate) use emission::point_of;
 pub(crate) use trace::Ray;
 
 use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};

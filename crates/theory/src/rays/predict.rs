@@ -1,62 +1,148 @@
-//! Slices by quadrature.
+//! Slices behind specular surfaces.
 
-use super::quadrature::{MOST_NODES, Rule};
-use super::region::{Field, Finder};
-use super::sums::sums;
-use super::work::Size;
+use super::draw::{Draw, Strategy};
+use super::parameter::Parameter;
+use super::region::{Field, Finder, Neighbourhood, neighbourhood};
 use super::{Plane, System};
-use crate::error::distance;
-use crate::geometry::{Map, SpectrumMap};
-use etendue_field::{Mask, SliceGrid, Slices, Window};
+use crate::geometry::{Map, Matrix, SpectrumMap};
+use crate::mask::Masks;
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use etendue_field::{
+    Complex, Mask, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
+};
+use glam::DVec3;
 
 /// A prediction by rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RaySlices {
     /// The slices of the windowed spectrum.
     pub slices: Slices,
-    /// ‖error‖/‖F‖: twice what finer rules change, on slices at right angles. Infinite if no ray arrives beside the central one.
-    pub quadrature_error: f64,
-    /// Rays of the rule, those outside the window included.
-    pub nodes: usize,
-    /// That rule.
-    pub(super) rule: Rule,
+    /// Independent predictions of which they are the mean, none of them biased; empty where a rule converges.
+    pub replicates: Vec<Slices>,
+    /// ‖error‖/‖F‖: the standard error of the mean of the replicates, or twice what finer rules change. Infinite if
+    /// no ray arrives beside the central one.
+    pub error: f64,
+    /// Second central moments of the windowed light field, in the plane's coordinates; `None` if no light arrives.
+    pub covariance: Option<Matrix<4>>,
+    /// The windowed light field integrated over y and v, as means over cells of (x, u).
+    pub projection: Projection,
 }
 
-/// Relative change at which a rule is good enough.
-const ENOUGH: f64 = 1e-4;
+/// What a prediction is over: a window, frequencies and the cells of a picture.
+pub type Over<'a> = (&'a Window, &'a SliceGrid, &'a ProjectionGrid);
+
+/// Rays of a picture and of moments, where slices are by a rule.
+const FOR_PICTURES: Budget = Budget {
+    nodes: 1e6,
+    error: 0.0,
+};
 
 /// The slices of the windowed spectrum, rays followed through the geometry as it is.
 ///
-/// For a projector, point or beam a midpoint rule over the two coordinates of its rays, for an area light also a Gauss rule over the light.
-/// Nodes are added until they change the slices by less than 10⁻⁴, or there are four million, or sums over them would take minutes. Unit: W m⁻² sr⁻¹ · m², on a surface
-/// W m⁻² sr⁻¹ · m² rad². The same bytes on any number of threads.
+/// Of a projector, point or beam without opaque masks by a midpoint rule, where that converges; else over nets of
+/// rays. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes on any number of threads.
 #[must_use]
-pub fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> RaySlices {
-    let (open, opaque) = system.apart();
-    let field = exact_field(&open, plane);
-    predict(&field, &open, opaque, window, grid)
+pub fn exact(system: &System, plane: &Plane, over: Over<'_>, budget: Budget) -> RaySlices {
+    let masks = Masks::new(&system.layers);
+    let field = exact_field(system, plane, &masks);
+    let lands = neighbourhood(system, plane);
+    let strategy = lands.and_then(|lands| best(&field, system, &lands, over));
+    predict(
+        &field,
+        system,
+        lands.zip(strategy),
+        over,
+        [budget, FOR_PICTURES],
+    )
 }
 
-/// The slices that a first-order chain predicts, such as that of [`chain`](super::chain), by the same quadrature.
+/// The slices that a first-order chain predicts, such as that of [`chain`](super::chain()), over the same rays.
 ///
-/// The radiance of ray z at the light goes to A z + t, A being the transpose of the map's matrix and t its phase, and its spectrum is multiplied by
-/// the map's factor: F = factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact.
+/// The radiance of ray z at the light goes to A z + t, A being the transpose of the map's matrix and t its phase,
+/// and its spectrum is multiplied by the map's factor: F = factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz.
+/// Masks of the first leg are exact.
 #[must_use]
 pub fn linear(
     system: &System,
     plane: &Plane,
-    window: &Window,
-    grid: &SliceGrid,
+    over: Over<'_>,
     map: &SpectrumMap<4>,
+    budget: Budget,
 ) -> RaySlices {
-    let (open, opaque) = system.apart();
-    let field = linear_field(&open, plane, map);
-    predict(&field, &open, opaque, window, grid)
+    let masks = Masks::new(&system.layers);
+    let field = exact_field(system, plane, &masks);
+    let lands = neighbourhood(system, plane);
+    let strategy = lands.and_then(|lands| best(&field, system, &lands, over));
+    let rays = rays(map);
+    let lands = (rays.offset, rays.matrix);
+    let field = linear_field(system, plane, &masks, map);
+    let way = strategy.map(|strategy| (lands, strategy));
+    predict(&field, system, way, over, [budget, Budget::TRIAL])
 }
 
-pub(super) fn exact_field<'a>(system: &'a System, plane: &'a Plane) -> impl Field + 'a {
+/// The derivatives of the exact slices by some parameters, per unit of each; `None` for those that the system does
+/// not have.
+///
+/// Central differences, the rays of both sides drawn alike: good to about a per cent.
+#[must_use]
+pub fn derivatives(
+    system: &System,
+    plane: &Plane,
+    parameters: &[Parameter],
+    over: Over<'_>,
+) -> Vec<Option<Slices>> {
+    let masks = Masks::new(&system.layers);
+    let field = exact_field(system, plane, &masks);
+    let lands = neighbourhood(system, plane);
+    let strategy = lands.and_then(|lands| best(&field, system, &lands, over));
+    let moved = |parameter: &Parameter| {
+        let strategy = strategy?;
+        let value = system.value(plane, *parameter)?;
+        let size = match parameter {
+            Parameter::Incidence(_) | Parameter::Curvature(..) => value.abs().max(0.1),
+            _ => value.abs(),
+        };
+        let step = STEP * size;
+        let side = |value| {
+            let (system, plane) = system.with(plane, *parameter, value)?;
+            let lands = neighbourhood(&system, &plane)?;
+            let draw = Draw::new(&system, over.0, &lands, strategy)?;
+            Some((system, plane, draw))
+        };
+        Some((2.0 * step, [side(value + step)?, side(value - step)?]))
+    };
+    let moved: Vec<_> = parameters.iter().map(moved).collect();
+    let sides = moved.iter().flatten().flat_map(|(_, sides)| sides);
+    let fields: Vec<Drawn<'_>> = sides
+        .map(|(system, plane, draw)| Drawn {
+            field: Box::new(exact_field(system, plane, &masks)),
+            draw,
+            window: over.0,
+        })
+        .collect();
+    let mut means = nets::means(&fields[..], over.0, over.1).into_iter();
+    let derivative = |apart: f64| {
+        let (mut above, below) = (means.next()?, means.next()?);
+        above.half -= &below.half;
+        above.half /= Complex::from(apart);
+        Some(above)
+    };
+    let mut derivative = derivative;
+    moved
+        .iter()
+        .map(|moved| moved.as_ref().and_then(|(apart, _)| derivative(*apart)))
+        .collect()
+}
+
+/// Step of the differences, relative to the parameter, or to 0.1 rad or 0.1 /m.
+const STEP: f64 = 1e-3;
+
+fn exact_field<'a>(system: &'a System, plane: &'a Plane, masks: &'a Masks<'a>) -> impl Field + 'a {
     move |ray| {
-        let flux = system.flux(ray);
+        let flux = flux(system, masks, ray);
+        if flux <= 0.0 {
+            return None;
+        }
         let (z, per_flux) = plane.coordinates(&system.follow(ray)?)?;
         Some((z, flux * per_flux))
     }
@@ -65,91 +151,141 @@ pub(super) fn exact_field<'a>(system: &'a System, plane: &'a Plane) -> impl Fiel
 fn linear_field<'a>(
     system: &'a System,
     plane: &'a Plane,
+    masks: &'a Masks<'a>,
     map: &'a SpectrumMap<4>,
 ) -> impl Field + 'a {
-    let rays = Map {
-        matrix: crate::geometry::transpose(&map.matrix),
-        offset: map.phase,
-    };
+    let rays = rays(map);
     move |ray: [f64; 4]| {
         let [.., u, v] = ray;
-        let radiance = system.flux(ray) * (1.0 + u * u + v * v).powi(2);
+        let radiance = flux(system, masks, ray) * (1.0 + u * u + v * v).powi(2);
         let z = rays.apply(ray);
         Some((z, map.factor * radiance * plane.factor(z)))
     }
 }
 
-fn predict(
-    field: &impl Field,
-    system: &System,
-    opaque: Vec<(f64, Mask)>,
-    window: &Window,
-    grid: &SliceGrid,
-) -> RaySlices {
-    let Some(finder) = Finder::new(field, window, system.emission(), opaque) else {
-        return RaySlices {
-            slices: Slices::zeros(*grid),
-            quadrature_error: f64::INFINITY,
-            nodes: 0,
-            rule: Rule { outer: 1, inner: 1 },
-        };
-    };
-    // Two slices at right angles tell how good a rule is.
-    let trial = SliceGrid {
-        azimuths: grid.azimuths.min(2),
-        ..*grid
-    };
-    let slices = |rule| sums(&finder.nodes(rule), &trial);
-    let size = Size::new(&finder, grid);
-    let mut rule = finder.rule(grid);
-    loop {
-        let nodes = finder.nodes(rule);
-        let outside = rule.finer_outside().map_or(0.0, |finer| {
-            LEFT * distance(&sums(&nodes, &trial), &slices(finer))
-        });
-        // From a few points of the light the inner rule does as well as from many.
-        let few = Rule {
-            outer: rule.outer.min(SOME_POINTS),
-            ..rule
-        };
-        let inside = LEFT * distance(&slices(few), &slices(few.finer_inside()));
-        let mut next = rule;
-        if inside > 0.5 * ENOUGH {
-            next = next.finer_inside();
-        }
-        if outside > 0.5 * ENOUGH {
-            next = next.finer_outside().unwrap_or(next);
-        }
-        if next == rule || next.nodes() > MOST_NODES || size.of(next).is_beyond() {
-            return RaySlices {
-                slices: sums(&nodes, grid),
-                quadrature_error: inside + outside,
-                nodes: rule.nodes(),
-                rule,
-            };
-        }
-        rule = next;
+/// What a map of spectra does to rays.
+fn rays(map: &SpectrumMap<4>) -> Map<4> {
+    Map {
+        matrix: crate::geometry::transpose(&map.matrix),
+        offset: map.phase,
     }
 }
 
-/// Points of an area light from which the inner rule is tried, along each side.
-const SOME_POINTS: usize = 8;
-/// What is left of an error over what a finer rule takes off: a Hann window's falls as n⁻³ beyond its frequencies, (5/4)³ being 2.
-const LEFT: f64 = 2.0;
+/// Flux per unit of the emission's coordinates of a ray that has passed the masks.
+fn flux(system: &System, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
+    let [x, y, u, v] = ray;
+    system.emitted(ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
+}
 
-impl Rule {
-    fn finer_inside(self) -> Self {
-        Self {
-            inner: (self.inner * 5).div_ceil(4),
-            ..self
+fn predict(
+    field: &impl Field,
+    system: &System,
+    way: Option<(Neighbourhood, Strategy)>,
+    (window, grid, picture): Over<'_>,
+    [of_slices, of_pictures]: [Budget; 2],
+) -> RaySlices {
+    let draw = way.and_then(|(lands, strategy)| Draw::new(system, window, &lands, strategy));
+    let (Some((lands, _)), Some(draw)) = (way, draw) else {
+        return RaySlices::dark(grid, picture);
+    };
+    let drawn = [Drawn {
+        field: Box::new(field),
+        draw: &draw,
+        window,
+    }];
+    let by_rule = || {
+        let opaque = |(_, mask): &(f64, Mask)| matches!(mask, Mask::Opaque { .. });
+        let emission = system.emission();
+        if emission.shape.is_some() || system.layers.iter().any(opaque) {
+            return None;
         }
+        let finder = Finder {
+            field,
+            window,
+            emission,
+            neighbourhood: lands,
+        };
+        finder.slices(grid)
+    };
+    let by_rule = by_rule();
+    let budget = if by_rule.is_some() {
+        of_pictures
+    } else {
+        of_slices
+    };
+    let mut sums = nets::sums(&drawn[..], window, grid, picture.bins, budget);
+    let replicates = sums.slices.swap_remove(0);
+    let (slices, replicates, error) = match by_rule {
+        Some((slices, error)) => (slices, Vec::new(), error),
+        None => (nets::mean(replicates.iter()), replicates, sums.error),
+    };
+    RaySlices {
+        slices,
+        replicates,
+        error,
+        covariance: sums.covariance,
+        projection: sums.projection,
+    }
+}
+
+/// What draws rays with the least error.
+fn best(
+    field: &impl Field,
+    system: &System,
+    lands: &Neighbourhood,
+    (window, grid, _): Over<'_>,
+) -> Option<Strategy> {
+    let tried = Strategy::ALL.iter().filter_map(|&strategy| {
+        let draw = Draw::new(system, window, lands, strategy)?;
+        let drawn = [Drawn {
+            field: Box::new(field),
+            draw: &draw,
+            window,
+        }];
+        let trial = nets::sums(&drawn[..], window, grid, 1, Budget::TRIAL);
+        Some((trial.error, strategy))
+    });
+    let best = tried.min_by(|(a, _), (b, _)| a.total_cmp(b));
+    best.map(|(_, strategy)| strategy)
+}
+
+/// A light field and how its rays are drawn.
+struct Drawn<'a> {
+    field: Box<dyn Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync + 'a>,
+    draw: &'a Draw,
+    window: &'a Window,
+}
+
+impl Integrand for [Drawn<'_>] {
+    fn fields(&self) -> usize {
+        self.len()
     }
 
-    /// `None` where there is no outer rule. Beyond two nodes for a cycle each node more takes off a digit.
-    fn finer_outside(self) -> Option<Self> {
-        (self.outer > 1).then(|| Self {
-            outer: self.outer + 4,
-            ..self
-        })
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+        for (drawn, node) in self.iter().zip(nodes) {
+            let arrives = drawn.draw.draw(at).and_then(|(ray, density)| {
+                let (z, weight) = (drawn.field)(ray)?;
+                let [x, y, u, v] = z;
+                let seen = drawn.window.value(&TwoPlane { x, y, u, v });
+                let weight = weight * seen / density;
+                weight.is_finite().then_some(Node { z, weight })
+            });
+            *node = arrives.unwrap_or(Node::DARK);
+        }
+    }
+}
+
+impl RaySlices {
+    fn dark(grid: &SliceGrid, picture: &ProjectionGrid) -> Self {
+        Self {
+            slices: Slices::zeros(*grid),
+            replicates: Vec::new(),
+            error: f64::INFINITY,
+            covariance: None,
+            projection: Projection {
+                grid: *picture,
+                values: ndarray::Array2::zeros((picture.bins, picture.bins)),
+            },
+        }
     }
 }

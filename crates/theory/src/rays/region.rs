@@ -1,7 +1,10 @@
 //! Where in the emission's inner coordinates the rays are that land in a window.
 
 use super::emission::Emission;
-use etendue_field::{Mask, TwoPlane, Window};
+use super::{Plane, System};
+use crate::geometry::Matrix;
+use crate::nets::Node;
+use etendue_field::{TwoPlane, Window};
 
 /// A box in two coordinates: lowest and highest along each.
 pub(super) type Region = [[f64; 2]; 2];
@@ -25,68 +28,55 @@ pub(super) struct Finder<'a, F> {
     pub(super) field: &'a F,
     pub(super) window: &'a Window,
     pub(super) emission: Emission,
-    /// Masks that the field leaves out: rectangles, to be taken off one by one.
-    pub(super) opaque: Vec<(f64, Mask)>,
-    /// Coordinates at the plane of the light's central ray, and how they change with those of rays at the light, [at plane, at light].
-    pub(super) center: [f64; 4],
-    pub(super) jacobian: [[f64; 4]; 4],
+    pub(super) neighbourhood: Neighbourhood,
 }
 
-impl<'a, F: Field> Finder<'a, F> {
-    /// `None` if the central ray, or one beside it, does not arrive.
-    pub(super) fn new(
-        field: &'a F,
-        window: &'a Window,
-        emission: Emission,
-        opaque: Vec<(f64, Mask)>,
-    ) -> Option<Self> {
-        const STEP: f64 = 1e-6;
-        let (center, _) = field([0.0; 4])?;
-        let mut jacobian = [[0.0; 4]; 4];
-        for column in 0..4 {
-            let beside = |side: f64| {
-                let mut ray = [0.0; 4];
-                ray[column] = side * STEP;
-                Some(field(ray)?.0)
-            };
-            let (above, below) = (beside(1.0)?, beside(-1.0)?);
-            for row in 0..4 {
-                jacobian[row][column] = (above[row] - below[row]) / (2.0 * STEP);
-            }
-        }
-        Some(Self {
-            field,
-            window,
-            emission,
-            opaque,
-            center,
-            jacobian,
-        })
-    }
+/// Where the central ray lands, and how that changes with the ray, [at plane, at light].
+pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
-    /// The ray at inner coordinates (a, b) from a point of the light.
-    pub(super) fn ray(&self, [x, y]: [f64; 2], inner: [f64; 2]) -> [f64; 4] {
-        let mut ray = [x, y, 0.0, 0.0];
+/// That of rays as they are, whatever masks stop; `None` if the central ray, or one beside it, does not arrive.
+pub(super) fn neighbourhood(system: &System, plane: &Plane) -> Option<Neighbourhood> {
+    const STEP: f64 = 1e-6;
+    let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
+    let mut jacobian = [[0.0; 4]; 4];
+    for column in 0..4 {
+        let beside = |side: f64| {
+            let mut ray = [0.0; 4];
+            ray[column] = side * STEP;
+            lands(ray)
+        };
+        let (above, below) = (beside(1.0)?, beside(-1.0)?);
+        for row in 0..4 {
+            jacobian[row][column] = (above[row] - below[row]) / (2.0 * STEP);
+        }
+    }
+    Some((lands([0.0; 4])?, jacobian))
+}
+
+impl<F: Field> Finder<'_, F> {
+    /// The ray at coordinates (a, b) of the emission.
+    pub(super) fn ray(&self, inner: [f64; 2]) -> [f64; 4] {
+        let mut ray = [0.0; 4];
         ray[self.emission.inner[0]] = inner[0];
         ray[self.emission.inner[1]] = inner[1];
         ray
     }
 
     /// A ray at the plane, the window and all, times its share of emission coordinates.
-    pub(super) fn node(&self, ray: [f64; 4], share: f64) -> super::sums::Node {
+    pub(super) fn node(&self, ray: [f64; 4], share: f64) -> Node {
         let (z, weight) = (self.field)(ray).unwrap_or(([0.0; 4], 0.0));
         let [x, y, u, v] = z;
         let weight = share * weight * self.window.value(&TwoPlane { x, y, u, v });
-        super::sums::Node { z, weight }
+        Node { z, weight }
     }
 
-    /// The region for rays from a point of the light: the box about the parallelogram that a linear map gives, then moved, widened and narrowed
+    /// The region of rays that land in the window: the box about the parallelogram that a linear map gives, then moved, widened and narrowed
     /// until all that arrives lies within it. `None` if nothing arrives.
-    pub(super) fn region(&self, from: [f64; 2]) -> Option<Region> {
-        let mut region = self.linear_region(from)?;
+    pub(super) fn region(&self) -> Option<Region> {
+        let mut region = self.linear_region()?;
         let reach = self.emission.reach;
         for _ in 0..ROUNDS {
-            let Some(lit) = self.lit(from, &region) else {
+            let Some(lit) = self.lit(&region) else {
                 let grown = widened(&region, [[1.0; 2]; 2], reach);
                 if grown == region {
                     return None;
@@ -121,18 +111,14 @@ impl<'a, F: Field> Finder<'a, F> {
     }
 
     /// First and last cell along each axis with light in them.
-    fn lit(&self, from: [f64; 2], region: &Region) -> Option<[[usize; 2]; 2]> {
+    fn lit(&self, region: &Region) -> Option<[[usize; 2]; 2]> {
         let at = |axis: usize, i: usize| {
             let [low, high] = region[axis];
             low + (high - low) * (i as f64 + 0.5) / CELLS as f64
         };
         let cells = || (0..CELLS * CELLS).map(|i| (i / CELLS, i % CELLS));
         let strengths: Vec<f64> = cells()
-            .map(|(i, j)| {
-                self.node(self.ray(from, [at(0, i), at(1, j)]), 1.0)
-                    .weight
-                    .abs()
-            })
+            .map(|(i, j)| self.node(self.ray([at(0, i), at(1, j)]), 1.0).weight.abs())
             .collect();
         let most = strengths.iter().copied().fold(0.0, f64::max);
         let mut found: Option<[[usize; 2]; 2]> = None;
@@ -146,20 +132,14 @@ impl<'a, F: Field> Finder<'a, F> {
     }
 
     /// The box about what the linear map takes into a somewhat wider window.
-    fn linear_region(&self, [x, y]: [f64; 2]) -> Option<Region> {
+    fn linear_region(&self) -> Option<Region> {
         let [a, b] = self.emission.reach;
         let mut corners = vec![[-a, -b], [a, -b], [a, b], [-a, b]];
         let profiles = [self.window.x, self.window.y, self.window.u, self.window.v];
         for (i, profile) in profiles.iter().enumerate() {
-            let row = self.jacobian[i];
+            let row = self.neighbourhood.1[i];
             let inner = self.emission.inner.map(|k| row[k]);
-            // A beam has its positions among the inner coordinates, and no others.
-            let outer = if self.emission.shape.is_some() {
-                row[0] * x + row[1] * y
-            } else {
-                0.0
-            };
-            let offset = self.center[i] + outer;
+            let offset = self.neighbourhood.0[i];
             let most = MARGIN * profile.half_width();
             corners = clipped(&corners, inner, most - offset);
             corners = clipped(&corners, inner.map(|c| -c), most + offset);

@@ -3,20 +3,12 @@
 //! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) a product of one factor along ρ and one along ν. Summed over
 //! rays that is a matrix product of their real and imaginary parts; ± ν share it.
 
+use crate::nets::Node;
 use etendue_field::{Complex, SliceGrid, Slices};
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// A ray at a plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Node {
-    /// (x, y, u, v), or what stands for them.
-    pub(super) z: [f64; 4],
-    /// What it adds to the windowed radiance space.
-    pub(super) weight: f64,
-}
 
 /// Rays of one matrix product.
 const BLOCK: usize = 256;

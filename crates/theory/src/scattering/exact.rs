@@ -2,11 +2,11 @@
 
 use super::System;
 use super::brdf;
-use super::incoming::{Incoming, Rule};
+use super::incoming::{Incoming, Part, secant};
+use crate::mask::Masks;
 use crate::rays::{Plane, Ray};
-use etendue_field::{Fresnel, Lobe, Orientation, TwoPlane};
+use etendue_field::Orientation;
 use glam::DVec3;
-use std::f64::consts::PI;
 
 /// Where a ray leaves the surface.
 #[derive(Clone, Copy, Debug)]
@@ -16,15 +16,6 @@ pub(super) struct Leaving {
     pub(super) normal: DVec3,
     /// A unit vector.
     pub(super) direction: DVec3,
-}
-
-/// Light that arrives at a point.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shining {
-    /// A unit vector to where it comes from.
-    from: DVec3,
-    /// Radiance times its share of cos θ dω.
-    irradiance: f64,
 }
 
 impl System {
@@ -68,53 +59,24 @@ impl System {
         Some((ray.point - direction * distance, normal, direction))
     }
 
-    /// All that shines on a point that light leaves.
-    pub(super) fn shines(&self, leaving: &Leaving, rule: &Rule) -> Vec<Shining> {
-        let incoming = self.incoming(leaving.point, rule).into_iter();
-        let shining = incoming.map(|Incoming { slopes, weight }| {
-            let [u, v] = slopes;
-            let secant_squared = TwoPlane {
-                u,
-                v,
-                ..TwoPlane::default()
-            }
-            .secant_squared();
-            let secant = secant_squared.sqrt();
-            let from = DVec3::new(-u, -v, -1.0) / secant;
-            // dω = du dv cos³.
-            let irradiance = weight * leaving.normal.dot(from) / (secant_squared * secant);
-            Shining { from, irradiance }
-        });
-        shining.filter(|s| s.irradiance != 0.0).collect()
-    }
-
-    /// The radiance that leaves, of what shines there.
-    pub(super) fn radiance(&self, leaving: &Leaving, shines: &[Shining]) -> f64 {
+    /// The radiance that leaves, of what a part of the light shines there, per unit of its measure.
+    pub(super) fn radiance(&self, masks: &Masks<'_>, leaving: &Leaving, part: Part) -> f64 {
         let Leaving {
             point,
             normal,
             direction,
         } = *leaving;
+        let Incoming { slopes, weight } = masks.incoming(&self.light, point, part);
+        let [u, v] = slopes;
+        let secant = secant(slopes);
+        let wi = DVec3::new(-u, -v, -1.0) / secant;
+        let cosine = normal.dot(wi);
+        if weight <= 0.0 || cosine <= 0.0 {
+            return 0.0;
+        }
         let at = self.patch.frame.to_local(point);
         let brdf = self.reflectance.at(at.x, at.y);
-        let each = shines.iter();
-        // Alike in all directions: nothing is asked of each.
-        if (brdf.lobe, brdf.fresnel) == (Lobe::Lambertian, Fresnel::White) {
-            let leaves = direction.dot(normal) > 0.0;
-            let lit = each.map(|s| {
-                if normal.dot(s.from) > 0.0 {
-                    s.irradiance
-                } else {
-                    0.0
-                }
-            });
-            return if leaves {
-                brdf.albedo / PI * lit.sum::<f64>()
-            } else {
-                0.0
-            };
-        }
-        each.map(|s| s.irradiance * brdf::value(&brdf, normal, s.from, direction))
-            .sum()
+        // dω = du dv cos³.
+        weight * cosine / secant.powi(3) * brdf::value(&brdf, normal, wi, direction)
     }
 }

@@ -3,20 +3,12 @@
 use super::System;
 use super::brdf;
 use super::chain::Chain;
-use super::incoming::{Incoming, Rule};
+use super::incoming::{Incoming, Part};
 use crate::geometry::{Map, Matrix};
+use crate::mask::Masks;
 use etendue_field::{Brdf, Frame, Lobe};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
-
-/// Light that arrives at a place.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Shining {
-    /// θ and φ of where it comes from.
-    from: [f64; 2],
-    /// Radiance times its share of cos⁺ θ cos² φ dθ dφ.
-    irradiance: f64,
-}
 
 /// The chain, ready to be evaluated.
 #[derive(Clone, Debug)]
@@ -52,11 +44,6 @@ impl<'a> Linear<'a> {
         })
     }
 
-    /// Local coordinates of the ray at z of the plane.
-    pub(super) fn local(&self, z: [f64; 4]) -> [f64; 4] {
-        self.off.apply(z)
-    }
-
     /// The point across the light's axis that stands for a place (s, t).
     fn point(&self, [s, t, ..]: [f64; 4]) -> DVec3 {
         let [offset_s, offset_t, ..] = self.chain.onto.offset;
@@ -65,45 +52,35 @@ impl<'a> Linear<'a> {
         DVec3::new(a * s + b * t, c * s + d * t, self.chain.distance)
     }
 
-    /// All that shines on a place.
-    pub(super) fn shines(&self, local: [f64; 4], rule: &Rule) -> Vec<Shining> {
+    /// The radiance that leaves along the ray at z of the plane, of what a part of the light shines
+    /// there, per unit of its measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being the mirror
+    /// direction about the normal (docs/theory.md, Eq. 41).
+    pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: Part) -> f64 {
+        let local = self.off.apply(z);
         let point = self.point(local);
+        let Incoming { slopes, weight } = masks.incoming(&self.system.light, point, part);
+        if weight <= 0.0 {
+            return 0.0;
+        }
+        let [u, v] = slopes;
+        // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³, and tan φ = v cos θ.
+        let across = (1.0 + u * u).sqrt();
+        let (longitude, latitude) = (u.atan(), (v / across).atan());
+        let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
         // Of the ray along the axis that meets the place.
-        let central = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
-        let incoming = self.system.incoming(point, rule).into_iter();
-        let shining = incoming.map(|Incoming { slopes, weight }| {
-            let [u, v] = slopes;
-            // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³, and tan φ = v cos θ.
-            let across = (1.0 + u * u).sqrt();
-            let (longitude, latitude) = (u.atan(), (v / across).atan());
-            let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
-            let [[a, b], [c, d]] = self.angles;
-            let [_, _, theta, phi] = central;
-            let (theta, phi) = (
-                theta + a * longitude + b * latitude,
-                phi + c * longitude + d * latitude,
-            );
-            let cosine = theta.cos().max(0.0) * phi.cos().powi(2);
-            Shining {
-                from: [theta, phi],
-                irradiance: weight * per_angle * (a * d - b * c).abs() * cosine,
-            }
-        });
-        shining.filter(|s| s.irradiance != 0.0).collect()
-    }
-
-    /// The radiance that leaves, of what shines there: Σ ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being turned about the normal.
-    pub(super) fn radiance(&self, local: [f64; 4], shines: &[Shining]) -> f64 {
-        let [s, t, theta, phi] = local;
+        let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
+        let [[a, b], [c, d]] = self.angles;
+        let (theta, phi) = (
+            theta + a * longitude + b * latitude,
+            phi + c * longitude + d * latitude,
+        );
+        let cosine = theta.cos().max(0.0) * phi.cos().powi(2);
+        let irradiance = weight * per_angle * (a * d - b * c).abs() * cosine;
+        let [s, t, to_theta, to_phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
         let brdf = self.system.reflectance.at(at.x, at.y);
         let center = away(self.chain.incidence, 0.0);
-        let each = shines.iter().map(|shining| {
-            let [from_theta, from_phi] = shining.from;
-            let apart = [theta + from_theta, phi + from_phi];
-            shining.irradiance * self.kernel(&brdf, center, from_theta, apart)
-        });
-        each.sum()
+        irradiance * self.kernel(&brdf, center, theta, [to_theta + theta, to_phi + phi])
     }
 
     /// The BRDF as it meets the central ray, which comes from `center`, at angles from the mirror direction; a factor of the angle of incidence

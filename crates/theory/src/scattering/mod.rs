@@ -16,23 +16,19 @@
 
 mod brdf;
 mod chain;
+mod draw;
 mod exact;
-mod field;
 mod incoming;
 mod linear;
 mod parameter;
 mod predict;
-mod rule;
 mod sky;
-mod table;
 #[cfg(test)]
 mod tests;
-mod work;
 
 pub use chain::{Chain, chain};
 pub use parameter::Parameter;
-pub use predict::{Prediction, derivative, exact, linear, projection};
-pub use work::work;
+pub use predict::{Differences, Prediction, differences, predict};
 
 use etendue_field::{Light, Mask, Patch, Reflectance};
 

@@ -1,87 +1,191 @@
-//! What an environment shines on a point.
+//! Directions of an environment, drawn by its radiance.
 
-use super::incoming::{Incoming, Rule, secant};
 use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian};
 use glam::DVec3;
-use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
-/// Widths of a spherical Gaussian beyond which nothing is left: exp(−5²/2) = 4·10⁻⁶.
-const GLOW: f64 = 5.0;
-/// Parts of a map from pole to pole for each node of a rule; around there are twice as many.
-const PARTS: usize = 8;
-
-/// An environment over slopes, as light from a number of directions.
-pub(super) fn incoming(environment: &Environment, rule: &Rule) -> Vec<Incoming> {
-    let flux = match &environment.map {
-        EnvironmentMap::Lobes(lobes) => of_lobes(lobes, rule),
-        EnvironmentMap::LatLong(map) => {
-            let goes_forward = |from: DVec3| environment.frame.vector_to_world(from).z < 0.0;
-            of_map(map, PARTS * rule.nodes.len(), goes_forward)
-        }
-    };
-    let incoming = flux.into_iter().filter_map(|flux| {
-        let along = -environment.frame.vector_to_world(flux);
-        let slopes = [along.x / along.z, along.y / along.z];
-        // du dv = dω / cos³.
-        let weight = flux.length() * secant(slopes).powi(3);
-        (along.z > 0.0).then_some(Incoming { slopes, weight })
-    });
-    incoming.collect()
+/// A density over directions in proportion to the radiance from there, or nearly.
+#[derive(Clone, Debug)]
+pub(super) enum Sky<'a> {
+    /// Of spherical Gaussians, with their shares of the light, added up.
+    Lobes(&'a [SphericalGaussian], Vec<f64>),
+    /// Of a map.
+    Map(Box<Pixels<'a>>),
 }
 
-/// Radiance times solid angle, along where it comes from: over each lobe by a rule in the angle from its middle, and around it.
-fn of_lobes(lobes: &[SphericalGaussian], rule: &Rule) -> Vec<DVec3> {
-    let mut all = Vec::new();
-    for lobe in lobes {
-        let around = Frame::IDENTITY.turned_to(lobe.from);
-        let most = (GLOW * lobe.width).min(PI);
-        let turns = 2 * rule.nodes.len();
-        for &(t, weight) in &rule.nodes {
-            let (sin, cos) = (t * most).sin_cos();
-            let share = weight * most * sin * TAU / turns as f64;
-            for turn in 0..turns {
-                let (s, c) = (TAU * turn as f64 / turns as f64).sin_cos();
-                let from = around.vector_to_world(DVec3::new(sin * c, sin * s, cos));
-                all.push(share * lobe.radiance_from(from) * from);
+/// The cells of a map.
+#[derive(Clone, Debug)]
+pub(super) struct Pixels<'a> {
+    map: &'a LatLong,
+    /// Shares of rows, added up from the top.
+    rows: Vec<f64>,
+    /// Shares of the cells of each row, added up from the left.
+    cells: Vec<Vec<f64>>,
+}
+
+/// Least cosine with which light counts that meets the surface, in the density over a map.
+const GRAZING: f64 = 0.05;
+
+impl<'a> Sky<'a> {
+    /// The density for a surface with this normal, which is in the frame at the light; `None` where
+    /// nothing shines.
+    pub(super) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
+        match &environment.map {
+            EnvironmentMap::Lobes(lobes) => {
+                let shares = shares(lobes.iter().map(SphericalGaussian::integral))?;
+                Some(Self::Lobes(lobes, shares))
+            }
+            EnvironmentMap::LatLong(map) => {
+                let frame = &environment.frame;
+                let normal = frame.vector_to_local(normal);
+                let forward = frame.vector_to_local(DVec3::NEG_Z);
+                Pixels::new(map, normal, forward).map(|pixels| Self::Map(Box::new(pixels)))
             }
         }
     }
-    all
+
+    /// Where light comes from, of unit length in the axes of the environment.
+    pub(super) fn draw(&self, [a, b]: [f64; 2]) -> DVec3 {
+        match self {
+            Self::Lobes(lobes, shares) => {
+                let (i, a) = picked(shares, a);
+                let SphericalGaussian { from, width, .. } = lobes[i];
+                let squared = width * width;
+                // 1 − cos γ, by the quantiles of exp((cos γ − 1)/σ²).
+                let fall = -squared * (a * (-2.0 / squared).exp_m1()).ln_1p();
+                let fall = fall.clamp(0.0, 2.0);
+                let sin = (fall * (2.0 - fall)).sqrt();
+                let (s, c) = (TAU * b).sin_cos();
+                let local = DVec3::new(sin * c, sin * s, 1.0 - fall);
+                Frame::IDENTITY.turned_to(from).vector_to_world(local)
+            }
+            Self::Map(pixels) => pixels.draw([a, b]),
+        }
+    }
+
+    /// Its density per steradian.
+    pub(super) fn density(&self, from: DVec3) -> f64 {
+        match self {
+            Self::Lobes(lobes, shares) => {
+                let each = lobes
+                    .iter()
+                    .enumerate()
+                    .map(|(i, lobe)| share(shares, i) * lobe.radiance_from(from) / lobe.integral());
+                each.sum()
+            }
+            Self::Map(pixels) => pixels.density(from),
+        }
+    }
 }
 
-/// The same of a map, in `parts` from pole to pole and twice as many around: of each part it is the sum, as a vector, so that the irradiance of a
-/// surface that sees all of the part is that of its pixels. A map with fewer pixels is taken by quarters of them.
-fn of_map(map: &LatLong, parts: usize, goes_forward: impl Fn(DVec3) -> bool + Sync) -> Vec<DVec3> {
-    let raster = map.raster();
-    // Between centres of pixels it is bilinear: halves of a pixel have no kinks. Of small pixels the centre is enough.
-    let per_pixel = if raster.height() > 4 * parts { 1 } else { 2 };
-    let cells = [raster.width(), raster.height()].map(|n| n * per_pixel);
-    let parts = [cells[0].min(2 * parts), cells[1].min(parts)];
-    let cell = |[i, j]: [usize; 2]| {
-        let place = [i, j].map(|n| (n as f64 + 0.5) / per_pixel as f64);
-        let from = map.direction(place);
-        let latitude = |j: usize| PI * (0.5 - j as f64 / cells[1] as f64);
-        let solid_angle = TAU / cells[0] as f64 * (latitude(j).sin() - latitude(j + 1).sin());
-        if goes_forward(from) {
-            raster.value(place[0], place[1], true) * solid_angle * from
-        } else {
-            DVec3::ZERO
-        }
-    };
-    let rows = (0..parts[1]).into_par_iter().map(|part| {
-        let mut row = vec![DVec3::ZERO; parts[0]];
-        let [first, end] = [part, part + 1].map(|p| (p * cells[1]).div_ceil(parts[1]));
-        for j in first..end {
-            for i in 0..cells[0] {
-                row[i * parts[0] / cells[0]] += cell([i, j]);
+impl<'a> Pixels<'a> {
+    fn new(map: &'a LatLong, normal: DVec3, forward: DVec3) -> Option<Self> {
+        let raster = map.raster();
+        let [w, h] = [raster.width(), raster.height()];
+        let pixel = |i: usize, j: usize| raster.value(i as f64 + 0.5, j as f64 + 0.5, true);
+        // Between centres of pixels the radiance is a mixture of theirs: so is the weight.
+        let weight = |i: usize, j: usize| {
+            let columns = [i + w - 1, i, i + 1].map(|i| i % w);
+            let rows = [j.saturating_sub(1), j, (j + 1).min(h - 1)];
+            let row = |j: usize| {
+                let [a, b, c] = columns.map(|i| pixel(i, j));
+                a + 2.0 * b + c
+            };
+            let [a, b, c] = rows.map(row);
+            let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
+            // Environments shine forward; a cell on the border does in part.
+            let shines = from.dot(forward) > -TAU / h as f64;
+            let cosine = from.dot(normal).max(GRAZING);
+            if shines {
+                (a + 2.0 * b + c) * cosine * solid_angle(h, j)
+            } else {
+                0.0
             }
-        }
-        row
-    });
-    let rows: Vec<Vec<DVec3>> = rows.collect();
-    rows.concat()
+        };
+        let row = |j: usize| -> Vec<f64> { (0..w).map(|i| weight(i, j)).collect() };
+        let weights: Vec<Vec<f64>> = (0..h).map(row).collect();
+        let rows = shares(weights.iter().map(|row| row.iter().sum()))?;
+        let even = || (1..=w).map(|i| i as f64 / w as f64).collect();
+        let cells = weights
+            .into_iter()
+            .map(|row| shares(row).unwrap_or_else(even));
+        Some(Self {
+            map,
+            rows,
+            cells: cells.collect(),
+        })
+    }
+
+    fn draw(&self, [a, b]: [f64; 2]) -> DVec3 {
+        let (j, down) = picked(&self.rows, a);
+        let (i, across) = picked(&self.cells[j], b);
+        let h = self.rows.len();
+        // Even in the sine of the latitude.
+        let [top, bottom] = [j, j + 1].map(|j| latitude(h, j).sin());
+        let sine = (top + down * (bottom - top)).clamp(-1.0, 1.0);
+        let row = h as f64 * (0.5 - sine.asin() / PI);
+        self.map.direction([i as f64 + across, row])
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "not negative, and cut to the size of the map"
+    )]
+    fn density(&self, from: DVec3) -> f64 {
+        let [column, row] = self.map.place(from);
+        let (h, w) = (self.rows.len(), self.cells[0].len());
+        let j = (row.max(0.0) as usize).min(h - 1);
+        let i = (column.max(0.0) as usize).min(w - 1);
+        let solid_angle = solid_angle(h, j) * TAU / w as f64;
+        share(&self.rows, j) * share(&self.cells[j], i) / solid_angle
+    }
+}
+
+/// The latitude at which row j of h begins.
+fn latitude(h: usize, j: usize) -> f64 {
+    PI * (0.5 - j as f64 / h as f64)
+}
+
+/// The solid angle of a row of a map, per radian of longitude.
+fn solid_angle(h: usize, j: usize) -> f64 {
+    latitude(h, j).sin() - latitude(h, j + 1).sin()
+}
+
+/// Shares of a whole, added up; `None` where there is nothing.
+fn shares(weights: impl IntoIterator<Item = f64>) -> Option<Vec<f64>> {
+    let mut sum = 0.0;
+    let mut sums: Vec<f64> = weights
         .into_iter()
-        .filter(|flux| *flux != DVec3::ZERO)
-        .collect()
+        .map(|weight| {
+            sum += weight;
+            sum
+        })
+        .collect();
+    for share in &mut sums {
+        *share /= sum;
+    }
+    (sum > 0.0).then_some(sums)
+}
+
+/// The part in which a number of (0, 1) falls, and how far into it.
+fn picked(shares: &[f64], at: f64) -> (usize, f64) {
+    let i = shares
+        .partition_point(|sum| *sum <= at)
+        .min(shares.len() - 1);
+    let before = shares[i] - share(shares, i);
+    let into = (at - before) / share(shares, i);
+    (
+        i,
+        if into.is_finite() {
+            into.clamp(0.0, 1.0)
+        } else {
+            0.5
+        },
+    )
+}
+
+/// A part of a whole.
+fn share(shares: &[f64], i: usize) -> f64 {
+    shares[i] - if i == 0 { 0.0 } else { shares[i - 1] }
 }

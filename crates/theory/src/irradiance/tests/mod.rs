@@ -3,7 +3,8 @@
 mod points;
 mod spectra;
 
-use super::{Layer, Receiver};
+use super::Receiver;
+use crate::chain::Layer;
 use crate::testing::square;
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 

@@ -1,7 +1,8 @@
 //! The sums over rays.
 
 use super::*;
-use crate::rays::sums::{Node, sums};
+use crate::nets::Node;
+use crate::rays::sums::sums;
 use std::f64::consts::TAU;
 
 fn nodes(count: usize) -> Vec<Node> {

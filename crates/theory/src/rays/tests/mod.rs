@@ -1,8 +1,33 @@
 use super::*;
+use crate::Budget;
 use crate::error::distance;
-use crate::geometry::Print;
-use etendue_field::{Complex, FrequencyAxis, Image, Profile, SliceGrid, Slices, Window};
+use crate::geometry::{Print, SpectrumMap};
+use etendue_field::{
+    Complex, FrequencyAxis, Image, Profile, ProjectionGrid, SliceGrid, Slices, Window,
+};
 use glam::DVec3;
+
+/// Two million nodes: errors are far below what these tests look for.
+const BUDGET: Budget = Budget {
+    nodes: 2e6,
+    error: 1e-5,
+};
+
+fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> RaySlices {
+    let picture = ProjectionGrid::new(window, 32);
+    super::exact(system, plane, (window, grid, &picture), BUDGET)
+}
+
+fn linear(
+    system: &System,
+    plane: &Plane,
+    window: &Window,
+    grid: &SliceGrid,
+    map: &SpectrumMap<4>,
+) -> RaySlices {
+    let picture = ProjectionGrid::new(window, 32);
+    super::linear(system, plane, (window, grid, &picture), map, BUDGET)
+}
 
 mod kernel;
 mod known;

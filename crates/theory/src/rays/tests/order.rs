@@ -8,7 +8,8 @@ fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Print)
     let grid = grid(3, widths.map(|w| w * e));
     let system = system.shrunk(e);
     let right = exact(&system, plane, &window, &grid);
-    assert!(right.quadrature_error < 1e-4);
+    // Of nets most of it is in both.
+    assert!(right.error < 1e-3);
     assert!(right.slices.at_zero() > 0.0);
     let map = chain(&system, plane, print).unwrap().map;
     let first = linear(&system, plane, &window, &grid, &map);

@@ -1,7 +1,6 @@
 //! What else is read from rays: pictures, covariances, derivatives, and rays that are lost.
 
 use super::*;
-use etendue_field::ProjectionGrid;
 
 #[test]
 fn covariance_of_a_gaussian_beam() {
@@ -10,7 +9,8 @@ fn covariance_of_a_gaussian_beam() {
     let oblique = mirror(beam([w, w]), 0.0, [0.0; 2], [-0.01; 3]);
     let plane = after(&oblique, 0.5);
     let wide = window(Profile::Box(2.0), Profile::Box(1.0));
-    let got = covariance(&oblique, &plane, &wide).unwrap();
+    let got = exact(&oblique, &plane, &wide, &grid(1, [0.2, 0.2]));
+    let got = got.covariance.unwrap();
     let map = chain(&oblique, &plane, Print::Corrected).unwrap().rays();
     let variance = w * w / std::f64::consts::TAU;
     let mut before = [[0.0; 4]; 4];
@@ -30,13 +30,9 @@ fn projection_holds_the_flux() {
     let system = mirror(projector([0.2, 0.2]), 0.5, [0.2, 0.0], [-0.5; 3]);
     let plane = after(&system, 0.5);
     let window = window(Profile::Hann(0.2), Profile::Hann(0.2));
-    let total = exact(&system, &plane, &window, &grid(1, [0.2, 0.2]))
-        .slices
-        .at_zero();
-    let cells = ProjectionGrid::new(&window, 32);
-    let picture = projection(&system, &plane, &window, &cells);
-    let sum = picture.values.sum() * cells.cell_area();
-    assert!((sum / total - 1.0).abs() < 1e-4); // two million points of a lattice
+    let found = exact(&system, &plane, &window, &grid(1, [0.2, 0.2]));
+    let sum = found.projection.values.sum() * found.projection.grid.cell_area();
+    assert!((sum / found.slices.at_zero() - 1.0).abs() < 1e-4); // a million rays of nets
 }
 
 #[test]
@@ -45,7 +41,13 @@ fn projection_of_an_area_light() {
     let window = window(Profile::Hann(0.3), Profile::Hann(0.3));
     let cells = ProjectionGrid::new(&window, 32);
     let straight = system(light.clone(), vec![]);
-    let got = projection(&straight, &after(&straight, 1.0), &window, &cells);
+    let got = exact(
+        &straight,
+        &after(&straight, 1.0),
+        &window,
+        &grid(1, [0.3, 0.3]),
+    )
+    .projection;
     let chain = crate::testing::chain_of(light, [(1.0, None)]);
     let expected = crate::projection(&chain, &window, &cells);
     let most = expected.values.iter().copied().fold(0.0, f64::max);
@@ -76,8 +78,10 @@ fn derivatives_by_every_parameter() {
     let prediction = exact(&system, &plane, &window, &grid);
     let parameters = system.parameters(&plane);
     assert_eq!(parameters.len(), 12);
-    for parameter in parameters {
-        let slope = derivative(&system, &plane, parameter, &window, &grid, &prediction).unwrap();
+    let picture = ProjectionGrid::new(&window, 1);
+    let slopes = derivatives(&system, &plane, &parameters, (&window, &grid, &picture));
+    for (parameter, slope) in parameters.into_iter().zip(slopes) {
+        let slope = slope.unwrap();
         let value = system.value(&plane, parameter).unwrap();
         let name = system.name(parameter);
         let other = system.with(&plane, parameter, value + 1e-4).unwrap();
@@ -105,12 +109,16 @@ fn derivatives_by_every_parameter() {
 fn rays_are_lost() {
     let system = mirror(beam([0.1, 0.1]), 0.0, [0.0; 2], [-2.0; 3]);
     let plane = after(&system, 0.1);
-    let arrives = |ray| predict::exact_field(&system, &plane)(ray).is_some();
+    let lands = |system: &System, ray| {
+        let ray = system.follow(ray)?;
+        plane.coordinates(&ray)
+    };
+    let arrives = |ray| lands(&system, ray).is_some();
     assert!(arrives([0.3, 0.0, 0.0, 0.0]));
     assert!(!arrives([0.6, 0.0, 0.0, 0.0])); // beside a sphere of radius 0.5
     let mut small = system.clone();
     small.elements[0].patch.aperture = 0.2;
-    assert!(predict::exact_field(&small, &plane)([0.3, 0.0, 0.0, 0.0]).is_none());
+    assert!(lands(&small, [0.3, 0.0, 0.0, 0.0]).is_none());
     // Total reflection at 0.73 rad.
     let glass = Specular::Refraction {
         front: 1.5,

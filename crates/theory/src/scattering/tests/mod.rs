@@ -1,4 +1,5 @@
 use super::*;
+use crate::Budget;
 use crate::error::distance;
 use crate::geometry::Map;
 use crate::rays::Plane;
@@ -6,13 +7,48 @@ use crate::testing::{chain_of, opaque, window};
 use crate::{Operator, slices};
 use etendue_field::{
     Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Image, LatLong, Lobe, Orientation,
-    Profile, Quantity, Rectangle, Shape, SliceGrid, Window,
+    Profile, ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
 
 const DISTANCE: f64 = 1.0;
+
+/// Two million nodes: errors are far below what these tests look for.
+fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Prediction {
+    by(system, plane, window, grid, chain(system, plane).as_ref())
+}
+
+/// ‖first order − exact‖/‖exact‖.
+fn linearised(
+    system: &System,
+    plane: &Plane,
+    window: &Window,
+    grid: &SliceGrid,
+    chain: &Chain,
+) -> f64 {
+    let right = by(system, plane, window, grid, Some(chain));
+    let apart = differences(system, plane, Some(chain), &[], (window, grid), &right);
+    let mut near = apart.linear.unwrap();
+    near.half += &right.slices.half;
+    distance(&near, &right.slices)
+}
+
+fn by(
+    system: &System,
+    plane: &Plane,
+    window: &Window,
+    grid: &SliceGrid,
+    chain: Option<&Chain>,
+) -> Prediction {
+    let budget = Budget {
+        nodes: 2e6,
+        error: 1e-4,
+    };
+    let picture = ProjectionGrid::new(window, 8);
+    predict(system, plane, chain, (window, grid, &picture), budget)
+}
 
 fn grid([x, u]: [f64; 2]) -> SliceGrid {
     let axis = |h: f64| FrequencyAxis {
@@ -150,17 +186,10 @@ fn flat_lambertian_surface_is_the_receiver() {
     let plane = across(0.0, 0.2);
     let found = exact(&system, &plane, &window, &grid);
     let apart = distance(&found.slices, &known);
-    // Penumbras have kinks: the rule is of second order there, and says how good it is.
-    assert!(
-        apart < found.quadrature_error.max(2e-4),
-        "{apart:e} {:e}",
-        found.quadrature_error
-    );
-    assert!(
-        found.quadrature_error < 2e-3,
-        "{:e}",
-        found.quadrature_error
-    );
+    // The error stated is the error made: over so many frequencies the two differ by little.
+    let ratio = apart / found.error;
+    assert!((0.6..1.6).contains(&ratio), "{apart:e} {:e}", found.error);
+    assert!(found.error < 6e-3, "{:e}", found.error); // of a million nodes
     // Without the mask it is another field.
     system.layers.clear();
     let open = exact(&system, &plane, &window, &grid);
@@ -214,14 +243,7 @@ fn errors(theta0: f64, k: f64, lobe: impl Fn(f64) -> Lobe, orientation: Orientat
             };
             let grid = grid([1.2 * e; 2]);
             let chain = chain(&system, &plane).unwrap();
-            let right = exact(&system, &plane, &window, &grid);
-            let near = linear(&system, &plane, &window, &grid, &chain, &right).unwrap();
-            assert!(
-                right.quadrature_error < 1e-3,
-                "{:e}",
-                right.quadrature_error
-            );
-            distance(&near, &right.slices)
+            linearised(&system, &plane, &window, &grid, &chain)
         })
         .to_vec()
 }
@@ -270,10 +292,7 @@ fn wrong_operators_are_seen() {
     let grid = grid([1.2 * e; 2]);
     let right = exact(&system, &plane, &window, &grid);
     let sound = chain(&system, &plane).unwrap();
-    let error = |system: &System, chain: &Chain| {
-        let near = linear(system, &plane, &window, &grid, chain, &right).unwrap();
-        distance(&near, &right.slices)
-    };
+    let error = |system: &System, chain: &Chain| linearised(system, &plane, &window, &grid, chain);
     let least = error(&system, &sound);
     let mut turned = sound.clone();
     // The central ray as if it came along the normal: no cosine, and no mirror direction.
@@ -352,22 +371,32 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         let map = LatLong::from_fn(w, h, |from| lobe.radiance_from(from));
         EnvironmentMap::LatLong(Arc::new(map))
     };
-    for (map, nodes, most) in [
-        (EnvironmentMap::Lobes(vec![lobe]), 24, 1e-5), // lobes are cut at five widths, 4e-6
-        (map([1024, 512]), 4, 1e-5), // pixels of 0.006 rad over widths of 0.25: (1/40)²/24 and the like
-        (map([200, 100]), 4, 4e-4), // bilinear between centres, 0.03 rad apart: (1/8)²/12 of the lobe's curvature
-        (map([200, 100]), 40, 4e-4), // likewise, by quarters of pixels
+    for (map, most) in [
+        // The error of a net of 2¹⁸ points.
+        (EnvironmentMap::Lobes(vec![lobe]), 1e-5),
+        // Likewise, with kinks between pixels; they are 0.006 rad over widths of 0.25: (1/40)²/24.
+        (map([1024, 512]), 1e-4),
+        // Bilinear between centres, 0.03 rad apart: (1/8)²/12 of the lobe's curvature.
+        (map([200, 100]), 4e-4),
     ] {
         let system = under(map);
-        let rule = incoming::Rule::new(nodes, &system.light);
         let plane = on_it(&system);
+        let masks = crate::mask::Masks::new(&[]);
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
-            let radiance = system.radiance(&leaving, &system.shines(&leaving, &rule));
+            let lights = draw::Lights::new(&system, leaving.normal, draw::Strategy::default());
+            let mut net = crate::nets::Net::new(1);
+            let count = 1 << 18;
+            let points = (0..count).filter_map(|_| {
+                let [a, b, ..] = net.point();
+                let (part, density) = lights.draw(&leaving, [a, b])?;
+                Some(system.radiance(&masks, &leaving, part) / density)
+            });
+            let radiance = points.sum::<f64>() / f64::from(count);
             let gamma = leaving.normal.dot(from).acos();
             let expected = 0.7 / PI * harmonic_irradiance(width, gamma);
             let off = (radiance / expected - 1.0).abs();
-            assert!(off < most, "{off:e} at {s} {t}, {nodes} nodes");
+            assert!(off < most, "{off:e} at {s} {t}");
         }
     }
     let system = under(EnvironmentMap::Lobes(vec![lobe]));
@@ -381,8 +410,6 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     let window = window(Profile::Hann(0.1), Profile::Hann(0.4));
     let grid = grid([0.1, 0.4]);
     let chain = chain(&system, &plane).unwrap();
-    let right = exact(&system, &plane, &window, &grid);
-    let near = linear(&system, &plane, &window, &grid, &chain, &right).unwrap();
-    let error = distance(&near, &right.slices);
+    let error = linearised(&system, &plane, &window, &grid, &chain);
     assert!(error < 3e-3, "{error}"); // (k s)³ of 0.08³, and what tilts of both axes do to each other
 }

@@ -1,19 +1,15 @@
-//! What stands between the light and the receiver, found quickly.
+//! Masks made ready for many questions: the share of a ray that passes, and the shapes in its way.
 
-use super::density::Sides;
 use etendue_field::{Grating, HalfPlane, Mask, Shape};
+use glam::DVec3;
 
-/// A mask and where it stands.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Layer<'a> {
-    /// Distance before the receiver, in metres; more than zero, less than that of the light.
-    pub(crate) distance: f64,
-    pub(crate) mask: &'a Mask,
-}
+/// Lowest and highest coordinate along two axes.
+pub(crate) type Sides = [[f64; 2]; 2];
 
-/// A layer made ready for many questions.
+/// A mask made ready for many questions.
 #[derive(Debug)]
 pub(crate) struct Barrier<'a> {
+    /// Where it stands: metres from the light, or before a receiver, as its owner counts.
     pub(crate) distance: f64,
     /// What half-planes leave open.
     pub(crate) open: Sides,
@@ -22,8 +18,8 @@ pub(crate) struct Barrier<'a> {
 }
 
 impl<'a> Barrier<'a> {
-    pub(crate) fn new(layer: &Layer<'a>) -> Self {
-        let (shapes, half_planes, grating): (&[Shape], &[HalfPlane], _) = match layer.mask {
+    pub(crate) fn new(distance: f64, mask: &'a Mask) -> Self {
+        let (shapes, half_planes, grating): (&[Shape], &[HalfPlane], _) = match mask {
             Mask::Opaque {
                 shapes,
                 half_planes,
@@ -40,7 +36,7 @@ impl<'a> Barrier<'a> {
             }
         }
         Self {
-            distance: layer.distance,
+            distance,
             open,
             shapes: Bins::new(shapes),
             grating,
@@ -58,6 +54,31 @@ impl<'a> Barrier<'a> {
             return 0.0;
         }
         self.grating.map_or(1.0, |g| g.transmittance(x, y))
+    }
+}
+
+/// Masks across the way from the light.
+#[derive(Debug)]
+pub(crate) struct Masks<'a>(Vec<Barrier<'a>>);
+
+impl<'a> Masks<'a> {
+    /// Masks with their distances from the light, metres.
+    pub(crate) fn new(layers: &'a [(f64, Mask)]) -> Self {
+        let barriers = layers.iter();
+        Self(barriers.map(|(at, mask)| Barrier::new(*at, mask)).collect())
+    }
+
+    /// The share of a ray with slopes (u, v) through a point that passes.
+    pub(crate) fn transmittance(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
+        let mut passes = 1.0;
+        for barrier in &self.0 {
+            let back = barrier.distance - point.z;
+            passes *= barrier.transmittance(point.x + back * u, point.y + back * v);
+            if passes == 0.0 {
+                break;
+            }
+        }
+        passes
     }
 }
 

@@ -1,0 +1,200 @@
+//! A density of one coordinate, drawn by its quantiles.
+
+use etendue_field::Profile;
+
+/// Cells in which the density is linear.
+const CELLS: usize = 512;
+
+/// A density on an interval: linear between values at equal steps.
+#[derive(Clone, Debug)]
+pub(crate) struct Density {
+    low: f64,
+    step: f64,
+    /// At the ends of the cells.
+    values: Vec<f64>,
+    /// Its integral up to there, from 0 to 1.
+    below: Vec<f64>,
+    /// The cell in which each of as many equal shares begins: where to look first.
+    first: Vec<usize>,
+}
+
+impl Density {
+    /// The density in proportion to a function, none of whose values is negative; `None` where it
+    /// vanishes.
+    pub(crate) fn new([low, high]: [f64; 2], function: impl Fn(f64) -> f64) -> Option<Self> {
+        let step = (high - low) / CELLS as f64;
+        let mut values: Vec<f64> = (0..=CELLS)
+            .map(|i| function(low + i as f64 * step))
+            .collect();
+        let mut below = vec![0.0];
+        for pair in values.windows(2) {
+            let last = below.last().copied().unwrap_or_default();
+            below.push(last + 0.5 * step * (pair[0] + pair[1]));
+        }
+        let total = below[CELLS];
+        if !(total > 0.0 && total.is_finite()) {
+            return None;
+        }
+        for value in values.iter_mut().chain(&mut below) {
+            *value /= total;
+        }
+        Some(Self::linear(low, step, values, below))
+    }
+
+    fn linear(low: f64, step: f64, values: Vec<f64>, below: Vec<f64>) -> Self {
+        let cells = below.len() - 1;
+        let cell = |k: usize| {
+            let share = k as f64 / cells as f64;
+            let after = below.partition_point(|below| *below <= share);
+            after.clamp(1, cells) - 1
+        };
+        Self {
+            low,
+            step,
+            first: (0..=cells).map(cell).collect(),
+            values,
+            below,
+        }
+    }
+
+    /// That of a window's profile. Next to the border it is a little larger than the profile, so that
+    /// no ray stands for much more than its share.
+    pub(crate) fn of(profile: &Profile) -> Self {
+        let half = profile.half_width();
+        let inside = |t: f64| profile.value(t * (1.0 - 1e-9)) + 1e-3;
+        let even = || Self::linear(-half, 2.0 * half, vec![0.5 / half; 2], vec![0.0, 1.0]);
+        Self::new([-half, half], inside).unwrap_or_else(even)
+    }
+
+    /// The coordinate below which a share of the density lies.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a share, 0 to 1, of the cells"
+    )]
+    pub(crate) fn quantile(&self, share: f64) -> f64 {
+        let last = self.below.len() - 2;
+        let mut cell = self.first[(share * (last + 1) as f64) as usize];
+        while cell < last && self.below[cell + 1] <= share {
+            cell += 1;
+        }
+        let [a, b] = [self.values[cell], self.values[cell + 1]];
+        // a t + (b − a) t²/2 = what is left, over the step.
+        let left = (share - self.below[cell]) / self.step;
+        let root = (a * a + 2.0 * (b - a) * left).max(0.0).sqrt();
+        let t = if a + root > 0.0 {
+            2.0 * left / (a + root)
+        } else {
+            0.0
+        };
+        self.low + (cell as f64 + t.clamp(0.0, 1.0)) * self.step
+    }
+
+    /// Its value; zero outside.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "checked to be within the interval first"
+    )]
+    pub(crate) fn value(&self, t: f64) -> f64 {
+        let at = (t - self.low) / self.step;
+        let cells = self.values.len() - 1;
+        if !(0.0..=cells as f64).contains(&at) {
+            return 0.0;
+        }
+        let cell = (at as usize).min(cells - 1);
+        let share = at - cell as f64;
+        self.values[cell] + share * (self.values[cell + 1] - self.values[cell])
+    }
+}
+
+/// A density over where rays are aimed at, one coordinate of a plane. They land a little beside it, so
+/// it is wider than the window, and it ends nowhere.
+#[derive(Clone, Debug)]
+pub(crate) struct Target {
+    near: Density,
+    half: f64,
+}
+
+/// The share of rays that are aimed anywhere.
+const FAR: f64 = 0.04;
+/// How much wider than the window the rest is.
+const WIDER: f64 = 1.2;
+
+impl Target {
+    /// Around the window of a coordinate.
+    pub(crate) fn new(profile: &Profile) -> Self {
+        let half = profile.half_width();
+        let reach = 1.2 * WIDER * half;
+        let around = |t: f64| profile.value(t / WIDER) + 0.05;
+        let near = Density::new([-reach, reach], around);
+        Self {
+            near: near.unwrap_or_else(|| Density::of(profile)),
+            half,
+        }
+    }
+
+    /// The coordinate below which a share lies, the near ones and the far ones apart.
+    pub(crate) fn quantile(&self, share: f64) -> f64 {
+        if share >= FAR {
+            return self.near.quantile((share - FAR) / (1.0 - FAR));
+        }
+        let to_side = 2.0 * share / FAR - 1.0;
+        self.half * to_side / (1.0 - to_side.abs())
+    }
+
+    /// Its value.
+    pub(crate) fn value(&self, t: f64) -> f64 {
+        let far = 0.5 / (self.half * (1.0 + t.abs() / self.half).powi(2));
+        (1.0 - FAR) * self.near.value(t) + FAR * far
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The mean of f/density over quantiles is the integral of f, wherever f is.
+    #[test]
+    fn targets_reach_everywhere() {
+        let target = Target::new(&Profile::Hann(0.5));
+        let n = 1_000_000;
+        for center in [0.2, 0.7, 6.0] {
+            let sum: f64 = (0..n)
+                .map(|i| {
+                    let t = target.quantile((f64::from(i) + 0.5) / f64::from(n));
+                    let apart = t - center;
+                    (-std::f64::consts::PI * apart * apart).exp() / target.value(t)
+                })
+                .sum();
+            // Midpoints in quantiles; where the density has a step, one of 1/n.
+            assert!((sum / f64::from(n) - 1.0).abs() < 1e-4, "{center}");
+        }
+    }
+
+    #[test]
+    fn quantiles_are_drawn_by_the_density() {
+        let profile = Profile::Hann(0.5);
+        let density = Density::of(&profile);
+        let n = 100_000;
+        // The mean of f/density over quantiles is the integral of f.
+        let sum: f64 = (0..n)
+            .map(|i| {
+                let t = density.quantile((f64::from(i) + 0.5) / f64::from(n));
+                profile.value(t) * (1.0 + t).powi(2) / density.value(t)
+            })
+            .sum();
+        // ∫ cos² (1 + t)² over |t| < ½: ½ (1 + 1/12 − 1/(2π²)).
+        let pi = std::f64::consts::PI;
+        let expected = 0.5 * (1.0 + 1.0 / 12.0 - 0.5 / (pi * pi));
+        assert!(
+            (sum / f64::from(n) - expected).abs() < 1e-7,
+            "{}",
+            sum / f64::from(n)
+        );
+        assert_eq!(density.value(0.51).to_bits(), 0.0_f64.to_bits());
+        let low = density.quantile(0.0);
+        let high = density.quantile(1.0);
+        assert!((low + 0.5).abs() < 1e-12 && (high - 0.5).abs() < 1e-12); // rounding
+    }
+}

@@ -1,0 +1,291 @@
+//! Sums over rays that stand for a light field, by randomised quasi-Monte Carlo.
+//!
+//! Whatever has no closed form is an integral over rays: positions and slopes at the plane, and points
+//! of the light. Its nodes are those of scrambled nets ([`sobol`]). Each of [`REPLICATES`] independent
+//! nets is a prediction of its own, without bias, and their spread is the error of their mean: a rule
+//! that is too coarse says so, because the nets disagree. Nodes are added until the error is below
+//! what is asked, or a budget is spent.
+
+mod density;
+mod sobol;
+
+pub(crate) use density::{Density, Target};
+pub(crate) use sobol::{DIMENSIONS, Net};
+
+use crate::geometry::Matrix;
+use etendue_field::transform::SliceTransform;
+use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
+use ndarray::{Array2, Array3};
+use rayon::prelude::*;
+
+/// Independent nets of a prediction.
+pub(crate) const REPLICATES: usize = 32;
+/// Independent nets of a derivative, of which the mean alone is needed.
+const OF_DERIVATIVES: usize = 8;
+/// Nodes of each of those: a derivative good to a per cent is good enough.
+const NODES_OF_DERIVATIVES: u32 = 1 << 15;
+/// Nodes of a net before its error is first looked at.
+const FIRST: u32 = 1 << 9;
+
+/// When to stop adding nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Budget {
+    /// Most nodes in all.
+    pub nodes: f64,
+    /// ‖error‖/‖F‖ that is good enough.
+    pub error: f64,
+}
+
+impl Budget {
+    /// Of a trial by which ways of drawing rays are told apart.
+    pub(crate) const TRIAL: Self = Self {
+        nodes: 0.0,
+        error: f64::INFINITY,
+    };
+}
+
+/// A ray at a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Node {
+    /// (x, y, u, v), or what stands for them.
+    pub(crate) z: [f64; 4],
+    /// What it adds to the windowed radiance space, over the density with which it was drawn.
+    pub(crate) weight: f64,
+}
+
+impl Node {
+    /// A ray that adds nothing.
+    pub(crate) const DARK: Self = Self {
+        z: [0.0; 4],
+        weight: 0.0,
+    };
+}
+
+/// Light fields as functions of a point of the unit cube.
+pub(crate) trait Integrand: Sync {
+    /// How many there are.
+    fn fields(&self) -> usize;
+    /// The ray of each at a point. All are dark before the call.
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]);
+}
+
+/// What came out of the nets.
+#[derive(Clone, Debug)]
+pub(crate) struct Sums {
+    /// The slices of each net, for each field: [field][net].
+    pub(crate) slices: Vec<Vec<Slices>>,
+    /// ‖error‖/‖F‖ of the mean of the first field. Infinite where no ray arrived.
+    pub(crate) error: f64,
+    /// Nodes in all.
+    pub(crate) nodes: f64,
+    /// The first field, integrated over y and v.
+    pub(crate) projection: Projection,
+    /// Second central moments of the first field; `None` where no ray arrived.
+    pub(crate) covariance: Option<Matrix<4>>,
+}
+
+/// One net on its way.
+struct Running {
+    net: Net,
+    /// Sums of each field so far.
+    slices: Vec<Slices>,
+    projection: Array2<f64>,
+    moments: Moments,
+}
+
+/// Sums over the nodes of independent nets, doubled until the budget says to stop. The same bytes on
+/// any number of threads.
+pub(crate) fn sums(
+    integrand: &(impl Integrand + ?Sized),
+    window: &Window,
+    grid: &SliceGrid,
+    bins: usize,
+    budget: Budget,
+) -> Sums {
+    let picture = ProjectionGrid::new(window, bins);
+    let transform = SliceTransform::new(grid);
+    let mut running = begin(integrand, grid, bins, REPLICATES);
+    let mut each = 0;
+    let mut more = FIRST;
+    loop {
+        running
+            .par_iter_mut()
+            .for_each(|net| net.add(integrand, &transform, &picture, more));
+        each += more;
+        let nodes = f64::from(each) * REPLICATES as f64;
+        let error = relative_error(running.iter().map(|net| &net.slices[0]));
+        if error <= budget.error || 2.0 * nodes > budget.nodes || each > 1 << 29 {
+            return finished(running, picture, f64::from(each), error);
+        }
+        more = each;
+    }
+}
+
+/// The mean of each field over a fixed number of nodes.
+pub(crate) fn means(
+    integrand: &(impl Integrand + ?Sized),
+    window: &Window,
+    grid: &SliceGrid,
+) -> Vec<Slices> {
+    let picture = ProjectionGrid::new(window, 1);
+    let transform = SliceTransform::new(grid);
+    let mut running = begin(integrand, grid, 1, OF_DERIVATIVES);
+    running
+        .par_iter_mut()
+        .for_each(|net| net.add(integrand, &transform, &picture, NODES_OF_DERIVATIVES));
+    let scale = 1.0 / f64::from(NODES_OF_DERIVATIVES);
+    let of = |field: usize| {
+        let replicates = running.iter().map(|net| &net.slices[field]);
+        let mut mean = mean(replicates);
+        mean.half *= Complex::from(scale);
+        mean
+    };
+    (0..integrand.fields()).map(of).collect()
+}
+
+fn begin(
+    integrand: &(impl Integrand + ?Sized),
+    grid: &SliceGrid,
+    bins: usize,
+    replicates: usize,
+) -> Vec<Running> {
+    let running = |replicate| Running {
+        net: Net::new(replicate),
+        slices: vec![Slices::zeros(*grid); integrand.fields()],
+        projection: Array2::zeros((bins, bins)),
+        moments: Moments::default(),
+    };
+    (0..).take(replicates).map(running).collect()
+}
+
+impl Running {
+    fn add(
+        &mut self,
+        integrand: &(impl Integrand + ?Sized),
+        transform: &SliceTransform,
+        picture: &ProjectionGrid,
+        count: u32,
+    ) {
+        let mut sums: Vec<_> = self
+            .slices
+            .iter()
+            .map(|_| transform.accumulator())
+            .collect();
+        let mut nodes = vec![Node::DARK; sums.len()];
+        for _ in 0..count {
+            nodes.fill(Node::DARK);
+            integrand.nodes(&self.net.point(), &mut nodes);
+            for (Node { z, weight }, sum) in nodes.iter().zip(&mut sums) {
+                if *weight != 0.0 {
+                    let [x, y, u, v] = *z;
+                    sum.deposit(&TwoPlane { x, y, u, v }, *weight);
+                }
+            }
+            let Node { z, weight } = nodes[0];
+            if let Some(cell) = picture.cell(z[0], z[2]).filter(|_| weight != 0.0) {
+                self.projection[cell] += weight;
+            }
+            self.moments.add(z, weight);
+        }
+        for (slices, sum) in self.slices.iter_mut().zip(&mut sums) {
+            slices.half += &sum.finish(1.0).half;
+        }
+    }
+}
+
+fn finished(running: Vec<Running>, picture: ProjectionGrid, each: f64, error: f64) -> Sums {
+    let all = each * running.len() as f64;
+    let mut projection = Array2::zeros((picture.bins, picture.bins));
+    let mut moments = Moments::default();
+    let fields = running[0].slices.len();
+    let mut slices: Vec<Vec<Slices>> = vec![Vec::new(); fields];
+    for net in running {
+        projection += &net.projection;
+        moments.join(&net.moments);
+        for (to, mut field) in slices.iter_mut().zip(net.slices) {
+            field.half /= Complex::from(each);
+            to.push(field);
+        }
+    }
+    projection /= picture.cell_area() * all;
+    Sums {
+        slices,
+        error,
+        nodes: all,
+        projection: Projection {
+            grid: picture,
+            values: projection,
+        },
+        covariance: moments.central(),
+    }
+}
+
+/// The mean of slices on one grid.
+///
+/// # Panics
+/// When there are none.
+pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Slices {
+    let count = slices.len() as f64;
+    let mut slices = slices;
+    let mut sum = slices.next().expect("at least one net").clone();
+    for other in slices {
+        sum.half += &other.half;
+    }
+    sum.half /= Complex::from(count);
+    sum
+}
+
+/// ‖σ‖/‖F‖, σ being the standard error of the mean (docs/theory.md, Eq. 12).
+fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> f64 {
+    let r = slices.len() as f64;
+    let mean = mean(slices.clone());
+    let size: f64 = mean.half.iter().map(|f| f.norm_sqr()).sum();
+    let spread = |one: &Slices| -> f64 {
+        let apart: Array3<Complex> = &one.half - &mean.half;
+        apart.iter().map(|d| d.norm_sqr()).sum()
+    };
+    let variance = slices.map(spread).sum::<f64>() / (r * (r - 1.0));
+    if size > 0.0 {
+        (variance / size).sqrt()
+    } else {
+        f64::INFINITY
+    }
+}
+
+/// Weighted sums of 1, z and z zᵀ.
+#[derive(Clone, Copy, Debug, Default)]
+struct Moments {
+    total: f64,
+    first: [f64; 4],
+    second: Matrix<4>,
+}
+
+impl Moments {
+    fn add(&mut self, z: [f64; 4], weight: f64) {
+        self.total += weight;
+        for i in 0..4 {
+            let share = weight * z[i];
+            self.first[i] += share;
+            for j in i..4 {
+                self.second[i][j] += share * z[j];
+            }
+        }
+    }
+
+    fn join(&mut self, other: &Self) {
+        self.total += other.total;
+        for i in 0..4 {
+            self.first[i] += other.first[i];
+            for j in i..4 {
+                self.second[i][j] += other.second[i][j];
+            }
+        }
+    }
+
+    fn central(&self) -> Option<Matrix<4>> {
+        let mean = self.first.map(|sum| sum / self.total);
+        let entry =
+            |i: usize, j: usize| self.second[i.min(j)][i.max(j)] / self.total - mean[i] * mean[j];
+        (self.total > 0.0).then(|| crate::geometry::from_fn(entry))
+    }
+}

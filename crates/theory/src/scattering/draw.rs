@@ -1,0 +1,389 @@
+//! How rays at a plane, and what shines on where they come from, are drawn: importance sampling.
+//!
+//! Any density that vanishes nowhere where there is light gives the same integral. These follow the
+//! window, the lobe of the BRDF and the light, and where two of them compete, half of the rays are
+//! drawn by each and all are weighed by the mixture (the balance heuristic, Veach and Guibas 1995).
+
+use super::exact::Leaving;
+use super::incoming::{Part, secant};
+use super::sky::Sky;
+use super::{Chain, System};
+use crate::geometry::{Map, Matrix, product, times};
+use crate::nets::Density;
+use etendue_field::{Brdf, Frame, Light, Lobe, Shape, Window};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// What is drawn how. No choice is best everywhere: they are tried on the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Strategy {
+    /// Half of the slopes about the mirrored light.
+    pub(super) mirrored: bool,
+    /// Half of the parts of the light by the lobe.
+    pub(super) by_lobe: bool,
+    /// Four parts of the light for each point of the surface.
+    pub(super) quarters: bool,
+}
+
+impl Strategy {
+    /// This one, changed in one way.
+    pub(super) fn neighbours(self) -> [Self; 3] {
+        [
+            Self {
+                mirrored: !self.mirrored,
+                ..self
+            },
+            Self {
+                by_lobe: !self.by_lobe,
+                ..self
+            },
+            Self {
+                quarters: !self.quarters,
+                ..self
+            },
+        ]
+    }
+
+    /// About how long a ray takes, one drawn by the window and one part of the light being 1.
+    pub(super) fn time(self) -> f64 {
+        if self.quarters { 1.7 } else { 1.0 }
+    }
+}
+
+/// Draws rays at a plane.
+#[derive(Clone, Debug)]
+pub(super) struct Rays {
+    /// Over x, y, u and v, by the window.
+    window: [Density; 4],
+    /// Slopes towards where the central light is mirrored.
+    mirrored: Option<Mirrored>,
+}
+
+/// Slopes near those of the mirrored light, which are an affine function of the position.
+#[derive(Clone, Copy, Debug)]
+struct Mirrored {
+    /// Angles between a ray and the mirror direction: first + at (x, y) + by (u, v).
+    first: [f64; 2],
+    at: Matrix<2>,
+    by: Matrix<2>,
+    inverse: Matrix<2>,
+    determinant: f64,
+    /// Radians about the mirror direction.
+    width: f64,
+}
+
+/// Widths of the lobe over which slopes are drawn about the mirror direction.
+const BROADENED: f64 = 1.5;
+
+impl Rays {
+    pub(super) fn new(
+        system: &System,
+        window: &Window,
+        chain: Option<&Chain>,
+        strategy: Strategy,
+    ) -> Self {
+        let profiles = [window.x, window.y, window.u, window.v];
+        let chain = chain.filter(|_| strategy.mirrored);
+        Self {
+            window: profiles.map(|profile| Density::of(&profile)),
+            mirrored: chain.and_then(|chain| Mirrored::new(system, chain)),
+        }
+    }
+
+    /// A ray (x, y, u, v) and its density.
+    pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> ([f64; 4], f64) {
+        let [along_x, along_y, along_u, along_v] = &self.window;
+        let [x, y] = [along_x.quantile(a), along_y.quantile(b)];
+        let Some(mirrored) = &self.mirrored else {
+            let z = [x, y, along_u.quantile(c), along_v.quantile(d)];
+            return (z, self.of_window(z));
+        };
+        let [u, v] = if c < 0.5 {
+            [along_u.quantile(2.0 * c), along_v.quantile(d)]
+        } else {
+            mirrored.draw([x, y], [2.0 * c - 1.0, d])
+        };
+        let positions = along_x.value(x) * along_y.value(y);
+        let slopes = along_u.value(u) * along_v.value(v);
+        let density = positions * 0.5 * (slopes + mirrored.density([x, y, u, v]));
+        ([x, y, u, v], density)
+    }
+
+    fn of_window(&self, z: [f64; 4]) -> f64 {
+        let each = self.window.iter().zip(z);
+        each.map(|(density, t)| density.value(t)).product()
+    }
+}
+
+impl Mirrored {
+    /// `None` where light comes from everywhere, or slopes do not tell angles apart.
+    fn new(system: &System, chain: &Chain) -> Option<Self> {
+        let off = chain.off.inverse()?;
+        let block = |map: &Map<4>, row: usize, column: usize| -> Matrix<2> {
+            crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
+        };
+        // What the central point of the light, or the axis of a beam, shines along.
+        let free = match system.light {
+            Light::Beam { .. } => 0,
+            Light::Environment { .. } => return None,
+            Light::Area { .. } | Light::Point { .. } | Light::Projector { .. } => 2,
+        };
+        let onto = &chain.onto;
+        let (places, _) = inverted(&block(onto, 0, free))?;
+        // Angles of incidence per place on the surface.
+        let per_place = product(&block(onto, 2, free), &places);
+        let [s, t, theta, phi] = onto.offset;
+        let arrives = times(&per_place, &[s, t]);
+        // Where light goes plus where it comes from: the angles from the mirror direction.
+        let by = |column: usize| {
+            let angles = block(&off, 2, column);
+            let through = product(&per_place, &block(&off, 0, column));
+            crate::geometry::from_fn(|i, j| angles[i][j] + through[i][j])
+        };
+        let [s0, t0, theta0, phi0] = off.offset;
+        let from = times(&per_place, &[s0, t0]);
+        let first = [
+            theta0 + theta + from[0] - arrives[0],
+            phi0 + phi + from[1] - arrives[1],
+        ];
+        let (inverse, determinant) = inverted(&by(2))?;
+        let light = match &system.light {
+            Light::Area { shape, .. } => radius(shape) / chain.distance,
+            _ => 0.0,
+        };
+        Some(Self {
+            first,
+            at: by(0),
+            by: by(2),
+            inverse,
+            determinant: determinant.abs(),
+            width: (BROADENED * angular_width(&system.reflectance.brdf)?).hypot(light),
+        })
+    }
+
+    fn draw(&self, position: [f64; 2], at: [f64; 2]) -> [f64; 2] {
+        let angles = bell(self.width, at);
+        let center = times(&self.at, &position);
+        let left = [0, 1].map(|i| angles[i] - self.first[i] - center[i]);
+        times(&self.inverse, &left)
+    }
+
+    fn density(&self, [x, y, u, v]: [f64; 4]) -> f64 {
+        let (at, by) = (times(&self.at, &[x, y]), times(&self.by, &[u, v]));
+        let angles = [0, 1].map(|i| self.first[i] + at[i] + by[i]);
+        bell_density(self.width, angles) * self.determinant
+    }
+}
+
+/// Draws parts of the light.
+#[derive(Clone, Debug)]
+pub(super) struct Lights<'a> {
+    system: &'a System,
+    sky: Option<Sky<'a>>,
+    /// Whether half of them are drawn by the lobe.
+    by_lobe: bool,
+    /// Of how many along each side of the square one is drawn at a time.
+    side: usize,
+}
+
+impl<'a> Lights<'a> {
+    /// For a surface whose normal is this where the central ray meets it.
+    pub(super) fn new(system: &'a System, normal: DVec3, strategy: Strategy) -> Self {
+        let sky = match &system.light {
+            Light::Environment { environment } => Sky::new(environment, normal),
+            _ => None,
+        };
+        let has_extent = has_extent(&system.light);
+        let has_lobe = angular_width(&system.reflectance.brdf).is_some();
+        Self {
+            system,
+            sky,
+            by_lobe: strategy.by_lobe && has_extent && has_lobe,
+            side: if strategy.quarters && has_extent {
+                2
+            } else {
+                1
+            },
+        }
+    }
+
+    /// The parts of the light that a point of the surface asks for, with their densities over their
+    /// share of the mean: one, or one in each quarter of what may be drawn.
+    pub(super) fn each<'b>(
+        &'b self,
+        leaving: &'b Leaving,
+        [a, b]: [f64; 2],
+    ) -> impl Iterator<Item = (Part, f64)> + 'b {
+        let side = self.side;
+        (0..side * side).filter_map(move |k| {
+            let cell = [(k / side) as f64, (k % side) as f64];
+            let at = [(a + cell[0]) / side as f64, (b + cell[1]) / side as f64];
+            let (part, density) = self.draw(leaving, at)?;
+            Some((part, density * (side * side) as f64))
+        })
+    }
+
+    /// A part of the light, and its density in the part's measure.
+    pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(Part, f64)> {
+        let light = &self.system.light;
+        if !has_extent(light) {
+            return Some((Part::Whole, 1.0));
+        }
+        if !self.by_lobe {
+            let part = self.by_light([a, b])?;
+            return Some((part, self.density_by_light(part)));
+        }
+        let lobe = LobeDensity::new(self.system, leaving);
+        let part = if a < 0.5 {
+            self.by_light([2.0 * a, b])?
+        } else {
+            self.towards(leaving, lobe.draw([2.0 * a - 1.0, b])?)?
+        };
+        let by_lobe = lobe.density(self.direction(leaving, part)) * self.steradians(leaving, part);
+        Some((part, 0.5 * (self.density_by_light(part) + by_lobe)))
+    }
+
+    fn by_light(&self, at: [f64; 2]) -> Option<Part> {
+        match &self.system.light {
+            Light::Area { shape, .. } => Some(Part::Point(crate::rays::point_of(shape, at))),
+            Light::Environment { environment } => {
+                let from = self.sky.as_ref()?.draw(at);
+                forward(-environment.frame.vector_to_world(from))
+            }
+            _ => None,
+        }
+    }
+
+    fn density_by_light(&self, part: Part) -> f64 {
+        match (&self.system.light, part, &self.sky) {
+            (Light::Area { shape, .. }, ..) => 1.0 / shape.area(),
+            (Light::Environment { environment }, Part::Slopes([u, v]), Some(sky)) => {
+                sky.density(environment.origin_of(DVec3::new(u, v, 1.0)))
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The part of the light in a direction, away from the surface.
+    fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<Part> {
+        let slopes = forward(-wi)?;
+        match (&self.system.light, slopes) {
+            (Light::Area { shape, .. }, Part::Slopes([u, v])) => {
+                let DVec3 { x, y, z } = leaving.point;
+                let [a, b] = [x - z * u, y - z * v];
+                shape.contains(a, b).then_some(Part::Point([a, b]))
+            }
+            _ => Some(slopes),
+        }
+    }
+
+    /// Where a part of the light is seen, a unit vector away from the surface.
+    fn direction(&self, leaving: &Leaving, part: Part) -> DVec3 {
+        match part {
+            Part::Point([a, b]) => (DVec3::new(a, b, 0.0) - leaving.point).normalize(),
+            Part::Slopes([u, v]) => -DVec3::new(u, v, 1.0).normalize(),
+            Part::Whole => DVec3::ZERO,
+        }
+    }
+
+    /// Steradians per unit of the part's measure.
+    fn steradians(&self, leaving: &Leaving, part: Part) -> f64 {
+        let DVec3 { x, y, z } = leaving.point;
+        match part {
+            Part::Point([a, b]) => 1.0 / (z * z * secant([(x - a) / z, (y - b) / z]).powi(3)),
+            Part::Slopes(_) | Part::Whole => 1.0,
+        }
+    }
+}
+
+/// Whether light comes to a point from more than one direction.
+fn has_extent(light: &Light) -> bool {
+    matches!(light, Light::Area { .. } | Light::Environment { .. })
+}
+
+/// The slopes of light along a direction, if it goes forward.
+fn forward(along: DVec3) -> Option<Part> {
+    (along.z > 0.0).then(|| Part::Slopes([along.x / along.z, along.y / along.z]))
+}
+
+/// Draws where light comes from by where it goes: normals of microfacets about that of the surface.
+struct LobeDensity {
+    local: Frame,
+    wo: DVec3,
+    /// Slopes of the normals.
+    width: f64,
+}
+
+impl LobeDensity {
+    fn new(system: &System, leaving: &Leaving) -> Self {
+        let at = system.patch.frame.to_local(leaving.point);
+        let brdf = system.reflectance.at(at.x, at.y);
+        let local = Frame::IDENTITY.turned_to(leaving.normal);
+        Self {
+            wo: local.vector_to_local(leaving.direction),
+            local,
+            width: 0.5 * angular_width(&brdf).unwrap_or(1.0),
+        }
+    }
+
+    fn draw(&self, at: [f64; 2]) -> Option<DVec3> {
+        let [p, q] = bell(self.width, at);
+        let half = DVec3::new(p, q, 1.0).normalize();
+        let wi = 2.0 * half.dot(self.wo) * half - self.wo;
+        (wi.z > 0.0).then(|| self.local.vector_to_world(wi))
+    }
+
+    /// Per steradian of where light comes from.
+    fn density(&self, wi: DVec3) -> f64 {
+        let wi = self.local.vector_to_local(wi);
+        let half = (wi + self.wo).normalize();
+        if !(half.z > 0.0) {
+            return 0.0;
+        }
+        let slopes = [half.x / half.z, half.y / half.z];
+        // Per steradian of normals, and four times their cosine of those of light.
+        let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
+        per_normal / (4.0 * half.dot(self.wo).abs())
+    }
+}
+
+/// Radians from the mirror direction within which most of a lobe lies; `None` where that is all.
+fn angular_width(brdf: &Brdf) -> Option<f64> {
+    match brdf.lobe {
+        Lobe::Lambertian => None,
+        Lobe::Phong { exponent } => Some((2.0 / (exponent + 1.0)).sqrt()),
+        Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => Some(2.0 * roughness),
+    }
+}
+
+/// Distance of a shape's farthest point from the axis.
+fn radius(shape: &Shape) -> f64 {
+    let [x, y] = [0, 1].map(|axis| {
+        let [low, high] = shape.bounds().extent(axis);
+        low.abs().max(high.abs())
+    });
+    x.hypot(y)
+}
+
+/// A point of the plane with the density of `bell_density`.
+fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
+    let r = width * (a / (1.0 - a)).sqrt();
+    let (sin, cos) = (TAU * b).sin_cos();
+    [r * cos, r * sin]
+}
+
+/// 1/(π w² (1 + r²/w²)²): as wide as a lobe, with tails so long that no lobe leaves them.
+fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
+    let squared = width * width;
+    1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))
+}
+
+/// The inverse and the determinant.
+fn inverted([[a, b], [c, d]]: &Matrix<2>) -> Option<(Matrix<2>, f64)> {
+    let determinant = a * d - b * c;
+    let scale = (a * a + b * b + c * c + d * d) * 1e-9;
+    (determinant.abs() > scale).then(|| {
+        let inverse = [[*d, -b], [-c, *a]].map(|row| row.map(|x| x / determinant));
+        (inverse, determinant)
+    })
+}
