@@ -19,10 +19,7 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 
 /// Makes what waits to become a result, and names all that is to be removed when the user asks to stop. A first
 /// signal waits for both.
-pub(crate) fn begin<E>(
-    paths: Vec<PathBuf>,
-    make: impl FnOnce() -> Result<(), E>,
-) -> Result<(), E> {
+pub(crate) fn begin<E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
     let mut unfinished = unfinished();
     make()?;
     *unfinished = paths;

@@ -1,6 +1,6 @@
 use crate::failure::Failure;
 use clap::ValueEnum;
-use etendue_compare::Class;
+use etendue_compare::{Applicability, Class};
 use etendue_field::{Light, PhotonSource, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_trace::{Backward, PointLight, Tracer};
@@ -27,7 +27,8 @@ pub(crate) fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSour
 /// Fails, before anything is written, when a scene cannot be measured by `method`, or needs the other one as a
 /// reference that it cannot have.
 pub(crate) fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
-    let reference = |plane: &VirtualPlane| Class::of(scene, plane) == Class::Reference;
+    let reference =
+        |plane: &VirtualPlane| Applicability::new(scene, plane).class() == Class::Reference;
     let backward = method == Method::Backward || scene.planes.iter().any(reference);
     match scene.light {
         Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } if backward => {

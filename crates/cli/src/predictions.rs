@@ -5,7 +5,9 @@ use crate::method::Method;
 use crate::npz::Npz;
 use crate::results::Results;
 use crate::stored::Stored;
-use etendue_compare::{Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction};
+use etendue_compare::{
+    Applicability, Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction,
+};
 use etendue_field::{Complex, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
@@ -138,7 +140,7 @@ pub(crate) fn read(
     let pairs = scene.planes.iter().zip(planes);
     pairs
         .map(|(plane, words)| {
-            let class = Class::of(scene, plane);
+            let class = Applicability::new(scene, plane).class();
             if words.class != class {
                 let (name, is) = (&plane.name, words.class);
                 return Err(stored.fault(format!("class of {name} is {is:?}; must be {class:?}")));

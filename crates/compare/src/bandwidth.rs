@@ -1,6 +1,6 @@
 //! How fast a glossy reflection changes with angle, by the paper's criteria, by quadrature and as measured.
 
-use crate::scattering::scattered;
+use crate::applicability::{Applicability, Theory};
 use etendue_field::{Light, Lobe, Orientation, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::TooFewBatches;
@@ -15,7 +15,9 @@ use etendue_theory::shading::{self, Criterion};
 /// What blocks the light is the last of the blockers; without them the light's own edge does, unless it comes from far away.
 #[must_use]
 pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
-    let (system, at) = scattered(scene, plane)?;
+    let Theory::Scattering(system, at) = Applicability::new(scene, plane).theory else {
+        return None;
+    };
     if plane.orientation != Orientation::Orthogonal {
         return None;
     }
@@ -49,7 +51,9 @@ fn cutoff(lobe: shading::Lobe) -> f64 {
 /// The bandwidth along ν of the exact prediction of such a plane, by the estimator that photons are measured with.
 #[must_use]
 pub fn exact_bandwidth(scene: &Scene, plane: &VirtualPlane) -> Option<f64> {
-    let (system, at) = scattered(scene, plane)?;
+    let Theory::Scattering(system, at) = Applicability::new(scene, plane).theory else {
+        return None;
+    };
     let slices = scattering::exact(&system, &at, &plane.window, &plane.grid).slices;
     bandwidth_nu(
         slices.radial_power().view(),

@@ -1,5 +1,8 @@
-use crate::first_order::{distance, print};
-use crate::system::system;
+//! How the first-order chain becomes exact as the neighbourhood of the central ray shrinks.
+
+use crate::applicability::{Applicability, Theory};
+use crate::first_order::distance;
+use crate::system::print;
 use etendue_field::{FrequencyAxis, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::rays;
@@ -25,7 +28,9 @@ const CLEAR: f64 = 5.0;
 /// alone: nothing is traced by photons.
 #[must_use]
 pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
-    let (whole, at) = system(scene, plane)?;
+    let Theory::Specular(whole, at) = Applicability::new(scene, plane).theory else {
+        return None;
+    };
     let mut steps = Vec::new();
     let mut clear = true;
     for e in SHARES {

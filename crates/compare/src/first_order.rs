@@ -1,8 +1,8 @@
 //! The paper's linearised chain beside the exact ray-space prediction.
 
-use crate::report::Verdict;
 use crate::residuals::Residuals;
-use crate::system::{follows_rays, system};
+use crate::system::print;
+use crate::verdict::Verdict;
 use etendue_field::{Light, Profile, Shape, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -60,22 +60,6 @@ const FACTOR: f64 = 1.1;
 const FLOOR: f64 = 0.01;
 /// One-sided 95 % of a normal distribution.
 const NINETY_FIVE: f64 = 1.645;
-
-/// The chain of affine maps that leads to a plane of class first-order, by the paper's printed formulas where the scene asks for them.
-#[must_use]
-pub fn affine_chain(scene: &Scene, plane: &VirtualPlane) -> Option<rays::FirstOrder> {
-    let (system, at) = system(scene, plane).filter(|_| follows_rays(scene, plane))?;
-    rays::chain(&system, &at, print(scene))
-}
-
-/// The formulas a scene asks for.
-pub(crate) fn print(scene: &Scene) -> Print {
-    if scene.file.as_printed {
-        Print::Equations
-    } else {
-        Print::Corrected
-    }
-}
 
 impl FirstOrderReport {
     /// How many times as many photons would bring the bound of the excess to what is allowed; 1 where they would not decide.

@@ -6,12 +6,14 @@
 //!
 //! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
 
+mod applicability;
 mod bandwidth;
 mod chain;
 mod class;
 mod converge;
 mod first_order;
 mod memory;
+mod parallel;
 mod plane;
 mod prediction;
 mod report;
@@ -19,19 +21,21 @@ mod residuals;
 mod scattering;
 mod score;
 mod system;
+mod verdict;
 mod work;
 
+pub use applicability::{Applicability, Theory};
 pub use bandwidth::{criterion, exact_bandwidth, measured_bandwidth};
 pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};
-pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport, affine_chain};
+pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use memory::Memory;
 pub use plane::{PlaneComparison, compare};
-pub use prediction::{PredictedParameter, Prediction, steps};
-pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
+pub use prediction::{PredictedParameter, Prediction};
+pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, sidak};
 pub use residuals::Residuals;
-pub use scattering::scattered;
 pub use score::ParameterReport;
-pub use system::system;
-pub use work::{TooMuchWork, too_much_work, work};
+pub use system::{scattered, system};
+pub use verdict::Verdict;
+pub use work::{TooMuchWork, too_much_work};

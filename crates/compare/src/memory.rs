@@ -1,10 +1,7 @@
 //! What a run holds in memory, before it begins.
 
-use crate::chain::chain;
-use crate::class::Class;
-use crate::scattering::scattered;
-use crate::system::system;
-use crate::work::work;
+use crate::applicability::{Applicability, Theory};
+use crate::work;
 use etendue_field::{SliceGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::{PROJECTION_BINS, SliceTransform};
@@ -43,27 +40,34 @@ impl Memory {
         // A batch is the work of one thread.
         let busy = (threads as f64).min(batches);
         let planes = scene.planes.iter();
-        let sum = |of: &dyn Fn(&VirtualPlane) -> f64| planes.clone().map(of).sum::<f64>();
+        let planes = planes.map(|plane| (plane, Applicability::new(scene, plane).theory));
+        let planes: Vec<(&VirtualPlane, Theory)> = planes.collect();
+        let each = |of: &dyn Fn(&VirtualPlane, &Theory) -> f64| -> Vec<f64> {
+            planes
+                .iter()
+                .map(|(plane, theory)| of(plane, theory))
+                .collect()
+        };
+        let sum = |of: &dyn Fn(&VirtualPlane, &Theory) -> f64| each(of).into_iter().sum::<f64>();
         let largest =
-            |of: &dyn Fn(&VirtualPlane) -> f64| planes.clone().map(of).fold(0.0, f64::max);
+            |of: &dyn Fn(&VirtualPlane, &Theory) -> f64| each(of).into_iter().fold(0.0, f64::max);
         let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
         // Of a reference its measurement and the copies that a prediction keeps.
-        let kept = |plane: &VirtualPlane| match Class::of(scene, plane) {
-            Class::Reference => 3.0,
-            Class::Exact | Class::FirstOrder => 1.0,
-        };
-        let found = work(scene).into_iter();
-        let found = found.map(|work| work.bytes + threads as f64 * work.bytes_each);
-        let predicted = |plane: &VirtualPlane| (3.0 + parameters(scene, plane)) * spectra(plane);
+        let kept = |theory: &Theory| if is_none(theory) { 3.0 } else { 1.0 };
+        let has_reference = planes.iter().any(|(_, theory)| is_none(theory));
         Self {
-            batches: batches * sum(&|plane| kept(plane) * (spectra(plane) + picture)),
-            threads: busy * sum(&|plane| SliceTransform::new(&plane.grid).bytes()),
-            predictions: sum(&predicted) + found.fold(0.0, f64::max),
+            batches: batches * sum(&|plane, theory| kept(theory) * (spectra(plane) + picture)),
+            threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
+            predictions: sum(&|plane, theory| (3.0 + parameters(theory)) * spectra(plane))
+                + largest(&|plane, theory| {
+                    let work = work::of(theory, plane);
+                    work.bytes + threads as f64 * work.bytes_each
+                }),
             // Residuals of all batches, means, variances, powers, and the sums that p-values are made of.
-            comparison: largest(&|plane| (batches + 8.0) * spectra(plane))
-                + sum(&|plane| 4.0 * spectra(plane)),
-            meshes: meshes(scene),
+            comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
+                + sum(&|plane, _| 4.0 * spectra(plane)),
+            meshes: meshes(scene, has_reference),
         }
     }
 
@@ -81,11 +85,13 @@ impl Memory {
     }
 }
 
-fn meshes(scene: &Scene) -> f64 {
+fn is_none(theory: &Theory) -> bool {
+    matches!(theory, Theory::None)
+}
+
+fn meshes(scene: &Scene, has_reference: bool) -> f64 {
     let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-    let mut planes = scene.planes.iter();
-    let is_reference = planes.any(|plane| Class::of(scene, plane) == Class::Reference);
-    let reference = if is_reference {
+    let reference = if has_reference {
         TRIANGLE_OF_REFERENCE
     } else {
         0.0
@@ -99,17 +105,12 @@ fn cells(grid: &SliceGrid) -> f64 {
 }
 
 /// Derivatives that a prediction holds.
-fn parameters(scene: &Scene, plane: &VirtualPlane) -> f64 {
-    let count = match (
-        Class::of(scene, plane),
-        system(scene, plane),
-        scattered(scene, plane),
-    ) {
-        (Class::Reference, ..) => 0,
-        (Class::Exact, ..) => chain(scene, plane).parameters().len(),
-        (_, Some((system, at)), _) => system.parameters(&at).len(),
-        (_, _, Some((system, _))) => system.parameters().len(),
-        _ => 0,
+fn parameters(theory: &Theory) -> f64 {
+    let count = match theory {
+        Theory::None => 0,
+        Theory::Parallel(chain) => chain.parameters().len(),
+        Theory::Specular(system, at) => system.parameters(at).len(),
+        Theory::Scattering(system, _) => system.parameters().len(),
     };
     count as f64
 }

@@ -1,8 +1,11 @@
+//! A plane of a measurement held against its prediction.
+
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
-use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict};
+use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
 use crate::residuals::Residuals;
 use crate::score::score;
+use crate::verdict::Verdict;
 use etendue_field::{Complex, PlaneTally, SliceGrid, Slices, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{

@@ -1,8 +1,9 @@
+//! Everything a measurement of a plane is held against.
+
+use crate::applicability::{Applicability, Theory};
 use crate::chain::chain;
-use crate::class::{Class, without_theory};
-use crate::first_order::{FirstOrder, affine_chain};
-use crate::scattering::scattered;
-use crate::system::system;
+use crate::class::Class;
+use crate::first_order::FirstOrder;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
@@ -48,77 +49,61 @@ pub struct PredictedParameter {
     pub derivative: Slices,
 }
 
-/// The steps that make the spectrum of a plane, a line for each: the chain, what theory has no word for, and the window last.
-#[must_use]
-pub fn steps(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let Window { x, y, u, v } = &plane.window;
-    let mut steps = chain(scene, plane).describe();
-    if let Some((system, at)) = scattered(scene, plane) {
-        let chain = etendue_theory::scattering::chain(&system, &at);
-        steps.truncate(1);
-        steps.extend(chain.into_iter().flat_map(|chain| chain.steps));
-    }
-    if let Some(chain) = affine_chain(scene, plane) {
-        // What shines is said alike; how it travels, by the maps.
-        steps.truncate(1);
-        steps.extend(chain.steps);
-    }
-    let unknown = match Class::of(scene, plane) {
-        Class::FirstOrder => Vec::new(),
-        Class::Exact | Class::Reference => without_theory(scene, plane),
-    };
-    steps.extend(unknown.iter().map(|step| format!("without theory  {step}")));
-    steps.push(format!(
-        "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
-    ));
-    steps
-}
-
 /// Metres, and whatever else parameters are in, that rounding leaves of zero.
 const NOTHING: f64 = 1e-9;
 
 impl Prediction {
-    /// What theory predicts for a plane of a scene; for a plane behind a mesh see [`Self::reference`].
+    /// What theory predicts for a plane of a scene. Where no theory applies it is that of its chain as
+    /// far as the chain goes: see [`Self::reference`].
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if Class::of(scene, plane) == Class::FirstOrder
-            && let Some((system, at)) = system(scene, plane)
-        {
-            return Self::by_rays(scene, plane, &system, &at);
+        let applicability = Applicability::new(scene, plane);
+        let steps = applicability.steps(scene, plane);
+        match applicability.theory {
+            Theory::Parallel(chain) => Self::by_chain(scene, plane, &chain, steps),
+            Theory::Specular(system, at) => Self::by_rays(scene, plane, &system, &at, steps),
+            Theory::Scattering(system, at) => Self::by_scattering(plane, &system, &at, steps),
+            Theory::None => Self {
+                class: Class::Reference,
+                ..Self::by_chain(scene, plane, &chain(scene, plane), steps)
+            },
         }
-        if let Some((system, at)) = scattered(scene, plane) {
-            return Self::by_scattering(scene, plane, &system, &at);
-        }
-        let chain = chain(scene, plane);
+    }
+
+    /// What the closed forms of light between parallel planes say.
+    fn by_chain(scene: &Scene, plane: &VirtualPlane, chain: &Chain, steps: Vec<String>) -> Self {
         let (window, grid) = (&plane.window, &plane.grid);
-        let slices = etendue_theory::slices(&chain, window, grid);
+        let slices = etendue_theory::slices(chain, window, grid);
         let cells = ProjectionGrid::new(window, PROJECTION_BINS);
-        let parameters = chain
-            .parameters()
-            .into_iter()
-            .map(|parameter| PredictedParameter {
-                name: chain.name(parameter),
-                unit: chain.unit(parameter).to_owned(),
-                value: chain.value(parameter),
-                derivative: etendue_theory::derivative(&chain, parameter, window, grid, &slices),
-            })
-            .collect();
+        let parameters = chain.parameters().into_iter();
+        let parameters = parameters.map(|parameter| PredictedParameter {
+            name: chain.name(parameter),
+            unit: chain.unit(parameter).to_owned(),
+            value: chain.value(parameter),
+            derivative: etendue_theory::derivative(chain, parameter, window, grid, &slices),
+        });
         Self {
-            class: Class::of(scene, plane),
-            steps: steps(scene, plane),
-            quadrature_error: etendue_theory::quadrature_error(&chain, window, grid, &slices),
+            class: Class::Exact,
+            steps,
+            quadrature_error: etendue_theory::quadrature_error(chain, window, grid, &slices),
             first_order: None,
             replicates: Vec::new(),
             unblocked: unblocked(chain.clone(), window),
-            projection: etendue_theory::projection(&chain, window, &cells),
+            projection: etendue_theory::projection(chain, window, &cells),
+            parameters: parameters.collect(),
             slices,
-            parameters,
             cuts: cuts(scene, plane),
         }
     }
 
     /// What rays followed through the real geometry say, and the first-order chain.
-    fn by_rays(scene: &Scene, plane: &VirtualPlane, system: &System, at: &Plane) -> Self {
+    fn by_rays(
+        scene: &Scene,
+        plane: &VirtualPlane,
+        system: &System,
+        at: &Plane,
+        steps: Vec<String>,
+    ) -> Self {
         let (window, grid) = (&plane.window, &plane.grid);
         let exact = rays::exact(system, at, window, grid);
         let first_order = FirstOrder::new(scene, plane, system, at, &exact.slices);
@@ -138,7 +123,7 @@ impl Prediction {
         });
         Self {
             class: Class::FirstOrder,
-            steps: steps(scene, plane),
+            steps,
             quadrature_error: Some(exact.quadrature_error),
             first_order,
             replicates: Vec::new(),
@@ -163,7 +148,7 @@ impl Prediction {
         let plane = &scene.planes[index];
         Ok(Self {
             class: Class::Reference,
-            steps: steps(scene, plane),
+            steps: Applicability::new(scene, plane).steps(scene, plane),
             slices: estimate::slices(measurement, at)?.mean,
             quadrature_error: None,
             first_order: None,

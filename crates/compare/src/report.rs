@@ -1,33 +1,12 @@
+//! Every number of a compared plane, as in `summary.json`.
+
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::score::ParameterReport;
+use crate::verdict::Verdict;
 use etendue_field::Frame;
 use etendue_theory::geometry::Matrix;
 use serde::Serialize;
-
-/// What a plane or a run comes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// Measured and predicted agree.
-    Pass,
-    /// They do not.
-    Fail,
-    /// No disagreement was seen, but noise would have hidden one: the plane needs more photons.
-    Undecided,
-}
-
-impl Verdict {
-    /// The worse of two: fail before undecided before pass.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Fail, _) | (_, Self::Fail) => Self::Fail,
-            (Self::Undecided, _) | (_, Self::Undecided) => Self::Undecided,
-            (Self::Pass, Self::Pass) => Self::Pass,
-        }
-    }
-}
 
 /// Measured and predicted values of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]

@@ -1,3 +1,5 @@
+//! Measured minus predicted, batch by batch, and the tests made on it.
+
 use etendue_field::random::{self, Stream};
 use etendue_field::{Complex, SliceGrid, Slices};
 use etendue_spectrum::{Measurement, PlaneBatch};

@@ -1,3 +1,5 @@
+//! The parameters of a prediction as the photons measure them.
+
 use crate::prediction::PredictedParameter;
 use crate::residuals::Residuals;
 use ndarray::Array3;

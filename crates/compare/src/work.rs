@@ -1,9 +1,6 @@
 //! What the predictions of a scene take, before anything is traced.
 
-use crate::chain::chain;
-use crate::class::Class;
-use crate::scattering::scattered;
-use crate::system::system;
+use crate::applicability::{Applicability, Theory};
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
@@ -50,12 +47,6 @@ impl fmt::Display for TooMuchWork {
     }
 }
 
-/// What the prediction of each plane takes, in the order of the scene; nothing where another measurement takes its place.
-#[must_use]
-pub fn work(scene: &Scene) -> Vec<Work> {
-    scene.planes.iter().map(|plane| of(scene, plane)).collect()
-}
-
 /// The plane that takes most of the work, where the predictions of a scene would not end in about ten minutes; or the first whose
 /// prediction would not fit into a gigabyte.
 #[must_use]
@@ -65,7 +56,7 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     for plane in &scene.planes {
         let this = TooMuchWork {
             plane: plane.name.clone(),
-            work: of(scene, plane),
+            work: of(&Applicability::new(scene, plane).theory, plane),
             total: 0.0,
         };
         if this.work.bytes + this.work.bytes_each > MOST_BYTES {
@@ -82,16 +73,14 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     None
 }
 
-fn of(scene: &Scene, plane: &VirtualPlane) -> Work {
+/// What the prediction of a plane takes.
+pub(crate) fn of(theory: &Theory, plane: &VirtualPlane) -> Work {
     let (window, grid) = (&plane.window, &plane.grid);
     let picture = ProjectionGrid::new(window, PROJECTION_BINS);
-    match Class::of(scene, plane) {
-        Class::Reference => Work::none(),
-        Class::Exact => etendue_theory::work(&chain(scene, plane), window, grid, &picture),
-        Class::FirstOrder => match (system(scene, plane), scattered(scene, plane)) {
-            (Some((system, at)), _) => rays::work(&system, &at, window, grid),
-            (None, Some((system, at))) => scattering::work(&system, &at, window, grid, &picture),
-            (None, None) => Work::none(),
-        },
+    match theory {
+        Theory::None => Work::none(),
+        Theory::Parallel(chain) => etendue_theory::work(chain, window, grid, &picture),
+        Theory::Specular(system, at) => rays::work(system, at, window, grid),
+        Theory::Scattering(system, at) => scattering::work(system, at, window, grid, &picture),
     }
 }

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Class, PredictedParameter, Prediction, Residuals, Verdict, compare, sidak};
+use etendue_compare::{
+    Applicability, Class, PredictedParameter, Prediction, Residuals, Verdict, compare, sidak,
+};
 use etendue_field::random::{self, Stream};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Ledger, PlaneTally, Profile, Projection, ProjectionGrid,
@@ -296,7 +298,7 @@ fn what_has_no_theory_is_a_reference() {
         let file = etendue_scene::SceneFile::parse(&text).expect("a scene");
         let scene =
             etendue_scene::resolve("t", file, ".".as_ref(), u64::MAX).expect("a sound scene");
-        [0, 1].map(|i| Class::of(&scene, &scene.planes[i]))
+        [0, 1].map(|i| Applicability::new(&scene, &scene.planes[i]).class())
     };
     let floor = r#"Rectangle(name: "floor", center: (0, 0, 2), size: (4, 4))"#;
     let star = r#"Mesh(name: "star", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
