@@ -2,8 +2,10 @@
 
 use crate::chain::chain;
 use crate::class::Class;
+use crate::dark;
 use crate::parallel::obstacles_to_theory;
 use crate::system::{print, scattered, system};
+use crate::ways::{unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::{Chain, rays, scattering};
@@ -15,6 +17,8 @@ pub struct Applicability {
     pub theory: Theory,
     /// What light meets on its way that no theory describes, in words; empty where one applies.
     pub reasons: Vec<String>,
+    /// Why no light reaches the plane, in words; `None` where some may.
+    pub dark: Option<String>,
 }
 
 /// The theories of a windowed light field.
@@ -25,7 +29,7 @@ pub enum Theory {
     /// Rays followed through smooth specular surfaces, or through pictures.
     Specular(rays::System, rays::Plane),
     /// Light that one smooth surface reflects by a BRDF.
-    Scattering(scattering::System, rays::Plane),
+    Scattering(Box<scattering::System>, rays::Plane),
     /// None: another measurement takes its place.
     None,
 }
@@ -34,30 +38,41 @@ impl Applicability {
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let curved = Self::followed(scene, plane);
-        let curved = curved
-            .or_else(|| scattered(scene, plane).map(|(system, at)| Theory::Scattering(system, at)));
-        if let Some(theory) = curved {
-            let reasons = Vec::new();
-            return Self { theory, reasons };
+        let dark = dark::reason(scene, plane);
+        if let Some((system, at)) = Self::followed(scene, plane) {
+            let reasons = unforeseen_by_rays(scene, plane, &system, &at);
+            return Self::unless(reasons, dark, Theory::Specular(system, at));
+        }
+        if let Some((system, at)) = scattered(scene, plane) {
+            let reasons = unforeseen_by_scattering(scene, plane, &system, &at);
+            return Self::unless(reasons, dark, Theory::Scattering(Box::new(system), at));
         }
         let reasons = obstacles_to_theory(scene, plane);
+        Self::unless(reasons, dark, Theory::Parallel(chain(scene, plane)))
+    }
+
+    /// A theory, unless there are reasons against it.
+    fn unless(reasons: Vec<String>, dark: Option<String>, theory: Theory) -> Self {
         let theory = if reasons.is_empty() {
-            Theory::Parallel(chain(scene, plane))
+            theory
         } else {
             Theory::None
         };
-        Self { theory, reasons }
+        Self {
+            theory,
+            reasons,
+            dark,
+        }
     }
 
     /// The system of specular surfaces that leads to a plane behind one or on one, or of light that goes
     /// through pictures.
-    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
+    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<(rays::System, rays::Plane)> {
         let across = plane.orientation == Orientation::Orthogonal;
         if !scene.light.is_picture() && plane.leg == 0 && across {
             return None;
         }
-        system(scene, plane).map(|(system, at)| Theory::Specular(system, at))
+        system(scene, plane)
     }
 
     /// The kind of prediction.
@@ -101,6 +116,7 @@ impl Applicability {
         }
         let unknown = self.reasons.iter();
         steps.extend(unknown.map(|reason| format!("without theory  {reason}")));
+        steps.extend(self.dark.iter().map(|reason| format!("dark  {reason}")));
         steps.push(format!(
             "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
         ));

@@ -11,6 +11,7 @@ mod bandwidth;
 mod chain;
 mod class;
 mod converge;
+mod dark;
 mod first_order;
 mod memory;
 mod parallel;
@@ -22,6 +23,7 @@ mod scattering;
 mod score;
 mod system;
 mod verdict;
+mod ways;
 mod work;
 
 pub use applicability::{Applicability, Theory};

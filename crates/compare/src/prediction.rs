@@ -10,6 +10,7 @@ use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
 use etendue_theory::rays::{self, Plane, System};
 use etendue_theory::{Chain, Operator};
+use ndarray::Array2;
 
 /// Everything a measurement of a plane is held against.
 #[derive(Clone, Debug)]
@@ -59,6 +60,9 @@ impl Prediction {
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
         let applicability = Applicability::new(scene, plane);
         let steps = applicability.steps(scene, plane);
+        if applicability.dark.is_some() {
+            return Self::darkness(scene, plane, applicability.class(), steps);
+        }
         match applicability.theory {
             Theory::Parallel(chain) => Self::by_chain(scene, plane, &chain, steps),
             Theory::Specular(system, at) => Self::by_rays(scene, plane, &system, &at, steps),
@@ -67,6 +71,24 @@ impl Prediction {
                 class: Class::Reference,
                 ..Self::by_chain(scene, plane, &chain(scene, plane), steps)
             },
+        }
+    }
+
+    /// No light at all.
+    fn darkness(scene: &Scene, plane: &VirtualPlane, class: Class, steps: Vec<String>) -> Self {
+        let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+        let values = Array2::zeros((grid.bins, grid.bins));
+        Self {
+            class,
+            steps,
+            slices: Slices::zeros(plane.grid),
+            quadrature_error: None,
+            first_order: None,
+            replicates: Vec::new(),
+            unblocked: 0.0,
+            projection: Projection { grid, values },
+            parameters: Vec::new(),
+            cuts: cuts(scene, plane),
         }
     }
 
