@@ -17,6 +17,8 @@ use std::f64::consts::{PI, TAU};
 pub struct FirstOrder {
     /// Its slices; by the paper's printed formulas where a scene asks for them.
     pub slices: Slices,
+    /// Independent replicates, of which `slices` is the mean; empty where they have no statistical error.
+    pub replicates: Vec<Slices>,
     /// Its numbers.
     pub chain: FirstOrderChain,
 }
@@ -103,7 +105,12 @@ impl FirstOrder {
         } else {
             linear
         };
-        Some(Self { slices, chain })
+        let replicates = Vec::new();
+        Some(Self {
+            slices,
+            replicates,
+            chain,
+        })
     }
 
     /// Holds a measurement against it; `exact` is the exact ray-space prediction with the residuals from it.
@@ -115,7 +122,7 @@ impl FirstOrder {
         seed: u64,
     ) -> FirstOrderReport {
         let (slices, exact) = exact;
-        let residuals = Residuals::new(measurement, index, &self.slices);
+        let residuals = Residuals::between(measurement, index, &self.slices, &self.replicates);
         let half = &slices.half;
         let predicted = residuals.sum(half, half, |f, _| f.norm_sqr());
         let (squared, error) = residuals.squared();

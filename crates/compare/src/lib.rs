@@ -6,6 +6,7 @@
 //!
 //! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
 
+mod agreement;
 mod applicability;
 mod bandwidth;
 mod chain;

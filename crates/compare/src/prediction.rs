@@ -21,11 +21,14 @@ pub struct Prediction {
     pub steps: Vec<String>,
     /// The slices of the windowed spectrum.
     pub slices: Slices,
-    /// ‖error‖/‖slices‖ of a quadrature, estimated; `None` for a closed form.
+    /// ‖error‖/‖slices‖, estimated: the standard error where there are replicates of theory, else that of a
+    /// quadrature. `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
     /// The first-order chain; `slices` and all else are then those of the exact ray-space prediction.
     pub first_order: Option<FirstOrder>,
-    /// For a reference, its independent batches, of which `slices` is the mean; theory has none.
+    /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised rules of
+    /// theory. Empty where the slices have no statistical error. A p-value is no smaller than 2¹⁻ⁿ with n of
+    /// them, so there should be 16 or more.
     pub replicates: Vec<Slices>,
     /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against; zero for a reference.
     pub unblocked: f64,
@@ -54,6 +57,21 @@ pub struct PredictedParameter {
 const NOTHING: f64 = 1e-9;
 
 impl Prediction {
+    /// Whether the slices have a statistical error, which their replicates show.
+    pub(crate) fn is_statistical(&self) -> bool {
+        !self.replicates.is_empty()
+    }
+
+    /// ‖error‖/‖slices‖ that no replicates show.
+    pub(crate) fn systematic_error(&self) -> Option<f64> {
+        self.quadrature_error.filter(|_| !self.is_statistical())
+    }
+
+    /// ‖error‖/‖slices‖ of theory's own replicates, which stays however many photons are measured.
+    pub(crate) fn statistical_error(&self) -> Option<f64> {
+        self.quadrature_error.filter(|_| self.is_statistical())
+    }
+
     /// What theory predicts for a plane of a scene. Where no theory applies it is that of its chain as
     /// far as the chain goes: see [`Self::reference`].
     #[must_use]

@@ -31,6 +31,7 @@ impl Prediction {
                 as_printed: false,
             },
             slices,
+            replicates: Vec::new(),
         });
         let parameters = system.parameters().into_iter().filter_map(|parameter| {
             Some(PredictedParameter {

@@ -70,6 +70,7 @@ impl<'a> Bench<'a> {
         let tried = Prediction {
             first_order: Some(FirstOrder {
                 slices: rays::linear(&system, &at, &place.window, &place.grid, &map).slices,
+                replicates: Vec::new(),
                 chain: sound.chain.clone(),
             }),
             parameters: Vec::new(),
