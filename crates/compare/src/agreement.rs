@@ -9,12 +9,12 @@ use ndarray::Array3;
 /// The largest noise, as a share of the spectrum, with which agreement means something.
 const RESOLVED: f64 = 0.5;
 
-/// The largest error of a quadrature, as a share of the noise, with which agreement means something. It is
-/// an upper estimate, and adds a quarter to χ² at the most.
+/// The largest error of a quadrature, as a share of the noise, with which agreement means
+/// something. It is an upper estimate, and adds a quarter to χ² at the most.
 const BLURRED: f64 = 0.5;
 
-/// The largest error of a quadrature that cannot be seen, as a share of the noise: it adds a thousandth to
-/// χ², and goes without a warning.
+/// The largest error of a quadrature that cannot be seen, as a share of the noise: it adds a
+/// thousandth to χ², and goes without a warning.
 pub(crate) const UNSEEN: f64 = 1.0 / 30.0;
 
 /// How far measured and predicted are apart, over the independent frequencies.
@@ -65,8 +65,8 @@ impl Agreement {
         self.relative(self.difference - self.noise)
     }
 
-    /// What p comes to. With noise above half of the spectrum batches hold a handful of photons, and their
-    /// residuals are not symmetric: nothing is decided then.
+    /// What p comes to. With noise above half of the spectrum batches hold a handful of photons,
+    /// and their residuals are not symmetric: nothing is decided then.
     pub(crate) fn verdict(&self, agrees: bool) -> Verdict {
         if self.noise_limit().is_some_and(|noise| noise > RESOLVED) {
             Verdict::Undecided
@@ -77,8 +77,9 @@ impl Agreement {
         }
     }
 
-    /// Whether the error of a prediction without replicates leaves nothing to be decided: agreement, if the
-    /// error is not below the noise, or disagreement, if the error may be all of it.
+    /// Whether the error of a prediction without replicates leaves nothing to be decided:
+    /// agreement, if the error is not below the noise, or disagreement, if the error may be all of
+    /// it.
     pub(crate) fn is_blurred(&self, prediction: &Prediction, agrees: bool) -> bool {
         let error = prediction.systematic_error();
         let (Some(error), Some(noise), Some(excess)) = (error, self.noise_limit(), self.excess())
@@ -92,8 +93,8 @@ impl Agreement {
         }
     }
 
-    /// Photons that bring the noise to where agreement means something; `None` where the statistical error
-    /// of the prediction alone is above that.
+    /// Photons that bring the noise to where agreement means something; `None` where the
+    /// statistical error of the prediction alone is above that.
     pub(crate) fn photons_needed(&self, emitted: u64, prediction: &Prediction) -> Option<f64> {
         let noise = self.noise_limit().unwrap_or_default().powi(2);
         let stays = prediction.statistical_error().unwrap_or(0.0).powi(2);

@@ -65,8 +65,8 @@ impl Applicability {
         }
     }
 
-    /// The system of specular surfaces that leads to a plane behind one or on one, or of light that goes
-    /// through pictures.
+    /// The system of specular surfaces that leads to a plane behind one or on one, or of light that
+    /// goes through pictures.
     fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<(rays::System, rays::Plane)> {
         let across = plane.orientation == Orientation::Orthogonal;
         if !scene.light.is_picture() && plane.leg == 0 && across {
@@ -85,8 +85,8 @@ impl Applicability {
         }
     }
 
-    /// The chain of affine maps that leads to a plane behind specular surfaces, by the paper's printed
-    /// formulas where the scene asks for them.
+    /// The chain of affine maps that leads to a plane behind specular surfaces, by the paper's
+    /// printed formulas where the scene asks for them.
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::FirstOrder> {
         match &self.theory {

@@ -7,11 +7,12 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Class {
-    /// Equals the expectation of the measurement, in closed form or by quadrature.
+    /// The prediction equals the expectation of the measurement, in closed form or by quadrature.
     Exact,
-    /// The paper's linearised chain, its error computed beside it: first order minus the exact ray-space prediction.
+    /// There is an exact prediction by rays, and beside it the paper's first-order chain with its
+    /// computed error.
     FirstOrder,
-    /// There is no theory: the other tracer's measurement takes its place.
+    /// No theory applies, and the other tracer's measurement takes its place.
     Reference,
 }
 

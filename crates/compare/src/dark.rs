@@ -18,8 +18,9 @@ const MOST_PARTS: usize = 4096;
 
 /// Why no light reaches a plane, in words; `None` where some may.
 ///
-/// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon, which is empty if they
-/// leave nothing. A layer that covers all places where these rays cross it leaves nothing either.
+/// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
+/// which is empty if they leave nothing. A layer that covers all places where these rays cross it
+/// leaves nothing either.
 pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
@@ -52,7 +53,8 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane) -> Option<String> {
     covering.map(|layer| format!("{} covers all ways", layer.name))
 }
 
-/// The rays of a section along X or Y: a convex polygon of (position at the light, slope), or a segment.
+/// The rays of a section along X or Y: a convex polygon of (position at the light, slope), or a
+/// segment.
 struct Section(Vec<[f64; 2]>);
 
 impl Section {

@@ -1,10 +1,12 @@
 //! Measured against predicted, in units of statistical error.
 //!
-//! [`chain()`] reads theory's chain off a scene: the only code that sees both. A [`Prediction`] is all that
-//! theory says about a plane; [`compare`] holds a measurement against it and comes to a [`Verdict`].
-//! [`Residuals`] are the difference, batch by batch, with the tests made on it.
+//! [`Applicability`] decides which theory applies to a plane of a scene, or why none does, and
+//! holds what that theory needs to know of the scene. A [`Prediction`] is all that the theory says
+//! about the plane. [`compare`] compares a measurement with it and returns a [`Verdict`].
+//! [`Residuals`] are the differences, with the tests made on them.
 //!
-//! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
+//! Nothing here traces photons, and nothing is tuned: the only freedom is the level α of the test,
+//! which the scene sets.
 
 mod agreement;
 mod applicability;

@@ -23,17 +23,20 @@ pub struct Memory {
 
 /// Bytes of a complex number.
 const COMPLEX: f64 = 16.0;
-/// Bytes that the program holds whatever the scene: its code, buffers of photons, pictures, and what is left over from one stage to the next.
+/// Bytes that the program holds for any scene: its code, buffers of photons, pictures, and memory
+/// that one stage leaves to the next.
 const PROGRAM: f64 = 1.5e8;
 
-/// Bytes of a triangle, in the scene and in the hierarchy of one tracer while it is built; in that of the other tracer; and in that of
-/// each further leg. Measured: 430, 270 and 140.
+/// Bytes of a triangle in the scene and in the hierarchy of one tracer while it is built. Measured:
+/// 430.
 const TRIANGLE: f64 = 450.0;
+/// Bytes of a triangle in the hierarchy of the other tracer. Measured: 270.
 const TRIANGLE_OF_REFERENCE: f64 = 300.0;
+/// Bytes of a triangle in the hierarchy of each further leg. Measured: 140.
 const TRIANGLE_OF_LEG: f64 = 150.0;
 
 impl Memory {
-    /// Of a run of a scene on so many threads.
+    /// The memory of a run of a scene on so many threads.
     #[must_use]
     pub fn new(scene: &Scene, threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);
@@ -64,14 +67,15 @@ impl Memory {
                     let work = work::of(theory, plane);
                     work.bytes + threads as f64 * work.bytes_each
                 }),
-            // Residuals of all batches, means, variances, powers, and the sums that p-values are made of.
+            // Residuals of all batches, means, variances, powers, and the sums that p-values are
+            // made of.
             comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
             meshes: meshes(scene, has_reference),
         }
     }
 
-    /// All of it.
+    /// The sum of the parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         let Self {

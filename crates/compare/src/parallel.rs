@@ -4,8 +4,8 @@ use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 
-/// What light meets on its way to a plane that is not between parallel planes, or not free, in words;
-/// nothing where that theory applies.
+/// What keeps the theory from a plane, in words: oblique incidence, other objects in the way, and
+/// light that it does not describe. Empty where the theory applies.
 pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {
@@ -41,10 +41,11 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
     found
 }
 
-/// Degrees that rounding leaves of none.
+/// Angles below this many degrees are rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Meshes, and surfaces that do not lie across the path, where light for the plane may pass; on the way back, anything.
+/// The objects that light for the plane may meet: meshes, smooth surfaces, and flat ones that do
+/// not lie across the path. On the way back flat ones across the path count too.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
     let visited = |object| scene.path.visits(object);
@@ -75,7 +76,7 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// Widths at which a Gaussian picture is dark.
+/// A Gaussian picture is dark beyond this many widths.
 const PICTURE: f64 = 3.0;
 
 /// Whether light for a plane may pass through a box around points, given in the frame at the light.
@@ -109,7 +110,8 @@ fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bo
     (first..=plane.leg.min(1)).any(crosses)
 }
 
-/// Whether a box around points meets a tube along a frame, from depth 0 with half-widths `from` to depth `end` with `to`.
+/// Whether a box around points meets a tube along a frame, from depth 0 with half-widths `from` to
+/// depth `end` with `to`.
 fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
     let local = points.iter().map(|p| frame.to_local(*p));
     let (low, high) = local.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
@@ -126,7 +128,8 @@ fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: 
     })
 }
 
-/// The surface beyond whose edge a plane after a reflection looks: theory takes it to be endless.
+/// The surface whose edge lies within the view of a plane after a reflection. Theory takes it to be
+/// endless.
 fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
     let surface = reflector(scene, plane)?;
     let (w, travelled) = (&plane.window, scene.path.along(plane));

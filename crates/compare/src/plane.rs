@@ -31,14 +31,15 @@ pub struct PlaneComparison {
     pub radial: RadialPower,
     /// The predicted radial spectrum, [ρ, ν].
     pub predicted_radial: Array2<f64>,
-    /// Standard deviation of measured minus predicted radial power if the prediction is true, [ρ, ν].
+    /// Standard deviation of measured minus predicted radial power, [ρ, ν], if the prediction is
+    /// true.
     pub radial_sigma: Array2<f64>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
 }
 
-/// A field of which less than this share of the light without blockers is left is predicted to be dark:
-/// a prediction is a difference of transforms of that size, good to 10⁻¹⁵ of it.
+/// A field with less than this share of the light without blockers is predicted to be dark. A
+/// closed form is a difference of transforms of that size, and accurate to 10⁻¹⁵ of it.
 const DARK: f64 = 1e-12;
 
 /// Compares plane `index` of a measurement with its prediction; it passes when p ≥ `level`.
@@ -232,7 +233,7 @@ fn covariance(
     }))
 }
 
-/// The predicted slices; those of a dark field, which are differences that rounding has left, are zero.
+/// The predicted slices, set to zero where they are the rounding errors of a dark field.
 fn without_rounding(prediction: &Prediction) -> Slices {
     let least = prediction.unblocked * DARK;
     let dark = prediction.slices.half.iter().all(|f| f.norm() <= least);
@@ -243,7 +244,7 @@ fn without_rounding(prediction: &Prediction) -> Slices {
     }
 }
 
-/// The highest predicted power on the border of the grid that goes without a warning, below the peak.
+/// Predicted power on the border of the grid above this share of the peak earns a warning.
 const BORDER: f64 = 1e-2;
 
 /// Limits of the measurement, in words.
@@ -271,8 +272,8 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
         let border = at(axis);
         if border > BORDER * peak {
             warnings.push(format!(
-                "the spectrum goes on beyond |{name}| = {}, where it is {:.0} dB below its peak; bandwidths \
-                 count what is inside",
+                "the spectrum goes on beyond |{name}| = {}, where it is {:.0} dB below its peak; \
+                 bandwidths count what is inside",
                 tidy(max),
                 10.0 * (peak / border).log10()
             ));

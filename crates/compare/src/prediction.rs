@@ -21,22 +21,25 @@ pub struct Prediction {
     pub steps: Vec<String>,
     /// The slices of the windowed spectrum.
     pub slices: Slices,
-    /// ‖error‖/‖slices‖, estimated: the standard error where there are replicates of theory, else that of a
-    /// quadrature. `None` for a closed form, and for a reference.
+    /// ‖error‖/‖slices‖, estimated: the standard error where there are replicates of theory, else
+    /// that of a quadrature. `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
-    /// The first-order chain; `slices` and all else are then those of the exact ray-space prediction.
+    /// The first-order chain; `slices` and all else are then those of the exact ray-space
+    /// prediction.
     pub first_order: Option<FirstOrder>,
-    /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised rules of
-    /// theory. Empty where the slices have no statistical error. A p-value is no smaller than 2¹⁻ⁿ with n of
-    /// them, so there should be 16 or more.
+    /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised
+    /// rules of theory. Empty where the slices have no statistical error. A p-value is no smaller
+    /// than 2¹⁻ⁿ with n of them, so there should be 16 or more.
     pub replicates: Vec<Slices>,
-    /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against; zero for a reference.
+    /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against;
+    /// zero for a reference.
     pub unblocked: f64,
     /// The windowed light field in (x, u).
     pub projection: Projection,
     /// For each parameter of the chain: name, value and derivative of the slices.
     pub parameters: Vec<PredictedParameter>,
-    /// Where energy begins to count as high, cycles per metre, on a plane that light leaves diffusely.
+    /// Where energy begins to count as high, cycles per metre, on a plane that light leaves
+    /// diffusely.
     pub cuts: Vec<f64>,
 }
 
@@ -72,8 +75,8 @@ impl Prediction {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// What theory predicts for a plane of a scene. Where no theory applies it is that of its chain as
-    /// far as the chain goes: see [`Self::reference`].
+    /// What theory predicts for a plane of a scene. Where no theory applies it is that of its chain
+    /// as far as the chain goes: see [`Self::reference`].
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
         let applicability = Applicability::new(scene, plane);
@@ -204,8 +207,8 @@ impl Prediction {
     }
 }
 
-/// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times that, to see whether
-/// H hangs on the cut; none where light does not leave a surface.
+/// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times
+/// that, to see whether H hangs on the cut; none where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

@@ -7,10 +7,10 @@ use ndarray::{Array2, Array3, Axis};
 
 /// Measured minus predicted slices, in independent parts.
 ///
-/// Against a prediction without statistical error there is a residual for each batch, r_b = S_b − F. Against
-/// one that comes in replicates itself, batches and replicates are taken together in as many groups of
-/// neighbours as there are of the fewer (docs/theory.md, section 6). Under the hypothesis each residual is an
-/// independent draw with mean zero, and their mean is S − F.
+/// Against a prediction without statistical error there is a residual for each batch, r_b = S_b −
+/// F. Against one that comes in replicates itself, batches and replicates are taken together in as
+/// many groups of neighbours as there are of the fewer (docs/theory.md, section 6). Under the
+/// hypothesis each residual is an independent draw with mean zero, and their mean is S − F.
 #[derive(Clone, Debug)]
 pub struct Residuals {
     grid: SliceGrid,
@@ -24,7 +24,8 @@ const ROUNDS: u64 = 19_999;
 const ROUNDING: f64 = 1e-9;
 
 impl Residuals {
-    /// The residuals of plane `plane` of a measurement from slices that are known without statistical error.
+    /// The residuals of plane `plane` of a measurement from slices that are known without
+    /// statistical error.
     ///
     /// # Panics
     /// When the plane was measured on other frequencies than the prediction's.
@@ -42,8 +43,8 @@ impl Residuals {
 
     /// The residuals from slices that are the mean of replicates, or, without any, known exactly.
     ///
-    /// Of B batches and R replicates each group g of the n = min(B, R) holds a share, and
-    /// r_g = n/B Σ_b (S_b − F) − n/R Σ_j (F_j − F). With as many of either in all groups F drops out.
+    /// Of B batches and R replicates each group g of the n = min(B, R) holds a share, and r_g = n/B
+    /// Σ_b (S_b − F) − n/R Σ_j (F_j − F). With as many of either in all groups F drops out.
     ///
     /// # Panics
     /// When the plane was measured on other frequencies than the prediction's.
@@ -144,7 +145,8 @@ impl Residuals {
             .sum()
     }
 
-    /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ > 0.
+    /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ >
+    /// 0.
     ///
     /// σ² is itself estimated from R batches; for complex normal residuals that lifts the mean by
     /// (R − 1)/(R − 2), which is divided out. `None` when no photon came.
@@ -161,11 +163,13 @@ impl Residuals {
         Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
     }
 
-    /// Standard deviation of the measured radial power around the predicted one, if F is true; [ρ, ν].
+    /// Standard deviation, [ρ, ν], of the measured radial power around the predicted one, if F is
+    /// true.
     ///
-    /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first term is a
-    /// mean over batches, its variance their spread; the second has the variance σ⁴ at each azimuth.
-    /// Unlike the jackknife error of the power itself this does not follow the power's own fluctuation.
+    /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first
+    /// term is a mean over residuals, whose spread gives its variance. The second has the variance
+    /// σ⁴ at each azimuth. Unlike the jackknife error of the power, this error does not follow the
+    /// power's own fluctuation.
     pub(crate) fn radial_sigma(&self, prediction: &Slices, variance: &Array3<f64>) -> Array2<f64> {
         let azimuths = self.grid.azimuths as f64;
         let half = self.grid.half_shape();
@@ -190,8 +194,8 @@ impl Residuals {
         self.grid.unfold_radial(sigma.view())
     }
 
-    /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with s = 1
-    /// or s = Σ_b |r_b|² at each frequency.
+    /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with
+    /// s = 1 or s = Σ_b |r_b|² at each frequency.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
         let r = self.count();
         let mut scale = Array3::from_elem(self.grid.half_shape(), 1.0);
@@ -216,7 +220,8 @@ impl Residuals {
         products
     }
 
-    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife error (docs/theory.md, section 6).
+    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife
+    /// error (docs/theory.md, section 6).
     pub(crate) fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -234,7 +239,8 @@ impl Residuals {
         (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
     }
 
-    /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then uncorrelated, each pair coming twice.
+    /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then
+    /// uncorrelated, each pair coming twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -263,10 +269,10 @@ impl Residuals {
 
     /// The p-value of the hypothesis that every residual has mean zero.
     ///
-    /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a residual is
-    /// as likely as its negative, so the statistic under random signs is a draw from its own distribution,
-    /// correlations between neighbouring frequencies included. p is the share of rounds, the observed one
-    /// counted in, that reach the observed value.
+    /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
+    /// residual is as likely as its negative, so the statistic under random signs is a draw from
+    /// its own distribution, correlations between neighbouring frequencies included. p is the share
+    /// of rounds, the observed one counted in, that reach the observed value.
     ///
     /// `None` when all residuals are zero: nothing measured and nothing predicted.
     #[must_use]
@@ -290,8 +296,8 @@ fn check(measured: &Slices, predicted: &Slices) {
     assert_eq!(measured, predicted, "frequencies measured and predicted");
 }
 
-/// The radial power of the mean of independent replicates, without their noise (docs/theory.md, Eq. 13):
-/// crossed with each other they have none in common. [ρ, ν].
+/// The radial power of the mean of independent replicates, without their noise (docs/theory.md, Eq.
+/// 13): crossed with each other they have none in common. [ρ, ν].
 pub(crate) fn crossed_power(replicates: &[Slices]) -> Array2<f64> {
     let grid = replicates[0].grid;
     let mut sum = Array3::<Complex>::zeros(grid.half_shape());

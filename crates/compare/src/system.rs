@@ -7,8 +7,9 @@ use etendue_theory::geometry::Print;
 use etendue_theory::rays::{Element, Plane, System};
 use etendue_theory::scattering;
 
-/// The light, masks and specular surfaces that lead to a plane, and the plane, for theory to follow rays through; `None` where light
-/// comes from an environment or is reflected diffusely, or may meet what is neither on the path nor in a plane across its first leg.
+/// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
+/// where light comes from an environment, where a surface is not specular, and where the scene
+/// holds an object off the path.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
     if matches!(scene.light, Light::Environment { .. }) {
@@ -45,8 +46,9 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
     is_free(scene).then(|| (system, in_frame(scene, plane)))
 }
 
-/// The light, masks and the surface that lead to a plane which looks at light that has left it, and the plane; `None` where the first surface of
-/// the path does not reflect by a BRDF, or is not the last before the plane, or light may meet anything else.
+/// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
+/// plane is not on the second leg, where the first surface has no BRDF, and where the scene holds
+/// an object off the path.
 #[must_use]
 pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<(scattering::System, Plane)> {
     if plane.leg != 1 || !is_free(scene) {
@@ -110,7 +112,7 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     }
 }
 
-/// Whether nothing stands beside the path.
+/// Whether the path visits every object of the scene.
 fn is_free(scene: &Scene) -> bool {
     let visited = |object| scene.path.visits(object);
     let surfaces = (0..scene.surfaces.len()).all(|i| visited(Object::Surface(i)));

@@ -2,15 +2,15 @@
 
 use serde::Serialize;
 
-/// What a plane or a run comes to.
+/// The verdict on a plane or a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Measured and predicted agree.
     Pass,
-    /// They do not.
+    /// Measured and predicted differ by more than noise.
     Fail,
-    /// No disagreement was seen, but noise would have hidden one: the plane needs more photons.
+    /// Noise, or the error of the prediction, leaves the question open.
     Undecided,
 }
 

@@ -1,10 +1,11 @@
 //! Whether light takes the ways that theory takes it to take.
 //!
-//! Theory follows rays from surface to surface as if nothing else were there. A few thousand rays, the same in every
-//! run, are followed here past all that stands around: to what they meet first, as photons are, and to where theory
-//! looks for the next surface. Where the two differ for a ray that carries light into the window, the plane is not
-//! predicted. Rays are drawn more densely the nearer they are to the central one, down to a thousandth of the
-//! surface, so that windows of any size hold many.
+//! Theory follows rays from surface to surface as if nothing else were there. A few thousand rays,
+//! the same in every run, are followed here past all that stands around: to what they meet first,
+//! as photons are, and to where theory looks for the next surface. Where the two differ for a ray
+//! that carries light into the window, the plane is not predicted. Rays are drawn more densely the
+//! nearer they are to the central one, down to a thousandth of the surface, so that windows of any
+//! size hold many.
 
 mod coordinates;
 mod rays;
@@ -14,23 +15,3 @@ mod surroundings;
 
 pub(crate) use scattered::unforeseen_by_scattering;
 pub(crate) use specular::unforeseen_by_rays;
-
-use surroundings::Meets;
-
-/// Rays followed for a plane.
-const RAYS: u32 = 6000;
-
-/// Light of less than this share of the strongest that is possible, in the window, changes no verdict.
-const DARK: f64 = 1e-5;
-
-/// What light meets that theory does not know of, in words, each once.
-fn in_words(found: Vec<Meets>, scene: &etendue_scene::Scene) -> Vec<String> {
-    let mut words: Vec<String> = Vec::new();
-    for meets in found {
-        let reason = meets.describe(scene);
-        if !words.contains(&reason) {
-            words.push(reason);
-        }
-    }
-    words
-}

@@ -7,9 +7,9 @@ use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::{Work, rays, scattering};
 use std::fmt;
 
-/// Most steps of the predictions of a scene: about ten minutes of one core.
+/// The largest number of steps of the predictions of a scene, about ten minutes of one core.
 const MOST_STEPS: f64 = 6e11;
-/// Most bytes of a prediction on one core.
+/// The largest number of bytes of a prediction on one core.
 const MOST_BYTES: f64 = 1e9;
 
 /// A scene whose predictions take more than is allowed, and the plane to blame.
@@ -47,8 +47,8 @@ impl fmt::Display for TooMuchWork {
     }
 }
 
-/// The plane that takes most of the work, where the predictions of a scene would not end in about ten minutes; or the first whose
-/// prediction would not fit into a gigabyte.
+/// The plane that takes most of the work, if the predictions of a scene would take more than about
+/// ten minutes, or the first plane whose prediction would not fit into a gigabyte.
 #[must_use]
 pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     let mut total = 0.0;

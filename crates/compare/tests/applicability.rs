@@ -45,13 +45,15 @@ fn half_planes(shapes: &str) -> String {
 
 const AT_45: &str = "facing: (0.7071067811865476, 0, -0.7071067811865476)";
 
-/// Light goes off sideways behind a half-plane that it has passed, and some of it comes back through.
+/// Light goes off sideways behind a half-plane that it has passed, and some of it comes back
+/// through.
 #[test]
 fn a_blocker_that_reaches_into_a_later_leg() {
     let edge = half_planes("HalfPlane(axis: X, edge: 0.5, opaque: Above)");
     for event in ["Mirror", "Reflects(brdf: (lobe: Phong(20), albedo: 0.5))"] {
         let surface = format!(
-            r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45}, form: Plane, aperture: 0.3, event: {event})"#
+            r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.3, event: {event})"#
         );
         let reason = "visibility of edge to light that has left mirror";
         applies_only(0.04, 0.3, reason, |half| {
@@ -63,7 +65,8 @@ fn a_blocker_that_reaches_into_a_later_leg() {
 /// Light that leaves the flank of a bowl meets its other side, unless the window is narrow.
 #[test]
 fn a_bowl_that_meets_its_own_light() {
-    let bowl = r#"Smooth(name: "bowl", center: (-0.28, 0, 1), facing: (0, 0, -1), form: Sphere(-2), aperture: 0.45, event: Mirror)"#;
+    let bowl = r#"Smooth(name: "bowl", center: (-0.28, 0, 1), facing: (0, 0, -1),
+                form: Sphere(-2), aperture: 0.45, event: Mirror)"#;
     let reason = "light that meets bowl twice, or bowl in its own shadow";
     for light in [LIGHT, PROJECTOR] {
         applies_only(0.01, 0.3, reason, |half| {
@@ -77,7 +80,8 @@ fn a_bowl_that_meets_its_own_light() {
 fn a_bowl_that_shadows_itself() {
     for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian, albedo: 0.5))"] {
         let bowl = format!(
-            r#"Smooth(name: "bowl", center: (0, 0, 1), {AT_45}, form: Sphere(-2), aperture: 0.45, event: {event})"#
+            r#"Smooth(name: "bowl", center: (0, 0, 1), {AT_45},
+                form: Sphere(-2), aperture: 0.45, event: {event})"#
         );
         let reason = "light that meets bowl twice, or bowl in its own shadow";
         applies_only(0.02, 0.3, reason, |half| {
@@ -90,8 +94,11 @@ fn a_bowl_that_shadows_itself() {
 #[test]
 fn a_mirror_that_is_met_out_of_turn() {
     let mirrors = format!(
-        r#"Smooth(name: "first", center: (0, 0, 1), {AT_45}, form: Plane, aperture: 0.4, event: Mirror),
-           Smooth(name: "second", center: (0.5, 0, 1), facing: (-0.7071067811865476, 0, 0.7071067811865476), form: Plane, aperture: 0.55, event: Mirror)"#
+        r#"Smooth(name: "first", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.4, event: Mirror),
+           Smooth(name: "second", center: (0.5, 0, 1),
+                facing: (-0.7071067811865476, 0, 0.7071067811865476),
+                form: Plane, aperture: 0.55, event: Mirror)"#
     );
     applies_only(0.02, 0.3, "light that meets second out of turn", |half| {
         scene(
@@ -109,14 +116,20 @@ fn a_mirror_that_is_met_out_of_turn() {
 #[test]
 fn darkness_has_a_reason() {
     let one = half_planes("HalfPlane(axis: X, edge: 0.01, opaque: Below)");
-    let other = r#"Shapes(name: "other", center: (0, 0, 0.8), shapes: [HalfPlane(axis: X, edge: -0.01, opaque: Above)])"#;
+    let other = r#"Shapes(name: "other", center: (0, 0, 0.8), shapes: [
+        HalfPlane(axis: X, edge: -0.01, opaque: Above)])"#;
     let both = format!("{one}, {other}");
-    let lid = r#"Shapes(name: "lid", center: (0, 0, 0.5), shapes: [Rectangle(center: (-0.5, 0), size: (1, 2)), Rectangle(center: (0.5, 0), size: (1, 2))])"#;
-    let holed = r#"Shapes(name: "lid", center: (0, 0, 0.5), shapes: [Rectangle(center: (-0.5, 0), size: (0.99, 2)), Rectangle(center: (0.5, 0), size: (1, 2))])"#;
+    let lid = r#"Shapes(name: "lid", center: (0, 0, 0.5), shapes: [
+        Rectangle(center: (-0.5, 0), size: (1, 2)),
+        Rectangle(center: (0.5, 0), size: (1, 2))])"#;
+    let holed = r#"Shapes(name: "lid", center: (0, 0, 0.5), shapes: [
+        Rectangle(center: (-0.5, 0), size: (0.99, 2)),
+        Rectangle(center: (0.5, 0), size: (1, 2))])"#;
     let floor = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (4, 4))"#;
     let smooth = |event: &str| {
         format!(
-            r#"Smooth(name: "floor", center: (0, 0, 1), facing: (0, 0, -1), form: Sphere(1), aperture: 0.3, event: {event})"#
+            r#"Smooth(name: "floor", center: (0, 0, 1), facing: (0, 0, -1),
+                form: Sphere(1), aperture: 0.3, event: {event})"#
         )
     };
     let surfaces = [

@@ -148,7 +148,8 @@ fn a_reference_is_judged_with_its_own_noise() {
         seeds += 1.0;
         assert_eq!(verdict(1.05, seed).verdict, Verdict::Fail);
     }
-    // Eight times 170 complex numbers: 1/√1360 = 0.027, four of them. Without the reference's noise it would be 2.
+    // Eight times 170 complex numbers: 1/√1360 = 0.027, four of them. Without the reference's noise
+    // it would be 2.
     assert!((chi2 / seeds - 1.0).abs() < 0.11, "{}", chi2 / seeds);
 }
 
@@ -185,8 +186,9 @@ fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
     }
 }
 
-/// Both sides come in parts, not as many of one as of the other: fewer replicates than batches, more, and a
-/// number that does not divide. p is uniform if they agree, and a spectrum 5 % too wide is found.
+/// Both sides come in parts, not as many of one as of the other: fewer replicates than batches,
+/// more, and a number that does not divide. p is uniform if they agree, and a spectrum 5 % too wide
+/// is found.
 #[test]
 fn two_samples_are_compared_with_the_noise_of_both() {
     let [truth, _] = spectrum(1.0);
@@ -209,7 +211,8 @@ fn two_samples_are_compared_with_the_noise_of_both() {
             (3..=27).contains(&below),
             "{count}: {below} of 50 below 0.3"
         );
-        // 50 times 170 complex numbers: 1/√8500 = 0.011, four of them; the groups' own variance adds as much.
+        // 50 times 170 complex numbers: 1/√8500 = 0.011, four of them; the groups' own variance
+        // adds as much.
         assert!((chi2 - 1.0).abs() < 0.06, "{count}: {chi2}");
         for seed in 0..5 {
             assert_eq!(compared(1.05, seed).verdict, Verdict::Fail, "{count}");
@@ -304,7 +307,8 @@ fn a_wrong_parameter_is_rejected_and_measured() {
     );
 }
 
-/// A quadrature whose error is as large as the disagreement, or not below the noise where there is none, decides nothing; smaller ones change nothing.
+/// A quadrature whose error is as large as the disagreement, or not below the noise where there is
+/// none, decides nothing; smaller ones change nothing.
 #[test]
 fn a_coarse_quadrature_decides_nothing() {
     let judged = |truth: f64, share: f64| {
@@ -395,7 +399,7 @@ fn sidak_keeps_the_level_of_the_run() {
     assert!((sidak(0.01, 1) - 0.01).abs() < 1e-15); // rounding
 }
 
-/// Theory has no word for what leaves a mesh, be it met head on, nor for a smooth surface that only stands in the way.
+/// No theory describes what leaves a mesh, or a smooth surface that stands beside the path.
 #[test]
 fn what_has_no_theory_is_a_reference() {
     let class = |surfaces: &str, visits: &str| {
@@ -405,7 +409,8 @@ fn what_has_no_theory_is_a_reference() {
                 surfaces: [{surfaces}],
                 path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
                 planes: [(name: "before", at: Distance(0.9)), (name: "after", at: After({visits}))],
-                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 10), nu: (max: 10)), run: (photons: 100),
+                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 10), nu: (max: 10)),
+                run: (photons: 100),
             )"#
         );
         let file = etendue_scene::SceneFile::parse(&text).expect("a scene");
@@ -414,10 +419,12 @@ fn what_has_no_theory_is_a_reference() {
         [0, 1].map(|i| Applicability::new(&scene, &scene.planes[i]).class())
     };
     let floor = r#"Rectangle(name: "floor", center: (0, 0, 2), size: (4, 4))"#;
-    let star = r#"Mesh(name: "star", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
+    let star = r#"Mesh(name: "star", center: (0, 0, 2),
+        mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
     let beside = |x: f64| {
         format!(
-            r#"Smooth(name: "m", center: ({x}, 0, 0.5), facing: (1, 0, 0), form: Sphere(0.1), aperture: 0.1, event: Mirror), {floor}"#
+            r#"Smooth(name: "m", center: ({x}, 0, 0.5), facing: (1, 0, 0),
+            form: Sphere(0.1), aperture: 0.1, event: Mirror), {floor}"#
         )
     };
     let reference = Class::Reference;

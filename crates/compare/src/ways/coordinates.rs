@@ -16,8 +16,8 @@ fn local(plane: &Plane, normal: DVec3) -> Frame {
     }
 }
 
-/// The coordinates of a ray; `on_surface` is the point and the unit normal of the surface that the plane is on, where
-/// the plane needs them. `None` where the ray does not pass.
+/// The coordinates of a ray; `on_surface` is the point and the unit normal of the surface that the
+/// plane is on, where the plane needs them. `None` where the ray does not pass.
 pub(super) fn coordinates(
     plane: &Plane,
     ray: &Ray,
@@ -53,8 +53,8 @@ pub(super) fn coordinates(
     })
 }
 
-/// The direction of light that leaves a point of a surface, where its unit normal is known, and has these slopes or
-/// angles at the plane.
+/// The direction of light that leaves a point of a surface, where its unit normal is known, and has
+/// these slopes or angles at the plane.
 pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3 {
     if plane.orientation == Orientation::Orthogonal {
         return plane

@@ -4,6 +4,13 @@ use etendue_field::{EnvironmentMap, Frame, Light, Patch, Shape};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
+/// Rays followed for a plane.
+pub(super) const RAYS: u32 = 6000;
+
+/// Light of less than this share of the strongest that is possible in the window changes no
+/// verdict.
+pub(super) const DARK: f64 = 1e-5;
+
 /// A straight leg of a ray, in the frame at the light.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Ray {
@@ -25,8 +32,9 @@ impl Ray {
         }
     }
 
-    /// Where theory meets a surface: on the side of the quadric's extremum along the ray on which it crosses the tangent
-    /// plane at the vertex (`etendue_theory::rays`, by Newton's method from there).
+    /// Where theory meets a surface: on the side of the quadric's extremum along the ray on which
+    /// it crosses the tangent plane at the vertex (`etendue_theory::rays`, by Newton's method from
+    /// there).
     pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
         let Self { point, direction } = self.seen_from(&patch.frame);
         let from = if direction.z.abs() > 1e-3 {
@@ -48,8 +56,8 @@ impl Ray {
     }
 }
 
-/// Six numbers in (0, 1) that fill the cube evenly: multiples of powers of the root of x⁷ = x + 1 (Roberts 2018, *The
-/// unreasonable effectiveness of quasirandom sequences*).
+/// Six numbers in (0, 1) that fill the cube evenly: multiples of powers of the root of x⁷ = x + 1
+/// (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
 pub(super) fn lattice(index: u32) -> [f64; 6] {
     const ROOT: f64 = 1.112_775_684_278_705_6;
     std::array::from_fn(|axis| {
@@ -58,7 +66,8 @@ pub(super) fn lattice(index: u32) -> [f64; 6] {
     })
 }
 
-/// A number in (−1, 1): every other one evenly, else as densely near zero as its size, down to a thousandth.
+/// A number in (−1, 1): every other one evenly, else as densely near zero as its size, down to a
+/// thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
     let s = 2.0 * r - 1.0;
     if index.is_multiple_of(2) {
@@ -123,7 +132,8 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
     }
 }
 
-/// The point of a shape at an offset from its centre, as a share of its size; beside a disc it is drawn in.
+/// The point of a shape at an offset from its centre, as a share of its size; beside a disc it is
+/// drawn in.
 fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
     match shape {
         Shape::Rectangle(rectangle) => {

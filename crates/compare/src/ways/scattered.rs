@@ -1,15 +1,16 @@
-//! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory looks.
+//! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory
+//! looks.
 
 use super::coordinates::{coordinates, direction};
-use super::rays::{Ray, lattice, point_on, ray_to};
-use super::surroundings::{Meets, Surroundings};
-use super::{DARK, RAYS, in_words};
+use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
+use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Profile, VirtualPlane};
 use etendue_scene::{Hit, Scene};
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::System;
 
-/// What light for a plane meets before or behind a surface with a BRDF that theory does not know of, in words.
+/// What light for a plane meets before or behind a surface with a BRDF that theory does not know
+/// of, in words.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -41,7 +42,8 @@ struct Scatterer<'a> {
 }
 
 impl Scatterer<'_> {
-    /// What light number `index` meets on its way that theory does not know of, if it comes into the window then.
+    /// What light number `index` meets on its way that theory does not know of, if it comes into
+    /// the window then.
     fn check(&self, index: u32) -> Option<Meets> {
         let r = lattice(index);
         let patch = &self.system.patch;
@@ -77,8 +79,8 @@ impl Scatterer<'_> {
         before.then(|| self.named(object))
     }
 
-    /// What stands between a point of the surface and the plane; the surface itself wherever it is, as photons that meet
-    /// it again are gone.
+    /// What stands between a point of the surface and the plane; the surface itself wherever it is,
+    /// as photons that meet it again are gone.
     fn beyond(&self, ray: &Ray) -> Option<Meets> {
         let path = &self.scene.path;
         let across = path.legs[1].frame.travelled(path.along(self.plane));
@@ -100,7 +102,8 @@ impl Scatterer<'_> {
         }
     }
 
-    /// Whether it is from this point that theory has the ray leave: it looks from far out back along it.
+    /// Whether it is from this point that theory has the ray leave: it looks from far out back
+    /// along it.
     fn looks_at(&self, leaving: &Ray) -> bool {
         let patch = &self.system.patch;
         let far = 4.0 * patch.aperture + (leaving.point - patch.frame.origin).length();

@@ -1,15 +1,15 @@
 //! Rays through specular surfaces: what photons meet, and where theory looks.
 
 use super::coordinates::coordinates;
-use super::rays::{Ray, lattice, point_on, ray_to};
-use super::surroundings::{Meets, Surroundings};
-use super::{DARK, RAYS, in_words};
-use etendue_field::{Orientation, Patch, Side, TwoPlane, VirtualPlane};
+use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
+use super::surroundings::{Meets, Surroundings, in_words};
+use etendue_field::{Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::rays::{Plane, System};
 use glam::DVec3;
 
-/// What light for a plane meets between or at the surfaces of a system that theory does not know of, in words.
+/// What light for a plane meets between or at the surfaces of a system that theory does not know
+/// of, in words.
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -42,7 +42,8 @@ type Arrival = Option<(TwoPlane, f64)>;
 const SAME: f64 = 1e-6;
 
 impl Follower<'_> {
-    /// What ray number `index` meets on its way that theory does not know of, if light comes into the window then.
+    /// What ray number `index` meets on its way that theory does not know of, if light comes into
+    /// the window then.
     fn check(&self, index: u32) -> Option<Meets> {
         let r = lattice(index);
         let hit = self.scene.path.ends_at(0)?;
@@ -112,7 +113,8 @@ impl Follower<'_> {
         (seen.map(|z| (z, share)), unforeseen.or(meets))
     }
 
-    /// How far a photon goes until it meets the surface that ends its leg; nothing where it meets another first.
+    /// How far a photon goes until it meets the surface that ends its leg; nothing where it meets
+    /// another first.
     fn next(
         &self,
         ray: &Ray,
@@ -144,7 +146,8 @@ impl Follower<'_> {
         let ends = path.ends_at(leg).map(|hit| hit.object);
         let leaves = path.legs[leg].leaves.map(|hit| hit.object);
         let from = self.around.rounding(leg);
-        // How far it is to the plane; on a surface, to the plane across the leg where the central ray hits.
+        // How far it is to the plane; on a surface, to the plane across the leg where the central
+        // ray hits.
         let across = path.legs[leg].frame.travelled(path.along(self.plane));
         let local = ray.seen_from(&across);
         let end = -local.point.z / local.direction.z;
@@ -157,37 +160,34 @@ impl Follower<'_> {
         if leg > 0 {
             unforeseen = unforeseen.or_else(|| self.around.later_leg(ray, leg, from, end));
         }
-        let on_surface = self.at.patch.as_ref().and_then(|patch| {
-            let hits = ray.seen_from(&patch.frame);
-            let hits = patch.hits(hits.point, hits.direction).into_iter();
-            // Photons are counted at the point of the surface that is nearest to the central ray's.
-            let points = hits.filter(|t| !t.is_nan()).map(|t| ray.at(t));
-            let center = self.at.frame.origin;
-            points.min_by(|a, b| a.distance(center).total_cmp(&b.distance(center)))
-        });
-        if let (Some(patch), Some(point)) = (&self.at.patch, on_surface) {
-            let theory = if self.at.arriving {
-                ray.theory_hit(patch).map(|t| ray.at(t))
-            } else {
-                Some(ray.point)
-            };
-            let scale = SAME * point.length();
-            let same = theory.is_some_and(|theory| theory.distance(point) < scale);
-            let object = if self.plane.side == Side::Before {
-                ends
-            } else {
-                leaves
-            };
-            let elsewhere = object.filter(|_| !same).map(Meets::Itself);
-            unforeseen = unforeseen.or(elsewhere);
-        }
-        let needed = self.at.patch.is_none() || self.at.orientation == Orientation::Orthogonal;
-        let on_surface = match (&self.at.patch, on_surface) {
-            (Some(patch), Some(point)) => Some(on(patch, point)),
-            _ if needed => None,
-            _ => return (None, unforeseen),
+        let Some(patch) = &self.at.patch else {
+            return (coordinates(self.at, ray, None), unforeseen);
         };
-        (coordinates(self.at, ray, on_surface), unforeseen)
+        let Some(counted) = self.counted(patch, ray) else {
+            return (None, unforeseen);
+        };
+        let theory = if self.at.arriving {
+            ray.theory_hit(patch).map(|t| ray.at(t))
+        } else {
+            Some(ray.point)
+        };
+        let scale = SAME * counted.length();
+        if theory.is_none_or(|theory| theory.distance(counted) > scale) {
+            let object = if self.at.arriving { ends } else { leaves };
+            unforeseen = unforeseen.or(object.map(Meets::Itself));
+        }
+        let seen = coordinates(self.at, ray, Some(on(patch, counted)));
+        (seen, unforeseen)
+    }
+
+    /// The point of a surface at which a plane on it counts a photon: that of its line nearest to
+    /// where the central ray hits.
+    fn counted(&self, patch: &Patch, ray: &Ray) -> Option<DVec3> {
+        let local = ray.seen_from(&patch.frame);
+        let hits = patch.hits(local.point, local.direction).into_iter();
+        let points = hits.filter(|t| !t.is_nan()).map(|t| ray.at(t));
+        let center = self.at.frame.origin;
+        points.min_by(|a, b| a.distance(center).total_cmp(&b.distance(center)))
     }
 
     /// The ray that leaves the surface at the end of a leg.

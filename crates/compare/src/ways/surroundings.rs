@@ -20,17 +20,18 @@ impl Meets {
         match self {
             Self::Layer { index, leg } => {
                 let layer = &scene.blockers[index].name;
-                let surface = scene
-                    .path
-                    .ends_at(leg)
-                    .or(scene.path.legs[leg].leaves.as_ref());
-                let surface = surface.map_or("the light", |hit| scene.name_of(hit.object));
-                if leg == 0 {
-                    format!("visibility of {layer}, partly beyond {surface}")
-                } else {
-                    let left = scene.path.legs[leg].leaves.as_ref();
-                    let left = left.map_or(surface, |hit| scene.name_of(hit.object));
-                    format!("visibility of {layer} to light that has left {left}")
+                let name = |hit: &Hit| scene.name_of(hit.object).to_owned();
+                match &scene.path.legs[leg].leaves {
+                    Some(left) => {
+                        format!(
+                            "visibility of {layer} to light that has left {}",
+                            name(left)
+                        )
+                    }
+                    None => {
+                        let first = scene.path.ends_at(leg).map(name).unwrap_or_default();
+                        format!("visibility of {layer}, partly beyond {first}")
+                    }
                 }
             }
             Self::OutOfTurn(object) => {
@@ -42,6 +43,18 @@ impl Meets {
             }
         }
     }
+}
+
+/// What light meets that theory does not know of, in words, each once.
+pub(super) fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for meets in found {
+        let reason = meets.describe(scene);
+        if !words.contains(&reason) {
+            words.push(reason);
+        }
+    }
+    words
 }
 
 /// The surfaces of the path as rays meet them, and the blockers.
@@ -60,7 +73,8 @@ enum Form<'a> {
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
-    /// Meshes are left out: theory knows them by the surface that osculates them where the central ray hits.
+    /// Meshes are left out: theory knows them by the surface that osculates them where the central
+    /// ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, Form<'a>)> = Vec::new();
         for hit in scene.path.legs.iter().filter_map(|leg| leg.leaves) {
@@ -106,8 +120,8 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
-    /// The share of a ray of the first leg that passes the blockers before `end`; and that which passes those that theory
-    /// puts before the plane.
+    /// The share of a ray of the first leg that passes the blockers before `end`; and that which
+    /// passes those that theory puts before the plane.
     pub(super) fn first_leg(&self, ray: &Ray, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];
         let mut meets = None;
