@@ -95,6 +95,8 @@ fn description(scene: &Scene) -> String {
                 .iter()
                 .map(|step| format!("  {step}")),
         );
+        let assumptions = applicability.theory.assumptions().iter();
+        lines.extend(assumptions.map(|assumption| format!("  assumes  {assumption}")));
         if let Some(chain) = applicability.affine_chain(scene) {
             lines.extend(rays(&chain));
         }

@@ -34,30 +34,49 @@ pub enum Theory {
     None,
 }
 
+impl Theory {
+    /// What the theory takes for granted of a scene, each checked where it applies.
+    #[must_use]
+    pub fn assumptions(&self) -> &'static [&'static str] {
+        const FOLLOWED: &[&str] = &[
+            "light meets masks on the first leg alone",
+            "light meets each surface once, in the order of the path, \
+             and where it is not in its own shadow",
+        ];
+        match self {
+            Self::Parallel(_) => &[
+                "all that light meets lies in planes across the path",
+                "the receiver has no edge in view",
+            ],
+            Self::Specular(..) | Self::Scattering(..) => FOLLOWED,
+            Self::None => &[],
+        }
+    }
+}
+
 impl Applicability {
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let dark = dark::reason(scene, plane);
-        if let Some((system, at)) = Self::followed(scene, plane) {
+        let (theory, reasons) = if let Some((system, at)) = Self::followed(scene, plane) {
             let reasons = unforeseen_by_rays(scene, plane, &system, &at);
-            return Self::unless(reasons, dark, Theory::Specular(system, at));
-        }
-        if let Some((system, at)) = scattered(scene, plane) {
+            (Theory::Specular(system, at), reasons)
+        } else if let Some((system, at)) = scattered(scene, plane) {
             let reasons = unforeseen_by_scattering(scene, plane, &system, &at);
-            return Self::unless(reasons, dark, Theory::Scattering(Box::new(system), at));
-        }
-        let reasons = obstacles_to_theory(scene, plane);
-        Self::unless(reasons, dark, Theory::Parallel(chain(scene, plane)))
-    }
-
-    /// A theory, unless there are reasons against it.
-    fn unless(reasons: Vec<String>, dark: Option<String>, theory: Theory) -> Self {
-        let theory = if reasons.is_empty() {
-            theory
+            (Theory::Scattering(Box::new(system), at), reasons)
         } else {
-            Theory::None
+            let reasons = obstacles_to_theory(scene, plane);
+            (Theory::Parallel(chain(scene, plane)), reasons)
         };
+        if !reasons.is_empty() {
+            return Self {
+                theory: Theory::None,
+                reasons,
+                dark: None,
+            };
+        }
+        // Light that goes other ways than theory's might pass beside what stands in these.
+        let dark = dark::reason(scene, plane);
         Self {
             theory,
             reasons,

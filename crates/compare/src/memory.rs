@@ -43,28 +43,30 @@ impl Memory {
         // A batch is the work of one thread.
         let busy = (threads as f64).min(batches);
         let planes = scene.planes.iter();
-        let planes = planes.map(|plane| (plane, Applicability::new(scene, plane).theory));
-        let planes: Vec<(&VirtualPlane, Theory)> = planes.collect();
-        let each = |of: &dyn Fn(&VirtualPlane, &Theory) -> f64| -> Vec<f64> {
+        let planes = planes.map(|plane| (plane, Applicability::new(scene, plane)));
+        let planes: Vec<(&VirtualPlane, Applicability)> = planes.collect();
+        let each = |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| -> Vec<f64> {
             planes
                 .iter()
                 .map(|(plane, theory)| of(plane, theory))
                 .collect()
         };
-        let sum = |of: &dyn Fn(&VirtualPlane, &Theory) -> f64| each(of).into_iter().sum::<f64>();
-        let largest =
-            |of: &dyn Fn(&VirtualPlane, &Theory) -> f64| each(of).into_iter().fold(0.0, f64::max);
+        let sum =
+            |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| each(of).into_iter().sum::<f64>();
+        let largest = |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| {
+            each(of).into_iter().fold(0.0, f64::max)
+        };
         let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
         // Of a reference its measurement and the copies that a prediction keeps.
-        let kept = |theory: &Theory| if is_none(theory) { 3.0 } else { 1.0 };
-        let has_reference = planes.iter().any(|(_, theory)| is_none(theory));
+        let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
+        let has_reference = planes.iter().any(|(_, of)| is_reference(of));
         Self {
-            batches: batches * sum(&|plane, theory| kept(theory) * (spectra(plane) + picture)),
+            batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
             threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
-            predictions: sum(&|plane, theory| (3.0 + parameters(theory)) * spectra(plane))
-                + largest(&|plane, theory| {
-                    let work = work::of(theory, plane);
+            predictions: sum(&|plane, of| (3.0 + parameters(&of.theory)) * spectra(plane))
+                + largest(&|plane, of| {
+                    let work = work::of(of, plane);
                     work.bytes + threads as f64 * work.bytes_each
                 }),
             // Residuals of all batches, means, variances, powers, and the sums that p-values are
@@ -89,8 +91,8 @@ impl Memory {
     }
 }
 
-fn is_none(theory: &Theory) -> bool {
-    matches!(theory, Theory::None)
+fn is_reference(applicability: &Applicability) -> bool {
+    matches!(applicability.theory, Theory::None)
 }
 
 fn meshes(scene: &Scene, has_reference: bool) -> f64 {

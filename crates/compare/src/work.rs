@@ -56,7 +56,7 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     for plane in &scene.planes {
         let this = TooMuchWork {
             plane: plane.name.clone(),
-            work: of(&Applicability::new(scene, plane).theory, plane),
+            work: of(&Applicability::new(scene, plane), plane),
             total: 0.0,
         };
         if this.work.bytes + this.work.bytes_each > MOST_BYTES {
@@ -74,10 +74,13 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
 }
 
 /// What the prediction of a plane takes.
-pub(crate) fn of(theory: &Theory, plane: &VirtualPlane) -> Work {
+pub(crate) fn of(applicability: &Applicability, plane: &VirtualPlane) -> Work {
+    if applicability.dark.is_some() {
+        return Work::none();
+    }
     let (window, grid) = (&plane.window, &plane.grid);
     let picture = ProjectionGrid::new(window, PROJECTION_BINS);
-    match theory {
+    match &applicability.theory {
         Theory::None => Work::none(),
         Theory::Parallel(chain) => etendue_theory::work(chain, window, grid, &picture),
         Theory::Specular(system, at) => rays::work(system, at, window, grid),

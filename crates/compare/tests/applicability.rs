@@ -175,3 +175,31 @@ fn darkness_has_a_reason() {
         }
     }
 }
+
+/// A tilted mirror reaches before the half-planes, where light does not meet them: it is not dark.
+#[test]
+fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
+    let one = half_planes("HalfPlane(axis: X, edge: 0, opaque: Below)");
+    let other = r#"HalfPlane(axis: X, edge: 0, opaque: Above)"#;
+    let both = one.replace("])", &format!(", {other}])"));
+    let mirror = format!(
+        r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.5, event: Mirror)"#
+    );
+    let built = |half: f64| {
+        scene(
+            LIGHT,
+            &both,
+            &mirror,
+            r#""mirror""#,
+            r#"After("mirror")"#,
+            half,
+        )
+    };
+    let narrow = of(&built(0.03));
+    let dark = "half-planes of edge leave no way open";
+    assert_eq!(narrow.dark.as_deref(), Some(dark), "{:?}", narrow.reasons);
+    let wide = of(&built(0.4));
+    assert_eq!((wide.class(), wide.dark), (Class::Reference, None));
+    assert_eq!(wide.reasons, ["visibility of edge, partly beyond mirror"]);
+}
