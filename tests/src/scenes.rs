@@ -1,6 +1,6 @@
 //! The scenes validation is made on, and the measurement of them.
 
-use etendue_compare::{Class, PlaneComparison, Prediction, compare};
+use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, compare};
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
@@ -81,10 +81,12 @@ pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
 pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<Prediction> {
     let planes = scene.planes.iter().enumerate();
     planes
-        .map(|(i, plane)| match Class::of(scene, plane) {
-            Class::Exact | Class::FirstOrder => Prediction::new(scene, plane),
-            Class::Reference => referred(scene, i, reference.expect("a reference")),
-        })
+        .map(
+            |(i, plane)| match Applicability::new(scene, plane).class() {
+                Class::Exact | Class::FirstOrder => Prediction::new(scene, plane),
+                Class::Reference => referred(scene, i, reference.expect("a reference")),
+            },
+        )
         .collect()
 }
 

@@ -1,6 +1,6 @@
 //! Scenes that must pass and scenes that must not, end to end: from scene text to verdict.
 
-use etendue_compare::{Class, Prediction, Verdict, compare, sidak};
+use etendue_compare::{Applicability, Class, Prediction, Verdict, compare, sidak};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
@@ -146,7 +146,11 @@ fn a_forgotten_surface_is_noticed() {
 fn the_edge_of_the_receiver_is_left_to_the_reference() {
     let classes = |size: &str| -> Vec<Class> {
         let scene = scene(&[("size: (6, 6)", size)]);
-        scene.planes.iter().map(|p| Class::of(&scene, p)).collect()
+        scene
+            .planes
+            .iter()
+            .map(|p| Applicability::new(&scene, p).class())
+            .collect()
     };
     assert!(classes("size: (3, 3)").iter().all(|c| *c == Class::Exact));
     let small = classes("size: (3, 2.9)");

@@ -5,7 +5,7 @@ use crate::output::OutputFile;
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{deliver, limits, load, method, progress, say};
-use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth, scattered};
+use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_field::{Lobe, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_theory::shading::Criterion;
@@ -248,7 +248,7 @@ fn said_at(point: &[(String, f64)], text: String) -> String {
 
 /// What the criteria do not know of.
 fn beyond_criteria(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let Some((system, _)) = scattered(scene, plane) else {
+    let Theory::Scattering(system, _) = Applicability::new(scene, plane).theory else {
         return Vec::new();
     };
     let (name, reflectance) = (&system.name, &system.reflectance);

@@ -2,7 +2,7 @@ use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::output::OutputFile;
 use crate::{deliver, limits, load, pictures, say, warnings};
-use etendue_compare::{Class, affine_chain, steps};
+use etendue_compare::Applicability;
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
 use etendue_theory::rays::FirstOrder;
@@ -81,15 +81,23 @@ fn description(scene: &Scene) -> String {
         ),
     ];
     for plane in &scene.planes {
+        let applicability = Applicability::new(scene, plane);
         let [k, rho, nu] = plane.grid.full_shape();
         lines.push(format!(
             "\n{}: {} m along the central ray, prediction: {}",
             plane.name,
             tidy(plane.distance),
-            Class::of(scene, plane)
+            applicability.class()
         ));
-        lines.extend(steps(scene, plane).iter().map(|step| format!("  {step}")));
-        if let Some(chain) = affine_chain(scene, plane) {
+        lines.extend(
+            applicability
+                .steps(scene, plane)
+                .iter()
+                .map(|step| format!("  {step}")),
+        );
+        let assumptions = applicability.theory.assumptions().iter();
+        lines.extend(assumptions.map(|assumption| format!("  assumes  {assumption}")));
+        if let Some(chain) = applicability.affine_chain(scene) {
             lines.extend(rays(&chain));
         }
         lines.push(format!(

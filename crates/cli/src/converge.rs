@@ -3,7 +3,7 @@ use crate::failure::Failure;
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{deliver, limits, load, progress, say};
-use etendue_compare::{Class, Convergence, converge as shrink};
+use etendue_compare::{Applicability, Class, Convergence, converge as shrink};
 use etendue_scene::Scene;
 
 /// `etendue converge`: returns the exit code.
@@ -27,7 +27,8 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
 fn shrunk(scene: &Scene) -> Vec<Convergence> {
     let stage = progress::stage("predicting", false);
     let planes = scene.planes.iter();
-    let planes = planes.filter(|plane| Class::of(scene, plane) == Class::FirstOrder);
+    let planes =
+        planes.filter(|plane| Applicability::new(scene, plane).class() == Class::FirstOrder);
     let found = planes.filter_map(|plane| {
         stage.set_message(format!("predicting {}", plane.name));
         shrink(scene, plane)

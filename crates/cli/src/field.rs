@@ -8,7 +8,7 @@ use crate::npz::Npz;
 use crate::progress;
 use crate::results::Results;
 use crate::summary::json;
-use etendue_compare::{Class, chain};
+use etendue_compare::{Applicability, Theory};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldMeasurement, FieldOptions, full_radial_of, measure_field};
@@ -90,13 +90,13 @@ pub(crate) fn save(results: &mut Results, case: &Case, quiet: bool) -> Result<()
 /// The full radial spectrum that theory predicts, where it can tell all four dimensions at once: on the way to
 /// the receiver, and not behind a mesh.
 fn predicted(scene: &Scene, plane: &VirtualPlane, grid: &FieldGrid) -> Option<Array2<f64>> {
-    if Class::of(scene, plane) != Class::Exact {
+    let Theory::Parallel(chain) = Applicability::new(scene, plane).theory else {
         return None;
-    }
+    };
     let axes = [0, 1, 2, 3];
     let spacing = axes.map(|axis| grid.spacing(axis));
     let half = axes.map(|axis| grid.cells[axis] / 2);
-    let harmonics = Harmonics::new(&chain(scene, plane), &plane.window, spacing, half)?;
+    let harmonics = Harmonics::new(&chain, &plane.window, spacing, half)?;
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a multiple below the number of cells"

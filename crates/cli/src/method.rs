@@ -1,7 +1,7 @@
 use crate::failure::Failure;
 use clap::ValueEnum;
-use etendue_compare::Class;
-use etendue_field::{Light, PhotonSource, VirtualPlane};
+use etendue_compare::Applicability;
+use etendue_field::{Light, PhotonSource};
 use etendue_scene::Scene;
 use etendue_trace::{Backward, PointLight, Tracer};
 use serde::{Deserialize, Serialize};
@@ -27,14 +27,26 @@ pub(crate) fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSour
 /// Fails, before anything is written, when a scene cannot be measured by `method`, or needs the other one as a
 /// reference that it cannot have.
 pub(crate) fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
-    let reference = |plane: &VirtualPlane| Class::of(scene, plane) == Class::Reference;
-    let backward = method == Method::Backward || scene.planes.iter().any(reference);
-    match scene.light {
-        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } if backward => {
-            Err(Failure::bad_input(PointLight))
-        }
-        _ => Ok(()),
+    if !matches!(
+        scene.light,
+        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. }
+    ) {
+        return Ok(());
     }
+    if method == Method::Backward {
+        return Err(Failure::bad_input(PointLight));
+    }
+    for plane in &scene.planes {
+        let reasons = Applicability::new(scene, plane).reasons;
+        if !reasons.is_empty() {
+            return Err(Failure::bad_input(format!(
+                "{} has no prediction ({}), and nothing to compare with: {PointLight}",
+                plane.name,
+                reasons.join(", ")
+            )));
+        }
+    }
+    Ok(())
 }
 
 impl Method {

@@ -6,7 +6,7 @@ use crate::files::{radial_z, z};
 use crate::results::Results;
 use crate::summary::Summary;
 use crate::table::word;
-use etendue_compare::{Class, PlaneComparison, Prediction, affine_chain, stands_before};
+use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Theory, stands_before};
 use etendue_field::{
     FrequencyAxis, Light, Orientation, ProjectionGrid, Side, SliceGrid, VirtualPlane,
 };
@@ -163,12 +163,13 @@ fn column<'a>(scene: &Scene, plane: &VirtualPlane, compared: &'a PlaneComparison
             values: compared.radial.power.view(),
         },
         verdict: verdict_line(compared),
-        guides: match (compared.report.class, &compared.report.first_order) {
-            (Class::Exact, _) if compared.report.in_window > 0 => guides(scene, plane),
+        guides: match (
+            Applicability::new(scene, plane).theory,
+            &compared.report.first_order,
+        ) {
+            (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
             // A lobe leaves no line of light where a mirror would.
-            (Class::FirstOrder, Some(first_order)) if affine_chain(scene, plane).is_some() => {
-                ridges(scene, &first_order.chain.matrix)
-            }
+            (Theory::Specular(..), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },
     }

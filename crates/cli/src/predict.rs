@@ -6,7 +6,7 @@ use crate::results::PREDICTION;
 use crate::stored::Index;
 use crate::threads::on_threads;
 use crate::{limits, load, method, predictions, progress, say, warnings};
-use etendue_compare::{Class, Prediction};
+use etendue_compare::{Applicability, Class, Prediction};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 
@@ -48,7 +48,7 @@ pub(crate) fn predicted(
     method: Method,
     quiet: bool,
 ) -> Result<Vec<Prediction>, Failure> {
-    let class = |plane: &VirtualPlane| Class::of(scene, plane);
+    let class = |plane: &VirtualPlane| Applicability::new(scene, plane).class();
     let mut referred = scene.clone();
     referred
         .planes

@@ -5,8 +5,10 @@ use crate::method::Method;
 use crate::npz::Npz;
 use crate::results::Results;
 use crate::stored::Stored;
-use etendue_compare::{Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction};
-use etendue_field::{Complex, Projection, ProjectionGrid, Slices, VirtualPlane};
+use etendue_compare::{
+    Applicability, Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction,
+};
+use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use ndarray::{Array0, Array1, Array4, Axis, arr0};
@@ -32,8 +34,9 @@ pub(crate) struct PredictedPlane {
     /// Names and units of the parameters, in the order of the arrays.
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
-    /// Batches of a reference; none for theory.
-    replicates: usize,
+    /// Independent replicates of the slices, and of those of the chain of affine maps; none where they
+    /// have no statistical error.
+    replicates: [usize; 2],
 }
 
 fn file_of(plane: &VirtualPlane) -> String {
@@ -73,23 +76,26 @@ pub(crate) fn write(
         for (mut row, parameter) in derivatives.outer_iter_mut().zip(parameters) {
             row.assign(&parameter.derivative.half);
         }
-        let mut batches = Array4::<Complex>::zeros([replicates.len(), azimuths, rho, nu]);
-        for (mut row, batch) in batches.outer_iter_mut().zip(replicates) {
-            row.assign(&batch.half);
-        }
-        let mut linear =
-            Array4::<Complex>::zeros([usize::from(first_order.is_some()), azimuths, rho, nu]);
-        for (mut row, first_order) in linear.outer_iter_mut().zip(first_order) {
-            row.assign(&first_order.slices.half);
-        }
+        let linear = first_order
+            .as_ref()
+            .map(|f| std::slice::from_ref(&f.slices));
+        let linear_replicates = first_order.as_ref().map(|f| f.replicates.as_slice());
+        let linear_replicates = linear_replicates.unwrap_or_default();
         let bytes = Npz::new()
             .add("slices", &slices.half)?
-            .add("first_order", &linear)?
+            .add(
+                "first_order",
+                &stacked(&slices.grid, linear.unwrap_or_default()),
+            )?
             .add("projection", &projection.values)?
             .add("unblocked", &arr0(*unblocked))?
             .add("values", &values)?
             .add("derivatives", &derivatives)?
-            .add("replicates", &batches)?
+            .add("replicates", &stacked(&slices.grid, replicates))?
+            .add(
+                "first_order_replicates",
+                &stacked(&slices.grid, linear_replicates),
+            )?
             .add_half_axes(&slices.grid)?
             .bytes()?;
         results.write(&file_of(plane), &bytes)?;
@@ -104,10 +110,20 @@ pub(crate) fn write(
                 .map(|p| [p.name.clone(), p.unit.clone()])
                 .collect(),
             cuts: cuts.clone(),
-            replicates: replicates.len(),
+            replicates: [replicates.len(), linear_replicates.len()],
         });
     }
     Ok(Predicted { method, planes })
+}
+
+/// Slices as one array, [slices, azimuth, ρ ≥ 0, ν].
+fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
+    let [azimuths, rho, nu] = grid.half_shape();
+    let mut stacked = Array4::zeros([all.len(), azimuths, rho, nu]);
+    for (mut row, slices) in stacked.outer_iter_mut().zip(all) {
+        row.assign(&slices.half);
+    }
+    stacked
 }
 
 /// Reads the predictions of the planes of a scene for a measurement by `method`.
@@ -138,7 +154,7 @@ pub(crate) fn read(
     let pairs = scene.planes.iter().zip(planes);
     pairs
         .map(|(plane, words)| {
-            let class = Class::of(scene, plane);
+            let class = Applicability::new(scene, plane).class();
             if words.class != class {
                 let (name, is) = (&plane.name, words.class);
                 return Err(stored.fault(format!("class of {name} is {is:?}; must be {class:?}")));
@@ -166,12 +182,18 @@ fn read_plane(
     let unblocked: Array0<f64> = file.array("unblocked", ())?;
     let values: Array1<f64> = file.array("values", [count])?;
     let derivatives: Array4<Complex> = file.array("derivatives", [count, azimuths, rho, nu])?;
-    let shape = [usize::from(words.first_order.is_some()), azimuths, rho, nu];
-    let linear: Array4<Complex> = file.array("first_order", shape)?;
-    let linear = linear.outer_iter().map(|half| slices(half.to_owned()));
-    let first_order = linear.zip(&words.first_order).next();
-    let shape = [words.replicates, azimuths, rho, nu];
-    let batches: Array4<Complex> = file.array("replicates", shape)?;
+    let mut stack = |name: &str, count: usize| -> Result<Vec<Slices>, Failure> {
+        let all: Array4<Complex> = file.array(name, [count, azimuths, rho, nu])?;
+        Ok(all
+            .outer_iter()
+            .map(|half| slices(half.to_owned()))
+            .collect())
+    };
+    let linear = stack("first_order", usize::from(words.first_order.is_some()))?;
+    let [replicates, linear_replicates] = words.replicates;
+    let replicates = stack("replicates", replicates)?;
+    let linear_replicates = stack("first_order_replicates", linear_replicates)?;
+    let first_order = linear.into_iter().zip(&words.first_order).next();
     let parameters = words.parameters.iter().enumerate();
     Ok(Prediction {
         class: words.class,
@@ -180,9 +202,10 @@ fn read_plane(
         quadrature_error: words.quadrature_error,
         first_order: first_order.map(|(slices, chain)| FirstOrder {
             slices,
+            replicates: linear_replicates,
             chain: chain.clone(),
         }),
-        replicates: batches.outer_iter().map(|b| slices(b.to_owned())).collect(),
+        replicates,
         cuts: words.cuts.clone(),
         unblocked: unblocked.into_scalar(),
         projection: Projection {

@@ -1,7 +1,9 @@
-//! How fast a glossy reflection changes with angle, by the paper's criteria, by quadrature and as measured.
+//! How fast a glossy reflection changes with angle, by the paper's criteria, by quadrature and as
+//! measured.
 
-use crate::plane::crossed_power;
-use crate::scattering::{budget, scattered};
+use crate::applicability::{Applicability, Theory};
+use crate::budget::budget;
+use crate::residuals::crossed_power;
 use etendue_field::{Light, Lobe, Orientation, ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::TooFewBatches;
@@ -10,13 +12,16 @@ use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::scattering;
 use etendue_theory::shading::{self, Criterion};
 
-/// The criterion of a plane across the ray that leaves a surface with a BRDF, its cutoff being that of [`BANDWIDTH_FRACTION`] of the energy of the
-/// lobe; `None` for any other plane.
+/// The criterion of a plane across the ray that leaves a surface with a BRDF. The cutoff of the
+/// lobe holds [`BANDWIDTH_FRACTION`] of its energy. `None` for any other plane.
 ///
-/// What blocks the light is the last of the blockers; without them the light's own edge does, unless it comes from far away.
+/// The edge that blocks the light is that of the last blockers. Without blockers it is the light's
+/// own, unless the light is far away.
 #[must_use]
 pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
-    let (system, at) = scattered(scene, plane)?;
+    let Theory::Scattering(system, at) = Applicability::new(scene, plane).theory else {
+        return None;
+    };
     if plane.orientation != Orientation::Orthogonal {
         return None;
     }
@@ -47,10 +52,13 @@ fn cutoff(lobe: shading::Lobe) -> f64 {
     lobe.cutoff(BANDWIDTH_FRACTION)
 }
 
-/// The bandwidth along ν of the exact prediction of such a plane, by the estimator that photons are measured with.
+/// The bandwidth along ν of the exact prediction of such a plane, by the estimator that is used for
+/// photons.
 #[must_use]
 pub fn exact_bandwidth(scene: &Scene, plane: &VirtualPlane) -> Option<f64> {
-    let (system, at) = scattered(scene, plane)?;
+    let Theory::Scattering(system, at) = Applicability::new(scene, plane).theory else {
+        return None;
+    };
     let (window, grid) = (&plane.window, &plane.grid);
     let chain = scattering::chain(&system, &at);
     let picture = ProjectionGrid::new(window, 1);
@@ -60,7 +68,7 @@ pub fn exact_bandwidth(scene: &Scene, plane: &VirtualPlane) -> Option<f64> {
     bandwidth_nu(power.view(), grid, BANDWIDTH_FRACTION)
 }
 
-/// The bandwidth along ν as measured at plane `index`, with its error; `None` where no light came.
+/// The bandwidth along ν as measured at plane `index`, with its error. `None` where no light came.
 ///
 /// # Errors
 /// When the measurement has too few batches.

@@ -4,8 +4,9 @@ use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::{Chain, Operator, Source};
 
-/// The chain that leads from the light to a virtual plane: travels, visibilities and reflections as the central ray
-/// meets them. What theory has no word for is left out (see [`Class`](crate::Class)).
+/// The chain that leads from the light to a virtual plane: travels, visibilities and diffuse
+/// reflections as the central ray meets them. Anything else is left out, and
+/// [`Applicability`](crate::Applicability) says so.
 #[must_use]
 pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     let mut walk = Walk {
@@ -50,7 +51,8 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
     }
 }
 
-/// What stands across the path, with its distance: blockers, and surfaces, since those beside the central ray stop light too.
+/// Names, distances and masks of what stands across the path. Surfaces beside the central ray are
+/// among them, because they stop light too.
 fn obstacles(scene: &Scene) -> Vec<(&str, f64, Mask)> {
     let blockers = scene.blockers.iter();
     let blockers = blockers.map(|layer| (layer.name.as_str(), layer.distance, layer.mask.clone()));
@@ -79,7 +81,7 @@ pub fn stands_before(distance: f64, scene: &Scene, plane: &VirtualPlane) -> bool
     }
 }
 
-/// The central ray on its way.
+/// The chain of the central ray as far as it has come.
 struct Walk {
     at: String,
     distance: f64,

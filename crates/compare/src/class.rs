@@ -1,8 +1,5 @@
-use crate::scattering::scattered;
-use crate::system::follows_rays;
-use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
-use etendue_scene::{Hit, Object, Scene, Surface};
-use glam::DVec3;
+//! The three kinds of prediction.
+
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -10,11 +7,12 @@ use std::fmt;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Class {
-    /// Equals the expectation of the measurement, in closed form or by quadrature.
+    /// The prediction equals the expectation of the measurement, in closed form or by quadrature.
     Exact,
-    /// The paper's linearised chain, its error computed beside it: first order minus the exact ray-space prediction.
+    /// There is an exact prediction by rays, and beside it the paper's first-order chain with its
+    /// computed error.
     FirstOrder,
-    /// There is no theory: the other tracer's measurement takes its place.
+    /// No theory applies, and the other tracer's measurement takes its place.
     Reference,
 }
 
@@ -25,163 +23,5 @@ impl fmt::Display for Class {
             Self::FirstOrder => "first-order",
             Self::Reference => "reference",
         })
-    }
-}
-
-impl Class {
-    /// The kind of prediction a plane has: what stands in planes across the path has closed forms or quadratures, and so has
-    /// a reflection straight back; mirrors, interfaces and lenses have their affine maps; everything else has not.
-    #[must_use]
-    pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if follows_rays(scene, plane) || scattered(scene, plane).is_some() {
-            Self::FirstOrder
-        } else if without_theory(scene, plane).is_empty() {
-            Self::Exact
-        } else {
-            Self::Reference
-        }
-    }
-}
-
-/// What light meets on its way to a plane that theory has no word for, in words.
-pub(crate) fn without_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let mut found = Vec::new();
-    for legs in scene.path.legs[..=plane.leg].windows(2) {
-        let [before, leg] = legs else { continue };
-        if let Some(Hit { object, normal, .. }) = &leg.leaves {
-            let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
-                .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
-            let is_flat = matches!(object, Object::Surface(_));
-            if outgoing > ROUNDING || incidence > ROUNDING || !is_flat {
-                let name = scene.name_of(*object);
-                found.push(format!(
-                    "incidence on {name} at {incidence:.4}°, outgoing at {outgoing:.4}°"
-                ));
-            }
-        }
-    }
-    if scene.light.is_picture() {
-        found.push("light of a picture, but for a path of smooth surfaces alone".to_owned());
-    }
-    if matches!(scene.light, Light::Environment { .. }) {
-        found.push("light of an environment".to_owned());
-    }
-    if plane.orientation != Orientation::Orthogonal {
-        found.push(format!("{:?}", plane.orientation));
-    }
-    if plane.leg > 1 {
-        found.push(format!("{} reflections in a row", plane.leg));
-    }
-    found.extend(in_the_way(scene, plane));
-    if let Some(name) = beyond_edge(scene, plane) {
-        found.push(format!("the edge of {name}, which the window sees"));
-    }
-    found
-}
-
-/// Degrees that rounding leaves of none.
-const ROUNDING: f64 = 1e-6;
-
-/// Meshes, and surfaces that do not lie across the path, where light for the plane may pass; on the way back, anything.
-fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let mut found = Vec::new();
-    let visited = |object| scene.path.visits(object);
-    for (i, surface) in scene.surfaces.iter().enumerate() {
-        let name = &surface.name;
-        if !visited(Object::Surface(i)) && (plane.leg > 0 || surface.across().is_none()) {
-            let on_way_back = surface.across().is_some();
-            if passes(scene, plane, &surface.corners(), on_way_back) {
-                found.push(format!("visibility of {name}"));
-            }
-        }
-    }
-    for (i, object) in scene.patches.iter().enumerate() {
-        let own = visited(Object::Patch(i));
-        if !own && passes(scene, plane, &object.patch.corners(), false) {
-            found.push(format!("visibility of {}", object.name));
-        }
-    }
-    for (i, mesh) in scene.meshes.iter().enumerate() {
-        let (name, count, [near, far]) = (&mesh.name, mesh.triangles.len(), mesh.extent);
-        let own = visited(Object::Mesh(i));
-        if !own && passes(scene, plane, mesh.triangles.as_flattened(), false) {
-            found.push(format!(
-                "visibility of {name}: {count} triangles at {near:.4} to {far:.4} m"
-            ));
-        }
-    }
-    found
-}
-
-/// Widths at which a Gaussian picture is dark.
-const PICTURE: f64 = 3.0;
-
-/// Whether light for a plane may pass through a box around points, given in the frame at the light.
-fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bool) -> bool {
-    let legs = &scene.path.legs;
-    let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
-    let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);
-    let along = scene.path.along(plane);
-    let seen = [0, 1].map(|axis| window[axis] + along * slope[axis]);
-    let light = match scene.light {
-        Light::Area { shape, .. } => [0, 1].map(|axis| {
-            let [low, high] = shape.bounds().extent(axis);
-            low.abs().max(high.abs())
-        }),
-        Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
-        Light::Beam { image, .. } => image.width.map(|w| PICTURE * w),
-        Light::Environment { .. } => [f64::MAX; 2],
-    };
-    let crosses = |leg: usize| {
-        let (from, to, end) = if leg < plane.leg {
-            (light, seen, legs[leg].length)
-        } else if leg == 0 {
-            (light, window, along)
-        } else {
-            (seen, window, along)
-        };
-        overlaps(points, &legs[leg].frame, from, to, end)
-    };
-    // Reflected in a row there is no tube any more, and no theory either.
-    let first = usize::from(on_way_back);
-    (first..=plane.leg.min(1)).any(crosses)
-}
-
-/// Whether a box around points meets a tube along a frame, from depth 0 with half-widths `from` to depth `end` with `to`.
-fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
-    let local = points.iter().map(|p| frame.to_local(*p));
-    let (low, high) = local.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
-        (low.min(p), high.max(p))
-    });
-    if high.z <= 0.0 || low.z >= end {
-        return false;
-    }
-    let ends = [low.z, high.z].map(|z| (z / end).clamp(0.0, 1.0));
-    [0, 1].into_iter().all(|axis| {
-        let half = ends.map(|s| from[axis] + s * (to[axis] - from[axis]));
-        let half = half[0].max(half[1]);
-        low[axis] < half && high[axis] > -half
-    })
-}
-
-/// The surface beyond whose edge a plane after a reflection looks: theory takes it to be endless.
-fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
-    let surface = reflector(scene, plane)?;
-    let (w, travelled) = (&plane.window, scene.path.along(plane));
-    let (_, rectangle) = surface.across()?;
-    let covers = |axis: usize, space: &Profile, slope: &Profile| {
-        let reach = space.half_width() + travelled * slope.half_width();
-        let [low, high] = rectangle.extent(axis);
-        low <= -reach && reach <= high
-    };
-    let covered = covers(0, &w.x, &w.u) && covers(1, &w.y, &w.v);
-    (!covered).then_some(&surface.name)
-}
-
-/// The flat surface that light leaves for the leg of a plane.
-pub(crate) fn reflector<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Surface> {
-    match scene.path.legs[plane.leg].leaves?.object {
-        Object::Surface(i) => Some(&scene.surfaces[i]),
-        Object::Mesh(_) | Object::Patch(_) => None,
     }
 }

@@ -1,18 +1,23 @@
-use crate::first_order::{distance, print};
-use crate::system::system;
+//! How the first-order chain becomes exact as the neighbourhood of the central ray shrinks.
+
+use crate::applicability::{Applicability, Theory};
+use crate::first_order::distance;
+use crate::system::print;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::{Budget, rays};
 use serde::Serialize;
 
-/// How the first-order chain of a plane comes closer to the exact ray-space prediction as the neighbourhood of the central ray shrinks.
+/// The error of a plane's first-order chain in smaller and smaller neighbourhoods of the central
+/// ray.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Convergence {
     /// Name of the plane.
     pub plane: String,
-    /// Share e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ there.
+    /// Shares e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ for each.
     pub steps: Vec<[f64; 2]>,
-    /// n in error ∝ eⁿ, by least squares over the last three steps; `None` where the error is down to that of the quadrature.
+    /// The order n in error ∝ eⁿ, by least squares over the last three steps. `None` where the
+    /// error is not clearly above that of the quadrature.
     pub order: Option<f64>,
 }
 
@@ -21,16 +26,18 @@ const BUDGET: Budget = Budget {
     nodes: 4e6,
     error: 1e-4,
 };
-/// Shares of the widths.
+/// The shares e.
 const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Errors below this many times that of the quadrature say nothing of the chain.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks light and windows of a first-order plane and widens its frequencies alike; `None` for a plane of another class. Quadrature
-/// alone: nothing is traced by photons.
+/// Shrinks light and window of a plane behind specular surfaces and widens its frequencies alike.
+/// `None` for any other plane. No photons are traced.
 #[must_use]
 pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
-    let (whole, at) = system(scene, plane)?;
+    let Theory::Specular(whole, at) = Applicability::new(scene, plane).theory else {
+        return None;
+    };
     let mut steps = Vec::new();
     let mut clear = true;
     for e in SHARES {
@@ -63,7 +70,7 @@ pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
     })
 }
 
-/// Slope of ln error over ln e.
+/// The slope of ln error over ln e.
 fn order(steps: &[[f64; 2]]) -> f64 {
     let logs: Vec<[f64; 2]> = steps.iter().map(|step| step.map(f64::ln)).collect();
     let n = logs.len() as f64;

@@ -1,10 +1,10 @@
 //! The paper's linearised chain beside the exact ray-space prediction.
 
-use crate::report::Verdict;
+use crate::budget::budget;
 use crate::residuals::Residuals;
-use crate::scattering::budget;
-use crate::system::{follows_rays, system};
-use etendue_field::{Light, Profile, Shape, Slices, VirtualPlane, Window};
+use crate::system::print;
+use crate::verdict::Verdict;
+use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{Map, Matrix, Print};
@@ -16,8 +16,11 @@ use std::f64::consts::{PI, TAU};
 /// What the chain of affine maps predicts.
 #[derive(Clone, Debug)]
 pub struct FirstOrder {
-    /// Its slices; by the paper's printed formulas where a scene asks for them.
+    /// Its slices, by the paper's printed formulas where a scene asks for them.
     pub slices: Slices,
+    /// Independent replicates, of which `slices` is the mean. They are empty where the slices have
+    /// no statistical error.
+    pub replicates: Vec<Slices>,
     /// Its numbers.
     pub chain: FirstOrderChain,
 }
@@ -25,19 +28,21 @@ pub struct FirstOrder {
 /// The numbers of a chain of affine maps.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FirstOrderChain {
-    /// ‖first order − exact‖/‖exact‖, computed, of the corrected formulas.
+    /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
     pub error: f64,
-    /// A of the rays from the light to the plane, z' = A z; of the corrected formulas.
+    /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
+    /// formulas.
     pub matrix: Matrix<4>,
-    /// Covariance of the windowed light field by rays, and propagated by the chain: see [`Covariance`](crate::Covariance).
+    /// The covariance of the windowed light field by rays, and as propagated by the chain (see
+    /// [`Covariance`](crate::Covariance)).
     pub covariance: [Option<Matrix<4>>; 2],
-    /// Distances from the last surface, metres, at which rays meet that left the light parallel.
+    /// Distances from the last surface, metres, at which rays meet that left the light in parallel.
     pub foci: Vec<f64>,
     /// Whether `slices` are those of the paper's printed formulas.
     pub as_printed: bool,
 }
 
-/// The photons held against the first-order chain, as in `summary.json`.
+/// The photons compared with the first-order chain, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FirstOrderReport {
     /// Its numbers.
@@ -45,41 +50,28 @@ pub struct FirstOrderReport {
     pub chain: FirstOrderChain,
     /// Signed root of ‖S − F₁‖² less noise, over ‖exact‖²: its disagreement beyond noise.
     pub excess: Option<f64>,
-    /// Upper 95 % bound of the excess.
+    /// The upper 95 % bound of the excess.
     pub excess_bound: Option<f64>,
-    /// The excess that this much noise lets one see, at 95 %.
+    /// The smallest excess that can be seen in this much noise, at 95 %.
     pub resolvable: Option<f64>,
     /// Probability of such a disagreement if the first-order chain were the truth.
     pub p_value: Option<f64>,
-    /// What it comes to.
+    /// The verdict on the chain.
     pub verdict: Verdict,
 }
 
-/// The first-order chain passes up to this multiple of its computed error, which is itself good to a few per cent where it is large.
+/// The first-order chain passes up to this multiple of its computed error. That error is itself
+/// accurate to a few per cent where it is large.
 const FACTOR: f64 = 1.1;
-/// Nor is it held to be better than this: at normal incidence its error can be a millionth, and no photons would ever tell.
+/// The first-order chain always passes up to this error. At normal incidence its computed error can
+/// be a millionth, which no photons could resolve.
 const FLOOR: f64 = 0.01;
-/// One-sided 95 % of a normal distribution.
+/// The one-sided 95 % quantile of the normal distribution.
 const NINETY_FIVE: f64 = 1.645;
 
-/// The chain of affine maps that leads to a plane of class first-order, by the paper's printed formulas where the scene asks for them.
-#[must_use]
-pub fn affine_chain(scene: &Scene, plane: &VirtualPlane) -> Option<rays::FirstOrder> {
-    let (system, at) = system(scene, plane).filter(|_| follows_rays(scene, plane))?;
-    rays::chain(&system, &at, print(scene))
-}
-
-/// The formulas a scene asks for.
-pub(crate) fn print(scene: &Scene) -> Print {
-    if scene.file.as_printed {
-        Print::Equations
-    } else {
-        Print::Corrected
-    }
-}
-
 impl FirstOrderReport {
-    /// How many times as many photons would bring the bound of the excess to what is allowed; 1 where they would not decide.
+    /// The factor in photons that would bring the bound of the excess to what is allowed. It is 1
+    /// where the chain is not undecided.
     pub(crate) fn more(&self) -> f64 {
         let (Verdict::Undecided, Some(excess), Some(bound)) =
             (self.verdict, self.excess, self.excess_bound)
@@ -103,29 +95,30 @@ impl FirstOrder {
     ) -> Option<Self> {
         let by = |print| {
             let chain = rays::chain(system, at, print)?;
-            let slices = rays::linear(system, at, over, &chain.map, budget(scene)).slices;
-            Some((chain, slices))
+            let linear = rays::linear(system, at, over, &chain.map, budget(scene));
+            Some((chain, linear))
         };
-        let (corrected, linear) = by(Print::Corrected)?;
+        let (corrected, mut linear) = by(Print::Corrected)?;
+        let matrix = corrected.rays().matrix;
         let chain = FirstOrderChain {
-            error: distance(&linear, &exact.slices),
-            matrix: corrected.rays().matrix,
-            covariance: [
-                exact.covariance,
-                propagated(system, &corrected.rays().matrix, over.0),
-            ],
+            error: distance(&linear.slices, &exact.slices),
+            matrix,
+            covariance: [exact.covariance, propagated(system, &matrix, over.0)],
             foci: corrected.foci,
             as_printed: scene.file.as_printed,
         };
-        let slices = if scene.file.as_printed {
-            by(print(scene))?.1
-        } else {
-            linear
-        };
-        Some(Self { slices, chain })
+        if scene.file.as_printed {
+            linear = by(print(scene))?.1;
+        }
+        Some(Self {
+            slices: linear.slices,
+            replicates: linear.replicates,
+            chain,
+        })
     }
 
-    /// Holds a measurement against it; `exact` is the exact ray-space prediction with the residuals from it.
+    /// Compares a measurement with it. `exact` is the exact ray-space prediction and the residuals
+    /// from that.
     pub(crate) fn report(
         &self,
         measurement: &Measurement,
@@ -134,7 +127,7 @@ impl FirstOrder {
         seed: u64,
     ) -> FirstOrderReport {
         let (slices, exact) = exact;
-        let residuals = Residuals::new(measurement, index, &self.slices);
+        let residuals = Residuals::between(measurement, index, &self.slices, &self.replicates);
         let half = &slices.half;
         let predicted = residuals.sum(half, half, |f, _| f.norm_sqr());
         let (squared, error) = residuals.squared();
@@ -161,8 +154,8 @@ impl FirstOrder {
     }
 }
 
-/// The covariance of the light, as wide as its Gaussian or its shape, after the chain and the window: inverses of covariances add up in a
-/// product of Gaussians, and go as A⁻ᵀ S⁻¹ A⁻¹ through a map.
+/// The covariance after the chain and the window of a Gaussian as wide as the light. Inverses of
+/// covariances add up in a product of Gaussians, and a map takes them to A⁻ᵀ S⁻¹ A⁻¹.
 fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
     let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
     // What has no width gets one that is narrow beside the window; what has no end adds no inverse.
@@ -195,7 +188,8 @@ fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Mat
     Some(Map::linear(inverse).inverse()?.matrix)
 }
 
-/// Of a Gaussian with the profile's curvature at its centre; of a box, its own.
+/// The variance of the Gaussian with the profile's curvature at its centre. For a box it is the
+/// box's.
 fn variance(profile: &Profile) -> f64 {
     match *profile {
         Profile::Hann(h) => 2.0 * (h / PI).powi(2),
@@ -208,7 +202,7 @@ fn diagonal(entries: [f64; 4]) -> Matrix<4> {
     std::array::from_fn(|i| std::array::from_fn(|j| if i == j { entries[i] } else { 0.0 }))
 }
 
-/// ‖a − b‖/‖b‖ over the independent frequencies, with those on the border of the half-plane counted alike.
+/// ‖a − b‖/‖b‖ over the independent frequencies.
 pub(crate) fn distance(a: &Slices, b: &Slices) -> f64 {
     let norm = |array: &Array3<etendue_field::Complex>| -> f64 {
         let grid = b.grid;

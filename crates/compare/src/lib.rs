@@ -1,17 +1,24 @@
 //! Measured against predicted, in units of statistical error.
 //!
-//! [`chain()`] reads theory's chain off a scene: the only code that sees both. A [`Prediction`] is all that
-//! theory says about a plane; [`compare`] holds a measurement against it and comes to a [`Verdict`].
-//! [`Residuals`] are the difference, batch by batch, with the tests made on it.
+//! [`Applicability`] decides which theory applies to a plane of a scene, or why none does, and
+//! holds what that theory needs to know of the scene. A [`Prediction`] is all that the theory says
+//! about the plane. [`compare`] compares a measurement with it and returns a [`Verdict`].
+//! [`Residuals`] are the differences, with the tests made on them.
 //!
-//! Nothing here traces, and nothing tunes: the only freedom is the level α of the test, set in the scene.
+//! Nothing here traces photons, and nothing is tuned: the only freedom is the level α of the test,
+//! which the scene sets.
 
+mod agreement;
+mod applicability;
 mod bandwidth;
+mod budget;
 mod chain;
 mod class;
 mod converge;
+mod dark;
 mod first_order;
 mod memory;
+mod parallel;
 mod plane;
 mod prediction;
 mod report;
@@ -19,19 +26,22 @@ mod residuals;
 mod scattering;
 mod score;
 mod system;
+mod verdict;
+mod ways;
 mod work;
 
+pub use applicability::{Applicability, Theory};
 pub use bandwidth::{criterion, exact_bandwidth, measured_bandwidth};
 pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};
-pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport, affine_chain};
+pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use memory::Memory;
 pub use plane::{PlaneComparison, compare};
-pub use prediction::{PredictedParameter, Prediction, steps};
-pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, Verdict, sidak};
+pub use prediction::{PredictedParameter, Prediction};
+pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, sidak};
 pub use residuals::Residuals;
-pub use scattering::scattered;
 pub use score::ParameterReport;
-pub use system::system;
-pub use work::{TooMuchWork, too_much_work, work};
+pub use system::{scattered, system};
+pub use verdict::Verdict;
+pub use work::{TooMuchWork, too_much_work};

@@ -1,10 +1,7 @@
 //! What a run holds in memory, before it begins.
 
-use crate::chain::chain;
-use crate::class::Class;
-use crate::scattering::scattered;
-use crate::system::system;
-use crate::work::work;
+use crate::applicability::{Applicability, Theory};
+use crate::work;
 use etendue_field::{SliceGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::{PROJECTION_BINS, SliceTransform};
@@ -26,48 +23,61 @@ pub struct Memory {
 
 /// Bytes of a complex number.
 const COMPLEX: f64 = 16.0;
-/// Bytes that the program holds whatever the scene: its code, buffers of photons, pictures, and what is left over from one stage to the next.
+/// Bytes that the program holds for any scene: its code, buffers of photons, pictures, and memory
+/// that one stage leaves to the next.
 const PROGRAM: f64 = 1.5e8;
 
-/// Bytes of a triangle, in the scene and in the hierarchy of one tracer while it is built; in that of the other tracer; and in that of
-/// each further leg. Measured: 430, 270 and 140.
+/// Bytes of a triangle in the scene and in the hierarchy of one tracer while it is built. Measured:
+/// 430.
 const TRIANGLE: f64 = 450.0;
+/// Bytes of a triangle in the hierarchy of the other tracer. Measured: 270.
 const TRIANGLE_OF_REFERENCE: f64 = 300.0;
+/// Bytes of a triangle in the hierarchy of each further leg. Measured: 140.
 const TRIANGLE_OF_LEG: f64 = 150.0;
 
 impl Memory {
-    /// Of a run of a scene on so many threads.
+    /// The memory of a run of a scene on so many threads.
     #[must_use]
     pub fn new(scene: &Scene, threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);
         // A batch is the work of one thread.
         let busy = (threads as f64).min(batches);
         let planes = scene.planes.iter();
-        let sum = |of: &dyn Fn(&VirtualPlane) -> f64| planes.clone().map(of).sum::<f64>();
-        let largest =
-            |of: &dyn Fn(&VirtualPlane) -> f64| planes.clone().map(of).fold(0.0, f64::max);
+        let planes = planes.map(|plane| (plane, Applicability::new(scene, plane)));
+        let planes: Vec<(&VirtualPlane, Applicability)> = planes.collect();
+        let each = |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| -> Vec<f64> {
+            planes
+                .iter()
+                .map(|(plane, theory)| of(plane, theory))
+                .collect()
+        };
+        let sum =
+            |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| each(of).into_iter().sum::<f64>();
+        let largest = |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| {
+            each(of).into_iter().fold(0.0, f64::max)
+        };
         let picture = 8.0 * (PROJECTION_BINS * PROJECTION_BINS) as f64;
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
         // Of a reference its measurement and the copies that a prediction keeps.
-        let kept = |plane: &VirtualPlane| match Class::of(scene, plane) {
-            Class::Reference => 3.0,
-            Class::Exact | Class::FirstOrder => 1.0,
-        };
-        let found = work(scene).into_iter();
-        let found = found.map(|work| work.bytes + threads as f64 * work.bytes_each);
-        let predicted = |plane: &VirtualPlane| (3.0 + parameters(scene, plane)) * spectra(plane);
+        let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
+        let has_reference = planes.iter().any(|(_, of)| is_reference(of));
         Self {
-            batches: batches * sum(&|plane| kept(plane) * (spectra(plane) + picture)),
-            threads: busy * sum(&|plane| SliceTransform::new(&plane.grid).bytes()),
-            predictions: sum(&predicted) + found.fold(0.0, f64::max),
-            // Residuals of all batches, means, variances, powers, and the sums that p-values are made of.
-            comparison: largest(&|plane| (batches + 8.0) * spectra(plane))
-                + sum(&|plane| 4.0 * spectra(plane)),
-            meshes: meshes(scene),
+            batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
+            threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
+            predictions: sum(&|plane, of| (3.0 + parameters(&of.theory)) * spectra(plane))
+                + largest(&|plane, of| {
+                    let work = work::of(of, plane);
+                    work.bytes + threads as f64 * work.bytes_each
+                }),
+            // Residuals of all batches, means, variances, powers, and the sums that p-values are
+            // made of.
+            comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
+                + sum(&|plane, _| 4.0 * spectra(plane)),
+            meshes: meshes(scene, has_reference),
         }
     }
 
-    /// All of it.
+    /// The sum of the parts.
     #[must_use]
     pub fn total(&self) -> f64 {
         let Self {
@@ -81,11 +91,13 @@ impl Memory {
     }
 }
 
-fn meshes(scene: &Scene) -> f64 {
+fn is_reference(applicability: &Applicability) -> bool {
+    matches!(applicability.theory, Theory::None)
+}
+
+fn meshes(scene: &Scene, has_reference: bool) -> f64 {
     let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-    let mut planes = scene.planes.iter();
-    let is_reference = planes.any(|plane| Class::of(scene, plane) == Class::Reference);
-    let reference = if is_reference {
+    let reference = if has_reference {
         TRIANGLE_OF_REFERENCE
     } else {
         0.0
@@ -99,17 +111,12 @@ fn cells(grid: &SliceGrid) -> f64 {
 }
 
 /// Derivatives that a prediction holds.
-fn parameters(scene: &Scene, plane: &VirtualPlane) -> f64 {
-    let count = match (
-        Class::of(scene, plane),
-        system(scene, plane),
-        scattered(scene, plane),
-    ) {
-        (Class::Reference, ..) => 0,
-        (Class::Exact, ..) => chain(scene, plane).parameters().len(),
-        (_, Some((system, at)), _) => system.parameters(&at).len(),
-        (_, _, Some((system, _))) => system.parameters().len(),
-        _ => 0,
+fn parameters(theory: &Theory) -> f64 {
+    let count = match theory {
+        Theory::None => 0,
+        Theory::Parallel(chain) => chain.parameters().len(),
+        Theory::Specular(system, at) => system.parameters(at).len(),
+        Theory::Scattering(system, _) => system.parameters().len(),
     };
     count as f64
 }

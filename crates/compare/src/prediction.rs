@@ -1,14 +1,17 @@
+//! Everything a measurement of a plane is held against.
+
+use crate::applicability::{Applicability, Theory};
+use crate::budget::budget;
 use crate::chain::chain;
-use crate::class::{Class, without_theory};
-use crate::first_order::{FirstOrder, affine_chain};
-use crate::scattering::{budget, scattered};
-use crate::system::system;
+use crate::class::Class;
+use crate::first_order::FirstOrder;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
 use etendue_theory::rays::{self, Plane, System};
 use etendue_theory::{Chain, Operator};
+use ndarray::Array2;
 
 /// Everything a measurement of a plane is held against.
 #[derive(Clone, Debug)]
@@ -19,19 +22,25 @@ pub struct Prediction {
     pub steps: Vec<String>,
     /// The slices of the windowed spectrum.
     pub slices: Slices,
-    /// ‖error‖/‖slices‖ of a quadrature, estimated; `None` for a closed form.
+    /// ‖error‖/‖slices‖, estimated: the standard error where there are replicates of theory, else
+    /// that of a quadrature. `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
-    /// The first-order chain; `slices` and all else are then those of the exact ray-space prediction.
+    /// The first-order chain; `slices` and all else are then those of the exact ray-space
+    /// prediction.
     pub first_order: Option<FirstOrder>,
-    /// For a reference, its independent batches, of which `slices` is the mean; theory has none.
+    /// Independent replicates, of which `slices` is the mean: batches of a reference, or randomised
+    /// rules of theory. Empty where the slices have no statistical error. A p-value is no smaller
+    /// than 2¹⁻ⁿ with n of them, so there should be 16 or more.
     pub replicates: Vec<Slices>,
-    /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against; zero for a reference.
+    /// ∫ L W if nothing stood in the way, what the slices of theory are small or large against;
+    /// zero for a reference.
     pub unblocked: f64,
     /// The windowed light field in (x, u).
     pub projection: Projection,
     /// For each parameter of the chain: name, value and derivative of the slices.
     pub parameters: Vec<PredictedParameter>,
-    /// Where energy begins to count as high, cycles per metre, on a plane that light leaves diffusely.
+    /// Where energy begins to count as high, cycles per metre, on a plane that light leaves
+    /// diffusely.
     pub cuts: Vec<f64>,
 }
 
@@ -48,77 +57,99 @@ pub struct PredictedParameter {
     pub derivative: Slices,
 }
 
-/// The steps that make the spectrum of a plane, a line for each: the chain, what theory has no word for, and the window last.
-#[must_use]
-pub fn steps(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let Window { x, y, u, v } = &plane.window;
-    let mut steps = chain(scene, plane).describe();
-    if let Some((system, at)) = scattered(scene, plane) {
-        let chain = etendue_theory::scattering::chain(&system, &at);
-        steps.truncate(1);
-        steps.extend(chain.into_iter().flat_map(|chain| chain.steps));
-    }
-    if let Some(chain) = affine_chain(scene, plane) {
-        // What shines is said alike; how it travels, by the maps.
-        steps.truncate(1);
-        steps.extend(chain.steps);
-    }
-    let unknown = match Class::of(scene, plane) {
-        Class::FirstOrder => Vec::new(),
-        Class::Exact | Class::Reference => without_theory(scene, plane),
-    };
-    steps.extend(unknown.iter().map(|step| format!("without theory  {step}")));
-    steps.push(format!(
-        "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
-    ));
-    steps
-}
-
 /// Metres, and whatever else parameters are in, that rounding leaves of zero.
 const NOTHING: f64 = 1e-9;
 
 impl Prediction {
-    /// What theory predicts for a plane of a scene; for a plane behind a mesh see [`Self::reference`].
+    /// Whether the slices have a statistical error, which their replicates show.
+    pub(crate) fn is_statistical(&self) -> bool {
+        !self.replicates.is_empty()
+    }
+
+    /// ‖error‖/‖slices‖ that no replicates show.
+    pub(crate) fn systematic_error(&self) -> Option<f64> {
+        self.quadrature_error.filter(|_| !self.is_statistical())
+    }
+
+    /// ‖error‖/‖slices‖ of theory's own replicates, which stays however many photons are measured.
+    pub(crate) fn statistical_error(&self) -> Option<f64> {
+        self.quadrature_error.filter(|_| self.is_statistical())
+    }
+
+    /// What theory predicts for a plane of a scene. Where no theory applies it is that of its chain
+    /// as far as the chain goes: see [`Self::reference`].
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if Class::of(scene, plane) == Class::FirstOrder
-            && let Some((system, at)) = system(scene, plane)
-        {
-            return Self::by_rays(scene, plane, &system, &at);
+        let applicability = Applicability::new(scene, plane);
+        let steps = applicability.steps(scene, plane);
+        if applicability.dark.is_some() {
+            return Self::darkness(scene, plane, applicability.class(), steps);
         }
-        if let Some((system, at)) = scattered(scene, plane) {
-            return Self::by_scattering(scene, plane, &system, &at);
+        match applicability.theory {
+            Theory::Parallel(chain) => Self::by_chain(scene, plane, &chain, steps),
+            Theory::Specular(system, at) => Self::by_rays(scene, plane, &system, &at, steps),
+            Theory::Scattering(system, at) => {
+                Self::by_scattering(scene, plane, &system, &at, steps)
+            }
+            Theory::None => Self {
+                class: Class::Reference,
+                ..Self::by_chain(scene, plane, &chain(scene, plane), steps)
+            },
         }
-        let chain = chain(scene, plane);
-        let (window, grid) = (&plane.window, &plane.grid);
-        let slices = etendue_theory::slices(&chain, window, grid);
-        let cells = ProjectionGrid::new(window, PROJECTION_BINS);
-        let parameters = chain
-            .parameters()
-            .into_iter()
-            .map(|parameter| PredictedParameter {
-                name: chain.name(parameter),
-                unit: chain.unit(parameter).to_owned(),
-                value: chain.value(parameter),
-                derivative: etendue_theory::derivative(&chain, parameter, window, grid, &slices),
-            })
-            .collect();
+    }
+
+    /// No light at all.
+    fn darkness(scene: &Scene, plane: &VirtualPlane, class: Class, steps: Vec<String>) -> Self {
+        let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+        let values = Array2::zeros((grid.bins, grid.bins));
         Self {
-            class: Class::of(scene, plane),
-            steps: steps(scene, plane),
-            quadrature_error: etendue_theory::quadrature_error(&chain, window, grid, &slices),
+            class,
+            steps,
+            slices: Slices::zeros(plane.grid),
+            quadrature_error: None,
+            first_order: None,
+            replicates: Vec::new(),
+            unblocked: 0.0,
+            projection: Projection { grid, values },
+            parameters: Vec::new(),
+            cuts: cuts(scene, plane),
+        }
+    }
+
+    /// What the closed forms of light between parallel planes say.
+    fn by_chain(scene: &Scene, plane: &VirtualPlane, chain: &Chain, steps: Vec<String>) -> Self {
+        let (window, grid) = (&plane.window, &plane.grid);
+        let slices = etendue_theory::slices(chain, window, grid);
+        let cells = ProjectionGrid::new(window, PROJECTION_BINS);
+        let parameters = chain.parameters().into_iter();
+        let parameters = parameters.map(|parameter| PredictedParameter {
+            name: chain.name(parameter),
+            unit: chain.unit(parameter).to_owned(),
+            value: chain.value(parameter),
+            derivative: etendue_theory::derivative(chain, parameter, window, grid, &slices),
+        });
+        Self {
+            class: Class::Exact,
+            steps,
+            quadrature_error: etendue_theory::quadrature_error(chain, window, grid, &slices),
             first_order: None,
             replicates: Vec::new(),
             unblocked: unblocked(chain.clone(), window),
-            projection: etendue_theory::projection(&chain, window, &cells),
+            projection: etendue_theory::projection(chain, window, &cells),
+            parameters: parameters.collect(),
             slices,
-            parameters,
             cuts: cuts(scene, plane),
         }
     }
 
     /// What rays followed through the real geometry say, and the first-order chain.
-    fn by_rays(scene: &Scene, plane: &VirtualPlane, system: &System, at: &Plane) -> Self {
+    fn by_rays(
+        scene: &Scene,
+        plane: &VirtualPlane,
+        system: &System,
+        at: &Plane,
+        steps: Vec<String>,
+    ) -> Self {
         let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         let over = (&plane.window, &plane.grid, &cells);
         let exact = rays::exact(system, at, over, budget(scene));
@@ -142,7 +173,7 @@ impl Prediction {
         });
         Self {
             class: Class::FirstOrder,
-            steps: steps(scene, plane),
+            steps,
             quadrature_error: Some(exact.error),
             first_order,
             parameters: parameters.collect(),
@@ -167,7 +198,7 @@ impl Prediction {
         let plane = &scene.planes[index];
         Ok(Self {
             class: Class::Reference,
-            steps: steps(scene, plane),
+            steps: Applicability::new(scene, plane).steps(scene, plane),
             slices: estimate::slices(measurement, at)?.mean,
             quadrature_error: None,
             first_order: None,
@@ -183,8 +214,8 @@ impl Prediction {
     }
 }
 
-/// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times that, to see whether
-/// H hangs on the cut; none where light does not leave a surface.
+/// Two main lobes of the transform of a Hann window, which end at 1/half-width each, and 1.5 times
+/// that, to see whether H hangs on the cut; none where light does not leave a surface.
 fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     if plane.leg == 0 || scene.path.along(plane) > 0.0 {
         return Vec::new();

@@ -1,40 +1,19 @@
+//! Every number of a compared plane, as in `summary.json`.
+
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::score::ParameterReport;
+use crate::verdict::Verdict;
 use etendue_field::Frame;
 use etendue_theory::geometry::Matrix;
 use serde::Serialize;
 
-/// What a plane or a run comes to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Verdict {
-    /// Measured and predicted agree.
-    Pass,
-    /// They do not.
-    Fail,
-    /// No disagreement was seen, but noise would have hidden one: the plane needs more photons.
-    Undecided,
-}
-
-impl Verdict {
-    /// The worse of two: fail before undecided before pass.
-    #[must_use]
-    pub fn and(self, other: Self) -> Self {
-        match (self, other) {
-            (Self::Fail, _) | (_, Self::Fail) => Self::Fail,
-            (Self::Undecided, _) | (_, Self::Undecided) => Self::Undecided,
-            (Self::Pass, Self::Pass) => Self::Pass,
-        }
-    }
-}
-
 /// Measured and predicted values of one number.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Pair {
-    /// From the photons.
+    /// The value from the photons.
     pub measured: Option<f64>,
-    /// From theory, by the same estimator.
+    /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
     /// Standard error of the measured value.
     pub error: Option<f64>,
@@ -43,25 +22,27 @@ pub struct Pair {
 /// The bandwidths along both axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bandwidth {
-    /// Along ρ, cycles per metre.
+    /// The bandwidth along ρ, cycles per metre.
     pub rho: Pair,
-    /// Along ν, cycles per unit slope.
+    /// The bandwidth along ν, cycles per unit slope.
     pub nu: Pair,
 }
 
 /// Second central moments of a windowed light field, [4, 4], in the units of its coordinates.
 ///
-/// They exist because the window ends. Those of the spectrum need not: of an edge in the field they grow without end as the grid does,
-/// which is why a percentile stands beside them as bandwidth.
+/// They are finite because the window ends. Second moments of the spectrum need not be: where the
+/// field has an edge they grow with the frequency grid. The bandwidth is a percentile for this
+/// reason.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Covariance {
-    /// From the photons.
+    /// The moments of the photons.
     pub measured: Matrix<4>,
-    /// Standard errors, by the jackknife.
+    /// Their standard errors, by the jackknife.
     pub error: Matrix<4>,
-    /// By rays through the real geometry, where that is the prediction.
+    /// The moments of rays followed through the real geometry, where these are the prediction.
     pub predicted: Option<Matrix<4>>,
-    /// Propagated, A S Aᵀ by the first-order chain, from a Gaussian as wide as the light, through a window taken to be Gaussian; masks left out.
+    /// The moments A S Aᵀ that the first-order chain propagates from a Gaussian as wide as the
+    /// light through a Gaussian window. Masks are left out.
     pub propagated: Option<Matrix<4>>,
 }
 
@@ -70,7 +51,7 @@ pub struct Covariance {
 pub struct HighFrequencyShare {
     /// The cut, cycles per metre.
     pub cut: f64,
-    /// H.
+    /// H, the share of energy above it.
     pub share: Pair,
 }
 
@@ -83,7 +64,8 @@ pub struct PlaneReport {
     pub class: Class,
     /// The chain, a line for each step.
     pub chain: Vec<String>,
-    /// Estimated ‖error‖/‖F‖ of a prediction by quadrature; none for a closed form.
+    /// Estimated ‖error‖/‖F‖ of a prediction that is no closed form. Where the prediction has
+    /// replicates it is their standard error, which is also in the noise.
     pub quadrature_error: Option<f64>,
     /// The plane's frame, world coordinates.
     pub frame: Frame,
@@ -91,9 +73,9 @@ pub struct PlaneReport {
     pub distance: f64,
     /// Photons that crossed the plane.
     pub crossed: u64,
-    /// Those inside the window.
+    /// Photons that crossed it inside the window.
     pub in_window: u64,
-    /// Those outside.
+    /// Photons that crossed it outside the window.
     pub outside_window: u64,
     /// ‖S − F‖/‖F‖ over the independent frequencies.
     pub relative_error: Option<f64>,
@@ -113,25 +95,30 @@ pub struct PlaneReport {
     pub parameters: Vec<ParameterReport>,
     /// Shear slope of the radial spectrum, metres.
     pub slope: Pair,
-    /// Second moments of the radial spectrum over the grid: ρρ, ρν and νν. Of a field with edges they grow with the grid, and the bandwidth says more.
+    /// Second moments of the radial spectrum over the grid: ρρ, ρν and νν. For a field with edges
+    /// they grow with the grid, and the bandwidth says more.
     pub spectral_moments: [Pair; 3],
     /// 95 % bandwidth of the radial spectrum.
     pub bandwidth_95: Bandwidth,
-    /// Second central moments of the windowed light field over (x, y, u, v) or what stands for them; none where no light came.
+    /// Second central moments of the windowed light field over the coordinates of the plane. There
+    /// are none where no light came.
     pub covariance: Option<Covariance>,
-    /// H at two cuts, on a plane that light leaves diffusely; empty elsewhere.
+    /// H at two cuts, on a plane that light leaves diffusely. It is empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
-    /// The photons held against the first-order chain, on a plane of that class; all numbers above are of the exact ray-space prediction.
+    /// The photons compared with the first-order chain, on a plane of that class. All numbers above
+    /// compare them with the exact ray-space prediction.
     pub first_order: Option<FirstOrderReport>,
-    /// What it comes to.
+    /// The verdict.
     pub verdict: Verdict,
-    /// Photons that would decide an undecided plane; `None` where it is the prediction that is not exact enough.
+    /// Photons that would decide an undecided plane. `None` where the prediction is not accurate
+    /// enough for any number of photons.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,
 }
 
-/// Level of one of `planes` tests so that all pass together with probability 1 − `alpha` (Šidák 1967).
+/// The level of one of `planes` tests so that all pass together with probability 1 − `alpha` (Šidák
+/// 1967).
 #[must_use]
 pub fn sidak(alpha: f64, planes: usize) -> f64 {
     1.0 - (1.0 - alpha).powf(1.0 / planes as f64)

@@ -1,75 +1,104 @@
+//! Measured minus predicted, batch by batch, and the tests made on it.
+
 use etendue_field::random::{self, Stream};
 use etendue_field::{Complex, SliceGrid, Slices};
 use etendue_spectrum::{Measurement, PlaneBatch};
 use ndarray::{Array2, Array3, Axis};
 
-/// Measured minus predicted slices, batch by batch.
+/// Measured minus predicted slices, in independent parts.
 ///
-/// The residual of a batch is r_b = S_b − F. Under the hypothesis each is an independent draw with mean zero.
+/// Against a prediction without statistical error there is a residual for each batch, r_b = S_b −
+/// F. Against one that comes in replicates itself, batches and replicates are taken together in as
+/// many groups of neighbours as there are of the fewer (docs/theory.md, section 6). Under the
+/// hypothesis each residual is an independent draw with mean zero, and their mean is S − F.
 #[derive(Clone, Debug)]
 pub struct Residuals {
     grid: SliceGrid,
-    /// One for each batch, [azimuth, ρ ≥ 0, ν].
-    batches: Vec<Array3<Complex>>,
+    /// One for each batch or group, [azimuth, ρ ≥ 0, ν].
+    parts: Vec<Array3<Complex>>,
 }
 
 /// Rounds of random signs: the p-value is known to a part in 20,000.
 const ROUNDS: u64 = 19_999;
+/// What rounding may leave of shares that add up to one.
+const ROUNDING: f64 = 1e-9;
 
 impl Residuals {
-    /// The residuals of plane `plane` of a measurement from `prediction`.
+    /// The residuals of plane `plane` of a measurement from slices that are known without
+    /// statistical error.
     ///
     /// # Panics
     /// When the plane was measured on other frequencies than the prediction's.
     #[must_use]
     pub fn new(measurement: &Measurement, plane: usize, prediction: &Slices) -> Self {
-        Self::from_each(measurement, plane, std::iter::repeat(prediction))
-    }
-
-    /// The differences of the batches of two independent measurements, pair by pair.
-    ///
-    /// # Panics
-    /// When they are of different frequencies.
-    pub(crate) fn between(measurement: &Measurement, plane: usize, replicates: &[Slices]) -> Self {
-        Self::from_each(measurement, plane, replicates.iter())
-    }
-
-    fn from_each<'a>(
-        measurement: &Measurement,
-        plane: usize,
-        predictions: impl Iterator<Item = &'a Slices>,
-    ) -> Self {
-        let residual = |(batch, prediction): (&PlaneBatch, &Slices)| {
-            let (measured, predicted) = (batch.slices.grid, prediction.grid);
-            assert_eq!(measured, predicted, "frequencies measured and predicted");
+        let residual = |batch: &PlaneBatch| {
+            check(&batch.slices, prediction);
             &batch.slices.half - &prediction.half
         };
         Self {
-            grid: measurement.planes()[plane].grid,
-            batches: measurement
-                .at_plane(plane)
-                .zip(predictions)
-                .map(residual)
-                .collect(),
+            grid: prediction.grid,
+            parts: measurement.at_plane(plane).map(residual).collect(),
         }
     }
 
-    /// Number of batches R.
+    /// The residuals from slices that are the mean of replicates, or, without any, known exactly.
+    ///
+    /// Of B batches and R replicates each group g of the n = min(B, R) holds a share, and r_g = n/B
+    /// Σ_b (S_b − F) − n/R Σ_j (F_j − F). With as many of either in all groups F drops out.
+    ///
+    /// # Panics
+    /// When the plane was measured on other frequencies than the prediction's.
     #[must_use]
-    pub fn count(&self) -> usize {
-        self.batches.len()
+    pub fn between(
+        measurement: &Measurement,
+        plane: usize,
+        prediction: &Slices,
+        replicates: &[Slices],
+    ) -> Self {
+        if replicates.is_empty() {
+            return Self::new(measurement, plane, prediction);
+        }
+        let batches: Vec<&Slices> = measurement.at_plane(plane).map(|b| &b.slices).collect();
+        let groups = batches.len().min(replicates.len());
+        let mut parts = vec![Array3::zeros(prediction.grid.half_shape()); groups];
+        // How often F itself is in each group.
+        let mut left = vec![0.0; groups];
+        let samples: [(f64, Vec<&Slices>); 2] =
+            [(1.0, batches), (-1.0, replicates.iter().collect())];
+        for (sign, sample) in samples {
+            let share = groups as f64 / sample.len() as f64;
+            for (i, slices) in sample.iter().enumerate() {
+                check(slices, prediction);
+                let group = i * groups / sample.len();
+                parts[group].scaled_add(Complex::from(sign * share), &slices.half);
+                left[group] -= sign * share;
+            }
+        }
+        for (part, left) in parts.iter_mut().zip(left) {
+            if f64::abs(left) > ROUNDING {
+                part.scaled_add(Complex::from(left), &prediction.half);
+            }
+        }
+        let grid = prediction.grid;
+        Self { grid, parts }
     }
 
-    /// The residual of each batch, [azimuth, ρ ≥ 0, ν].
+    /// The number of residuals R.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        self.parts.len()
+    }
+
+    /// Each residual, [azimuth, ρ ≥ 0, ν].
     pub(crate) fn each(&self) -> impl Iterator<Item = &Array3<Complex>> {
-        self.batches.iter()
+        self.parts.iter()
     }
 
     /// S − F, [azimuth, ρ ≥ 0, ν].
     #[must_use]
     pub fn mean(&self) -> Array3<Complex> {
         let mut sum = Array3::zeros(self.grid.half_shape());
-        for residual in &self.batches {
+        for residual in &self.parts {
             sum += residual;
         }
         sum / Complex::from(self.count() as f64)
@@ -79,7 +108,7 @@ impl Residuals {
     pub(crate) fn variance(&self) -> Array3<f64> {
         let mean = self.mean();
         let mut variance = Array3::zeros(self.grid.half_shape());
-        for residual in &self.batches {
+        for residual in &self.parts {
             ndarray::Zip::from(&mut variance)
                 .and(residual)
                 .and(&mean)
@@ -100,7 +129,7 @@ impl Residuals {
     /// Number of independent frequencies.
     #[must_use]
     pub fn frequencies(&self) -> usize {
-        self.cells(&self.batches[0]).count()
+        self.cells(&self.parts[0]).count()
     }
 
     /// Sum of `term` over the independent frequencies of two arrays.
@@ -116,7 +145,8 @@ impl Residuals {
             .sum()
     }
 
-    /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ > 0.
+    /// χ² per degree of freedom: the mean of |S − F|²/σ² over the independent frequencies where σ >
+    /// 0.
     ///
     /// σ² is itself estimated from R batches; for complex normal residuals that lifts the mean by
     /// (R − 1)/(R − 2), which is divided out. `None` when no photon came.
@@ -133,11 +163,13 @@ impl Residuals {
         Some(sum / resolved as f64 * (r - 2.0) / (r - 1.0))
     }
 
-    /// Standard deviation of the measured radial power around the predicted one, if F is true; [ρ, ν].
+    /// Standard deviation, [ρ, ν], of the measured radial power around the predicted one, if F is
+    /// true.
     ///
-    /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first term is a
-    /// mean over batches, its variance their spread; the second has the variance σ⁴ at each azimuth.
-    /// Unlike the jackknife error of the power itself this does not follow the power's own fluctuation.
+    /// |S|² − σ² − |F|² = 2 Re F*(S − F) + (|S − F|² − σ²), averaged over the azimuths. The first
+    /// term is a mean over residuals, whose spread gives its variance. The second has the variance
+    /// σ⁴ at each azimuth. Unlike the jackknife error of the power, this error does not follow the
+    /// power's own fluctuation.
     pub(crate) fn radial_sigma(&self, prediction: &Slices, variance: &Array3<f64>) -> Array2<f64> {
         let azimuths = self.grid.azimuths as f64;
         let half = self.grid.half_shape();
@@ -146,7 +178,7 @@ impl Residuals {
             Array2::<f64>::zeros((half[1], half[2])),
             Array2::<f64>::zeros((half[1], half[2])),
         );
-        for residual in &self.batches {
+        for residual in &self.parts {
             let mut cross = Array3::<f64>::zeros(half);
             ndarray::Zip::from(&mut cross)
                 .and(residual)
@@ -162,21 +194,21 @@ impl Residuals {
         self.grid.unfold_radial(sigma.view())
     }
 
-    /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with s = 1
-    /// or s = Σ_b |r_b|² at each frequency.
+    /// Products of residuals, summed over frequencies: H_bc = Σ Re(r_b conj r_c) / s, [R, R], with
+    /// s = 1 or s = Σ_b |r_b|² at each frequency.
     pub(crate) fn products(&self, normalised: bool) -> Array2<f64> {
         let r = self.count();
         let mut scale = Array3::from_elem(self.grid.half_shape(), 1.0);
         if normalised {
             scale.fill(0.0);
-            for residual in &self.batches {
+            for residual in &self.parts {
                 scale.zip_mut_with(residual, |s, r| *s += r.norm_sqr());
             }
         }
         let mut products = Array2::zeros((r, r));
         for k in 0..self.grid.azimuths {
             let rows: Vec<f64> = self
-                .batches
+                .parts
                 .iter()
                 .flat_map(|residual| self.row(residual, &scale, k))
                 .collect();
@@ -188,7 +220,8 @@ impl Residuals {
         products
     }
 
-    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife error (docs/theory.md, section 6).
+    /// ‖mean residual‖² without its noise, Σ_{b≠c} H_bc / (R (R − 1)), and its delete-one jackknife
+    /// error (docs/theory.md, section 6).
     pub(crate) fn squared(&self) -> (f64, f64) {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -206,7 +239,8 @@ impl Residuals {
         (total / (r * (r - 1.0)), ((r - 1.0) / r * spread).sqrt())
     }
 
-    /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then uncorrelated, each pair coming twice.
+    /// Standard error of [`Self::squared`] if every residual has mean zero: its terms are then
+    /// uncorrelated, each pair coming twice.
     pub(crate) fn squared_error(&self) -> f64 {
         let products = self.products(false);
         let r = self.count() as f64;
@@ -235,10 +269,10 @@ impl Residuals {
 
     /// The p-value of the hypothesis that every residual has mean zero.
     ///
-    /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a residual is
-    /// as likely as its negative, so the statistic under random signs is a draw from its own distribution,
-    /// correlations between neighbouring frequencies included. p is the share of rounds, the observed one
-    /// counted in, that reach the observed value.
+    /// The statistic is Σ |Σ_b r_b|² / Σ_b |r_b|² over the frequencies. Under the hypothesis a
+    /// residual is as likely as its negative, so the statistic under random signs is a draw from
+    /// its own distribution, correlations between neighbouring frequencies included. p is the share
+    /// of rounds, the observed one counted in, that reach the observed value.
     ///
     /// `None` when all residuals are zero: nothing measured and nothing predicted.
     #[must_use]
@@ -254,6 +288,28 @@ impl Residuals {
             .count();
         Some((reached + 1) as f64 / (ROUNDS + 1) as f64)
     }
+}
+
+/// Panics when slices are of other frequencies than the prediction's.
+fn check(measured: &Slices, predicted: &Slices) {
+    let (measured, predicted) = (measured.grid, predicted.grid);
+    assert_eq!(measured, predicted, "frequencies measured and predicted");
+}
+
+/// The radial power of the mean of independent replicates, without their noise (docs/theory.md, Eq.
+/// 13): crossed with each other they have none in common. [ρ, ν].
+pub(crate) fn crossed_power(replicates: &[Slices]) -> Array2<f64> {
+    let grid = replicates[0].grid;
+    let mut sum = Array3::<Complex>::zeros(grid.half_shape());
+    let mut own = Array3::<f64>::zeros(grid.half_shape());
+    for replicate in replicates {
+        sum += &replicate.half;
+        own.zip_mut_with(&replicate.half, |own, s| *own += s.norm_sqr());
+    }
+    let r = replicates.len() as f64;
+    let crossed = sum.mapv(|s| s.norm_sqr()) - own;
+    let radial = crossed.sum_axis(Axis(0)) / (r * (r - 1.0) * grid.azimuths as f64);
+    grid.unfold_radial(radial.view())
 }
 
 /// Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.

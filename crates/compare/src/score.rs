@@ -1,3 +1,5 @@
+//! The parameters of a prediction as the photons measure them.
+
 use crate::prediction::PredictedParameter;
 use crate::residuals::Residuals;
 use ndarray::Array3;
@@ -8,11 +10,11 @@ use serde::Serialize;
 pub struct ParameterReport {
     /// What it is, such as "travel light to blockers".
     pub name: String,
-    /// Unit of its values; none for a pure number.
+    /// The unit of its values, empty for a pure number.
     pub unit: String,
     /// Its value in the scene.
     pub scene: f64,
-    /// Its value as measured, all others held at the scene's.
+    /// Its value as measured, with all others held at the scene's.
     pub measured: f64,
     /// Standard error of the measured value.
     pub error: f64,
@@ -24,12 +26,14 @@ pub struct ParameterReport {
 /// the normal quantiles 2.576 + 1.282.
 const DETECTABLE: f64 = 3.858;
 
-/// The score test of one parameter (docs/theory.md, section 6): projects S − F on ∂F/∂parameter, weighted by 1/σ².
+/// The score test of one parameter (docs/theory.md, section 6): projects S − F on ∂F/∂parameter,
+/// weighted by 1/σ².
 ///
-/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; its error
-/// is the spread of δ over the batches, so correlations between frequencies are in it. To first order in δ.
+/// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; its
+/// error is the spread of δ over the residuals, so it includes correlations between frequencies.
+/// Both are of first order in δ.
 ///
-/// `None` when the parameter leaves no trace in the prediction, or no photon came.
+/// `None` when the prediction does not depend on the parameter, or no photon came.
 pub(crate) fn score(
     residuals: &Residuals,
     variance: &Array3<f64>,

@@ -1,10 +1,15 @@
+//! Smooth surfaces read off the scene, for rays and for reflection by a BRDF.
+
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Side, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, Scene};
+use etendue_theory::geometry::Print;
 use etendue_theory::rays::{Element, Plane, System};
+use etendue_theory::scattering;
 
-/// The light, masks and specular surfaces that lead to a plane, and the plane, for theory to follow rays through; `None` where light
-/// comes from an environment or is reflected diffusely, or may meet what is neither on the path nor in a plane across its first leg.
+/// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
+/// where light comes from an environment, where a surface is not specular, and where the scene
+/// holds an object off the path.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
     if matches!(scene.light, Light::Environment { .. }) {
@@ -41,15 +46,40 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
     is_free(scene).then(|| (system, in_frame(scene, plane)))
 }
 
+/// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
+/// plane is not on the second leg, where the first surface has no BRDF, and where the scene holds
+/// an object off the path.
+#[must_use]
+pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<(scattering::System, Plane)> {
+    if plane.leg != 1 || !is_free(scene) {
+        return None;
+    }
+    let Object::Patch(i) = scene.path.legs[1].leaves?.object else {
+        return None;
+    };
+    let object = &scene.patches[i];
+    let Event::Reflects(reflectance) = &object.event else {
+        return None;
+    };
+    let system = scattering::System {
+        light: scene.light.clone(),
+        layers: layers_before(scene, plane),
+        name: object.name.clone(),
+        patch: object.patch,
+        reflectance: reflectance.clone(),
+    };
+    Some((system, in_frame(scene, plane)))
+}
+
 /// The masks that light meets before a plane, with their distances.
-pub(crate) fn layers_before(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
+fn layers_before(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
     layers.map(|l| (l.distance, l.mask.clone())).collect()
 }
 
 /// A plane in the frame at the light.
-pub(crate) fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
+fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     let hit = surface(scene, plane);
     let patch = match hit.map(|hit| hit.object) {
         Some(Object::Patch(i)) if plane.orientation.is_local() => Some(scene.patches[i].patch),
@@ -65,11 +95,13 @@ pub(crate) fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
     }
 }
 
-/// Whether a plane is predicted by following rays: behind a specular surface or on one, or in light that goes through pictures.
-pub(crate) fn follows_rays(scene: &Scene, plane: &VirtualPlane) -> bool {
-    let goes =
-        scene.light.is_picture() || plane.leg > 0 || plane.orientation != Orientation::Orthogonal;
-    goes && system(scene, plane).is_some()
+/// The formulas a scene asks for.
+pub(crate) fn print(scene: &Scene) -> Print {
+    if scene.file.as_printed {
+        Print::Equations
+    } else {
+        Print::Corrected
+    }
 }
 
 /// The hit on whose surface a plane is.
@@ -80,8 +112,8 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     }
 }
 
-/// Whether nothing stands beside the path.
-pub(crate) fn is_free(scene: &Scene) -> bool {
+/// Whether the path visits every object of the scene.
+fn is_free(scene: &Scene) -> bool {
     let visited = |object| scene.path.visits(object);
     let surfaces = (0..scene.surfaces.len()).all(|i| visited(Object::Surface(i)));
     let patches = (0..scene.patches.len()).all(|i| visited(Object::Patch(i)));

@@ -1,16 +1,15 @@
 //! What the predictions of a scene take, before anything is traced.
 
-use crate::chain::chain;
-use crate::class::Class;
+use crate::applicability::{Applicability, Theory};
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::Work;
 use std::fmt;
 
-/// Most steps of the predictions of a scene: about ten minutes of one core.
+/// The largest number of steps of the predictions of a scene, about ten minutes of one core.
 const MOST_STEPS: f64 = 6e11;
-/// Most bytes of a prediction on one core.
+/// The largest number of bytes of a prediction on one core.
 const MOST_BYTES: f64 = 1e9;
 
 /// A scene whose predictions take more than is allowed, and the plane to blame.
@@ -48,14 +47,8 @@ impl fmt::Display for TooMuchWork {
     }
 }
 
-/// What the prediction of each plane takes, in the order of the scene; nothing where another measurement takes its place.
-#[must_use]
-pub fn work(scene: &Scene) -> Vec<Work> {
-    scene.planes.iter().map(|plane| of(scene, plane)).collect()
-}
-
-/// The plane that takes most of the work, where the predictions of a scene would not end in about ten minutes; or the first whose
-/// prediction would not fit into a gigabyte.
+/// The plane that takes most of the work, if the predictions of a scene would take more than about
+/// ten minutes, or the first plane whose prediction would not fit into a gigabyte.
 #[must_use]
 pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     let mut total = 0.0;
@@ -63,7 +56,7 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     for plane in &scene.planes {
         let this = TooMuchWork {
             plane: plane.name.clone(),
-            work: of(scene, plane),
+            work: of(&Applicability::new(scene, plane), plane),
             total: 0.0,
         };
         if this.work.bytes + this.work.bytes_each > MOST_BYTES {
@@ -80,13 +73,17 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     None
 }
 
-fn of(scene: &Scene, plane: &VirtualPlane) -> Work {
+/// What the prediction of a plane takes.
+pub(crate) fn of(applicability: &Applicability, plane: &VirtualPlane) -> Work {
+    if applicability.dark.is_some() {
+        return Work::none();
+    }
     let (window, grid) = (&plane.window, &plane.grid);
     let picture = ProjectionGrid::new(window, PROJECTION_BINS);
-    match Class::of(scene, plane) {
-        Class::Reference => Work::none(),
-        Class::Exact => etendue_theory::work(&chain(scene, plane), window, grid, &picture),
-        // Nets have a budget.
-        Class::FirstOrder => Work::none(),
+    match &applicability.theory {
+        Theory::None => Work::none(),
+        Theory::Parallel(chain) => etendue_theory::work(chain, window, grid, &picture),
+        // These have a budget.
+        Theory::Specular(..) | Theory::Scattering(..) => Work::none(),
     }
 }

@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Class, PredictedParameter, Prediction, Residuals, Verdict, compare, sidak};
+use etendue_compare::{
+    Applicability, Class, PredictedParameter, Prediction, Residuals, Verdict, compare, sidak,
+};
 use etendue_field::random::{self, Stream};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Ledger, PlaneTally, Profile, Projection, ProjectionGrid,
@@ -146,8 +148,124 @@ fn a_reference_is_judged_with_its_own_noise() {
         seeds += 1.0;
         assert_eq!(verdict(1.05, seed).verdict, Verdict::Fail);
     }
-    // Eight times 170 complex numbers: 1/√1360 = 0.027, four of them. Without the reference's noise it would be 2.
+    // Eight times 170 complex numbers: 1/√1360 = 0.027, four of them. Without the reference's noise
+    // it would be 2.
     assert!((chi2 / seeds - 1.0).abs() < 0.11, "{}", chi2 / seeds);
+}
+
+/// Replicates of a prediction around `truth`, with noise of the given size on each.
+fn replicates(truth: &Slices, size: f64, count: u32, seed: u64) -> Vec<Slices> {
+    let replicate = |index: u32| {
+        let mut slices = truth.clone();
+        for (cell, value) in slices.half.iter_mut().enumerate() {
+            *value += noise(seed, u64::from(index) << 32 | cell as u64) * size;
+        }
+        slices
+    };
+    (0..count).map(replicate).collect()
+}
+
+/// The prediction of a spectrum of this width that theory knows by its replicates.
+fn sampled(width: f64, size: f64, count: u32, seed: u64) -> Prediction {
+    let [truth, _] = spectrum(width);
+    let replicates = replicates(&truth, size, count, seed);
+    let mut slices = Slices::zeros(truth.grid);
+    for replicate in &replicates {
+        slices.half += &replicate.half;
+    }
+    slices.half /= Complex::from(f64::from(count));
+    let cells = slices.half.len() as f64;
+    let error = size * (2.0 * cells / f64::from(count)).sqrt();
+    let norm = slices.half.iter().map(|f| f.norm_sqr()).sum::<f64>().sqrt();
+    Prediction {
+        class: Class::FirstOrder,
+        quadrature_error: Some(error / norm),
+        slices,
+        replicates,
+        ..prediction(width)
+    }
+}
+
+/// Both sides come in parts, not as many of one as of the other: fewer replicates than batches,
+/// more, and a number that does not divide. p is uniform if they agree, and a spectrum 5 % too wide
+/// is found.
+#[test]
+fn two_samples_are_compared_with_the_noise_of_both() {
+    let [truth, _] = spectrum(1.0);
+    for (count, size) in [(32, 0.01), (128, 0.03), (24, 0.01)] {
+        let compared = |width: f64, seed: u64| {
+            let measured = measurement(&truth, 0.02, seed + 10);
+            let expected = sampled(width, size, count, seed + 5000);
+            compare(&measured, 0, &expected, 0.01, 1).unwrap().report
+        };
+        let (mut below, mut chi2) = (0, 0.0);
+        for seed in 0..50 {
+            let report = compared(1.0, seed);
+            below += u32::from(report.p_value.unwrap() < 0.3);
+            chi2 += report.chi2_per_dof.unwrap() / 50.0;
+            // The error of a prediction that replicates show is in the noise, and blurs nothing.
+            assert_ne!(report.verdict, Verdict::Undecided);
+        }
+        // 15 ± 3.2 of 50: four standard deviations.
+        assert!(
+            (3..=27).contains(&below),
+            "{count}: {below} of 50 below 0.3"
+        );
+        // 50 times 170 complex numbers: 1/√8500 = 0.011, four of them; the groups' own variance
+        // adds as much.
+        assert!((chi2 - 1.0).abs() < 0.06, "{count}: {chi2}");
+        for seed in 0..5 {
+            assert_eq!(compared(1.05, seed).verdict, Verdict::Fail, "{count}");
+        }
+    }
+}
+
+/// Were the noise of the replicates left out, a true prediction would be rejected.
+#[test]
+fn replicates_that_are_taken_for_exact_are_rejected() {
+    let [truth, _] = spectrum(1.0);
+    for seed in 0..5 {
+        let measured = measurement(&truth, 0.02, seed + 10);
+        let sampled = sampled(1.0, 0.03, 32, seed + 5000);
+        let judged = |expected: &Prediction| {
+            let report = compare(&measured, 0, expected, 0.01, 1).unwrap();
+            report.report.verdict
+        };
+        assert_eq!(judged(&sampled), Verdict::Pass);
+        let exact = Prediction {
+            replicates: Vec::new(),
+            quadrature_error: None,
+            ..sampled
+        };
+        assert_eq!(judged(&exact), Verdict::Fail);
+    }
+}
+
+/// Residuals add up to the difference of the means, whatever the numbers of parts.
+#[test]
+fn residuals_have_the_mean_of_the_difference() {
+    let [truth, _] = spectrum(1.0);
+    let measured = measurement(&truth, 0.02, 3);
+    let mean = |all: &mut dyn Iterator<Item = &Slices>| {
+        let mut sum = Slices::zeros(truth.grid);
+        let mut count = 0.0;
+        for slices in all {
+            sum.half += &slices.half;
+            count += 1.0;
+        }
+        sum.half /= Complex::from(count);
+        sum
+    };
+    let s = mean(&mut measured.at_plane(0).map(|batch| &batch.slices));
+    for count in [16, 24, 64, 100, 128] {
+        let replicates = replicates(&truth, 0.02, count, 7);
+        let f = mean(&mut replicates.iter());
+        let residuals = Residuals::between(&measured, 0, &f, &replicates);
+        assert_eq!(residuals.count(), 64.min(count as usize));
+        let off = residuals.mean() - (&s.half - &f.half);
+        let most = off.iter().map(|c| c.norm()).fold(0.0, f64::max);
+        assert!(most < 1e-14, "{count}: {most}"); // rounding of sums of 128
+    }
 }
 
 #[test]
@@ -189,7 +307,8 @@ fn a_wrong_parameter_is_rejected_and_measured() {
     );
 }
 
-/// A quadrature whose error is as large as the disagreement, or not below the noise where there is none, decides nothing; smaller ones change nothing.
+/// A quadrature whose error is as large as the disagreement, or not below the noise where there is
+/// none, decides nothing; smaller ones change nothing.
 #[test]
 fn a_coarse_quadrature_decides_nothing() {
     let judged = |truth: f64, share: f64| {
@@ -280,7 +399,7 @@ fn sidak_keeps_the_level_of_the_run() {
     assert!((sidak(0.01, 1) - 0.01).abs() < 1e-15); // rounding
 }
 
-/// Theory has no word for what leaves a mesh, be it met head on, nor for a smooth surface that only stands in the way.
+/// No theory describes what leaves a mesh, or a smooth surface that stands beside the path.
 #[test]
 fn what_has_no_theory_is_a_reference() {
     let class = |surfaces: &str, visits: &str| {
@@ -290,19 +409,22 @@ fn what_has_no_theory_is_a_reference() {
                 surfaces: [{surfaces}],
                 path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
                 planes: [(name: "before", at: Distance(0.9)), (name: "after", at: After({visits}))],
-                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 10), nu: (max: 10)), run: (photons: 100),
+                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 10), nu: (max: 10)),
+                run: (photons: 100),
             )"#
         );
         let file = etendue_scene::SceneFile::parse(&text).expect("a scene");
         let scene =
             etendue_scene::resolve("t", file, ".".as_ref(), u64::MAX).expect("a sound scene");
-        [0, 1].map(|i| Class::of(&scene, &scene.planes[i]))
+        [0, 1].map(|i| Applicability::new(&scene, &scene.planes[i]).class())
     };
     let floor = r#"Rectangle(name: "floor", center: (0, 0, 2), size: (4, 4))"#;
-    let star = r#"Mesh(name: "star", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
+    let star = r#"Mesh(name: "star", center: (0, 0, 2),
+        mesh: Star(radius: 0.5, relief: 0, lobes: 0, rings: 40))"#;
     let beside = |x: f64| {
         format!(
-            r#"Smooth(name: "m", center: ({x}, 0, 0.5), facing: (1, 0, 0), form: Sphere(0.1), aperture: 0.1, event: Mirror), {floor}"#
+            r#"Smooth(name: "m", center: ({x}, 0, 0.5), facing: (1, 0, 0),
+            form: Sphere(0.1), aperture: 0.1, event: Mirror), {floor}"#
         )
     };
     let reference = Class::Reference;

@@ -58,7 +58,8 @@ fn layers(count: usize, layer: impl Fn(usize) -> String) -> String {
 fn squares(count: u32, pitch: f64) -> String {
     layers(1, |_| {
         format!(
-            r#"JitteredSquares(name: "squares", center: (0, 0, 0.55), count: ({count}, {count}), pitch: {pitch}, fill: 0.5)"#
+            r#"JitteredSquares(name: "squares", center: (0, 0, 0.55), count: ({count}, {count}),
+                pitch: {pitch}, fill: 0.5)"#
         )
     })
 }
@@ -107,7 +108,8 @@ fn many_layers() {
     let one = |i: usize| {
         let at = 0.1 + 0.01 * i as f64;
         format!(
-            r#"Shapes(name: "b{i}", center: (0, 0, {at}), shapes: [Rectangle(center: (0, 0), size: (0.05, 0.05))])"#
+            r#"Shapes(name: "b{i}", center: (0, 0, {at}),
+                shapes: [Rectangle(center: (0, 0), size: (0.05, 0.05))])"#
         )
     };
     let many = layers(30, one);

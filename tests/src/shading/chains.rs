@@ -125,6 +125,7 @@ fn judged(
     let tried = Prediction {
         first_order: Some(FirstOrder {
             slices,
+            replicates: Vec::new(),
             chain: kept.chain.clone(),
         }),
         parameters: Vec::new(),

@@ -71,6 +71,7 @@ impl<'a> Bench<'a> {
         let tried = Prediction {
             first_order: Some(FirstOrder {
                 slices: predicted::linear(&system, &at, &place.window, &place.grid, &map),
+                replicates: Vec::new(),
                 chain: sound.chain.clone(),
             }),
             parameters: Vec::new(),

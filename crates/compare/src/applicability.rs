@@ -1,0 +1,144 @@
+//! Which theory applies to a plane, decided once.
+
+use crate::chain::chain;
+use crate::class::Class;
+use crate::dark;
+use crate::parallel::obstacles_to_theory;
+use crate::system::{print, scattered, system};
+use crate::ways::{unforeseen_by_rays, unforeseen_by_scattering};
+use etendue_field::{Orientation, VirtualPlane, Window};
+use etendue_scene::Scene;
+use etendue_theory::{Chain, rays, scattering};
+
+/// What theory says of a plane: which one applies, or why none does.
+#[derive(Clone, Debug)]
+pub struct Applicability {
+    /// The theory, with what it needs to know of the scene.
+    pub theory: Theory,
+    /// What light meets on its way that no theory describes, in words; empty where one applies.
+    pub reasons: Vec<String>,
+    /// Why no light reaches the plane, in words; `None` where some may.
+    pub dark: Option<String>,
+}
+
+/// The theories of a windowed light field.
+#[derive(Clone, Debug)]
+pub enum Theory {
+    /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
+    Parallel(Chain),
+    /// Rays followed through smooth specular surfaces, or through pictures.
+    Specular(rays::System, rays::Plane),
+    /// Light that one smooth surface reflects by a BRDF.
+    Scattering(Box<scattering::System>, rays::Plane),
+    /// None: another measurement takes its place.
+    None,
+}
+
+impl Theory {
+    /// What the theory takes for granted of a scene, each checked where it applies.
+    #[must_use]
+    pub fn assumptions(&self) -> &'static [&'static str] {
+        const FOLLOWED: &[&str] = &[
+            "light meets masks on the first leg alone",
+            "light meets each surface once, in the order of the path, \
+             and where it is not in its own shadow",
+        ];
+        match self {
+            Self::Parallel(_) => &[
+                "all that light meets lies in planes across the path",
+                "the receiver has no edge in view",
+            ],
+            Self::Specular(..) | Self::Scattering(..) => FOLLOWED,
+            Self::None => &[],
+        }
+    }
+}
+
+impl Applicability {
+    /// Decides which theory applies to a plane of a scene.
+    #[must_use]
+    pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
+        let (theory, reasons) = if let Some((system, at)) = Self::followed(scene, plane) {
+            let reasons = unforeseen_by_rays(scene, plane, &system, &at);
+            (Theory::Specular(system, at), reasons)
+        } else if let Some((system, at)) = scattered(scene, plane) {
+            let reasons = unforeseen_by_scattering(scene, plane, &system, &at);
+            (Theory::Scattering(Box::new(system), at), reasons)
+        } else {
+            let reasons = obstacles_to_theory(scene, plane);
+            (Theory::Parallel(chain(scene, plane)), reasons)
+        };
+        if !reasons.is_empty() {
+            return Self {
+                theory: Theory::None,
+                reasons,
+                dark: None,
+            };
+        }
+        // Light that goes other ways than theory's might pass beside what stands in these.
+        let dark = dark::reason(scene, plane);
+        Self {
+            theory,
+            reasons,
+            dark,
+        }
+    }
+
+    /// The system of specular surfaces that leads to a plane behind one or on one, or of light that
+    /// goes through pictures.
+    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<(rays::System, rays::Plane)> {
+        let across = plane.orientation == Orientation::Orthogonal;
+        if !scene.light.is_picture() && plane.leg == 0 && across {
+            return None;
+        }
+        system(scene, plane)
+    }
+
+    /// The kind of prediction.
+    #[must_use]
+    pub fn class(&self) -> Class {
+        match self.theory {
+            Theory::Parallel(_) => Class::Exact,
+            Theory::Specular(..) | Theory::Scattering(..) => Class::FirstOrder,
+            Theory::None => Class::Reference,
+        }
+    }
+
+    /// The chain of affine maps that leads to a plane behind specular surfaces, by the paper's
+    /// printed formulas where the scene asks for them.
+    #[must_use]
+    pub fn affine_chain(&self, scene: &Scene) -> Option<rays::FirstOrder> {
+        match &self.theory {
+            Theory::Specular(system, at) => rays::chain(system, at, print(scene)),
+            Theory::Parallel(_) | Theory::Scattering(..) | Theory::None => None,
+        }
+    }
+
+    /// The steps that make the spectrum of the plane, a line for each: the chain, what no theory
+    /// describes, and the window last.
+    #[must_use]
+    pub fn steps(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+        let Window { x, y, u, v } = &plane.window;
+        let mut steps = chain(scene, plane).describe();
+        let maps = match &self.theory {
+            Theory::Specular(..) => self.affine_chain(scene).map(|chain| chain.steps),
+            Theory::Scattering(system, at) => {
+                let chain = scattering::chain(system, at);
+                Some(chain.map(|chain| chain.steps).unwrap_or_default())
+            }
+            Theory::Parallel(_) | Theory::None => None,
+        };
+        if let Some(maps) = maps {
+            // What shines is described alike; how it travels, by the maps.
+            steps.truncate(1);
+            steps.extend(maps);
+        }
+        let unknown = self.reasons.iter();
+        steps.extend(unknown.map(|reason| format!("without theory  {reason}")));
+        steps.extend(self.dark.iter().map(|reason| format!("dark  {reason}")));
+        steps.push(format!(
+            "multiply  window: x {x:?}, y {y:?}, u {u:?}, v {v:?}"
+        ));
+        steps
+    }
+}

@@ -1,0 +1,197 @@
+//! Planes that no light reaches, by what stands on the first leg.
+
+use crate::chain::stands_before;
+use etendue_field::{Light, Mask, Profile, Shape, VirtualPlane};
+use etendue_scene::{BlockerLayer, Object, Scene};
+
+/// Lowest and highest coordinate along two axes.
+type Extent = [[f64; 2]; 2];
+
+/// Widths at which a Gaussian picture is below 10⁻¹² of its peak, and where photons end.
+const PICTURE: f64 = 3.0;
+/// Slopes, and metres, that no light exceeds.
+const FAR: f64 = 1e3;
+/// Share of the rays of a section that rounding may leave.
+const ROUNDING: f64 = 1e-12;
+/// Parts of a layer at which it is taken to have holes.
+const MOST_PARTS: usize = 4096;
+
+/// Why no light reaches a plane, in words; `None` where some may.
+///
+/// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
+/// which is empty if they leave nothing. A layer that covers all places where these rays cross it
+/// leaves nothing either.
+pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane) -> Option<String> {
+    let layers = scene.blockers.iter();
+    let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
+    let layers: Vec<&BlockerLayer> = layers.collect();
+    let mut sections = [0, 1].map(|axis| Section::new(scene, plane, axis));
+    for (axis, section) in sections.iter_mut().enumerate() {
+        let whole = section.measure();
+        let mut cuts: Vec<&str> = Vec::new();
+        for layer in &layers {
+            let Mask::Opaque { half_planes, .. } = &layer.mask else {
+                continue;
+            };
+            for half in half_planes.iter().filter(|half| half.axis == axis) {
+                let side = if half.above { -1.0 } else { 1.0 };
+                section.clip([side, side * layer.distance, -side * half.edge]);
+                cuts.push(&layer.name);
+            }
+        }
+        cuts.dedup();
+        if whole > 0.0 && section.measure() <= ROUNDING * whole {
+            return Some(format!(
+                "half-planes of {} leave no way open",
+                cuts.join(" and ")
+            ));
+        }
+    }
+    let covering = layers
+        .into_iter()
+        .find(|layer| covers(layer, &sections, scene));
+    covering.map(|layer| format!("{} covers all ways", layer.name))
+}
+
+/// The rays of a section along X or Y: a convex polygon of (position at the light, slope), or a
+/// segment.
+struct Section(Vec<[f64; 2]>);
+
+impl Section {
+    fn new(scene: &Scene, plane: &VirtualPlane, axis: usize) -> Self {
+        let far = [-FAR, FAR];
+        let within = |half: f64| [-half, half];
+        let ([low, high], [least, most]) = match &scene.light {
+            Light::Area { shape, .. } => (shape.bounds().extent(axis), far),
+            Light::Point { .. } => ([0.0; 2], far),
+            Light::Projector { image, .. } => ([0.0; 2], within(PICTURE * image.width[axis])),
+            Light::Beam { image, .. } => (within(PICTURE * image.width[axis]), [0.0; 2]),
+            Light::Environment { .. } => (far, far),
+        };
+        let corners = [[low, least], [high, least], [high, most], [low, most]];
+        let mut section = Self(corners.to_vec());
+        if plane.leg == 0 {
+            let window = &plane.window;
+            let [position, slope] =
+                [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
+            for side in [-1.0, 1.0] {
+                section.clip([side, side * plane.distance, position]);
+                section.clip([0.0, side, slope]);
+            }
+        }
+        section
+    }
+
+    /// Keeps what satisfies a·position + b·slope + c ≥ 0.
+    fn clip(&mut self, [a, b, c]: [f64; 3]) {
+        let value = |[s, u]: [f64; 2]| a * s + b * u + c;
+        let corners = std::mem::take(&mut self.0);
+        for (i, &p) in corners.iter().enumerate() {
+            let q = corners[(i + 1) % corners.len()];
+            let [at_p, at_q] = [value(p), value(q)];
+            if at_p >= 0.0 {
+                self.0.push(p);
+            }
+            if (at_p < 0.0) != (at_q < 0.0) {
+                let t = at_p / (at_p - at_q);
+                self.0.push([0, 1].map(|k| p[k] + t * (q[k] - p[k])));
+            }
+        }
+    }
+
+    /// Twice the area, or the length of what is no area.
+    fn measure(&self) -> f64 {
+        let [positions, slopes] = [0, 1].map(|k| {
+            let [low, high] = extent(self.0.iter().map(|corner| corner[k]));
+            (high - low).max(0.0)
+        });
+        if positions <= 0.0 || slopes <= 0.0 {
+            return positions + slopes;
+        }
+        let pairs = self.0.iter().zip(self.0.iter().cycle().skip(1));
+        pairs
+            .map(|(p, q)| p[0] * q[1] - p[1] * q[0])
+            .sum::<f64>()
+            .abs()
+    }
+
+    /// Where its rays cross a plane at a distance from the light.
+    fn at(&self, distance: f64) -> [f64; 2] {
+        extent(self.0.iter().map(|[s, u]| s + distance * u))
+    }
+}
+
+fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
+    values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], v| {
+        [low.min(v), high.max(v)]
+    })
+}
+
+/// Whether a layer leaves nothing of the rays of both sections on their way to the first surface.
+fn covers(layer: &BlockerLayer, sections: &[Section; 2], scene: &Scene) -> bool {
+    let Mask::Opaque { shapes, .. } = &layer.mask else {
+        return false;
+    };
+    let towards = towards_surface(scene, sections, layer.distance);
+    let crossed = [0, 1].map(|axis| {
+        let [low, high] = sections[axis].at(layer.distance);
+        [low.max(towards[axis][0]), high.min(towards[axis][1])]
+    });
+    let mut open = vec![crossed];
+    for shape in shapes {
+        open = open.iter().flat_map(|part| without(part, shape)).collect();
+        if open.len() > MOST_PARTS {
+            return false;
+        }
+    }
+    open.is_empty()
+}
+
+/// Where lines from the light to the first surface cross a plane, if it is a smooth one.
+fn towards_surface(scene: &Scene, sections: &[Section; 2], distance: f64) -> Extent {
+    let unlimited = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+    let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
+        return unlimited;
+    };
+    let corners = scene.patches[i].patch.corners();
+    if corners.iter().any(|corner| corner.z <= distance) {
+        return unlimited;
+    }
+    [0, 1].map(|axis| {
+        let from = sections[axis].at(0.0);
+        extent(
+            corners
+                .iter()
+                .flat_map(|to| from.map(|from| from + distance / to.z * (to[axis] - from))),
+        )
+    })
+}
+
+/// What a shape leaves of a rectangle.
+fn without(part: &Extent, shape: &Shape) -> Vec<Extent> {
+    let [[x0, x1], [y0, y1]] = *part;
+    match shape {
+        Shape::Disc(disc) => {
+            let corners = [[x0, y0], [x1, y0], [x1, y1], [x0, y1]];
+            let covered = corners.iter().all(|[x, y]| disc.contains(*x, *y));
+            if covered { Vec::new() } else { vec![*part] }
+        }
+        Shape::Rectangle(rectangle) => {
+            let [[a0, a1], [b0, b1]] = [0, 1].map(|axis| rectangle.extent(axis));
+            if a0 >= x1 || a1 <= x0 || b0 >= y1 || b1 <= y0 {
+                return vec![*part];
+            }
+            let [left, right] = [a0.max(x0), a1.min(x1)];
+            let parts = [
+                [[x0, left], [y0, y1]],
+                [[right, x1], [y0, y1]],
+                [[left, right], [y0, b0]],
+                [[left, right], [b1, y1]],
+            ];
+            let parts = parts.into_iter();
+            parts
+                .filter(|[[x0, x1], [y0, y1]]| x0 < x1 && y0 < y1)
+                .collect()
+        }
+    }
+}

@@ -1,0 +1,152 @@
+//! What keeps a plane from the theory of light between parallel planes.
+
+use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
+use etendue_scene::{Hit, Object, Scene, Surface};
+use glam::DVec3;
+
+/// What keeps the theory from a plane, in words: oblique incidence, other objects in the way, and
+/// light that it does not describe. Empty where the theory applies.
+pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+    let mut found = Vec::new();
+    for legs in scene.path.legs[..=plane.leg].windows(2) {
+        let [before, leg] = legs else { continue };
+        if let Some(Hit { object, normal, .. }) = &leg.leaves {
+            let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
+                .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
+            let is_flat = matches!(object, Object::Surface(_));
+            if outgoing > ROUNDING || incidence > ROUNDING || !is_flat {
+                let name = scene.name_of(*object);
+                found.push(format!(
+                    "incidence on {name} at {incidence:.4}°, outgoing at {outgoing:.4}°"
+                ));
+            }
+        }
+    }
+    if scene.light.is_picture() {
+        found.push("light of a picture, but for a path of smooth surfaces alone".to_owned());
+    }
+    if matches!(scene.light, Light::Environment { .. }) {
+        found.push("light of an environment".to_owned());
+    }
+    if plane.orientation != Orientation::Orthogonal {
+        found.push(format!("{:?}", plane.orientation));
+    }
+    if plane.leg > 1 {
+        found.push(format!("{} reflections in a row", plane.leg));
+    }
+    found.extend(in_the_way(scene, plane));
+    if let Some(name) = beyond_edge(scene, plane) {
+        found.push(format!("the edge of {name}, which the window sees"));
+    }
+    found
+}
+
+/// Angles below this many degrees are rounding.
+const ROUNDING: f64 = 1e-6;
+
+/// The objects that light for the plane may meet: meshes, smooth surfaces, and flat ones that do
+/// not lie across the path. On the way back flat ones across the path count too.
+fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+    let mut found = Vec::new();
+    let visited = |object| scene.path.visits(object);
+    for (i, surface) in scene.surfaces.iter().enumerate() {
+        let name = &surface.name;
+        if !visited(Object::Surface(i)) && (plane.leg > 0 || surface.across().is_none()) {
+            let on_way_back = surface.across().is_some();
+            if passes(scene, plane, &surface.corners(), on_way_back) {
+                found.push(format!("visibility of {name}"));
+            }
+        }
+    }
+    for (i, object) in scene.patches.iter().enumerate() {
+        let own = visited(Object::Patch(i));
+        if !own && passes(scene, plane, &object.patch.corners(), false) {
+            found.push(format!("visibility of {}", object.name));
+        }
+    }
+    for (i, mesh) in scene.meshes.iter().enumerate() {
+        let (name, count, [near, far]) = (&mesh.name, mesh.triangles.len(), mesh.extent);
+        let own = visited(Object::Mesh(i));
+        if !own && passes(scene, plane, mesh.triangles.as_flattened(), false) {
+            found.push(format!(
+                "visibility of {name}: {count} triangles at {near:.4} to {far:.4} m"
+            ));
+        }
+    }
+    found
+}
+
+/// A Gaussian picture is dark beyond this many widths.
+const PICTURE: f64 = 3.0;
+
+/// Whether light for a plane may pass through a box around points, given in the frame at the light.
+fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bool) -> bool {
+    let legs = &scene.path.legs;
+    let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
+    let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);
+    let along = scene.path.along(plane);
+    let seen = [0, 1].map(|axis| window[axis] + along * slope[axis]);
+    let light = match scene.light {
+        Light::Area { shape, .. } => [0, 1].map(|axis| {
+            let [low, high] = shape.bounds().extent(axis);
+            low.abs().max(high.abs())
+        }),
+        Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
+        Light::Beam { image, .. } => image.width.map(|w| PICTURE * w),
+        Light::Environment { .. } => [f64::MAX; 2],
+    };
+    let crosses = |leg: usize| {
+        let (from, to, end) = if leg < plane.leg {
+            (light, seen, legs[leg].length)
+        } else if leg == 0 {
+            (light, window, along)
+        } else {
+            (seen, window, along)
+        };
+        overlaps(points, &legs[leg].frame, from, to, end)
+    };
+    // Reflected in a row there is no tube any more, and no theory either.
+    let first = usize::from(on_way_back);
+    (first..=plane.leg.min(1)).any(crosses)
+}
+
+/// Whether a box around points meets a tube along a frame, from depth 0 with half-widths `from` to
+/// depth `end` with `to`.
+fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
+    let local = points.iter().map(|p| frame.to_local(*p));
+    let (low, high) = local.fold((DVec3::INFINITY, DVec3::NEG_INFINITY), |(low, high), p| {
+        (low.min(p), high.max(p))
+    });
+    if high.z <= 0.0 || low.z >= end {
+        return false;
+    }
+    let ends = [low.z, high.z].map(|z| (z / end).clamp(0.0, 1.0));
+    [0, 1].into_iter().all(|axis| {
+        let half = ends.map(|s| from[axis] + s * (to[axis] - from[axis]));
+        let half = half[0].max(half[1]);
+        low[axis] < half && high[axis] > -half
+    })
+}
+
+/// The surface whose edge lies within the view of a plane after a reflection. Theory takes it to be
+/// endless.
+fn beyond_edge<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a str> {
+    let surface = reflector(scene, plane)?;
+    let (w, travelled) = (&plane.window, scene.path.along(plane));
+    let (_, rectangle) = surface.across()?;
+    let covers = |axis: usize, space: &Profile, slope: &Profile| {
+        let reach = space.half_width() + travelled * slope.half_width();
+        let [low, high] = rectangle.extent(axis);
+        low <= -reach && reach <= high
+    };
+    let covered = covers(0, &w.x, &w.u) && covers(1, &w.y, &w.v);
+    (!covered).then_some(&surface.name)
+}
+
+/// The flat surface that light leaves for the leg of a plane.
+fn reflector<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Surface> {
+    match scene.path.legs[plane.leg].leaves?.object {
+        Object::Surface(i) => Some(&scene.surfaces[i]),
+        Object::Mesh(_) | Object::Patch(_) => None,
+    }
+}

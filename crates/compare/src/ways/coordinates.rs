@@ -1,0 +1,66 @@
+//! Rays in the coordinates of a plane, read from docs/conventions.md for this check.
+
+use super::rays::Ray;
+use etendue_field::{Frame, Orientation, TwoPlane};
+use etendue_theory::rays::Plane;
+use glam::DVec3;
+
+/// The frame that angles are counted from on a surface, where its unit normal is known.
+fn local(plane: &Plane, normal: DVec3) -> Frame {
+    if plane.orientation.is_local() {
+        plane
+            .frame
+            .turned_to(normal.dot(plane.frame.d).signum() * normal)
+    } else {
+        plane.frame
+    }
+}
+
+/// The coordinates of a ray; `on_surface` is the point and the unit normal of the surface that the
+/// plane is on, where the plane needs them. `None` where the ray does not pass.
+pub(super) fn coordinates(
+    plane: &Plane,
+    ray: &Ray,
+    on_surface: Option<[DVec3; 2]>,
+) -> Option<TwoPlane> {
+    let Ray { point, direction } = ray.seen_from(&plane.frame);
+    let foot = point - point.z / direction.z * direction;
+    if plane.orientation == Orientation::Orthogonal {
+        let [u, v] = [direction.x, direction.y].map(|d| d / direction.z);
+        let (x, y) = (foot.x, foot.y);
+        return (direction.z > 0.0).then_some(TwoPlane { x, y, u, v });
+    }
+    let (at, frame) = match on_surface.filter(|_| plane.orientation.is_local()) {
+        Some([point, normal]) => (plane.frame.to_local(point), local(plane, normal)),
+        None => (foot, plane.frame),
+    };
+    let away = if plane.arriving {
+        -ray.direction
+    } else {
+        ray.direction
+    };
+    let away = frame.vector_to_local(away);
+    let turned = if plane.orientation == Orientation::Mirrored {
+        -1.0
+    } else {
+        1.0
+    };
+    (away.z > 0.0).then(|| TwoPlane {
+        x: at.x,
+        y: at.y,
+        u: turned * away.x.atan2(away.z) - plane.longitude,
+        v: turned * away.y.asin(),
+    })
+}
+
+/// The direction of light that leaves a point of a surface, where its unit normal is known, and has
+/// these slopes or angles at the plane.
+pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3 {
+    if plane.orientation == Orientation::Orthogonal {
+        return plane
+            .frame
+            .vector_to_world(DVec3::new(u, v, 1.0).normalize());
+    }
+    let ((sin, cos), (up, across)) = ((u + plane.longitude).sin_cos(), v.sin_cos());
+    local(plane, normal).vector_to_world(DVec3::new(across * sin, up, across * cos))
+}

@@ -1,0 +1,159 @@
+//! Rays of the light, drawn for a check: the same in every run.
+
+use etendue_field::{EnvironmentMap, Frame, Light, Patch, Shape};
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Rays followed for a plane.
+pub(super) const RAYS: u32 = 6000;
+
+/// Light of less than this share of the strongest that is possible in the window changes no
+/// verdict.
+pub(super) const DARK: f64 = 1e-5;
+
+/// A straight leg of a ray, in the frame at the light.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Ray {
+    pub(super) point: DVec3,
+    /// A unit vector.
+    pub(super) direction: DVec3,
+}
+
+impl Ray {
+    pub(super) fn at(&self, t: f64) -> DVec3 {
+        self.point + t * self.direction
+    }
+
+    /// The same ray in the coordinates of a frame.
+    pub(super) fn seen_from(&self, frame: &Frame) -> Self {
+        Self {
+            point: frame.to_local(self.point),
+            direction: frame.vector_to_local(self.direction),
+        }
+    }
+
+    /// Where theory meets a surface: on the side of the quadric's extremum along the ray on which
+    /// it crosses the tangent plane at the vertex (`etendue_theory::rays`, by Newton's method from
+    /// there).
+    pub(super) fn theory_hit(&self, patch: &Patch) -> Option<f64> {
+        let Self { point, direction } = self.seen_from(&patch.frame);
+        let from = if direction.z.abs() > 1e-3 {
+            -point.z / direction.z
+        } else {
+            -point.dot(direction)
+        };
+        let curved = DVec3::from(patch.curvature) * direction;
+        let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
+        // Nothing cancels: the root that would is the constant over the other.
+        let root = (b * b - a * patch.value(point)).sqrt();
+        let q = -(b + root.copysign(b));
+        let roots = [q / a, patch.value(point) / q];
+        // The extremum is at −b/a; on a line without one there is a single root.
+        let first = |t: &&f64| a == 0.0 || (**t < -b / a) == (from < -b / a);
+        let found = roots.iter().filter(|t| t.is_finite()).find(first);
+        let found = found.copied().filter(|t| *t > 0.0);
+        found.filter(|t| patch.contains(point + *t * direction))
+    }
+}
+
+/// Six numbers in (0, 1) that fill the cube evenly: multiples of powers of the root of x⁷ = x + 1
+/// (Roberts 2018, *The unreasonable effectiveness of quasirandom sequences*).
+pub(super) fn lattice(index: u32) -> [f64; 6] {
+    const ROOT: f64 = 1.112_775_684_278_705_6;
+    std::array::from_fn(|axis| {
+        let power = ROOT.powi(-1 - i32::try_from(axis).unwrap_or_default());
+        (0.5 + f64::from(index + 1) * power).fract()
+    })
+}
+
+/// A number in (−1, 1): every other one evenly, else as densely near zero as its size, down to a
+/// thousandth.
+pub(super) fn centred(index: u32, r: f64) -> f64 {
+    let s = 2.0 * r - 1.0;
+    if index.is_multiple_of(2) {
+        s
+    } else {
+        s.signum() * 1e-3_f64.powf(1.0 - s.abs())
+    }
+}
+
+/// A ray of the light through a point, and its share of the strongest; `None` where none is.
+pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Option<(Ray, f64)> {
+    let through = |from: DVec3| {
+        let direction = (point - from).try_normalize().filter(|d| d.z > 0.0)?;
+        let point = from;
+        Some(Ray { point, direction })
+    };
+    let offset = [0, 1].map(|axis| centred(index / 2, r[axis]));
+    match light {
+        Light::Area {
+            shape, exponent, ..
+        } => {
+            let ray = through(point_of(shape, offset))?;
+            Some((ray, ray.direction.z.powf(*exponent)))
+        }
+        Light::Point { .. } => Some((through(DVec3::ZERO)?, 1.0)),
+        Light::Projector { image, .. } => {
+            let ray = through(DVec3::ZERO)?;
+            let [u, v] = [ray.direction.x, ray.direction.y].map(|d| d / ray.direction.z);
+            Some((ray, image.value(u, v)))
+        }
+        Light::Beam { image, .. } => {
+            let ray = through(DVec3::new(point.x, point.y, 0.0))?;
+            Some((ray, image.value(point.x, point.y)))
+        }
+        Light::Environment { environment } => {
+            let frame = &environment.frame;
+            let (direction, most) = match &environment.map {
+                EnvironmentMap::Lobes(lobes) => {
+                    let lobe = &lobes[index as usize % lobes.len().max(1)];
+                    let around = Frame::IDENTITY.turned_to(lobe.from);
+                    let [x, y] = offset.map(|o| 3.0 * lobe.width * o);
+                    let from = around.vector_to_world(DVec3::new(x, y, 1.0));
+                    (-frame.vector_to_world(from), lobe.radiance)
+                }
+                EnvironmentMap::LatLong(_) => {
+                    let (sin, cos) = (TAU * r[0]).sin_cos();
+                    let across = (1.0 - r[1] * r[1]).sqrt();
+                    (DVec3::new(across * cos, across * sin, r[1]), 1.0)
+                }
+            };
+            let direction = direction.normalize();
+            let from = point - point.z / direction.z * direction;
+            let share = environment.radiance(direction) / most;
+            (direction.z > 0.0).then_some((
+                Ray {
+                    point: from,
+                    direction,
+                },
+                share,
+            ))
+        }
+    }
+}
+
+/// The point of a shape at an offset from its centre, as a share of its size; beside a disc it is
+/// drawn in.
+fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
+    match shape {
+        Shape::Rectangle(rectangle) => {
+            let [x, y] = rectangle.center;
+            let [w, h] = rectangle.size;
+            DVec3::new(x + 0.5 * w * a, y + 0.5 * h * b, 0.0)
+        }
+        Shape::Disc(disc) => {
+            let [x, y] = disc.center;
+            let scale = disc.radius * a.abs().max(b.abs()) / a.hypot(b).max(f64::MIN_POSITIVE);
+            DVec3::new(x + scale * a, y + scale * b, 0.0)
+        }
+    }
+}
+
+/// The point of a surface near where the central ray hits it, drawn over all of it.
+pub(super) fn point_on(patch: &Patch, hit: DVec3, index: u32, r: [f64; 2]) -> Option<DVec3> {
+    let center = patch.frame.to_local(hit);
+    let [s, t] = [0, 1].map(|axis| 2.0 * patch.aperture * centred(index, r[axis]));
+    let point = patch.point(center.x + s, center.y + t);
+    let on_patch = point.is_finite() && patch.contains(patch.frame.to_local(point));
+    on_patch.then_some(point)
+}

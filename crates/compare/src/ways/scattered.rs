@@ -1,0 +1,117 @@
+//! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory
+//! looks.
+
+use super::coordinates::{coordinates, direction};
+use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
+use super::surroundings::{Meets, Surroundings, in_words};
+use etendue_field::{Profile, VirtualPlane};
+use etendue_scene::{Hit, Scene};
+use etendue_theory::rays::Plane;
+use etendue_theory::scattering::System;
+
+/// What light for a plane meets before or behind a surface with a BRDF that theory does not know
+/// of, in words.
+pub(crate) fn unforeseen_by_scattering(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    system: &System,
+    at: &Plane,
+) -> Vec<String> {
+    let Some(hit) = scene.path.ends_at(0) else {
+        return Vec::new();
+    };
+    let scatterer = Scatterer {
+        scene,
+        plane,
+        system,
+        at,
+        hit,
+        around: Surroundings::new(scene, plane),
+    };
+    let rays = (0..RAYS).filter_map(|index| scatterer.check(index));
+    in_words(rays.collect(), scene)
+}
+
+struct Scatterer<'a> {
+    scene: &'a Scene,
+    plane: &'a VirtualPlane,
+    system: &'a System,
+    at: &'a Plane,
+    hit: &'a Hit,
+    around: Surroundings<'a>,
+}
+
+impl Scatterer<'_> {
+    /// What light number `index` meets on its way that theory does not know of, if it comes into
+    /// the window then.
+    fn check(&self, index: u32) -> Option<Meets> {
+        let r = lattice(index);
+        let patch = &self.system.patch;
+        let point = point_on(patch, self.hit.point, index, [r[0], r[1]])?;
+        let normal = patch.normal(point);
+        let window = &self.plane.window;
+        let within = |profile: &Profile, r: f64| (2.0 * r - 1.0) * profile.half_width();
+        let angles = [within(&window.u, r[2]), within(&window.v, r[3])];
+        let direction = direction(self.at, normal, angles);
+        let leaving = Ray { point, direction };
+        let z = coordinates(self.at, &leaving, Some([point, normal]))?;
+        let (arriving, emitted) = ray_to(&self.system.light, point, index, [r[4], r[5]])?;
+        let faces = arriving.direction.dot(normal) < 0.0 && direction.dot(normal) > 0.0;
+        let end = (point - arriving.point).length();
+        let ([photons, theory], meets) = self.around.first_leg(&arriving, end);
+        let share = photons.max(theory);
+        if !faces || emitted * share * window.value(&z) <= DARK {
+            return None;
+        }
+        let meets = self
+            .shadow(&arriving, end)
+            .or(meets)
+            .or_else(|| self.beyond(&leaving));
+        let clear = meets.is_none();
+        let itself = Meets::Itself(self.hit.object);
+        (clear != self.looks_at(&leaving)).then(|| meets.unwrap_or(itself))
+    }
+
+    /// What stands between the light and a point of the surface.
+    fn shadow(&self, ray: &Ray, end: f64) -> Option<Meets> {
+        let (t, object) = self.around.first(ray, 0.0, None)?;
+        let before = t < end * (1.0 - 1e-9);
+        before.then(|| self.named(object))
+    }
+
+    /// What stands between a point of the surface and the plane; the surface itself wherever it is,
+    /// as photons that meet it again are gone.
+    fn beyond(&self, ray: &Ray) -> Option<Meets> {
+        let path = &self.scene.path;
+        let across = path.legs[1].frame.travelled(path.along(self.plane));
+        let local = ray.seen_from(&across);
+        let end = -local.point.z / local.direction.z;
+        let from = self.around.rounding(1);
+        let ends = path.ends_at(1).map(|hit| hit.object);
+        let met = self.around.first(ray, from, ends);
+        let met = met.filter(|(t, object)| *t < end || *object == self.hit.object);
+        let met = met.map(|(_, object)| self.named(object));
+        met.or_else(|| self.around.later_leg(ray, 1, from, end))
+    }
+
+    fn named(&self, object: etendue_scene::Object) -> Meets {
+        if object == self.hit.object {
+            Meets::Itself(object)
+        } else {
+            Meets::OutOfTurn(object)
+        }
+    }
+
+    /// Whether it is from this point that theory has the ray leave: it looks from far out back
+    /// along it.
+    fn looks_at(&self, leaving: &Ray) -> bool {
+        let patch = &self.system.patch;
+        let far = 4.0 * patch.aperture + (leaving.point - patch.frame.origin).length();
+        let back = Ray {
+            point: leaving.at(far),
+            direction: -leaving.direction,
+        };
+        let found = back.theory_hit(patch);
+        found.is_some_and(|t| (t - far).abs() < 1e-6 * far)
+    }
+}

@@ -1,0 +1,207 @@
+//! Rays through specular surfaces: what photons meet, and where theory looks.
+
+use super::coordinates::coordinates;
+use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
+use super::surroundings::{Meets, Surroundings, in_words};
+use etendue_field::{Patch, TwoPlane, VirtualPlane};
+use etendue_scene::{Object, Scene};
+use etendue_theory::rays::{Plane, System};
+use glam::DVec3;
+
+/// What light for a plane meets between or at the surfaces of a system that theory does not know
+/// of, in words.
+pub(crate) fn unforeseen_by_rays(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    system: &System,
+    at: &Plane,
+) -> Vec<String> {
+    let follower = Follower {
+        scene,
+        plane,
+        system,
+        at,
+        around: Surroundings::new(scene, plane),
+    };
+    let rays = (0..RAYS).filter_map(|index| follower.check(index));
+    in_words(rays.collect(), scene)
+}
+
+struct Follower<'a> {
+    scene: &'a Scene,
+    plane: &'a VirtualPlane,
+    system: &'a System,
+    at: &'a Plane,
+    around: Surroundings<'a>,
+}
+
+/// A ray at the plane, and the share of it that masks on the first leg let pass.
+type Arrival = Option<(TwoPlane, f64)>;
+
+/// Distances closer than this share are one.
+const SAME: f64 = 1e-6;
+
+impl Follower<'_> {
+    /// What ray number `index` meets on its way that theory does not know of, if light comes into
+    /// the window then.
+    fn check(&self, index: u32) -> Option<Meets> {
+        let r = lattice(index);
+        let hit = self.scene.path.ends_at(0)?;
+        let patch = match (self.system.elements.first(), hit.object) {
+            (Some(element), _) => element.patch,
+            (None, Object::Patch(i)) => self.scene.patches[i].patch,
+            // Before a mesh or a flat surface there are the masks alone.
+            (None, Object::Mesh(_) | Object::Surface(_)) => return None,
+        };
+        let target = point_on(&patch, hit.point, index, [r[0], r[1]])?;
+        let (ray, emitted) = ray_to(&self.system.light, target, index, [r[2], r[3]])?;
+        let (arrival, meets) = self.photon(ray);
+        let meets = meets?;
+        let lit = |arrival: Arrival| {
+            arrival.is_some_and(|(z, share)| emitted * share * self.plane.window.value(&z) > DARK)
+        };
+        (lit(arrival) || lit(self.theory(ray))).then_some(meets)
+    }
+
+    /// Where theory has a ray arrive.
+    fn theory(&self, light: Ray) -> Arrival {
+        let mut ray = light;
+        let mut share = 1.0;
+        for (leg, element) in self.system.elements.iter().enumerate() {
+            let t = ray.theory_hit(&element.patch)?;
+            if leg == 0 {
+                share = self.around.first_leg(&ray, t).0[1];
+            }
+            ray = self.turned(leg, ray.at(t), &ray)?;
+        }
+        let surface = self.at.patch.as_ref();
+        let on_surface = match surface {
+            Some(patch) if self.at.arriving => Some(on(patch, ray.at(ray.theory_hit(patch)?))),
+            Some(patch) => Some(on(patch, ray.point)),
+            None => None,
+        };
+        Some((coordinates(self.at, &ray, on_surface)?, share))
+    }
+
+    /// Where a photon arrives, and the first thing it meets that theory does not know of.
+    fn photon(&self, light: Ray) -> (Arrival, Option<Meets>) {
+        let mut ray = light;
+        let mut share = 1.0;
+        let mut unforeseen: Option<Meets> = None;
+        for (leg, element) in self.system.elements.iter().enumerate() {
+            let expected = self.scene.path.legs[leg + 1].leaves.map(|hit| hit.object);
+            let theory = ray.theory_hit(&element.patch);
+            let (t, meets) = self.next(&ray, leg, expected, theory);
+            unforeseen = unforeseen.or(meets);
+            let Some(t) = t else {
+                return (None, unforeseen);
+            };
+            if leg == 0 {
+                let ([passes, _], meets) = self.around.first_leg(&ray, t);
+                share = passes;
+                unforeseen = unforeseen.or(meets);
+            } else {
+                let from = self.around.rounding(leg);
+                unforeseen = unforeseen.or_else(|| self.around.later_leg(&ray, leg, from, t));
+            }
+            let Some(turned) = self.turned(leg, ray.at(t), &ray) else {
+                return (None, unforeseen);
+            };
+            ray = turned;
+        }
+        let (seen, meets) = self.last_leg(&ray);
+        (seen.map(|z| (z, share)), unforeseen.or(meets))
+    }
+
+    /// How far a photon goes until it meets the surface that ends its leg; nothing where it meets
+    /// another first.
+    fn next(
+        &self,
+        ray: &Ray,
+        leg: usize,
+        expected: Option<Object>,
+        theory: Option<f64>,
+    ) -> (Option<f64>, Option<Meets>) {
+        let met = self.around.first(ray, self.around.rounding(leg), None);
+        if let Some(Object::Mesh(_)) = expected {
+            let nearer = met.filter(|(t, _)| theory.is_some_and(|theory| *t < theory));
+            return (theory, nearer.map(|(_, object)| Meets::OutOfTurn(object)));
+        }
+        let leaves = self.scene.path.legs[leg].leaves.map(|hit| hit.object);
+        match met {
+            None => (None, None),
+            Some((t, object)) if Some(object) == expected => {
+                let same = theory.is_some_and(|theory| (t - theory).abs() < SAME * t);
+                (Some(t), (!same).then_some(Meets::Itself(object)))
+            }
+            Some((_, object)) if Some(object) == leaves => (None, Some(Meets::Itself(object))),
+            Some((_, object)) => (None, Some(Meets::OutOfTurn(object))),
+        }
+    }
+
+    /// The coordinates at the plane of a photon that has met all surfaces before it.
+    fn last_leg(&self, ray: &Ray) -> (Option<TwoPlane>, Option<Meets>) {
+        let path = &self.scene.path;
+        let leg = self.plane.leg;
+        let ends = path.ends_at(leg).map(|hit| hit.object);
+        let leaves = path.legs[leg].leaves.map(|hit| hit.object);
+        let from = self.around.rounding(leg);
+        // How far it is to the plane; on a surface, to the plane across the leg where the central
+        // ray hits.
+        let across = path.legs[leg].frame.travelled(path.along(self.plane));
+        let local = ray.seen_from(&across);
+        let end = -local.point.z / local.direction.z;
+        let mut unforeseen = match self.around.first(ray, from, ends) {
+            // A photon that meets again what it has left is gone, wherever the plane is.
+            Some((_, object)) if Some(object) == leaves && leg > 0 => Some(Meets::Itself(object)),
+            Some((t, object)) if t < end => Some(Meets::OutOfTurn(object)),
+            _ => None,
+        };
+        if leg > 0 {
+            unforeseen = unforeseen.or_else(|| self.around.later_leg(ray, leg, from, end));
+        }
+        let Some(patch) = &self.at.patch else {
+            return (coordinates(self.at, ray, None), unforeseen);
+        };
+        let Some(counted) = self.counted(patch, ray) else {
+            return (None, unforeseen);
+        };
+        let theory = if self.at.arriving {
+            ray.theory_hit(patch).map(|t| ray.at(t))
+        } else {
+            Some(ray.point)
+        };
+        let scale = SAME * counted.length();
+        if theory.is_none_or(|theory| theory.distance(counted) > scale) {
+            let object = if self.at.arriving { ends } else { leaves };
+            unforeseen = unforeseen.or(object.map(Meets::Itself));
+        }
+        let seen = coordinates(self.at, ray, Some(on(patch, counted)));
+        (seen, unforeseen)
+    }
+
+    /// The point of a surface at which a plane on it counts a photon: that of its line nearest to
+    /// where the central ray hits.
+    fn counted(&self, patch: &Patch, ray: &Ray) -> Option<DVec3> {
+        let local = ray.seen_from(&patch.frame);
+        let hits = patch.hits(local.point, local.direction).into_iter();
+        let points = hits.filter(|t| !t.is_nan()).map(|t| ray.at(t));
+        let center = self.at.frame.origin;
+        points.min_by(|a, b| a.distance(center).total_cmp(&b.distance(center)))
+    }
+
+    /// The ray that leaves the surface at the end of a leg.
+    fn turned(&self, leg: usize, point: DVec3, ray: &Ray) -> Option<Ray> {
+        let element = &self.system.elements[leg];
+        let [_, normal] = on(&element.patch, point);
+        let frame = &element.patch.frame;
+        let direction = element.event.turned(frame, normal, point, ray.direction)?;
+        let direction = direction.normalize();
+        Some(Ray { point, direction })
+    }
+}
+
+/// A point of a surface and the unit normal there.
+fn on(patch: &Patch, point: DVec3) -> [DVec3; 2] {
+    [point, patch.normal(point)]
+}

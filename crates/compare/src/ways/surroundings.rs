@@ -1,0 +1,202 @@
+//! What stands around the path, and what a ray of a leg meets of it.
+
+use super::rays::Ray;
+use etendue_field::{Mask, Patch, VirtualPlane};
+use etendue_scene::{Hit, Object, Scene, Surface};
+
+/// What a ray meets that theory does not know of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Meets {
+    /// Blockers, on this leg.
+    Layer { index: usize, leg: usize },
+    /// A surface of the path, out of turn.
+    OutOfTurn(Object),
+    /// The surface that it has just left, or another part of the one it comes to.
+    Itself(Object),
+}
+
+impl Meets {
+    pub(super) fn describe(self, scene: &Scene) -> String {
+        match self {
+            Self::Layer { index, leg } => {
+                let layer = &scene.blockers[index].name;
+                let name = |hit: &Hit| scene.name_of(hit.object).to_owned();
+                match &scene.path.legs[leg].leaves {
+                    Some(left) => {
+                        format!(
+                            "visibility of {layer} to light that has left {}",
+                            name(left)
+                        )
+                    }
+                    None => {
+                        let first = scene.path.ends_at(leg).map(name).unwrap_or_default();
+                        format!("visibility of {layer}, partly beyond {first}")
+                    }
+                }
+            }
+            Self::OutOfTurn(object) => {
+                format!("light that meets {} out of turn", scene.name_of(object))
+            }
+            Self::Itself(object) => {
+                let name = scene.name_of(object);
+                format!("light that meets {name} twice, or {name} in its own shadow")
+            }
+        }
+    }
+}
+
+/// What light meets that theory does not know of, in words, each once.
+pub(super) fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
+    let mut words: Vec<String> = Vec::new();
+    for meets in found {
+        let reason = meets.describe(scene);
+        if !words.contains(&reason) {
+            words.push(reason);
+        }
+    }
+    words
+}
+
+/// The surfaces of the path as rays meet them, and the blockers.
+pub(super) struct Surroundings<'a> {
+    scene: &'a Scene,
+    plane: &'a VirtualPlane,
+    objects: Vec<(Object, Form<'a>)>,
+}
+
+enum Form<'a> {
+    Smooth(Patch),
+    Flat(&'a Surface),
+}
+
+/// Share of a distance that rounding may make.
+const ROUNDING: f64 = 1e-9;
+
+impl<'a> Surroundings<'a> {
+    /// Meshes are left out: theory knows them by the surface that osculates them where the central
+    /// ray hits.
+    pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
+        let mut objects: Vec<(Object, Form<'a>)> = Vec::new();
+        for hit in scene.path.legs.iter().filter_map(|leg| leg.leaves) {
+            let form = match hit.object {
+                Object::Patch(i) => Form::Smooth(scene.patches[i].patch),
+                Object::Surface(i) => Form::Flat(&scene.surfaces[i]),
+                Object::Mesh(_) => continue,
+            };
+            if objects.iter().all(|(object, _)| *object != hit.object) {
+                objects.push((hit.object, form));
+            }
+        }
+        Self {
+            scene,
+            plane,
+            objects,
+        }
+    }
+
+    /// A distance on a leg that is zero but for rounding.
+    pub(super) fn rounding(&self, leg: usize) -> f64 {
+        let leg = &self.scene.path.legs[leg];
+        ROUNDING * (leg.start + leg.leaves.map_or(0.0, |Hit { point, .. }| point.length()))
+    }
+
+    /// The surface that a ray meets first beyond `from`, and where; `ignored` is not met.
+    pub(super) fn first(
+        &self,
+        ray: &Ray,
+        from: f64,
+        ignored: Option<Object>,
+    ) -> Option<(f64, Object)> {
+        let others = self
+            .objects
+            .iter()
+            .filter(|(object, _)| Some(*object) != ignored);
+        let hits = others.flat_map(|(object, form)| {
+            form.hits(ray)
+                .into_iter()
+                .filter(|t| *t > from)
+                .map(|t| (t, *object))
+        });
+        hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
+    }
+
+    /// The share of a ray of the first leg that passes the blockers before `end`; and that which
+    /// passes those that theory puts before the plane.
+    pub(super) fn first_leg(&self, ray: &Ray, end: f64) -> ([f64; 2], Option<Meets>) {
+        let mut shares = [1.0; 2];
+        let mut meets = None;
+        for (index, layer) in self.scene.blockers.iter().enumerate() {
+            let known = crate::chain::stands_before(layer.distance, self.scene, self.plane);
+            let crossed = self.crossing(ray, index).filter(|t| *t > 0.0 && *t < end);
+            let passes = self.transmittance(ray, index);
+            if crossed.is_some() {
+                shares[0] *= passes;
+            }
+            if known {
+                shares[1] *= passes;
+            }
+            if known != crossed.is_some() && passes < 1.0 {
+                meets = meets.or(Some(Meets::Layer { index, leg: 0 }));
+            }
+        }
+        (shares, meets)
+    }
+
+    /// Blockers that a ray of a later leg meets between `from` and `end`.
+    pub(super) fn later_leg(&self, ray: &Ray, leg: usize, from: f64, end: f64) -> Option<Meets> {
+        let met = |index: &usize| {
+            let crossed = self.crossing(ray, *index);
+            crossed.is_some_and(|t| t > from && t < end) && self.transmittance(ray, *index) < 1.0
+        };
+        let index = (0..self.scene.blockers.len()).find(met)?;
+        Some(Meets::Layer { index, leg })
+    }
+
+    /// How far along a ray it crosses the plane of blockers.
+    fn crossing(&self, ray: &Ray, index: usize) -> Option<f64> {
+        let t = (self.scene.blockers[index].distance - ray.point.z) / ray.direction.z;
+        t.is_finite().then_some(t)
+    }
+
+    fn transmittance(&self, ray: &Ray, index: usize) -> f64 {
+        let at = self.crossing(ray, index).map(|t| ray.at(t));
+        at.map_or(1.0, |at| {
+            transmittance(&self.scene.blockers[index].mask, at.x, at.y)
+        })
+    }
+}
+
+impl Form<'_> {
+    /// Where a ray meets it; NaN for nowhere.
+    fn hits(&self, ray: &Ray) -> [f64; 2] {
+        match self {
+            Self::Smooth(patch) => {
+                let local = ray.seen_from(&patch.frame);
+                patch.hits(local.point, local.direction)
+            }
+            Self::Flat(surface) => {
+                let local = ray.seen_from(&surface.frame);
+                let t = -local.point.z / local.direction.z;
+                let at = local.at(t);
+                let [x, y] = surface.size;
+                let inside = 2.0 * at.x.abs() <= x && 2.0 * at.y.abs() <= y;
+                [if inside { t } else { f64::NAN }, f64::NAN]
+            }
+        }
+    }
+}
+
+/// The share of light that a mask lets pass at a point.
+fn transmittance(mask: &Mask, x: f64, y: f64) -> f64 {
+    match mask {
+        Mask::Opaque {
+            shapes,
+            half_planes,
+        } => {
+            let stopped = shapes.iter().any(|shape| shape.contains(x, y))
+                || half_planes.iter().any(|half| half.contains(x, y));
+            f64::from(u8::from(!stopped))
+        }
+        Mask::Grating(grating) => grating.transmittance(x, y),
+    }
+}

@@ -1,0 +1,205 @@
+//! Theory speaks of a plane only where light goes as theory has it go.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use etendue_compare::{Applicability, Class, Prediction};
+use etendue_scene::{Scene, SceneFile, resolve};
+
+const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
+const PROJECTOR: &str = "Projector(center: (0, 0, 0), image: (width: (0.3, 0.3)))";
+
+/// A scene with one plane, its window as wide as said in metres and slope.
+fn scene(light: &str, blockers: &str, surfaces: &str, visits: &str, at: &str, half: f64) -> Scene {
+    let text = format!(
+        r#"(
+            light: {light}, blockers: [{blockers}], surfaces: [{surfaces}],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
+            planes: [(name: "plane", at: {at})],
+            window: (x: Hann({half}), u: Hann({half})),
+            frequencies: (azimuths: 2, rho: (max: 8), nu: (max: 8)),
+        )"#
+    );
+    let file = SceneFile::parse(&text).unwrap();
+    resolve("scene", file, ".".as_ref(), u64::MAX).unwrap()
+}
+
+fn of(scene: &Scene) -> Applicability {
+    Applicability::new(scene, &scene.planes[0])
+}
+
+/// The window within which theory applies, and one in which it does not, with the reason.
+fn applies_only(narrow: f64, wide: f64, reason: &str, scene: impl Fn(f64) -> Scene) {
+    let applies = of(&scene(narrow));
+    assert_eq!(applies.class(), Class::FirstOrder, "{:?}", applies.reasons);
+    let fails = of(&scene(wide));
+    assert_eq!(fails.class(), Class::Reference, "{reason}");
+    assert_eq!(fails.reasons, [reason]);
+    let wide = scene(wide);
+    let steps = fails.steps(&wide, &wide.planes[0]);
+    assert!(steps.contains(&format!("without theory  {reason}")));
+}
+
+fn half_planes(shapes: &str) -> String {
+    format!(r#"Shapes(name: "edge", center: (0, 0, 0.9), shapes: [{shapes}])"#)
+}
+
+const AT_45: &str = "facing: (0.7071067811865476, 0, -0.7071067811865476)";
+
+/// Light goes off sideways behind a half-plane that it has passed, and some of it comes back
+/// through.
+#[test]
+fn a_blocker_that_reaches_into_a_later_leg() {
+    let edge = half_planes("HalfPlane(axis: X, edge: 0.5, opaque: Above)");
+    for event in ["Mirror", "Reflects(brdf: (lobe: Phong(20), albedo: 0.5))"] {
+        let surface = format!(
+            r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.3, event: {event})"#
+        );
+        let reason = "visibility of edge to light that has left mirror";
+        applies_only(0.04, 0.3, reason, |half| {
+            scene(LIGHT, &edge, &surface, r#""mirror""#, "Distance(1.8)", half)
+        });
+    }
+}
+
+/// Light that leaves the flank of a bowl meets its other side, unless the window is narrow.
+#[test]
+fn a_bowl_that_meets_its_own_light() {
+    let bowl = r#"Smooth(name: "bowl", center: (-0.28, 0, 1), facing: (0, 0, -1),
+                form: Sphere(-2), aperture: 0.45, event: Mirror)"#;
+    let reason = "light that meets bowl twice, or bowl in its own shadow";
+    for light in [LIGHT, PROJECTOR] {
+        applies_only(0.01, 0.3, reason, |half| {
+            scene(light, "", bowl, r#""bowl""#, r#"After("bowl")"#, half)
+        });
+    }
+}
+
+/// The rim of a tilted bowl keeps light from its inside.
+#[test]
+fn a_bowl_that_shadows_itself() {
+    for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian, albedo: 0.5))"] {
+        let bowl = format!(
+            r#"Smooth(name: "bowl", center: (0, 0, 1), {AT_45},
+                form: Sphere(-2), aperture: 0.45, event: {event})"#
+        );
+        let reason = "light that meets bowl twice, or bowl in its own shadow";
+        applies_only(0.02, 0.3, reason, |half| {
+            scene(LIGHT, "", &bowl, r#""bowl""#, r#"After("bowl")"#, half)
+        });
+    }
+}
+
+/// The second of two mirrors stands beside the first leg.
+#[test]
+fn a_mirror_that_is_met_out_of_turn() {
+    let mirrors = format!(
+        r#"Smooth(name: "first", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.4, event: Mirror),
+           Smooth(name: "second", center: (0.5, 0, 1),
+                facing: (-0.7071067811865476, 0, 0.7071067811865476),
+                form: Plane, aperture: 0.55, event: Mirror)"#
+    );
+    applies_only(0.02, 0.3, "light that meets second out of turn", |half| {
+        scene(
+            LIGHT,
+            "",
+            &mirrors,
+            r#""first", "second""#,
+            r#"After("second")"#,
+            half,
+        )
+    });
+}
+
+/// What leaves no way open is dark, whatever the light and the surface, and keeps its class.
+#[test]
+fn darkness_has_a_reason() {
+    let one = half_planes("HalfPlane(axis: X, edge: 0.01, opaque: Below)");
+    let other = r#"Shapes(name: "other", center: (0, 0, 0.8), shapes: [
+        HalfPlane(axis: X, edge: -0.01, opaque: Above)])"#;
+    let both = format!("{one}, {other}");
+    let lid = r#"Shapes(name: "lid", center: (0, 0, 0.5), shapes: [
+        Rectangle(center: (-0.5, 0), size: (1, 2)),
+        Rectangle(center: (0.5, 0), size: (1, 2))])"#;
+    let holed = r#"Shapes(name: "lid", center: (0, 0, 0.5), shapes: [
+        Rectangle(center: (-0.5, 0), size: (0.99, 2)),
+        Rectangle(center: (0.5, 0), size: (1, 2))])"#;
+    let floor = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (4, 4))"#;
+    let smooth = |event: &str| {
+        format!(
+            r#"Smooth(name: "floor", center: (0, 0, 1), facing: (0, 0, -1),
+                form: Sphere(1), aperture: 0.3, event: {event})"#
+        )
+    };
+    let surfaces = [
+        (floor.to_owned(), Class::Exact),
+        (smooth("Mirror"), Class::FirstOrder),
+        (
+            smooth("Reflects(brdf: (lobe: Lambertian, albedo: 0.5))"),
+            Class::FirstOrder,
+        ),
+    ];
+    let closed = [
+        (
+            both.as_str(),
+            "half-planes of other and edge leave no way open",
+        ),
+        (lid, "lid covers all ways"),
+    ];
+    for (surface, class) in &surfaces {
+        for light in [LIGHT, PROJECTOR] {
+            if light == PROJECTOR && *class == Class::Exact {
+                continue;
+            }
+            let at = r#"After("floor")"#;
+            let built = |blockers: &str| scene(light, blockers, surface, r#""floor""#, at, 0.1);
+            for (blockers, reason) in closed {
+                let scene = built(blockers);
+                let found = of(&scene);
+                // A receiver has no edge, so that light may come past any lid.
+                if *class == Class::Exact && blockers == lid {
+                    assert_eq!(found.dark, None);
+                    continue;
+                }
+                assert_eq!(found.class(), *class);
+                assert_eq!(found.dark.as_deref(), Some(reason), "{surface} {light}");
+                let prediction = Prediction::new(&scene, &scene.planes[0]);
+                assert_eq!(prediction.class, *class);
+                assert!(prediction.steps.contains(&format!("dark  {reason}")));
+                assert!(prediction.slices.half.iter().all(|f| f.norm_sqr() <= 0.0));
+            }
+            for blockers in [one.as_str(), holed] {
+                assert_eq!(of(&built(blockers)).dark, None, "{surface} {light}");
+            }
+        }
+    }
+}
+
+/// A tilted mirror reaches before the half-planes, where light does not meet them: it is not dark.
+#[test]
+fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
+    let one = half_planes("HalfPlane(axis: X, edge: 0, opaque: Below)");
+    let other = r#"HalfPlane(axis: X, edge: 0, opaque: Above)"#;
+    let both = one.replace("])", &format!(", {other}])"));
+    let mirror = format!(
+        r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.5, event: Mirror)"#
+    );
+    let built = |half: f64| {
+        scene(
+            LIGHT,
+            &both,
+            &mirror,
+            r#""mirror""#,
+            r#"After("mirror")"#,
+            half,
+        )
+    };
+    let narrow = of(&built(0.03));
+    let dark = "half-planes of edge leave no way open";
+    assert_eq!(narrow.dark.as_deref(), Some(dark), "{:?}", narrow.reasons);
+    let wide = of(&built(0.4));
+    assert_eq!((wide.class(), wide.dark), (Class::Reference, None));
+    assert_eq!(wide.reasons, ["visibility of edge, partly beyond mirror"]);
+}
