@@ -1,6 +1,7 @@
 //! What a run holds in memory, before it begins.
 
 use crate::applicability::{Applicability, Theory};
+use crate::budget::is_sampled;
 use crate::work;
 use etendue_field::{SliceGrid, VirtualPlane};
 use etendue_scene::Scene;
@@ -64,11 +65,13 @@ impl Memory {
         Self {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
             threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
-            predictions: sum(&|plane, of| (3.0 + parameters(&of.theory)) * spectra(plane))
-                + largest(&|plane, of| {
-                    let work = work::of(of, plane);
-                    work.bytes + threads as f64 * work.bytes_each
-                }),
+            predictions: sum(&|plane, of| {
+                let held = 3.0 + parameters(&of.theory) + replicates(plane, &of.theory);
+                held * spectra(plane)
+            }) + largest(&|plane, of| {
+                let work = work::of(scene, plane, of);
+                work.bytes + threads as f64 * work.bytes_each
+            }),
             // Residuals of all batches, means, variances, powers, and the sums that p-values are
             // made of.
             comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
@@ -119,4 +122,15 @@ fn parameters(theory: &Theory) -> f64 {
         Theory::Scattering(system, _) => system.parameters().len(),
     };
     count as f64
+}
+
+/// Replicates that a prediction by nets holds, of itself and of the first-order chain.
+fn replicates(plane: &VirtualPlane, theory: &Theory) -> f64 {
+    let each = etendue_theory::REPLICATES as f64;
+    match theory {
+        Theory::Parallel(chain) if !is_sampled(plane, chain) => 0.0,
+        Theory::None => 0.0,
+        Theory::Parallel(_) | Theory::Scattering(..) => each,
+        Theory::Specular(..) => 2.0 * each,
+    }
 }

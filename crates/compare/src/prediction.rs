@@ -1,7 +1,7 @@
 //! Everything a measurement of a plane is held against.
 
 use crate::applicability::{Applicability, Theory};
-use crate::budget::budget;
+use crate::budget::{budget, is_sampled};
 use crate::chain::chain;
 use crate::class::Class;
 use crate::first_order::FirstOrder;
@@ -86,6 +86,9 @@ impl Prediction {
             return Self::darkness(scene, plane, applicability.class(), steps);
         }
         match applicability.theory {
+            Theory::Parallel(chain) if is_sampled(plane, &chain) => {
+                Self::by_nets(scene, plane, &chain, steps)
+            }
             Theory::Parallel(chain) => Self::by_chain(scene, plane, &chain, steps),
             Theory::Specular(system, at) => Self::by_rays(scene, plane, &system, &at, steps),
             Theory::Scattering(system, at) => {
@@ -142,6 +145,33 @@ impl Prediction {
         }
     }
 
+    /// The same by nets of rays, where closed forms take too long or do not resolve the scene.
+    fn by_nets(scene: &Scene, plane: &VirtualPlane, chain: &Chain, steps: Vec<String>) -> Self {
+        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+        let over = (&plane.window, &plane.grid, &cells);
+        let all = chain.parameters();
+        let found = chain.sampled(&all, over, budget(scene));
+        let parameters = all.into_iter().zip(found.derivatives);
+        let parameters = parameters.map(|(parameter, derivative)| PredictedParameter {
+            name: chain.name(parameter),
+            unit: chain.unit(parameter).to_owned(),
+            value: chain.value(parameter),
+            derivative,
+        });
+        Self {
+            class: Class::Exact,
+            steps,
+            quadrature_error: Some(found.error),
+            first_order: None,
+            parameters: parameters.collect(),
+            slices: found.slices,
+            replicates: found.replicates,
+            unblocked: 0.0,
+            projection: found.projection,
+            cuts: cuts(scene, plane),
+        }
+    }
+
     /// What rays followed through the real geometry say, and the first-order chain.
     fn by_rays(
         scene: &Scene,
@@ -159,16 +189,19 @@ impl Prediction {
             let value = system.value(at, parameter);
             value.filter(|value| value.abs() > NOTHING)
         };
-        let mut all = system.parameters(at);
-        all.retain(|parameter| value(*parameter).is_some());
-        let derivatives = rays::derivatives(system, at, &all, over);
+        let all = system.parameters(at).into_iter();
+        let (all, moved): (Vec<_>, Vec<_>) = all
+            .filter(|parameter| value(*parameter).is_some())
+            .filter_map(|parameter| Some((parameter, system.moved(at, parameter)?)))
+            .unzip();
+        let derivatives = rays::derivatives(system, at, &moved, over);
         let parameters = all.into_iter().zip(derivatives);
         let parameters = parameters.filter_map(|(parameter, derivative)| {
             Some(PredictedParameter {
                 name: system.name(parameter),
                 unit: system.unit(parameter).to_owned(),
                 value: value(parameter)?,
-                derivative: derivative?,
+                derivative,
             })
         });
         Self {

@@ -24,9 +24,12 @@ impl Prediction {
         let chain = scattering::chain(system, at);
         let over = (window, grid, &cells);
         let exact = scattering::predict(system, at, chain.as_ref(), over, budget(scene));
-        let all = system.parameters();
+        let all = system.parameters().into_iter();
+        let (all, moved): (Vec<_>, Vec<_>) = all
+            .filter_map(|parameter| Some((parameter, system.moved(at, parameter)?)))
+            .unzip();
         let over = (window, grid);
-        let around = scattering::differences(system, at, chain.as_ref(), &all, over, &exact);
+        let around = scattering::differences(system, at, chain.as_ref(), &moved, over, &exact);
         let first_order = chain.as_ref().zip(around.linear);
         let first_order = first_order.map(|(chain, mut slices)| {
             slices.half += &exact.slices.half;
@@ -48,7 +51,7 @@ impl Prediction {
                 name: system.name_of(parameter),
                 unit: system.unit_of(parameter).to_owned(),
                 value: system.value(parameter)?,
-                derivative: derivative?,
+                derivative,
             })
         });
         Self {

@@ -1,6 +1,7 @@
 //! What the predictions of a scene take, before anything is traced.
 
 use crate::applicability::{Applicability, Theory};
+use crate::budget::{budget, is_sampled};
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
@@ -56,7 +57,7 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
     for plane in &scene.planes {
         let this = TooMuchWork {
             plane: plane.name.clone(),
-            work: of(&Applicability::new(scene, plane), plane),
+            work: of(scene, plane, &Applicability::new(scene, plane)),
             total: 0.0,
         };
         if this.work.bytes + this.work.bytes_each > MOST_BYTES {
@@ -74,7 +75,7 @@ pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
 }
 
 /// What the prediction of a plane takes.
-pub(crate) fn of(applicability: &Applicability, plane: &VirtualPlane) -> Work {
+pub(crate) fn of(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Work {
     if applicability.dark.is_some() {
         return Work::none();
     }
@@ -82,8 +83,11 @@ pub(crate) fn of(applicability: &Applicability, plane: &VirtualPlane) -> Work {
     let picture = ProjectionGrid::new(window, PROJECTION_BINS);
     match &applicability.theory {
         Theory::None => Work::none(),
-        Theory::Parallel(chain) => etendue_theory::work(chain, window, grid, &picture),
-        // These have a budget.
-        Theory::Specular(..) | Theory::Scattering(..) => Work::none(),
+        Theory::Parallel(chain) if !is_sampled(plane, chain) => {
+            etendue_theory::work(chain, window, grid, &picture)
+        }
+        Theory::Parallel(_) | Theory::Specular(..) | Theory::Scattering(..) => {
+            etendue_theory::work_of_nets(grid, budget(scene))
+        }
     }
 }

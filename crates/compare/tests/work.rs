@@ -81,17 +81,11 @@ fn scenes_of_the_repository_end() {
     assert!(found > 40, "{found} scenes");
 }
 
+/// Quadratures that would not end, or that nodes do not resolve, are nets with a budget.
 #[test]
 fn wide_lights_and_fine_gratings_before_a_receiver() {
-    let wide = edited("grating.ron", &[("size: (0.2, 0.2)", "size: (1e6, 1e6)")]);
-    let said = refusal(&wide);
-    assert!(said.contains("the prediction of leaving takes"), "{said}");
-    assert!(
-        said.contains("the limit is 6e11 for all planes, about 10 minutes of one core"),
-        "{said}"
-    );
-    assert!(said.contains("384 x 384 places"), "{said}");
     for edits in [
+        [("size: (0.2, 0.2)", "size: (1e6, 1e6)")],
         [("size: (0.2, 0.2)", "size: (1e9, 1e9)")],
         [("frequency: 5", "frequency: 1e6")],
         [(
@@ -99,7 +93,11 @@ fn wide_lights_and_fine_gratings_before_a_receiver() {
             "light: Disc(center: (0, 0, 0), radius: 1e6",
         )],
     ] {
-        assert!(refusal(&edited("grating.ron", &edits)).contains("leaving"));
+        assert_eq!(
+            too_much_work(&edited("grating.ron", &edits)),
+            None,
+            "{edits:?}"
+        );
     }
 }
 
@@ -113,11 +111,7 @@ fn many_layers() {
         )
     };
     let many = layers(30, one);
-    let said = refusal(&below(&many));
-    assert!(
-        said.contains("products of shapes in different planes"),
-        "{said}"
-    );
+    assert_eq!(too_much_work(&below(&many)), None);
     let mirror = [
         ("surfaces:", many.as_str()),
         ("Distance(1.7)", "Distance(1.2)"),
@@ -127,13 +121,13 @@ fn many_layers() {
         ),
     ];
     let mirror = edited("table1/convex_normal.ron", &mirror);
-    assert!(refusal(&mirror).contains("parts that shapes in different planes leave"));
+    assert_eq!(too_much_work(&mirror), None);
     let glossy = [
         ("surfaces:", many.as_str()),
         ("Distance(1.7)", "Distance(1.2)"),
     ];
     let glossy = edited("table1/ggx_sphere.ron", &glossy);
-    assert!(refusal(&glossy).contains("parts that shapes in different planes leave"));
+    assert_eq!(too_much_work(&glossy), None);
 }
 
 #[test]
@@ -142,8 +136,7 @@ fn many_gratings() {
         let at = 0.2 + 0.1 * i as f64;
         format!(r#"Grating(name: "g{i}", center: (0, 0, {at}), axis: X, frequency: 5)"#)
     };
-    let said = refusal(&below(&layers(10, grating)));
-    assert!(said.contains("waves"), "{said}");
+    assert_eq!(too_much_work(&below(&layers(10, grating))), None);
 }
 
 #[test]
@@ -156,8 +149,10 @@ fn many_squares() {
         ),
         ("Distance(1.7)", "Distance(1.2)"),
     ];
-    let said = refusal(&edited("table1/convex_normal.ron", &mirror));
-    assert!(said.contains("90000 rectangles"), "{said}");
+    assert_eq!(
+        too_much_work(&edited("table1/convex_normal.ron", &mirror)),
+        None
+    );
     let glossy = [
         ("surfaces:", &*squares(300, 0.002)),
         (
@@ -165,8 +160,10 @@ fn many_squares() {
             "Rectangle(center: (0, 0, 0), size: (0.1, 0.1))",
         ),
     ];
-    let said = refusal(&edited("table1/textured_glossy.ron", &glossy));
-    assert!(said.contains("nodes of the light"), "{said}");
+    assert_eq!(
+        too_much_work(&edited("table1/textured_glossy.ron", &glossy)),
+        None
+    );
     assert_eq!(too_much_work(&below(&squares(300, 0.002))), None);
 }
 
@@ -175,8 +172,7 @@ fn a_thousand_lobes() {
     let lobe = "(from: (0.25, 0.1, -1), width: 0.15, radiance: 3),";
     let lobes = lobe.repeat(1000);
     let scene = edited("table1/environment.ron", &[(lobe, &lobes)]);
-    let said = refusal(&scene);
-    assert!(said.contains("32031 nodes of the light"), "{said}");
+    assert_eq!(too_much_work(&scene), None);
 }
 
 /// Each is within the limit, all are not; the one that takes most is named.
@@ -195,12 +191,13 @@ fn many_planes() {
         "diffuse.ron",
         &[
             (plane, &format!("{plane} {}", more.concat())),
+            ("azimuths: 8", "azimuths: 400"),
             ("alpha: 0.01", "alpha: 0.1"),
         ],
     );
     let said = refusal(&scene);
     assert!(
-        said.contains("the prediction of on_its_way takes 2.0e10 steps"),
+        said.contains("the prediction of on_its_way takes") && said.contains("steps"),
         "{said}"
     );
 }
@@ -209,7 +206,11 @@ fn many_planes() {
 fn fine_frequencies() {
     let spacing = [("nu: (max: 32)", "nu: (max: 32, spacing: 1e-3)")];
     let scene = edited("fig9b.ron", &spacing);
-    assert!(refusal(&scene).contains("64001 frequencies"));
+    let said = refusal(&scene);
+    assert!(
+        said.contains("GB on one core") && said.contains("frequencies"),
+        "{said}"
+    );
 }
 
 #[test]

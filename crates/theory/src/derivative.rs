@@ -29,7 +29,14 @@ pub fn derivative(
     // The fineness of `prediction`: the errors of the quadrature cancel.
     let fineness = fineness(&chain.path(), window, grid);
     let moved_chain = chain.with(parameter, moved);
-    let mut difference = slices_at_fineness(&moved_chain.path(), window, grid, &fineness);
+    let path = moved_chain.path();
+    let mut difference = match (path.receiver(), chain.path().receiver()) {
+        (Some(moved), Some(receiver)) => {
+            let nodes = receiver.nodes(window, grid.rho.max());
+            moved.slices_with(nodes, window, grid)
+        }
+        _ => slices_at_fineness(&path, window, grid, &fineness),
+    };
     difference.half -= &prediction.half;
     difference.half /= etendue_field::Complex::from(moved - value);
     difference

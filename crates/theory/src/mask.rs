@@ -119,6 +119,15 @@ impl<'a> Bins<'a> {
         bins
     }
 
+    /// The narrowest width of a shape; `None` where there are none.
+    pub(crate) fn narrowest(&self) -> Option<f64> {
+        let widths = self.shapes.iter().map(|shape| {
+            let [w, h] = shape.bounds().size;
+            w.min(h)
+        });
+        widths.min_by(f64::total_cmp)
+    }
+
     /// Cells that an interval along an axis touches; those at the ends stand for all beyond.
     fn touched(&self, axis: usize, [low, high]: [f64; 2]) -> std::ops::RangeInclusive<usize> {
         self.cell(axis, low)..=self.cell(axis, high)

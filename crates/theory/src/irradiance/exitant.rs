@@ -10,9 +10,15 @@ use rayon::prelude::*;
 use std::f64::consts::TAU;
 
 /// Fewest and most nodes along an axis of the receiver.
-const NODES: [usize; 2] = [384, 1024];
+const NODES: [f64; 2] = [96.0, 1024.0];
+/// Fewest nodes of a plain sum, which other sums are held against.
+const OF_PLAIN_SUMS: usize = 384;
+/// Nodes for each cycle across the receiver: two, and as many again for what shines there.
+const PER_CYCLE: f64 = 4.0;
 /// Nodes across the narrowest penumbra or period on the receiver.
 const ACROSS: f64 = 8.0;
+/// Fewest nodes across what is resolved.
+const LEAST: f64 = 4.0;
 /// How the error falls with the spacing of the nodes: irradiance has kinks where penumbras begin and end.
 const ORDER: i32 = 2;
 /// Places in a cell of a projection along each axis, at least.
@@ -35,17 +41,24 @@ impl Receiver<'_> {
     /// good; exact in slopes. Rows are computed in parallel, each by one thread: the same for any number of
     /// threads. Unit: W m⁻² sr⁻¹ · m².
     pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
-        self.table(window, self.nodes(window)).slices(grid)
+        self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
 
-    /// The spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over the same nodes.
+    /// The same with so many nodes along each axis.
+    pub(crate) fn slices_with(&self, nodes: usize, window: &Window, grid: &SliceGrid) -> Slices {
+        self.table(window, nodes).slices(grid)
+    }
+
+    /// The spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over no fewer nodes.
     pub(crate) fn at(&self, window: &Window, frequency: [f64; 4]) -> Complex {
-        self.table(window, self.nodes(window)).at(frequency)
+        let highest = frequency[0].hypot(frequency[1]);
+        let nodes = self.nodes(window, highest).max(OF_PLAIN_SUMS);
+        self.table(window, nodes).at(frequency)
     }
 
     /// ∫∫ ℓ' W dy dv as means over cells of (x, u), by the midpoint rule. Unit: W m⁻² sr⁻¹ · m.
     pub(crate) fn projection(&self, window: &Window, grid: &ProjectionGrid) -> Projection {
-        self.table(window, self.nodes(window)).projection(grid)
+        self.table(window, self.nodes(window, 0.0)).projection(grid)
     }
 
     /// Relative L2 error of slices: what half as many nodes along each axis change, over 2² − 1 since the error
@@ -56,29 +69,54 @@ impl Receiver<'_> {
         grid: &SliceGrid,
         slices: &Slices,
     ) -> Option<f64> {
-        let coarse = self.table(window, self.nodes(window) / 2).slices(grid);
+        let half = self.nodes(window, grid.rho.max()) / 2;
+        let coarse = self.slices_with(half, window, grid);
         let change = (&coarse.half - &slices.half).map(Complex::norm_sqr).sum();
         let all = slices.half.map(Complex::norm_sqr).sum();
         let error = (change / all).sqrt() / (2.0_f64.powi(ORDER) - 1.0);
         error.is_finite().then_some(error)
     }
 
-    /// Nodes along each axis: enough for the narrowest penumbra or period. Even, so that they can be halved.
+    /// Nodes along each axis: enough for the narrowest penumbra or period, and for frequencies up to the
+    /// highest. Even, so that they can be halved.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "clamped first"
     )]
-    pub(super) fn nodes(&self, window: &Window) -> usize {
-        let side = axes(window, self.after).map(|axis| 2.0 * axis.reach());
-        let [fewest, most] = NODES.map(|n| n as f64);
-        let nodes = ACROSS * side[0].max(side[1]) / self.finest();
-        2 * (0.5 * nodes.clamp(fewest, most)).ceil() as usize
+    pub(crate) fn nodes(&self, window: &Window, highest: f64) -> usize {
+        let [fewest, most] = NODES;
+        let side = self.side(window);
+        let nodes = (ACROSS * side / self.finest()).max(fewest + PER_CYCLE * highest * side);
+        2 * (0.5 * nodes.min(most)).ceil() as usize
     }
 
-    /// The shortest length over which the irradiance changes: a penumbra, or the period of a grating.
-    fn finest(&self) -> f64 {
-        let width = match self.light {
+    /// Metres of the receiver that are seen through a window.
+    fn side(&self, window: &Window) -> f64 {
+        let [x, y] = axes(window, self.after).map(|axis| 2.0 * axis.reach());
+        x.max(y)
+    }
+
+    /// Whether nodes tell apart all that shines on the receiver: finer patterns would be aliased, and the error
+    /// that coarser nodes tell would be as well.
+    pub(crate) fn is_resolved(&self, window: &Window) -> bool {
+        let cell = self.side(window) / NODES[1];
+        self.barriers.iter().all(|barrier| {
+            let beyond = self.distance - barrier.distance;
+            // Lengths in a mask's plane are this much longer on the receiver, for a point of the light.
+            let grown = self.distance / beyond;
+            let is_told = |length: f64| length * grown > LEAST * cell;
+            let penumbra = self.width() * barrier.distance / beyond;
+            match barrier.grating {
+                Some(grating) => is_told(1.0 / grating.frequency.abs()),
+                None => penumbra > LEAST * cell || barrier.shapes.narrowest().is_none_or(is_told),
+            }
+        })
+    }
+
+    /// The width of the light.
+    fn width(&self) -> f64 {
+        match self.light {
             Light::Area { shape, .. } => match shape {
                 Shape::Rectangle(r) => r.size[0].min(r.size[1]),
                 Shape::Disc(d) => d.radius,
@@ -87,7 +125,12 @@ impl Receiver<'_> {
             Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
                 no_closed_form()
             }
-        };
+        }
+    }
+
+    /// The shortest length over which the irradiance changes: a penumbra, or the period of a grating.
+    fn finest(&self) -> f64 {
+        let width = self.width();
         let lengths = self.barriers.iter().map(|barrier| {
             let beyond = self.distance - barrier.distance;
             match barrier.grating {

@@ -26,7 +26,7 @@ impl Receiver<'_> {
         picture: &ProjectionGrid,
         derivatives: f64,
     ) -> Work {
-        let nodes = self.nodes(window);
+        let nodes = self.nodes(window, grid.rho.max());
         let axes = exitant::axes(window, self.after);
         let place = self.mean_steps(&axes, nodes);
         let places = (nodes * nodes) as f64;

@@ -12,14 +12,16 @@ mod sobol;
 pub(crate) use density::{Density, Target};
 pub(crate) use sobol::{DIMENSIONS, Net};
 
+use crate::Work;
 use crate::geometry::Matrix;
+use crate::rays::Plane;
 use etendue_field::transform::SliceTransform;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
 use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
 /// Independent nets of a prediction.
-pub(crate) const REPLICATES: usize = 32;
+pub const REPLICATES: usize = 32;
 /// Independent nets of a derivative, of which the mean alone is needed.
 const OF_DERIVATIVES: usize = 8;
 /// Nodes of each of those: a derivative good to a per cent is good enough.
@@ -37,11 +39,21 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Of a trial by which ways of drawing rays are told apart.
+    /// Of a trial by which ways of drawing rays are told apart. With fewer, those that are best with
+    /// few rays win.
     pub(crate) const TRIAL: Self = Self {
-        nodes: 0.0,
-        error: f64::INFINITY,
+        nodes: 65_536.0,
+        error: 0.0,
     };
+}
+
+/// A system and its plane with a little more and a little less of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Moved<S> {
+    /// How far apart the values are, in the parameter's unit.
+    pub apart: f64,
+    /// With more, and with less.
+    pub sides: [(S, Plane); 2],
 }
 
 /// A ray at a plane.
@@ -141,6 +153,40 @@ pub(crate) fn means(
         mean
     };
     (0..integrand.fields()).map(of).collect()
+}
+
+/// Steps of a ray, and those of spreading it on an azimuth.
+const RAY: f64 = 300.0;
+const SPREAD: f64 = 15.0;
+/// Fields of a pass over derivatives, about.
+const FIELDS: f64 = 12.0;
+/// Steps of a transform for each frequency.
+const TRANSFORM: f64 = 300.0;
+
+/// What a prediction by nets takes that ends with its budget: rays, and the transforms of all nets.
+#[must_use]
+pub fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
+    let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
+    let azimuths = grid.azimuths as f64;
+    let replicates = REPLICATES as f64;
+    let rounds = (budget.nodes / (replicates * f64::from(FIRST)))
+        .log2()
+        .max(1.0);
+    let derivatives = OF_DERIVATIVES as f64 * FIELDS;
+    let rays = budget.nodes * (RAY + SPREAD * azimuths);
+    let rays_of_derivatives = derivatives * f64::from(NODES_OF_DERIVATIVES) * SPREAD * azimuths;
+    let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
+    let slice = 16.0 * cells;
+    Work {
+        steps: rays + rays_of_derivatives + transforms,
+        // Sums of all nets, means of those that end, and the fine grids of a thread.
+        bytes: slice * (2.0 * replicates).max(derivatives),
+        bytes_each: SliceTransform::new(grid).bytes() * FIELDS,
+        drivers: format!(
+            "{:.0e} rays, and transforms to {cells:.0} frequencies",
+            budget.nodes
+        ),
+    }
 }
 
 fn begin(

@@ -6,7 +6,7 @@ use super::region::{Field, Finder, Neighbourhood, neighbourhood};
 use super::{Plane, System};
 use crate::geometry::{Map, Matrix, SpectrumMap};
 use crate::mask::Masks;
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Moved, Node};
 use etendue_field::{
     Complex, Mask, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
 };
@@ -80,62 +80,70 @@ pub fn linear(
     predict(&field, system, way, over, [budget, Budget::TRIAL])
 }
 
-/// The derivatives of the exact slices by some parameters, per unit of each; `None` for those that the system does
-/// not have.
+/// The derivatives of the exact slices by some parameters, per unit of each.
 ///
 /// Central differences, the rays of both sides drawn alike: good to about a per cent.
 #[must_use]
 pub fn derivatives(
     system: &System,
     plane: &Plane,
-    parameters: &[Parameter],
+    moved: &[Moved<System>],
     over: Over<'_>,
-) -> Vec<Option<Slices>> {
+) -> Vec<Slices> {
+    let zeros = || vec![Slices::zeros(*over.1); moved.len()];
     let masks = Masks::new(&system.layers);
     let field = exact_field(system, plane, &masks);
     let lands = neighbourhood(system, plane);
-    let strategy = lands.and_then(|lands| best(&field, system, &lands, over));
-    let moved = |parameter: &Parameter| {
-        let strategy = strategy?;
-        let value = system.value(plane, *parameter)?;
-        let size = match parameter {
-            Parameter::Incidence(_) | Parameter::Curvature(..) => value.abs().max(0.1),
-            _ => value.abs(),
-        };
-        let step = STEP * size;
-        let side = |value| {
-            let (system, plane) = system.with(plane, *parameter, value)?;
-            let lands = neighbourhood(&system, &plane)?;
-            let draw = Draw::new(&system, over.0, &lands, strategy)?;
-            Some((system, plane, draw))
-        };
-        Some((2.0 * step, [side(value + step)?, side(value - step)?]))
+    let Some(strategy) = lands.and_then(|lands| best(&field, system, &lands, over)) else {
+        return zeros();
     };
-    let moved: Vec<_> = parameters.iter().map(moved).collect();
-    let sides = moved.iter().flatten().flat_map(|(_, sides)| sides);
-    let fields: Vec<Drawn<'_>> = sides
-        .map(|(system, plane, draw)| Drawn {
-            field: Box::new(exact_field(system, plane, &masks)),
+    let sides = || moved.iter().flat_map(|moved| &moved.sides);
+    let masks: Vec<_> = sides()
+        .map(|(system, _)| Masks::new(&system.layers))
+        .collect();
+    let draws: Option<Vec<Draw>> = sides()
+        .map(|(system, plane)| {
+            let lands = neighbourhood(system, plane)?;
+            Draw::new(system, over.0, &lands, strategy)
+        })
+        .collect();
+    let Some(draws) = draws else { return zeros() };
+    let fields: Vec<Drawn<'_>> = sides()
+        .zip(masks.iter().zip(&draws))
+        .map(|((system, plane), (masks, draw))| Drawn {
+            field: Box::new(exact_field(system, plane, masks)),
             draw,
             window: over.0,
         })
         .collect();
     let mut means = nets::means(&fields[..], over.0, over.1).into_iter();
-    let derivative = |apart: f64| {
+    let derivative = |moved: &Moved<System>| {
         let (mut above, below) = (means.next()?, means.next()?);
         above.half -= &below.half;
-        above.half /= Complex::from(apart);
+        above.half /= Complex::from(moved.apart);
         Some(above)
     };
-    let mut derivative = derivative;
-    moved
-        .iter()
-        .map(|moved| moved.as_ref().and_then(|(apart, _)| derivative(*apart)))
-        .collect()
+    moved.iter().filter_map(derivative).collect()
 }
 
-/// Step of the differences, relative to the parameter, or to 0.1 rad or 0.1 /m.
-const STEP: f64 = 1e-3;
+impl System {
+    /// It with a little more and a little less of a parameter; `None` if it does not have that.
+    #[must_use]
+    pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<Self>> {
+        const STEP: f64 = 1e-3;
+        let value = self.value(plane, parameter)?;
+        let size = match parameter {
+            Parameter::Incidence(_) | Parameter::Curvature(..) => value.abs().max(0.1),
+            _ => value.abs(),
+        };
+        let step = STEP * size;
+        let at = |value| self.with(plane, parameter, value);
+        Some(Moved {
+            apart: 2.0 * step,
+            sides: [at(value + step)?, at(value - step)?],
+        })
+    }
+}
 
 fn exact_field<'a>(system: &'a System, plane: &'a Plane, masks: &'a Masks<'a>) -> impl Field + 'a {
     move |ray| {

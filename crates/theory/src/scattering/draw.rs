@@ -13,6 +13,7 @@ use crate::nets::Density;
 use etendue_field::{Brdf, Frame, Light, Lobe, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// What is drawn how. No choice is best everywhere: they are tried on the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -179,7 +180,7 @@ impl Mirrored {
 #[derive(Clone, Debug)]
 pub(super) struct Lights<'a> {
     system: &'a System,
-    sky: Option<Sky<'a>>,
+    sky: Option<Arc<Sky<'a>>>,
     /// Whether half of them are drawn by the lobe.
     by_lobe: bool,
     /// Of how many along each side of the square one is drawn at a time.
@@ -190,9 +191,18 @@ impl<'a> Lights<'a> {
     /// For a surface whose normal is this where the central ray meets it.
     pub(super) fn new(system: &'a System, normal: DVec3, strategy: Strategy) -> Self {
         let sky = match &system.light {
-            Light::Environment { environment } => Sky::new(environment, normal),
+            Light::Environment { environment } => Sky::new(environment, normal).map(Arc::new),
             _ => None,
         };
+        Self::under(system, sky, strategy)
+    }
+
+    /// The same for a changed system in the same environment.
+    pub(super) fn of<'b>(&'b self, system: &'b System, strategy: Strategy) -> Lights<'b> {
+        Lights::under(system, self.sky.clone(), strategy)
+    }
+
+    fn under(system: &'a System, sky: Option<Arc<Sky<'a>>>, strategy: Strategy) -> Self {
         let has_extent = has_extent(&system.light);
         let has_lobe = angular_width(&system.reflectance.brdf).is_some();
         Self {

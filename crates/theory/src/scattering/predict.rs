@@ -8,9 +8,11 @@ use super::parameter::Parameter;
 use super::{Chain, System};
 use crate::geometry::Matrix;
 use crate::mask::Masks;
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Moved, Node};
 use crate::rays::Plane;
-use etendue_field::{Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
+use etendue_field::{
+    EnvironmentMap, Light, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
+};
 use glam::DVec3;
 
 /// A prediction of a scattered light field.
@@ -52,6 +54,10 @@ pub fn predict(
         trial.error * trial.error * strategy.time()
     });
     let field = field(strategy);
+    let budget = Budget {
+        nodes: budget.nodes / cost(system),
+        ..budget
+    };
     let mut sums = nets::sums(&field, window, grid, picture.bins, budget);
     let replicates = sums.slices.swap_remove(0);
     Prediction {
@@ -62,6 +68,18 @@ pub fn predict(
         strategy,
         covariance: sums.covariance,
         projection: sums.projection,
+    }
+}
+
+/// How many times as long a ray takes as one of few lobes of light.
+fn cost(system: &System) -> f64 {
+    const FEW: f64 = 16.0;
+    match &system.light {
+        Light::Environment { environment } => match &environment.map {
+            EnvironmentMap::Lobes(lobes) => 1.0 + lobes.len() as f64 / FEW,
+            EnvironmentMap::LatLong(_) => 1.0,
+        },
+        _ => 1.0,
     }
 }
 
@@ -85,52 +103,63 @@ pub struct Differences {
     /// The slices that the first-order chain predicts less those of the prediction; `None` where the
     /// central ray does not arrive.
     pub linear: Option<Slices>,
-    /// The derivatives of the slices by parameters, per unit of each; `None` for those that the system
-    /// does not have.
-    pub derivatives: Vec<Option<Slices>>,
+    /// The derivatives of the slices, per unit of each parameter.
+    pub derivatives: Vec<Slices>,
 }
 
 /// The first-order chain's slices and the derivatives by some parameters, all as differences of the
 /// radiance of the same rays: good to about a per cent of what they are.
+///
+/// Parts of the light move with the light, so that its edges are no edges of a difference. Shadows do
+/// not move with masks: what is lit on one side alone adds noise, the less the farther the sides are
+/// apart.
 #[must_use]
 pub fn differences(
     system: &System,
     plane: &Plane,
     chain: Option<&Chain>,
-    parameters: &[Parameter],
+    moved: &[Moved<System>],
     (window, grid): (&Window, &SliceGrid),
     prediction: &Prediction,
 ) -> Differences {
     let strategy = prediction.strategy;
-    let moved: Vec<_> = parameters
-        .iter()
-        .map(|parameter| moved(system, *parameter))
-        .collect();
+    let field = Field::new(system, plane, window, chain, strategy);
     let around = Around {
-        field: Field::new(system, plane, window, chain, strategy),
         linear: chain.and_then(|chain| Linear::new(system, chain)),
-        moved: moved.iter().flatten().collect(),
+        moved: moved
+            .iter()
+            .map(|moved| {
+                (
+                    moved.apart,
+                    moved
+                        .sides
+                        .each_ref()
+                        .map(|side| Side::new(side, &field, strategy)),
+                )
+            })
+            .collect(),
+        field: &field,
     };
     let mut means = nets::means(&around, window, grid).into_iter();
     Differences {
         linear: around.linear.as_ref().and_then(|_| means.next()),
-        derivatives: moved
-            .iter()
-            .map(|moved| moved.as_ref().and_then(|_| means.next()))
-            .collect(),
+        derivatives: means.collect(),
     }
 }
 
-/// A system with a little more and a little less of a parameter, and how far apart these are.
-type Moved = (f64, [System; 2]);
-
-fn moved(system: &System, parameter: Parameter) -> Option<Moved> {
-    const STEP: f64 = 1e-3;
-    let value = system.value(parameter)?;
-    let step = STEP * value.abs().max(0.1);
-    let above = system.with(parameter, value + step)?;
-    let below = system.with(parameter, value - step)?;
-    Some((2.0 * step, [above, below]))
+impl System {
+    /// It with a little more and a little less of a parameter; `None` if it does not have that.
+    #[must_use]
+    pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<Self>> {
+        const STEP: f64 = 1e-3;
+        let value = self.value(parameter)?;
+        let step = STEP * value.abs().max(0.1);
+        let at = |value| Some((self.with(parameter, value)?, *plane));
+        Some(Moved {
+            apart: 2.0 * step,
+            sides: [at(value + step)?, at(value - step)?],
+        })
+    }
 }
 
 /// A light field as it is.
@@ -174,15 +203,26 @@ impl<'a> Field<'a> {
         Some((z, factor, self.system.leaving(self.plane, z)?))
     }
 
-    /// The radiance of a ray of one of the systems that have these masks.
-    fn radiance(&self, system: &System, leaving: &Leaving, part: Part) -> f64 {
-        let radiance = system.radiance(&self.masks, leaving, part);
-        if self.plane.orientation.is_local() {
-            // On the surface itself the integral is over its area, larger than the tangent plane's.
-            radiance / leaving.normal.dot(self.plane.frame.d).abs()
-        } else {
-            radiance
-        }
+    /// The radiance of a ray, of what a part of the light shines.
+    fn radiance(&self, leaving: &Leaving, part: Part) -> f64 {
+        radiance(self.system, self.plane, &self.masks, leaving, part)
+    }
+}
+
+/// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
+fn radiance(
+    system: &System,
+    plane: &Plane,
+    masks: &Masks<'_>,
+    leaving: &Leaving,
+    part: Part,
+) -> f64 {
+    let radiance = system.radiance(masks, leaving, part);
+    if plane.orientation.is_local() {
+        // On the surface itself the integral is over its area, larger than the tangent plane's.
+        radiance / leaving.normal.dot(plane.frame.d).abs()
+    } else {
+        radiance
     }
 }
 
@@ -196,8 +236,7 @@ impl Integrand for Field<'_> {
             return;
         };
         let parts = self.lights.each(&leaving, [at[4], at[5]]);
-        let radiance =
-            parts.map(|(part, density)| self.radiance(self.system, &leaving, part) / density);
+        let radiance = parts.map(|(part, density)| self.radiance(&leaving, part) / density);
         nodes[0] = Node {
             z,
             weight: factor * radiance.sum::<f64>(),
@@ -205,11 +244,38 @@ impl Integrand for Field<'_> {
     }
 }
 
+/// A light field with a parameter changed.
+struct Side<'a> {
+    system: &'a System,
+    plane: &'a Plane,
+    masks: Masks<'a>,
+    lights: Lights<'a>,
+}
+
+impl<'a> Side<'a> {
+    fn new((system, plane): &'a (System, Plane), field: &'a Field<'a>, strategy: Strategy) -> Self {
+        Self {
+            system,
+            plane,
+            masks: Masks::new(&system.layers),
+            lights: field.lights.of(system, strategy),
+        }
+    }
+
+    /// The radiance of a ray, over the density with which a part of the light was drawn.
+    fn radiance(&self, z: [f64; 4], at: [f64; 2]) -> Option<f64> {
+        let leaving = self.system.leaving(self.plane, z)?;
+        let (part, density) = self.lights.draw(&leaving, at)?;
+        let radiance = radiance(self.system, self.plane, &self.masks, &leaving, part);
+        Some(radiance / density)
+    }
+}
+
 /// What is around a light field: it to first order, and with parameters changed.
 struct Around<'a> {
-    field: Field<'a>,
+    field: &'a Field<'a>,
     linear: Option<Linear<'a>>,
-    moved: Vec<&'a Moved>,
+    moved: Vec<(f64, [Side<'a>; 2])>,
 }
 
 impl Integrand for Around<'_> {
@@ -226,10 +292,7 @@ impl Integrand for Around<'_> {
         let Some((z, factor, leaving)) = field.draw(at) else {
             return;
         };
-        let Some((part, density)) = field.lights.draw(&leaving, [at[4], at[5]]) else {
-            return;
-        };
-        let factor = factor / density;
+        let at = [at[4], at[5]];
         let mut nodes = nodes.iter_mut();
         let mut put = |difference: f64| {
             if let Some(node) = nodes.next() {
@@ -238,15 +301,17 @@ impl Integrand for Around<'_> {
             }
         };
         if let Some(linear) = linear {
-            let exact = field.radiance(field.system, &leaving, part);
-            put(linear.radiance(&field.masks, z, part) - exact);
+            let part = field.lights.draw(&leaving, at);
+            put(part.map_or(0.0, |(part, density)| {
+                let exact = field.radiance(&leaving, part);
+                (linear.radiance(&field.masks, z, part) - exact) / density
+            }));
         }
-        for (apart, [above, below]) in moved {
-            let at = |system: &System| {
-                let leaving = system.leaving(field.plane, z);
-                leaving.map_or(0.0, |leaving| field.radiance(system, &leaving, part))
-            };
-            put((at(above) - at(below)) / apart);
+        for (apart, sides) in moved {
+            let [above, below] = sides
+                .each_ref()
+                .map(|side| side.radiance(z, at).unwrap_or(0.0));
+            put((above - below) / apart);
         }
     }
 }

@@ -179,7 +179,8 @@ fn error_is_told() {
         let bench = &benches()[number];
         let receiver = bench.receiver();
         let slices = receiver.slices(&window, &grid);
-        let zero = receiver.at(&window, [0.0; 4]);
+        let nodes = receiver.nodes(&window, grid.rho.max());
+        let zero = receiver.table(&window, nodes).at([0.0; 4]);
         assert!((slices.at_zero() - zero).norm() < 1e-12 * zero.norm()); // rounding of two sums
         let told = receiver.quadrature_error(&window, &grid, &slices).unwrap();
         let truth = distance(&slices, &receiver.table(&window, 1000).slices(&grid));
@@ -202,7 +203,7 @@ fn projection_is_the_other_side_of_the_slice() {
     for (number, after) in [(2, 0.0), (3, 0.7)] {
         let bench = &benches()[number];
         let receiver = bench.after(after);
-        let table = receiver.table(&hann(), receiver.nodes(&hann()));
+        let table = receiver.table(&hann(), receiver.nodes(&hann(), 0.0));
         let cells = ProjectionGrid::new(&hann(), 128);
         let projection = receiver.projection(&hann(), &cells);
         let zero = table.at([0.0; 4]).re;
@@ -275,5 +276,5 @@ fn hard_shadows_of_a_point_light() {
     let order = (errors[0] / errors[2]).log2() / 2.0;
     // Means over cells keep the second order where edges cross them.
     assert!(errors[2] < 2e-4 && order > 1.6, "{errors:?}");
-    assert_eq!(receiver.nodes(&hann()), 1024);
+    assert_eq!(receiver.nodes(&hann(), 0.0), 1024);
 }

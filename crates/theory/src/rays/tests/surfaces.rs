@@ -79,9 +79,12 @@ fn derivatives_by_every_parameter() {
     let parameters = system.parameters(&plane);
     assert_eq!(parameters.len(), 12);
     let picture = ProjectionGrid::new(&window, 1);
-    let slopes = derivatives(&system, &plane, &parameters, (&window, &grid, &picture));
+    let moved: Vec<_> = parameters
+        .iter()
+        .map(|parameter| system.moved(&plane, *parameter).unwrap())
+        .collect();
+    let slopes = derivatives(&system, &plane, &moved, (&window, &grid, &picture));
     for (parameter, slope) in parameters.into_iter().zip(slopes) {
-        let slope = slope.unwrap();
         let value = system.value(&plane, parameter).unwrap();
         let name = system.name(parameter);
         let other = system.with(&plane, parameter, value + 1e-4).unwrap();
