@@ -29,7 +29,7 @@ const OF_QUADRATURES: f64 = 1e10;
 /// Steps of a closed form that are accepted: nets need as many rays as photons to come near it.
 const OF_CLOSED_FORMS: f64 = 1e11;
 /// Bytes of a closed form on one core that are accepted.
-const BYTES: f64 = 3e8;
+const BYTES: f64 = 1e9;
 
 /// Whether nets of rays take the place of a chain's closed form or quadrature: where that takes very
 /// long, or does not resolve a pattern.
