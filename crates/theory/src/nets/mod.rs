@@ -335,3 +335,83 @@ impl Moments {
         (self.total > 0.0).then(|| crate::geometry::from_fn(entry))
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::window;
+    use etendue_field::{FrequencyAxis, Profile};
+    use std::f64::consts::TAU;
+
+    /// Rays all over a window, with weights of both signs.
+    struct Waves;
+
+    impl Integrand for Waves {
+        fn fields(&self) -> usize {
+            2
+        }
+
+        fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+            for (i, node) in nodes.iter_mut().enumerate() {
+                node.z = std::array::from_fn(|k| at[k + i] - 0.5);
+                node.weight = (3.0 * at[4]).cos() + i as f64;
+            }
+        }
+    }
+
+    fn grid() -> SliceGrid {
+        let axis = |half, spacing| FrequencyAxis { half, spacing };
+        SliceGrid {
+            azimuths: 3,
+            rho: axis(5, 0.7),
+            nu: axis(9, 1.1),
+        }
+    }
+
+    #[test]
+    fn plain_summation() {
+        let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
+        let budget = Budget {
+            nodes: 0.0,
+            error: 0.0,
+        };
+        let found = sums(&Waves, &window, &grid, 4, budget);
+        assert!((found.nodes - f64::from(FIRST) * REPLICATES as f64).abs() < 0.5);
+        let (replicate, field) = (5, 1);
+        let mut net = Net::new(replicate);
+        let mut nodes = [Node::DARK; 2];
+        let rays: Vec<Node> = (0..FIRST)
+            .map(|_| {
+                Waves.nodes(&net.point(), &mut nodes);
+                nodes[field]
+            })
+            .collect();
+        let slices = &found.slices[field][replicate as usize];
+        for ((k, m, n), value) in slices.half.indexed_iter() {
+            let omega = grid.frequency(k, m as f64 * grid.rho.spacing, grid.nu.value(n));
+            let term = |node: &Node| {
+                let phase: f64 = omega.iter().zip(node.z).map(|(o, z)| o * z).sum();
+                Complex::from_polar(node.weight, -TAU * phase)
+            };
+            let plain = rays.iter().map(term).sum::<Complex>() / f64::from(FIRST);
+            // The bound of the transform, 2·10⁻⁷ of the mean weight.
+            assert!((value - plain).norm() < 4e-7, "{k} {m} {n}");
+        }
+    }
+
+    #[test]
+    fn any_number_of_threads_gives_the_same_bytes() {
+        let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
+        let budget = Budget {
+            nodes: 1e5,
+            error: 0.0,
+        };
+        let on = |threads| {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
+            let run = || sums(&Waves, &window, &grid, 4, budget);
+            let found = pool.build().unwrap().install(run);
+            (found.slices, found.projection, found.covariance)
+        };
+        assert_eq!(on(1), on(3));
+    }
+}
