@@ -42,54 +42,22 @@
 //! assert!((prediction.half[[1, 2, 3]] - plain).norm() < 1e-10 * prediction.at_zero());
 //! ```
 
-mod chain;
-mod corners;
-mod derivative;
-mod describe;
-mod disc;
-mod error;
-mod expansion;
-mod fast;
-pub mod gaussian;
 pub mod geometry;
-mod harmonics;
-mod irradiance;
-mod jitter;
-#[cfg(test)]
-mod laws;
 mod mask;
 mod nets;
-mod parameter;
-mod patch;
-mod plain;
-mod polygon;
-mod projection;
-mod quadrature;
+mod numerics;
+mod parallel;
 pub mod rays;
 #[cfg(test)]
 mod reference;
-mod reflection;
-mod row;
-mod sampled;
 pub mod scattering;
 pub mod shading;
-mod sinc;
-mod slope;
 #[cfg(test)]
 mod testing;
-mod wave;
-mod work;
 
-pub use chain::{Chain, Operator, Source};
-pub use derivative::derivative;
-pub use error::quadrature_error;
-pub use fast::slices;
-pub use harmonics::Harmonics;
-pub use jitter::{JitteredArray, jittered_array_power};
 pub use nets::{Budget, Moved, REPLICATES, work_of_nets};
-pub use parameter::Parameter;
-pub use plain::at;
-pub use projection::projection;
-pub use sampled::Sampled;
+pub use parallel::{
+    Chain, Harmonics, Operator, Parameter, Sampled, Source, Work, at, derivative, projection,
+    quadrature_error, slices, work,
+};
 pub use shading::{g_hat, g_hat_3d};
-pub use work::{Work, work};

@@ -1,4 +1,4 @@
-use super::quadrature::gauss_legendre;
+use crate::gauss_legendre;
 use fearless_simd::{Simd, f64x4, prelude::*};
 use std::f64::consts::{PI, TAU};
 
@@ -107,7 +107,8 @@ impl Kernel {
     /// exact to rounding for |ξ| ≤ 1/2.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
-        for (f, weight) in gauss_legendre(16) {
+        for (x, weight) in gauss_legendre(16) {
+            let (f, weight) = (0.5 * (1.0 + x), 0.5 * weight);
             for tap in 0..HALF {
                 // Taps 4 to 7 mirror taps 3 to 0: twice the cosine.
                 let phase = TAU * xi * (tap as f64 - 3.0 - f);

@@ -6,7 +6,6 @@
 mod block;
 mod fine;
 mod kernel;
-mod quadrature;
 mod spread;
 
 use crate::{Complex, FrequencyAxis, SliceGrid, Slices, TwoPlane};

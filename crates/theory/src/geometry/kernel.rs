@@ -1,6 +1,6 @@
 //! The kernel that takes spectra from slopes to angles.
 
-use crate::sinc::sinc;
+use crate::numerics::sinc::sinc;
 use std::f64::consts::{PI, TAU};
 
 /// Step of the trapezoid rule in ln t. Twice this step gives the same values to rounding, from frequencies of 10⁻¹² to 160.

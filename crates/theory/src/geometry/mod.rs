@@ -61,7 +61,7 @@ mod travel;
 pub use kernel::plane_sphere_kernel;
 pub use map::Map;
 pub use matrix::Matrix;
-pub(crate) use matrix::{diagonal, from_fn, product, times, transpose};
+pub(crate) use matrix::{diagonal, from_fn, product, sum, times, transpose};
 pub use printed::Print;
 pub use refraction::Media;
 pub use spectrum_map::SpectrumMap;

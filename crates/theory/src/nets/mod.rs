@@ -309,23 +309,19 @@ struct Moments {
 impl Moments {
     fn add(&mut self, z: [f64; 4], weight: f64) {
         self.total += weight;
-        for i in 0..4 {
+        for (i, row) in self.second.iter_mut().enumerate() {
             let share = weight * z[i];
             self.first[i] += share;
-            for j in i..4 {
-                self.second[i][j] += share * z[j];
+            for (sum, z) in row.iter_mut().zip(z) {
+                *sum += share * z;
             }
         }
     }
 
     fn join(&mut self, other: &Self) {
         self.total += other.total;
-        for i in 0..4 {
-            self.first[i] += other.first[i];
-            for j in i..4 {
-                self.second[i][j] += other.second[i][j];
-            }
-        }
+        self.first = std::array::from_fn(|i| self.first[i] + other.first[i]);
+        self.second = crate::geometry::sum(&self.second, &other.second);
     }
 
     fn central(&self) -> Option<Matrix<4>> {

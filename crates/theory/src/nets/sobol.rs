@@ -113,6 +113,11 @@ fn mixed_bits(mut x: u32) -> u32 {
 mod tests {
     use super::*;
 
+    /// The cell of n in which a number of (0, 1) lies.
+    fn cell(x: f64, n: usize) -> usize {
+        (1..n).take_while(|i| *i as f64 <= x * n as f64).count()
+    }
+
     /// Each box of volume 2⁻ᵐ that halves pairs of sides holds one of 2ᵐ points.
     #[test]
     fn pairs_of_first_coordinates_are_nets() {
@@ -124,7 +129,6 @@ mod tests {
                     let rows = 256 / columns;
                     let mut count = vec![0; 256];
                     for p in &points {
-                        let cell = |x: f64, n: usize| (x * n as f64).floor() as usize;
                         count[cell(p[0], columns) * rows + cell(p[1], rows)] += 1;
                     }
                     assert!(count.iter().all(|n| *n == 1), "{replicate} {columns}");
@@ -132,7 +136,7 @@ mod tests {
                 for k in 0..DIMENSIONS {
                     let mut count = [0; 256];
                     for p in &points {
-                        count[(p[k] * 256.0).floor() as usize] += 1;
+                        count[cell(p[k], 256)] += 1;
                     }
                     assert_eq!(count, [1; 256], "coordinate {k}");
                 }

@@ -49,7 +49,7 @@ enum By {
     },
     /// All four.
     Back {
-        targets: [Target; 4],
+        targets: Box<[Target; 4]>,
         map: Map<4>,
         determinant: f64,
     },
@@ -90,7 +90,7 @@ impl Draw {
                     offset: *center,
                 };
                 By::Back {
-                    targets: profiles.map(|profile| Target::new(&profile)),
+                    targets: Box::new(profiles.map(|profile| Target::new(&profile))),
                     map: rays.inverse()?,
                     determinant: rays.det().abs(),
                 }

@@ -1,8 +1,8 @@
 //! What a light emits.
 
 use super::System;
-use crate::chain::no_closed_form;
 use crate::nets::Density;
+use crate::parallel::chain::no_closed_form;
 use etendue_field::{Light, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 

@@ -259,7 +259,7 @@ fn best(
 
 /// A light field and how its rays are drawn.
 struct Drawn<'a> {
-    field: Box<dyn Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync + 'a>,
+    field: Box<dyn Field + 'a>,
     draw: &'a Draw,
     window: &'a Window,
 }

@@ -5,8 +5,8 @@
 
 use super::region::{Field, Finder};
 use super::sums::sums;
-use crate::error::distance;
 use crate::nets::Node;
+use crate::parallel::error::distance;
 use etendue_field::{SliceGrid, Slices};
 use rayon::prelude::*;
 

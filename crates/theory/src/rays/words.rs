@@ -44,12 +44,12 @@ pub(crate) fn mask(mask: &Mask) -> String {
             half_planes,
         } => format!(
             "multiply  visibility of {}",
-            crate::describe::opaque(shapes, half_planes.len())
+            crate::parallel::words::opaque(shapes, half_planes.len())
         ),
         Mask::Grating(grating) => {
             format!(
                 "multiply  grating {}",
-                crate::describe::formula(grating, ["x", "y"])
+                crate::parallel::words::formula(grating, ["x", "y"])
             )
         }
     }

@@ -1,8 +1,9 @@
 //! Area lights, alone and behind opaque blockers.
 
+use super::gaussian;
 use super::*;
+use crate::at;
 use crate::testing::square;
-use crate::{at, gaussian};
 
 #[test]
 fn area_light_under_a_hann_window() {

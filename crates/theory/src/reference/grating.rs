@@ -1,7 +1,7 @@
 //! A light, a cosine grating and a receiver: the walk along a light path of Durand et al. 2005, Fig. 6.
 
 use super::*;
-use crate::gaussian::{self, Grating};
+use crate::reference::gaussian::{self, Grating};
 
 /// A light, a grating and a receiver under a Gaussian window.
 struct GratingScene {

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::at;
-use crate::gaussian::{self, Tilted};
+use crate::reference::gaussian::{self, Tilted};
 
 fn field(block: &Value) -> Tilted {
     let p = |name: &str| number(&block["params"][name]);

@@ -1,7 +1,7 @@
 //! Lights that are no rectangles.
 
 use super::*;
-use crate::gaussian;
+use crate::reference::gaussian;
 
 #[test]
 fn disc_light_in_4d() {

@@ -4,17 +4,20 @@
 //! field is made of polygons also the polygon path with a cut at 3.4 widths, where the window is 2e-16.
 
 mod area;
+pub(crate) mod gaussian;
 mod geometry;
 mod grating;
 mod half_planes;
+mod jitter;
 mod lights;
 mod shading;
 
-use crate::expansion::Expansion;
-use crate::gaussian::{Bench, Gaussian};
+use crate::parallel::expansion::Expansion;
 use crate::testing::{chain, lambertian, window};
-use crate::{Chain, JitteredArray, g_hat, g_hat_3d, jittered_array_power};
+use crate::{Chain, g_hat, g_hat_3d};
 use etendue_field::{Complex, Profile, Rectangle};
+use gaussian::{Bench, Gaussian};
+use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
 /// Relative to the largest value of a block: the file promises 14 digits, rounding takes one more.

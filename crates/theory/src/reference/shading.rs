@@ -90,7 +90,7 @@ fn fresnel_and_cosine() {
                 let share = ((cosine - beyond) / (cosine + beyond)).norm_sqr();
                 2.0 * share * cosine * (TAU * omega * theta).cos()
             };
-            crate::quadrature::integrate(200, [0.0, 0.5 * PI], kernel)
+            crate::numerics::quadrature::integrate(200, [0.0, 0.5 * PI], kernel)
         };
         assert_seen("one polarisation", curve(material, 15, across));
         let twice = |omega| fresnel.cosine_hat(omega) * fresnel.reflectance(0.0);

@@ -209,7 +209,7 @@ fn reflection(system: &System) -> Vec<String> {
         )),
     }
     let varies = |pattern: &Pattern| match pattern {
-        Pattern::Cosine(grating) => crate::describe::formula(grating, ["s", "t"]),
+        Pattern::Cosine(grating) => crate::parallel::words::formula(grating, ["s", "t"]),
         Pattern::Picture(picture) => {
             let [w, h] = picture.size;
             format!("picture of {} x {} m", number(w), number(h))

@@ -347,7 +347,8 @@ impl LobeDensity {
     fn density(&self, wi: DVec3) -> f64 {
         let wi = self.local.vector_to_local(wi);
         let half = (wi + self.wo).normalize();
-        if !(half.z > 0.0) {
+        // Of opposite directions there is none.
+        if half.z <= 0.0 || half.is_nan() {
             return 0.0;
         }
         let slopes = [half.x / half.z, half.y / half.z];

@@ -1,7 +1,8 @@
 //! Transforms of cosines on the half-circle.
 
-use super::gamma::{ln_gamma, reciprocal_gamma};
-use crate::sinc::sinc;
+use super::gamma::reciprocal_gamma;
+use crate::numerics::sinc::sinc;
+use libm::lgamma as ln_gamma;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// The transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2 cos(π²Ω)/(1 − (2πΩ)²), with Ω in cycles per radian

@@ -111,7 +111,7 @@ mod tests {
         let inside = Fresnel::Dielectric { index: 1.0 / 1.5 };
         let critical = (1.0_f64 / 1.5).asin();
         // Substituting a square on both sides of the critical angle takes the root away.
-        let below = crate::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
+        let below = crate::numerics::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
             let theta = critical - t * t;
             2.0 * t * inside.reflectance(theta) * theta.cos()
         });

@@ -1,32 +1,7 @@
-//! The logarithm of Euler's gamma function, for ratios of large values.
+//! The reciprocal of Euler's gamma function.
 
-use std::f64::consts::{PI, TAU};
-
-/// Stirling's series: B₂ⱼ / (2j (2j − 1)) for j = 1, 2, … (DLMF 5.11.1).
-const STIRLING: [f64; 8] = [
-    1.0 / 12.0,
-    -1.0 / 360.0,
-    1.0 / 1260.0,
-    -1.0 / 1680.0,
-    1.0 / 1188.0,
-    -691.0 / 360_360.0,
-    1.0 / 156.0,
-    -3617.0 / 122_400.0,
-];
-/// From here on the first term left out is below 2·10⁻¹⁸.
-const FAR: f64 = 10.0;
-
-/// ln Γ(z) for z > 0, to rounding of the largest of ln Γ and 1.
-pub(super) fn ln_gamma(z: f64) -> f64 {
-    let (mut far, mut product) = (z, 1.0);
-    while far < FAR {
-        product *= far;
-        far += 1.0;
-    }
-    let square = 1.0 / (far * far);
-    let series = STIRLING.iter().rev().fold(0.0, |sum, c| sum * square + c) / far;
-    (far - 0.5) * far.ln() - far + 0.5 * TAU.ln() + series - product.ln()
-}
+use libm::lgamma as ln_gamma;
+use std::f64::consts::PI;
 
 /// 1/Γ(z) for every real z, as a factor with a sign and the logarithm of another; the factor is 0 at z = 0, −1, −2, …
 ///

@@ -1,6 +1,6 @@
 //! Gauss rules on panels, for functions of an angle that are smooth but for the ends of panels.
 
-use crate::quadrature::gauss_legendre;
+use crate::numerics::quadrature::gauss_legendre;
 use std::f64::consts::TAU;
 
 /// Nodes of a panel. With two cycles, or a pole no nearer than the panel is long, what is left out is below 10⁻¹⁵.

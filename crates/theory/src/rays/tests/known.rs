@@ -1,7 +1,7 @@
 //! Known answers.
 
 use super::*;
-use crate::quadrature::gauss_legendre;
+use crate::numerics::quadrature::gauss_legendre;
 use crate::testing::{chain_of, disc, lambertian, opaque, rectangles, spot, square};
 use etendue_field::{Grating, Mask, Shape};
 use std::f64::consts::{PI, TAU};

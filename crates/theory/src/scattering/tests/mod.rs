@@ -1,7 +1,7 @@
 use super::*;
 use crate::Budget;
-use crate::error::distance;
 use crate::geometry::Map;
+use crate::parallel::error::distance;
 use crate::rays::Plane;
 use crate::testing::{chain_of, opaque, window};
 use crate::{Operator, slices};
@@ -340,7 +340,7 @@ fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
             TAU * sign * factorials / f64::from((l + 2) * (l - 1))
         };
         let light = TAU
-            * crate::quadrature::integrate(200, [-1.0, 1.0], |x| {
+            * crate::numerics::quadrature::integrate(200, [-1.0, 1.0], |x| {
                 ((x - 1.0) / squared).exp() * legendre(l, x)
             });
         sum += f64::from(2 * l + 1) / (2.0 * TAU) * light * cosine * legendre(l, gamma.cos());

@@ -1,0 +1,4 @@
+//! Numbers: Gauss–Legendre rules, and sin(πx)/(πx).
+
+pub(crate) mod quadrature;
+pub(crate) mod sinc;

@@ -1,0 +1,52 @@
+use super::expansion::Expansion;
+use crate::Chain;
+use crate::parallel::patch::Fineness;
+use crate::parallel::slope::Slope;
+use etendue_field::{Complex, Window};
+
+/// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
+///
+/// brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), the factors being transforms of convex polygons, evaluated one by
+/// one; exact for uniform rectangles, half-planes and gratings, 10⁻⁸ for factors of slope, by a quadrature
+/// for discs (see [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection. It is the truth for [`slices`](crate::slices).
+/// Unit: W m⁻² sr⁻¹ · m².
+#[must_use]
+pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
+    let path = chain.path();
+    if let Some(receiver) = path.receiver() {
+        return receiver.at(window, frequency);
+    }
+    let [x, y, u, v] = frequency.map(f64::abs);
+    let fineness = Fineness::for_spectrum(&path, window, [x.max(y), u.max(v)]);
+    let slope = Slope::new([&window.u, &window.v], path.slope_power());
+    Expansion::new(&path, window, &slope, &fineness).at(frequency)
+}
+
+impl Expansion {
+    /// The spectrum at one frequency.
+    pub(crate) fn at(&self, [x, y, u, v]: [f64; 4]) -> Complex {
+        let k = [[x, u], [y, v]];
+        let products = self.products.iter();
+        products
+            .map(|waves| {
+                self.sum(|axis| {
+                    let section = &self.sections[axis];
+                    let polygons = section.polygons.iter();
+                    polygons
+                        .map(|p| section.value(&waves[axis], p, k[axis]))
+                        .collect()
+                })
+            })
+            .sum()
+    }
+
+    /// brightness · Σ terms, from the factors of all polygons of section `axis`.
+    fn sum(&self, factors: impl Fn(usize) -> Vec<Complex>) -> Complex {
+        let [x, y] = [factors(0), factors(1)];
+        let terms = self.terms.iter();
+        let sum: Complex = terms
+            .map(|t| x[t.polygons[0]] * y[t.polygons[1]] * t.weight)
+            .sum();
+        sum * self.brightness
+    }
+}

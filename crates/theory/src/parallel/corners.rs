@@ -1,0 +1,250 @@
+//! The transforms of many polygons along a row of frequencies, without an exponential per polygon and
+//! frequency (docs/theory.md, section 3).
+//!
+//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, between edges of directions d
+//! and e:
+//!
+//! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
+//!
+//! The quotient depends on the pair of directions alone, and a chain has few; the exponential is a product
+//! of one in the position and one in the slope. Each exponential of the window shifts k by ± s, so a corner
+//! needs, with θ = 2π s·p and c± the quotients at k ± s,
+//!
+//! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
+//!
+//! The end of a segment along d has the quotient ± 1/(2πi k·d).
+//!
+//! Where a (k ± s)·d is nearly zero the corners cancel and [`Polygon::transform`] takes their place.
+
+use crate::parallel::expansion::Section;
+use crate::parallel::polygon::{self, Polygon, cross, dot};
+use crate::parallel::row::{Parts, Row, add_product, add_scaled};
+use crate::parallel::wave::Wave;
+use etendue_field::Complex;
+use std::f64::consts::{PI, TAU};
+
+/// Smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two of them in one
+/// quotient cost 1/CANCELLATION² = 1000 roundings.
+const CANCELLATION: f64 = 0.03;
+/// Waves taken at a time, so that their quotients stay in the cache.
+const WAVES_AT_A_TIME: usize = 32;
+
+/// A corner, ready to be summed.
+#[derive(Debug)]
+struct Corner {
+    at: [f64; 2],
+    /// Index of its pair of directions.
+    pair: usize,
+    /// The sign of their order; ±i for the ends of a segment.
+    sign: Complex,
+    /// Index of its polygon.
+    polygon: usize,
+}
+
+/// The corners of all polygons of a section, under a sum of waves.
+#[derive(Debug)]
+pub(crate) struct Corners<'a> {
+    section: &'a Section,
+    waves: &'a [Wave],
+    corners: Vec<Corner>,
+    /// (cos θ, sin θ) of each corner and wave, [corner, wave].
+    phases: Vec<[f64; 2]>,
+    /// Pairs of directions that meet at a corner, the lower index first; equal at the end of a segment.
+    pairs: Vec<[usize; 2]>,
+    /// Directions of an edge, each with the largest |k·d| at which it is nearly zero.
+    edges: Vec<(usize, f64)>,
+}
+
+/// The quotients of some waves along a row.
+struct Quotients {
+    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` as they will multiply.
+    values: Parts,
+    /// Cells left to the plain transform: n, the shifted frequency, its weight.
+    left: Vec<(usize, [f64; 2], Complex)>,
+}
+
+impl<'a> Corners<'a> {
+    pub(crate) fn new(section: &'a Section, waves: &'a [Wave]) -> Self {
+        let mut pairs = Vec::new();
+        let polygons = section.polygons.iter().enumerate();
+        let corners: Vec<_> = polygons
+            .flat_map(|(index, polygon)| prepared(polygon, index, &mut pairs))
+            .collect();
+        let phases = corners
+            .iter()
+            .flat_map(|corner| waves.iter().map(|w| w.phase(corner.at)))
+            .collect();
+        let edges = section.directions.iter().enumerate();
+        let edges = edges
+            .filter(|(d, _)| pairs.iter().any(|pair: &[usize; 2]| pair.contains(d)))
+            .map(|(d, direction)| (d, CANCELLATION / longest(*direction)))
+            .collect();
+        Self {
+            section,
+            waves,
+            corners,
+            phases,
+            pairs,
+            edges,
+        }
+    }
+
+    /// The windowed transforms of all polygons along a row, [polygon, n].
+    pub(crate) fn row(&self, row: &Row) -> Vec<Complex> {
+        let count = row.count();
+        let polygons = &self.section.polygons;
+        let mut sums = Parts::zeros(polygons.len() * count);
+        let mut plain = vec![Complex::ZERO; polygons.len() * count];
+        let waves = self.waves.len();
+        for first in (0..waves).step_by(WAVES_AT_A_TIME) {
+            let chunk = first..waves.min(first + WAVES_AT_A_TIME);
+            let quotients = self.quotients(row, &self.waves[chunk.clone()]);
+            self.add(row, &quotients, chunk, &mut sums);
+            for &(n, k, weight) in &quotients.left {
+                for (target, polygon) in plain[n..].iter_mut().step_by(count).zip(polygons) {
+                    *target += polygon.transform(k) * weight;
+                }
+            }
+        }
+        let scale = self.section.unit;
+        let sums = sums.re.iter().zip(&sums.im);
+        sums.zip(&plain)
+            .map(|((&re, &im), &plain)| (Complex::new(re, im) + plain) * scale)
+            .collect()
+    }
+
+    fn quotients(&self, row: &Row, waves: &[Wave]) -> Quotients {
+        let count = row.count();
+        let mut quotients = Quotients {
+            values: Parts::zeros(self.pairs.len() * waves.len() * count),
+            left: Vec::new(),
+        };
+        for (w, wave) in waves.iter().enumerate() {
+            for shift in wave.shifts() {
+                for n in 0..count {
+                    let k = row.frequency(n);
+                    let k = [k[0] + shift.frequency[0], k[1] + shift.frequency[1]];
+                    if self.cancels(k) {
+                        quotients.left.push((n, k, shift.weight));
+                        continue;
+                    }
+                    for (pair, value) in self.pair_quotients(k).enumerate() {
+                        let cell = (pair * waves.len() + w) * count + n;
+                        quotients.values.re[cell] += shift.amplitude * value;
+                        quotients.values.im[cell] -= shift.sign * shift.amplitude * value;
+                    }
+                }
+            }
+        }
+        quotients
+    }
+
+    /// Whether an edge is nearly orthogonal to k.
+    fn cancels(&self, k: [f64; 2]) -> bool {
+        let directions = &self.section.directions;
+        let mut edges = self.edges.iter();
+        edges.any(|&(d, smallest)| dot(k, directions[d]).abs() < smallest)
+    }
+
+    /// (d × e) / (4π² (k·d)(k·e)) of each pair of directions; 1/(2π k·d) of a direction with itself.
+    fn pair_quotients(&self, k: [f64; 2]) -> impl Iterator<Item = f64> {
+        self.pairs.iter().map(move |pair| {
+            let [d, e] = pair.map(|i| self.section.directions[i]);
+            if pair[0] == pair[1] {
+                return 1.0 / (TAU * dot(k, d));
+            }
+            cross(d, e) / (4.0 * PI * PI * dot(k, d) * dot(k, e))
+        })
+    }
+
+    /// Adds the corners, for the waves of `chunk`.
+    fn add(
+        &self,
+        row: &Row,
+        quotients: &Quotients,
+        chunk: std::ops::Range<usize>,
+        sums: &mut Parts,
+    ) {
+        let count = row.count();
+        let all = self.waves.len();
+        let mut exponentials = Parts::zeros(count);
+        let mut inner = Parts::zeros(count);
+        for (corner, phases) in self.corners.iter().zip(self.phases.chunks_exact(all)) {
+            row.exponentials(corner.at, corner.sign, &mut exponentials);
+            inner.re.fill(0.0);
+            inner.im.fill(0.0);
+            let start = corner.pair * chunk.len() * count;
+            let cells = start..start + chunk.len() * count;
+            let re = quotients.values.re[cells.clone()].chunks_exact(count);
+            let im = quotients.values.im[cells].chunks_exact(count);
+            for ((re, im), &[cos, sin]) in re.zip(im).zip(&phases[chunk.clone()]) {
+                add_scaled(&mut inner.re, re, cos);
+                add_scaled(&mut inner.im, im, sin);
+            }
+            let start = corner.polygon * count;
+            add_product(sums, start..start + count, &inner, &exponentials);
+        }
+    }
+}
+
+impl Wave {
+    /// (cos θ, sin θ), θ = 2π s·p + phase.
+    fn phase(&self, p: [f64; 2]) -> [f64; 2] {
+        let (sin, cos) = self.angle(p).sin_cos();
+        [cos, sin]
+    }
+}
+
+/// The longest edge that a direction can have in the square, as a multiple of the direction.
+fn longest(direction: [f64; 2]) -> f64 {
+    2.0 / direction[0].abs().max(direction[1].abs())
+}
+
+/// The corners of a polygon; new pairs of directions join `pairs`.
+fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
+    let corners = polygon.corners();
+    if polygon.is_segment() {
+        return ends(corners, index, pairs);
+    }
+    let before = corners.iter().cycle().skip(corners.len() - 1);
+    let mut result = Vec::with_capacity(corners.len());
+    for (corner, before) in corners.iter().zip(before) {
+        let (enter, leave) = (before.edge, corner.edge);
+        // Two edges in line: no corner.
+        if enter == leave {
+            continue;
+        }
+        let sign = if enter < leave { 1.0 } else { -1.0 };
+        result.push(Corner {
+            at: corner.at,
+            pair: listed([enter.min(leave), enter.max(leave)], pairs),
+            sign: Complex::from(sign),
+            polygon: index,
+        });
+    }
+    result
+}
+
+/// The ends of a segment: (exp(−2πi k·a) − exp(−2πi k·b)) / (2πi k·d).
+fn ends(corners: &[polygon::Corner], index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
+    let signs = [-1.0, 1.0].into_iter();
+    corners
+        .iter()
+        .zip(signs)
+        .map(|(corner, sign)| Corner {
+            at: corner.at,
+            pair: listed([corner.edge; 2], pairs),
+            sign: Complex::new(0.0, sign),
+            polygon: index,
+        })
+        .collect()
+}
+
+/// The index of a pair in the list, where it is put if it is new.
+fn listed(pair: [usize; 2], pairs: &mut Vec<[usize; 2]>) -> usize {
+    let known = pairs.iter().position(|p| *p == pair);
+    known.unwrap_or_else(|| {
+        pairs.push(pair);
+        pairs.len() - 1
+    })
+}

@@ -1,0 +1,306 @@
+use crate::parallel::chain::{Path, no_closed_form};
+use crate::parallel::disc::Discs;
+use crate::parallel::patch::{Fineness, Patch};
+use crate::parallel::polygon::Polygon;
+use crate::parallel::slope::Slope;
+use crate::parallel::wave::Wave;
+use etendue_field::{Complex, Light, Mask, Profile, Window};
+use std::collections::HashMap;
+
+/// Polygons smaller than this, in units of the window's half-widths, are left out: below rounding.
+const SMALLEST_MEASURE: f64 = 1e-15;
+/// Pairs of a term and a patch that may be looked at for each term allowed.
+const PAIRS_PER_TERM: usize = 8;
+/// A range that every ray passes.
+const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+
+/// The (position, slope) plane of one axis: the polygons that light fills in it, in units of the half-widths
+/// of the window.
+#[derive(Debug)]
+pub(crate) struct Section {
+    /// Half-widths in position (metres) and slope.
+    pub(crate) half: [f64; 2],
+    /// Unit of the polygons' measure: metre · slope, or slope of the segments that a point light fills.
+    pub(crate) unit: f64,
+    /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
+    pub(crate) directions: Vec<[f64; 2]>,
+    pub(crate) polygons: Vec<Polygon>,
+    /// Strips already cut: (polygon, direction, bounds) to the part's index, `None` if empty.
+    known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
+}
+
+/// weight · 1_P(x, u) · 1_Q(y, v), P and Q being polygons of the two sections.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Term {
+    /// ±1, times the weights of parts of discs.
+    pub(crate) weight: f64,
+    /// Indices of P and Q.
+    pub(crate) polygons: [usize; 2],
+}
+
+/// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
+/// (docs/theory.md, Eqs. 4 and 5d).
+///
+/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times one in (y, v), so the product
+/// source · Π_layers (1 − Σ blockers) is a signed sum of products of convex polygons. All other factors are
+/// products of waves, with a sum outside where the two sections do not separate.
+#[derive(Debug)]
+pub(crate) struct Expansion {
+    /// (x, u) and (y, v).
+    pub(crate) sections: [Section; 2],
+    pub(crate) terms: Vec<Term>,
+    /// Products of the waves of both sections, to be added: the window and gratings; more than one for
+    /// a factor of slope.
+    pub(crate) products: Vec<[Vec<Wave>; 2]>,
+    /// The radiance, or the intensity of a point.
+    pub(crate) brightness: f64,
+}
+
+impl Section {
+    fn new(position: &Profile, slope: &Profile) -> Self {
+        let half = [position.half_width(), slope.half_width()];
+        Self {
+            half,
+            unit: half[0] * half[1],
+            directions: vec![[1.0, 0.0], [0.0, 1.0]],
+            polygons: vec![Polygon::square([0, 1])],
+            known: HashMap::new(),
+        }
+    }
+
+    /// δ(x − distance · u) in place of the square.
+    fn become_segment(&mut self, distance: f64) {
+        let edge = self.direction(self.shear(distance));
+        self.polygons = vec![Polygon::segment(self.directions[edge][0], edge)];
+        self.unit = self.half[1];
+    }
+
+    /// A distance in units of the half-widths.
+    fn shear(&self, distance: f64) -> f64 {
+        distance * self.half[1] / self.half[0]
+    }
+
+    /// The index of direction (shear, 1); equal ones share it.
+    fn direction(&mut self, shear: f64) -> usize {
+        let same = |d: &[f64; 2]| d[1] > 0.0 && d[0] - shear == 0.0;
+        self.directions.iter().position(same).unwrap_or_else(|| {
+            self.directions.push([shear, 1.0]);
+            self.directions.len() - 1
+        })
+    }
+
+    /// The part of a polygon whose rays were in `extent` (metres) a `distance` ago; `None` if empty.
+    fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
+        if extent.map(f64::to_bits) == EVERYWHERE.map(f64::to_bits) {
+            return Some(polygon);
+        }
+        let shear = self.shear(distance);
+        let edge = self.direction(shear);
+        let key = (polygon, edge, extent.map(f64::to_bits));
+        if let Some(&part) = self.known.get(&key) {
+            return part;
+        }
+        let part = self.polygons[polygon].strip(shear, extent.map(|e| e / self.half[0]), edge);
+        let index = (part.measure() > SMALLEST_MEASURE).then(|| {
+            self.polygons.push(part);
+            self.polygons.len() - 1
+        });
+        self.known.insert(key, index);
+        index
+    }
+
+    /// ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, k in cycles per metre and per unit slope: one
+    /// polygon transform for each exponential. Unit: metre · slope; for segments, slope.
+    pub(crate) fn value(&self, waves: &[Wave], polygon: &Polygon, k: [f64; 2]) -> Complex {
+        let k = self.reduced(k);
+        let shifts = waves.iter().flat_map(Wave::shifts);
+        let sum: Complex = shifts
+            .map(|s| polygon.transform([k[0] + s.frequency[0], k[1] + s.frequency[1]]) * s.weight)
+            .sum();
+        sum * self.unit
+    }
+
+    /// A frequency in cycles per half-width.
+    pub(crate) fn reduced(&self, k: [f64; 2]) -> [f64; 2] {
+        [k[0] * self.half[0], k[1] * self.half[1]]
+    }
+}
+
+impl Expansion {
+    pub(crate) fn new(
+        path: &Path<'_>,
+        window: &Window,
+        slope: &Slope,
+        fineness: &Fineness,
+    ) -> Self {
+        let mut expansion = Self::empty(window);
+        expansion.products = products(path, window, slope, &expansion.sections);
+        expansion.multiply_out(path, fineness, usize::MAX);
+        expansion
+    }
+
+    /// The polygons and terms alone; `None` if there are more of either than `most`.
+    pub(crate) fn within(
+        path: &Path<'_>,
+        window: &Window,
+        fineness: &Fineness,
+        most: usize,
+    ) -> Option<Self> {
+        let mut expansion = Self::empty(window);
+        let fits = expansion.multiply_out(path, fineness, most);
+        fits.then_some(expansion)
+    }
+
+    /// The window, in which nothing shines yet.
+    fn empty(window: &Window) -> Self {
+        let sections = [
+            Section::new(&window.x, &window.u),
+            Section::new(&window.y, &window.v),
+        ];
+        Self {
+            sections,
+            terms: vec![Term {
+                weight: 1.0,
+                polygons: [0, 0],
+            }],
+            products: Vec::new(),
+            brightness: 0.0,
+        }
+    }
+
+    /// The light and the opaque masks; stops and says no where there are more terms or polygons than `most`.
+    fn multiply_out(&mut self, path: &Path<'_>, fineness: &Fineness, most: usize) -> bool {
+        self.shine(path, fineness.0[0]);
+        let layers = path.layers.iter();
+        let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));
+        for (layer, &discs) in opaque.zip(&fineness.0[1..]) {
+            let patches = patches(layer.mask, discs);
+            // Each pair is looked at, though few may meet.
+            if self.terms.len().saturating_mul(patches.len()) > most.saturating_mul(PAIRS_PER_TERM)
+            {
+                return false;
+            }
+            self.block(&patches, layer.distance);
+            let polygons = self.sections.each_ref().map(|s| s.polygons.len());
+            if self.terms.len() > most || polygons.iter().any(|n| *n > most) {
+                return false;
+            }
+        }
+        self.drop_unused();
+        true
+    }
+
+    /// A chain of rectangles, whose numbers no fineness changes.
+    #[cfg(test)]
+    pub(crate) fn of_rectangles(chain: &crate::Chain, window: &Window) -> Self {
+        let path = chain.path();
+        let slope = Slope::new([&window.u, &window.v], path.slope_power());
+        let fineness = Fineness::for_spectrum(&path, window, [0.0; 2]);
+        Self::new(&path, window, &slope, &fineness)
+    }
+
+    /// The light itself.
+    fn shine(&mut self, path: &Path<'_>, discs: Discs) {
+        match path.light {
+            Light::Area {
+                shape, radiance, ..
+            } => {
+                self.brightness = *radiance;
+                self.terms = self.inside(&Patch::of_shape(shape, discs), path.distance);
+            }
+            Light::Point { intensity } => {
+                self.brightness = *intensity;
+                for section in &mut self.sections {
+                    section.become_segment(path.distance);
+                }
+            }
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
+        }
+    }
+
+    /// Times 1 − Σ patches.
+    fn block(&mut self, patches: &[Patch], distance: f64) {
+        let blocked = self.inside(patches, distance);
+        self.terms.extend(blocked.into_iter().map(|term| Term {
+            weight: -term.weight,
+            ..term
+        }));
+    }
+
+    /// The terms times Σ patches in a plane, the empty ones dropped.
+    fn inside(&mut self, patches: &[Patch], distance: f64) -> Vec<Term> {
+        let mut parts = Vec::new();
+        for term in &self.terms {
+            for patch in patches {
+                let [x, y] = [0, 1].map(|axis| {
+                    let extent = patch.extent[axis];
+                    self.sections[axis].strip(term.polygons[axis], distance, extent)
+                });
+                if let (Some(x), Some(y)) = (x, y) {
+                    parts.push(Term {
+                        weight: term.weight * patch.weight,
+                        polygons: [x, y],
+                    });
+                }
+            }
+        }
+        parts
+    }
+
+    /// Keeps only the polygons that terms refer to, in the order of the terms.
+    fn drop_unused(&mut self) {
+        for (axis, section) in self.sections.iter_mut().enumerate() {
+            let all = std::mem::take(&mut section.polygons);
+            let mut index = vec![None; all.len()];
+            for term in &mut self.terms {
+                let old = term.polygons[axis];
+                term.polygons[axis] = *index[old].get_or_insert_with(|| {
+                    section.polygons.push(all[old].clone());
+                    section.polygons.len() - 1
+                });
+            }
+            section.known.clear();
+        }
+    }
+}
+
+/// The window, factors of slope included, times the gratings on the way.
+fn products(
+    path: &Path<'_>,
+    window: &Window,
+    slope: &Slope,
+    sections: &[Section; 2],
+) -> Vec<[Vec<Wave>; 2]> {
+    let positions = [&window.x, &window.y].map(|profile| profile.cosine_terms());
+    let product = |slopes: &[Vec<_>; 2]| {
+        [0, 1].map(|axis| {
+            let half = sections[axis].half;
+            let waves = Wave::of_terms([&positions[axis], &slopes[axis]], half);
+            let gratings = path.layers.iter().filter_map(|layer| match layer.mask {
+                Mask::Grating(grating) if grating.axis == axis => {
+                    Some(Wave::of_grating(grating, layer.distance, half))
+                }
+                _ => None,
+            });
+            gratings.fold(waves, |waves, grating| Wave::products(&waves, &grating))
+        })
+    };
+    slope.parts.iter().map(product).collect()
+}
+
+/// An opaque mask as patches.
+fn patches(mask: &Mask, discs: Discs) -> Vec<Patch> {
+    let Mask::Opaque {
+        shapes,
+        half_planes,
+    } = mask
+    else {
+        return Vec::new();
+    };
+    let shapes = shapes.iter().flat_map(|s| Patch::of_shape(s, discs));
+    shapes
+        .chain(half_planes.iter().map(Patch::of_half_plane))
+        .collect()
+}

@@ -1,0 +1,186 @@
+//! Every kind of light, mask and factor against brute force, and planted faults.
+
+use super::{FREQUENCIES, brute_force, hann, zero};
+use crate::parallel::expansion::Expansion;
+use crate::parallel::patch::Fineness;
+use crate::parallel::slope::Slope;
+use crate::reference::gaussian::{Gaussian, disc_light, point_light};
+use crate::testing::*;
+use crate::{Chain, Operator, Parameter, at};
+use etendue_field::{Complex, Light, Mask, Profile, Shape, Window};
+
+const POINT: Light = Light::Point { intensity: 1.3 };
+const RAYS: u32 = 200_000;
+
+fn light() -> Light {
+    lambertian(square([0.05, -0.02], 0.3))
+}
+
+/// Light, mask a metre away, plane 0.8 m after it.
+fn bench(light: Light, mask: Option<Mask>) -> Chain {
+    chain_of(light, [(1.0, mask), (0.8, None)])
+}
+
+fn with_cosine(mut chain: Chain) -> Chain {
+    chain.operators.push(cosine());
+    chain
+}
+
+/// The largest difference from quasi-random rays, relative to what arrives at zero frequency without masks.
+fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
+    let truth = brute_force(chain, &hann(), &FREQUENCIES, RAYS);
+    let pairs = FREQUENCIES.iter().zip(truth);
+    let errors = pairs.map(|(k, truth)| (value(*k) - truth).norm());
+    let mut open = chain.clone();
+    let is_mask = |operator: &Operator| matches!(operator, Operator::Visibility { .. });
+    open.operators.retain(|operator| !is_mask(operator));
+    errors.fold(0.0, f64::max) / zero(&open)
+}
+
+fn assert_agrees(name: &str, chain: &Chain) {
+    let error = error(chain, |k| at(chain, &hann(), k));
+    // Quasi-random points with edges: better than 1/√200000 = 2.2e-3.
+    assert!(error < 1e-3, "{name}: {error:e}");
+}
+
+fn some_discs() -> Mask {
+    let discs = blockers(3, 0.2, 0.16).into_iter();
+    opaque(discs.map(|b| disc(b.center, 0.5 * b.size[0])).collect())
+}
+
+#[test]
+fn lights_agree_with_brute_force() {
+    let square = Shape::Rectangle(square([0.0, 0.1], 0.4));
+    let round = disc([0.05, -0.1], 0.25);
+    assert_agrees("disc", &bench(spot(round, 0.0), None));
+    assert_agrees("spot", &bench(spot(square, 20.0), None));
+    assert_agrees("round spot", &bench(spot(round, 20.0), None));
+    assert_agrees("point", &bench(POINT, None));
+    let blockers = Some(rectangles(&blockers(4, 0.2, 0.1)));
+    assert_agrees(
+        "disc and blockers",
+        &bench(spot(round, 0.0), blockers.clone()),
+    );
+    assert_agrees("point and blockers", &bench(POINT, blockers));
+}
+
+#[test]
+fn masks_agree_with_brute_force() {
+    assert_agrees("discs", &bench(light(), Some(some_discs())));
+    assert_agrees(
+        "half-plane",
+        &bench(light(), Some(half_plane(1, 0.07, false))),
+    );
+    assert_agrees("grating", &bench(light(), Some(grating(0, 3.0, 0.4))));
+    assert_agrees(
+        "grating along y",
+        &bench(light(), Some(grating(1, 2.0, -1.0))),
+    );
+    let steps = [
+        (0.5, Some(grating(0, 3.0, 0.4))),
+        (0.2, Some(some_discs())),
+        (0.1, Some(grating(0, 5.0, 1.9))),
+        (0.2, Some(grating(1, 2.0, 0.0))),
+        (0.2, Some(half_plane(0, -0.11, false))),
+        (0.3, None),
+    ];
+    assert_agrees("all", &chain_of(light(), steps.clone()));
+    assert_agrees("all behind a point", &chain_of(POINT, steps.clone()));
+    let all = with_cosine(chain_of(spot(disc([0.0, 0.0], 0.2), 20.0), steps));
+    assert_agrees("all with a round spot and a cosine", &all);
+}
+
+#[test]
+fn differential_irradiance_agrees_with_brute_force() {
+    assert_agrees("cosine", &with_cosine(bench(light(), None)));
+    assert_agrees("cosine below a point", &with_cosine(bench(POINT, None)));
+}
+
+/// A lobe cos⁴θ is the very factor G.
+#[test]
+fn a_spot_of_exponent_four_is_a_cosine() {
+    let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
+    let lobe = bench(spot(shape, 4.0), None);
+    let shaded = with_cosine(bench(spot(shape, 0.0), None));
+    for k in FREQUENCIES {
+        assert_eq!(at(&lobe, &hann(), k), at(&shaded, &hann(), k));
+    }
+}
+
+/// The chain with another power of 1 + u² + v² than it asks for.
+fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex {
+    let path = chain.path();
+    let slope = Slope::new([&window.u, &window.v], power);
+    let fineness = Fineness::for_spectrum(&path, window, [3.0; 2]);
+    let expansion = Expansion::new(&path, window, &slope, &fineness);
+    expansion.at(k)
+}
+
+/// A fault of some size against the truth.
+fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
+    let right = error(chain, |k| at(chain, &hann(), k));
+    let wrong = error(chain, fault);
+    assert!(right < 5e-4, "{name}: {right:e}"); // smooth: the points are better than where masks cut
+    assert!(wrong > 5e-3, "{name}: {wrong:e}"); // ten times that
+}
+
+#[test]
+fn planted_faults_are_seen() {
+    let shape = Shape::Rectangle(square([0.0, 0.1], 0.4));
+    for (name, chain, power) in [
+        ("a point without its root", bench(POINT, None), 0.0),
+        ("no G", with_cosine(bench(light(), None)), 0.0),
+        ("g for G", with_cosine(bench(light(), None)), -1.5),
+        ("exponent off by 5 %", bench(spot(shape, 20.0), None), -10.5),
+    ] {
+        assert_seen(name, &chain, |k| at_power(&chain, &hann(), power, k));
+    }
+    let chain = bench(light(), Some(grating(0, 3.0, 0.4)));
+    let wrong = chain.with(Parameter::GratingPhase(1), 0.6);
+    assert_seen("phase off by 0.2", &chain, |k| at(&wrong, &hann(), k));
+    let wrong = chain.with(Parameter::GratingPhase(1), -0.4);
+    assert_seen("phase with another sign", &chain, |k| {
+        at(&wrong, &hann(), k)
+    });
+}
+
+/// A Gaussian window, cut where it is 2e-16.
+fn gaussian_window(a: f64, b: f64) -> Window {
+    let profile = |width| Profile::Gaussian {
+        width,
+        cut: 3.4 * width,
+    };
+    window(profile(a), profile(b))
+}
+
+#[test]
+fn discs_and_points_agree_with_closed_forms() {
+    let (gaussian, window) = (Gaussian { a: 0.7, b: 0.35 }, gaussian_window(0.7, 0.35));
+    let (radius, distance) = (0.3, 2.0);
+    let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
+    let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);
+    let closed_disc = |k| disc_light(radius, distance, &gaussian, k);
+    // Constant in slope: without the root.
+    let closed_point = |[x, y, u, v]: [f64; 4]| {
+        let along = |k| point_light(distance, &gaussian, k);
+        along([x, u]) * along([y, v])
+    };
+    for k in FREQUENCIES {
+        let error = (at(&round, &window, k) - closed_disc(k)).norm() / closed_disc([0.0; 4]);
+        assert!(error < 1e-12, "{error:e}"); // the rule is exponential under a smooth window
+        let segments = at_power(&point, &window, 0.0, k);
+        let error = (segments - closed_point(k)).norm() / closed_point([0.0; 4]);
+        assert!(error < 1e-13, "{error:e}"); // closed forms both: rounding of some hundred waves
+    }
+}
+
+/// Without the root of its √(1 + u² + v²) a point 2 m away is 2 % too dark under Gaussians of widths 1 and ½.
+#[test]
+fn the_root_of_a_point_is_two_per_cent() {
+    let window = gaussian_window(1.0, 0.5);
+    let chain = chain_of(POINT, [(2.0, None)]);
+    let [with, without] = [0.5, 0.0].map(|power| at_power(&chain, &window, power, [0.0; 4]).re);
+    assert!((with / without - 1.02).abs() < 2e-3, "{}", with / without); // to the digits stated
+    // Without the root it is a Gaussian integral: I/(D²/a² + 1/b²).
+    assert!((without * 8.0 / 1.3 - 1.0).abs() < 1e-14, "{without}"); // the cut is at 2e-16
+}

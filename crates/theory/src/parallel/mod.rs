@@ -1,0 +1,48 @@
+//! Light between parallel planes, in closed form (docs/theory.md, sections 1 to 4).
+//!
+//! A [`Chain`] is what light meets: travel (Eq. 3 of Durand et al. 2005), masks (their Eq. 4), the cosine
+//! and diffuse reflection of a receiver (their Eqs. 6 and 7). Travel is a shear of (position, slope), so every
+//! edge stays a straight line and every field is a signed sum of products of convex polygons.
+//!
+//! | what | where |
+//! |---|---|
+//! | the chain, and what may change in it | `chain`, `parameter`, `words` |
+//! | its spectra: slices, one frequency, derivatives, pictures, harmonics on a 4D grid | `slices`, `at`, `derivative`, `projection`, `harmonics` |
+//! | terms of the product over masks, as polygons | `expansion`, `patch`, `disc`, `polygon`, `corners` |
+//! | windows, gratings and factors of slope, as waves | `wave`, `slope`, `row` |
+//! | a diffuse receiver | `receiver` |
+//! | the same light by nets of rays | `sampled` |
+
+mod at;
+pub(crate) mod chain;
+mod corners;
+mod derivative;
+mod disc;
+pub(crate) mod error;
+pub(crate) mod expansion;
+mod harmonics;
+#[cfg(test)]
+mod laws;
+mod parameter;
+mod patch;
+mod polygon;
+mod projection;
+mod receiver;
+mod row;
+mod sampled;
+mod slices;
+mod slope;
+mod wave;
+pub(crate) mod words;
+pub(crate) mod work;
+
+pub use at::at;
+pub use chain::{Chain, Operator, Source};
+pub use derivative::derivative;
+pub use error::quadrature_error;
+pub use harmonics::Harmonics;
+pub use parameter::Parameter;
+pub use projection::projection;
+pub use sampled::Sampled;
+pub use slices::slices;
+pub use work::{Work, work};

@@ -1,0 +1,354 @@
+//! What is integrated over the slopes that arrive at a point: (1 + u² + v²)^(−p) times gratings.
+
+use crate::mask::Sides;
+use crate::numerics::quadrature::gauss_legendre;
+use etendue_field::Grating;
+use std::f64::consts::TAU;
+
+/// −ln of the relative error of a rule: 10⁻¹².
+const NATS: f64 = 28.0;
+/// The most nodes a rule has; longer intervals are cut into panels.
+const MOST: usize = 48;
+/// Nodes on an arc, beside those its length needs: for the turn of its direction.
+const ARC: usize = 10;
+/// Halvings of the longest panel that have a count of their own.
+const LEVELS: usize = 24;
+/// Steps of a closed form.
+const CLOSED: f64 = 100.0;
+/// A rectangle that needs no more nodes than this is integrated by them: in the closed form its corners cancel.
+const FEW: usize = 16;
+
+/// The lobe (1 + u² + v²)^(−p), u and v being slopes.
+#[derive(Clone, Copy, Debug)]
+enum Lobe {
+    /// p = 0.
+    Flat,
+    /// p = 2: the cosine of a Lambertian receiver with du dv, G of docs/theory.md, Eq. 7.
+    Cosine,
+    /// p = n/2.
+    Half(i32),
+    /// Any p.
+    Power(f64),
+}
+
+impl Lobe {
+    #[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
+    fn new(power: f64) -> Self {
+        if power.abs() < f64::EPSILON {
+            Self::Flat
+        } else if (power - 2.0).abs() < f64::EPSILON {
+            Self::Cosine
+        } else if (2.0 * power).fract().abs() < f64::EPSILON && power.abs() < 1e3 {
+            Self::Half((2.0 * power) as i32)
+        } else {
+            Self::Power(power)
+        }
+    }
+
+    /// At a slope with 1 + u² + v² = `secant_squared`.
+    fn value(&self, secant_squared: f64) -> f64 {
+        match *self {
+            Self::Flat => 1.0,
+            Self::Cosine => 1.0 / (secant_squared * secant_squared),
+            Self::Half(n) => secant_squared.sqrt().recip().powi(n),
+            Self::Power(power) => secant_squared.powf(-power),
+        }
+    }
+}
+
+/// How many nodes a length of slopes needs.
+#[derive(Debug)]
+struct Counts {
+    /// The longest panel; that of level k is 2^k times as short.
+    longest: f64,
+    levels: [usize; LEVELS],
+}
+
+impl Counts {
+    fn new(power: f64, frequency: f64) -> Self {
+        let halves = |level: usize| 4.0 * 0.5_f64.powf(level as f64);
+        let mut lengths = (0..).map(halves);
+        let fits = |length: &f64| nodes(power, frequency, *length) <= MOST;
+        let longest = lengths.find(fits).unwrap_or(f64::MIN_POSITIVE);
+        let count = |level: usize| nodes(power, frequency, 0.25 * longest * halves(level));
+        Self {
+            longest,
+            levels: std::array::from_fn(count),
+        }
+    }
+
+    /// Panels, and nodes in each, for an interval of that length.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "rounded, not below zero"
+    )]
+    fn of(&self, length: f64) -> [usize; 2] {
+        let ratio = self.longest / length.abs();
+        if ratio < 1.0 {
+            return [(1.0 / ratio).ceil() as usize, self.levels[0]];
+        }
+        let level = ratio.log2().min((LEVELS - 1) as f64) as usize;
+        [1, self.levels[level]]
+    }
+}
+
+/// Nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to the error e^(−[`NATS`]).
+///
+/// The rule errs by ρ^(−2n) times the largest value on the ellipse around the interval that reaches b into the
+/// imaginary direction, ln ρ = arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation
+/// Practice*, Theorem 19.3); b < 1 keeps away from the poles, and the best of some b is taken.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small positive number, rounded up"
+)]
+fn nodes(power: f64, frequency: f64, length: f64) -> usize {
+    let power = power.abs();
+    let counts = (0..12).map(|k| {
+        let b = 0.8 * 0.6_f64.powi(k);
+        let beyond = (0.5 * length).hypot(b) - 0.5 * length;
+        let growth = power * (beyond - (1.0 - b * b).ln()) + TAU * frequency.abs() * b;
+        (NATS + growth) / (2.0 * (2.0 * b / length).asinh())
+    });
+    counts.fold(f64::INFINITY, f64::min).ceil() as usize
+}
+
+/// The lobe, and rules that integrate it and the gratings in front of it.
+#[derive(Debug)]
+pub(crate) struct Integrator {
+    lobe: Lobe,
+    /// For u and for v.
+    counts: [Counts; 2],
+    /// Gauss rules on (−1, 1), by their number of nodes.
+    rules: Vec<Vec<(f64, f64)>>,
+}
+
+impl Integrator {
+    /// For (1 + u² + v²)^(−`power`) behind gratings whose frequencies, in cycles per slope along u and along
+    /// v, add up to `frequencies`.
+    pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
+        Self {
+            lobe: Lobe::new(power),
+            counts: frequencies.map(|f| Counts::new(power, f)),
+            rules: (0..=MOST + ARC).map(gauss_legendre).collect(),
+        }
+    }
+}
+
+/// The lobe times the gratings seen from one point.
+#[derive(Debug)]
+pub(crate) struct Density<'a> {
+    pub(crate) integrator: &'a Integrator,
+    /// Gratings as functions of the slope: frequencies in cycles per slope, phases of this point.
+    pub(crate) gratings: Vec<Grating>,
+}
+
+impl Density<'_> {
+    /// At one slope.
+    pub(crate) fn value(&self, u: f64, v: f64) -> f64 {
+        let gratings = self.gratings.iter().map(|g| g.transmittance(u, v));
+        self.integrator.lobe.value(1.0 + u * u + v * v) * gratings.product::<f64>()
+    }
+
+    /// The integral over a rectangle; its sign turns where an interval is turned.
+    pub(crate) fn rectangle(&self, sides: Sides) -> f64 {
+        let [u, v] = sides;
+        if self.gratings.is_empty() {
+            match self.integrator.lobe {
+                Lobe::Flat => return (u[1] - u[0]) * (v[1] - v[0]),
+                Lobe::Cosine if self.size(sides) > FEW => return cosine(sides),
+                _ => {}
+            }
+        }
+        let across: Vec<_> = self.nodes(1, v).collect();
+        let columns = self.nodes(0, u).map(|(u, weight)| {
+            let lobe = |v: f64| self.integrator.lobe.value(1.0 + u * u + v * v);
+            weight * across.iter().map(|&(v, w)| w * lobe(v)).sum::<f64>()
+        });
+        columns.sum()
+    }
+
+    /// ∫ du from `from` to `to` at v.
+    pub(crate) fn along_u(&self, [from, to]: [f64; 2], v: f64) -> f64 {
+        if self.gratings.is_empty() {
+            match self.integrator.lobe {
+                Lobe::Flat => return to - from,
+                Lobe::Cosine => return cosine_along_u(to, v) - cosine_along_u(from, v),
+                Lobe::Half(_) | Lobe::Power(_) => {}
+            }
+        }
+        let lobe = |u: f64| self.integrator.lobe.value(1.0 + u * u + v * v);
+        let along: f64 = self.nodes(0, [from, to]).map(|(u, w)| w * lobe(u)).sum();
+        let across = self.gratings.iter().filter(|g| g.axis == 1);
+        along * across.map(|g| g.transmittance(0.0, v)).product::<f64>()
+    }
+
+    /// Parts, and the rule on (−1, 1) of each, for an arc of that length and at most a quarter turn.
+    pub(crate) fn arc(&self, length: f64) -> (usize, &[(f64, f64)]) {
+        let [u, v] = self.integrator.counts.each_ref().map(|c| c.of(length));
+        let [panels, nodes] = [0, 1].map(|k| u[k].max(v[k]));
+        (panels, &self.integrator.rules[nodes + ARC])
+    }
+
+    /// Steps of [`Self::rectangle`].
+    pub(crate) fn steps(&self, sides: Sides) -> f64 {
+        let [u, v] = self.along(sides);
+        let few = u * v <= FEW as f64;
+        match self.integrator.lobe {
+            Lobe::Flat if self.gratings.is_empty() => CLOSED,
+            Lobe::Cosine if self.gratings.is_empty() && !few => CLOSED,
+            _ => self.step() * (u * v + 10.0 * (u + v)),
+        }
+    }
+
+    /// Steps of [`Self::along_u`] over a length.
+    pub(crate) fn steps_along_u(&self, length: f64) -> f64 {
+        match self.integrator.lobe {
+            Lobe::Flat | Lobe::Cosine if self.gratings.is_empty() => CLOSED,
+            _ => self.step() * self.along([[0.0, length], [0.0; 2]])[0],
+        }
+    }
+
+    /// Steps for the lobe at a node.
+    fn step(&self) -> f64 {
+        match self.integrator.lobe {
+            Lobe::Flat | Lobe::Cosine => 3.0,
+            Lobe::Half(_) => 10.0,
+            Lobe::Power(_) => 40.0,
+        }
+    }
+
+    /// Nodes along the sides of a rectangle.
+    fn along(&self, sides: Sides) -> [f64; 2] {
+        [0, 1].map(|axis| {
+            let [low, high] = sides[axis];
+            let [panels, nodes] = self.integrator.counts[axis].of(high - low);
+            panels as f64 * nodes as f64
+        })
+    }
+
+    /// Nodes of a rectangle.
+    fn size(&self, sides: Sides) -> usize {
+        let along = [0, 1].map(|axis| {
+            let [low, high] = sides[axis];
+            self.integrator.counts[axis].of(high - low)
+        });
+        along.as_flattened().iter().product()
+    }
+
+    /// Slopes along an axis and their weights, the gratings of this axis included.
+    fn nodes(&self, axis: usize, [low, high]: [f64; 2]) -> impl Iterator<Item = (f64, f64)> {
+        let [panels, nodes] = self.integrator.counts[axis].of(high - low);
+        let rule = &self.integrator.rules[nodes];
+        let half = 0.5 * (high - low) / panels as f64;
+        (0..panels).flat_map(move |panel| {
+            let middle = low + (2 * panel + 1) as f64 * half;
+            rule.iter().map(move |&(node, weight)| {
+                let slope = middle + half * node;
+                let gratings = self.gratings.iter().filter(|g| g.axis == axis);
+                let passed: f64 = gratings.map(|g| g.transmittance(slope, slope)).product();
+                (slope, weight * half * passed)
+            })
+        })
+    }
+}
+
+/// ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md, Eq. 15).
+fn cosine([[u0, u1], [v0, v1]]: Sides) -> f64 {
+    let corner = |u: f64, v: f64| {
+        let side = |u: f64, v: f64| {
+            let c = u.hypot(1.0);
+            u / c * (v / c).atan()
+        };
+        0.5 * (side(u, v) + side(v, u))
+    };
+    (corner(u1, v1) - corner(u0, v1)) - (corner(u1, v0) - corner(u0, v0))
+}
+
+/// ∫ (1 + u² + v²)⁻² du from 0 to u.
+fn cosine_along_u(u: f64, v: f64) -> f64 {
+    let c2 = 1.0 + v * v;
+    let c = c2.sqrt();
+    (u / (c2 + u * u) + (u / c).atan() / c) / (2.0 * c2)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::quadrature::integrate;
+
+    fn density(integrator: &Integrator) -> Density<'_> {
+        Density {
+            integrator,
+            gratings: vec![],
+        }
+    }
+
+    /// The same integral by many panels of many nodes.
+    fn brute(density: &Density<'_>, [u, v]: Sides) -> f64 {
+        let cut = |[low, high]: [f64; 2], i: u32| {
+            let step = (high - low) / 20.0;
+            [low + step * f64::from(i), low + step * f64::from(i + 1)]
+        };
+        let panels = (0..20).flat_map(|i| (0..20).map(move |j| (i, j)));
+        let each = panels.map(|(i, j)| {
+            integrate(12, cut(u, i), |u| {
+                integrate(12, cut(v, j), |v| density.value(u, v))
+            })
+        });
+        each.sum()
+    }
+
+    #[test]
+    fn rectangles_of_any_size() {
+        for power in [-0.5, 0.0, 0.5, 1.5, 2.0, 2.2, 4.5, 40.0] {
+            let integrator = Integrator::new(power, [0.0; 2]);
+            let density = density(&integrator);
+            for sides in [
+                [[-0.1, 0.1], [-0.1, 0.1]],
+                [[0.2, 0.7], [-0.9, 0.3]],
+                [[1.0, 1.2], [0.5, 0.9]],
+                [[0.3, 0.301], [0.2, 0.25]],
+                [[-3.0, 2.0], [-1.0, 4.0]],
+            ] {
+                let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
+                assert!(error.abs() < 3e-12, "{power} {sides:?} {error:e}"); // as promised at NATS
+            }
+        }
+    }
+
+    #[test]
+    fn gratings_of_any_frequency() {
+        for frequency in [1.0, 10.0, 60.0] {
+            let integrator = Integrator::new(2.0, [frequency, 0.3 * frequency]);
+            let grating = |axis: usize, frequency, phase| Grating {
+                axis,
+                frequency,
+                modulation: 0.9,
+                phase,
+            };
+            let gratings = vec![
+                grating(0, frequency, 0.4),
+                grating(1, -0.3 * frequency, 1.1),
+            ];
+            let density = Density {
+                integrator: &integrator,
+                gratings,
+            };
+            for sides in [[[-0.2, 0.25], [-0.1, 0.3]], [[0.3, 0.8], [0.2, 0.21]]] {
+                let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
+                assert!(error.abs() < 3e-12, "{frequency} {sides:?} {error:e}"); // as promised at NATS
+            }
+        }
+    }
+
+    #[test]
+    fn tiny_pieces_keep_their_digits() {
+        let integrator = Integrator::new(2.0, [0.0; 2]);
+        let side = 1e-7;
+        let value = density(&integrator).rectangle([[0.5, 0.5 + side], [0.2, 0.2 + side]]);
+        let expected = side * side / 1.29_f64.powi(2);
+        assert!((value / expected - 1.0).abs() < 1e-6); // the lobe varies by that over the side
+    }
+}

@@ -1,0 +1,309 @@
+//! The light that leaves a receiver, as slices and projections.
+
+use super::Receiver;
+use super::kernel::{Axis, Kernels};
+use crate::parallel::chain::no_closed_form;
+use crate::parallel::row::Row;
+use etendue_field::{Complex, Light, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
+use ndarray::{Array1, Array2};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// Fewest and most nodes along an axis of the receiver.
+const NODES: [f64; 2] = [96.0, 1024.0];
+/// Fewest nodes of a plain sum, which other sums are held against.
+const OF_PLAIN_SUMS: usize = 384;
+/// Nodes for each cycle across the receiver: two, and as many again for what shines there.
+const PER_CYCLE: f64 = 4.0;
+/// Nodes across the narrowest penumbra or period on the receiver.
+const ACROSS: f64 = 8.0;
+/// Fewest nodes across what is resolved.
+const LEAST: f64 = 4.0;
+/// How the error falls with the spacing of the nodes: irradiance has kinks where penumbras begin and end.
+const ORDER: i32 = 2;
+/// Places in a cell of a projection along each axis, at least.
+const PLACES: usize = 4;
+
+/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame round: x' = −x,
+/// y' = y, as D' = −D and X' = −X.
+pub(super) struct Table {
+    axes: [Axis; 2],
+    /// x' and y' of the nodes: the middles of equal cells.
+    coordinates: [Vec<f64>; 2],
+    /// [x', y'].
+    values: Array2<f64>,
+}
+
+impl Receiver<'_> {
+    /// The slices of the spectrum of the reflected light, after its travel, under a window.
+    ///
+    /// Midpoint rule of second order over the receiver, [`quadrature_error`](Self::quadrature_error) says how
+    /// good; exact in slopes. Rows are computed in parallel, each by one thread: the same for any number of
+    /// threads. Unit: W m⁻² sr⁻¹ · m².
+    pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
+        self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
+    }
+
+    /// The same with so many nodes along each axis.
+    pub(crate) fn slices_with(&self, nodes: usize, window: &Window, grid: &SliceGrid) -> Slices {
+        self.table(window, nodes).slices(grid)
+    }
+
+    /// The spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over no fewer nodes.
+    pub(crate) fn at(&self, window: &Window, frequency: [f64; 4]) -> Complex {
+        let highest = frequency[0].hypot(frequency[1]);
+        let nodes = self.nodes(window, highest).max(OF_PLAIN_SUMS);
+        self.table(window, nodes).at(frequency)
+    }
+
+    /// ∫∫ ℓ' W dy dv as means over cells of (x, u), by the midpoint rule. Unit: W m⁻² sr⁻¹ · m.
+    pub(crate) fn projection(&self, window: &Window, grid: &ProjectionGrid) -> Projection {
+        self.table(window, self.nodes(window, 0.0)).projection(grid)
+    }
+
+    /// Relative L2 error of slices: what half as many nodes along each axis change, over 2² − 1 since the error
+    /// is of second order in their spacing. `None` if the slices are zero.
+    pub(crate) fn quadrature_error(
+        &self,
+        window: &Window,
+        grid: &SliceGrid,
+        slices: &Slices,
+    ) -> Option<f64> {
+        let half = self.nodes(window, grid.rho.max()) / 2;
+        let coarse = self.slices_with(half, window, grid);
+        let change = (&coarse.half - &slices.half).map(Complex::norm_sqr).sum();
+        let all = slices.half.map(Complex::norm_sqr).sum();
+        let error = (change / all).sqrt() / (2.0_f64.powi(ORDER) - 1.0);
+        error.is_finite().then_some(error)
+    }
+
+    /// Nodes along each axis: enough for the narrowest penumbra or period, and for frequencies up to the
+    /// highest. Even, so that they can be halved.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped first"
+    )]
+    pub(crate) fn nodes(&self, window: &Window, highest: f64) -> usize {
+        let [fewest, most] = NODES;
+        let side = self.side(window);
+        let nodes = (ACROSS * side / self.finest()).max(fewest + PER_CYCLE * highest * side);
+        2 * (0.5 * nodes.min(most)).ceil() as usize
+    }
+
+    /// Metres of the receiver that are seen through a window.
+    fn side(&self, window: &Window) -> f64 {
+        let [x, y] = axes(window, self.after).map(|axis| 2.0 * axis.reach());
+        x.max(y)
+    }
+
+    /// Whether nodes tell apart all that shines on the receiver: finer patterns would be aliased, and the error
+    /// that coarser nodes tell would be as well.
+    pub(crate) fn is_resolved(&self, window: &Window) -> bool {
+        let cell = self.side(window) / NODES[1];
+        self.barriers.iter().all(|barrier| {
+            let beyond = self.distance - barrier.distance;
+            // Lengths in a mask's plane are this much longer on the receiver, for a point of the light.
+            let grown = self.distance / beyond;
+            let is_told = |length: f64| length * grown > LEAST * cell;
+            let penumbra = self.width() * barrier.distance / beyond;
+            match barrier.grating {
+                Some(grating) => is_told(1.0 / grating.frequency.abs()),
+                None => penumbra > LEAST * cell || barrier.shapes.narrowest().is_none_or(is_told),
+            }
+        })
+    }
+
+    /// The width of the light.
+    fn width(&self) -> f64 {
+        match self.light {
+            Light::Area { shape, .. } => match shape {
+                Shape::Rectangle(r) => r.size[0].min(r.size[1]),
+                Shape::Disc(d) => d.radius,
+            },
+            Light::Point { .. } => 0.0,
+            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
+                no_closed_form()
+            }
+        }
+    }
+
+    /// The shortest length over which the irradiance changes: a penumbra, or the period of a grating.
+    fn finest(&self) -> f64 {
+        let width = self.width();
+        let lengths = self.barriers.iter().map(|barrier| {
+            let beyond = self.distance - barrier.distance;
+            match barrier.grating {
+                Some(grating) => self.distance / (beyond * grating.frequency.abs()),
+                None => width * barrier.distance / beyond,
+            }
+        });
+        lengths.fold(self.distance, f64::min)
+    }
+
+    /// Radiance on `nodes` × `nodes` nodes over what is seen through a window.
+    pub(super) fn table(&self, window: &Window, nodes: usize) -> Table {
+        let axes = axes(window, self.after);
+        let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
+        let middle = |k: usize, i: usize| (i as f64 + 0.5) * size[k] - axes[k].reach();
+        let coordinates = [0, 1].map(|k| (0..nodes).map(|i| middle(k, i)).collect::<Vec<_>>());
+        let weight = self.exitance() * size[0] * size[1];
+        let [x, y] = &coordinates;
+        let rows: Vec<Vec<f64>> = x
+            .par_iter()
+            .map(|&x| {
+                let row = y.iter();
+                row.map(|&y| weight * self.cell([-x, y], size)).collect()
+            })
+            .collect();
+        let values = Array2::from_shape_fn((nodes, nodes), |(i, j)| rows[i][j]);
+        Table {
+            axes,
+            coordinates,
+            values,
+        }
+    }
+}
+
+pub(super) fn axes(window: &Window, after: f64) -> [Axis; 2] {
+    [(window.x, window.u), (window.y, window.v)].map(|(position, slope)| Axis {
+        position,
+        slope,
+        after,
+    })
+}
+
+impl Table {
+    pub(super) fn slices(&self, grid: &SliceGrid) -> Slices {
+        let [azimuths, rows, _] = grid.half_shape();
+        let values: Vec<Vec<Complex>> = (0..azimuths * rows)
+            .into_par_iter()
+            .map(|i| {
+                let (sin, cos) = grid.azimuth(i / rows).sin_cos();
+                let rho = (i % rows) as f64 * grid.rho.spacing;
+                let frequencies = [cos, sin].map(|along| Row {
+                    position: rho * along,
+                    step: grid.nu.spacing * along,
+                    half: grid.nu.half,
+                });
+                if self.axes[0].after > 0.0 {
+                    self.travelled(&frequencies)
+                } else {
+                    self.at_receiver(&frequencies)
+                }
+            })
+            .collect();
+        let mut slices = Slices::zeros(*grid);
+        for (to, from) in slices.half.rows_mut().into_iter().zip(values) {
+            to.into_iter().zip(from).for_each(|(to, from)| *to = from);
+        }
+        slices
+    }
+
+    /// One frequency (Ωx, Ωy, Ωu, Ωv), node by node.
+    pub(super) fn at(&self, [x, y, u, v]: [f64; 4]) -> Complex {
+        let kernel = |k: usize, frequency| {
+            let (axis, coordinates) = (&self.axes[k], &self.coordinates[k]);
+            axis.at(coordinates, frequency)
+        };
+        let [along_x, along_y] = [kernel(0, [x, u]), kernel(1, [y, v])];
+        let values = self.values.indexed_iter();
+        values.map(|((i, j), e)| along_x[i] * along_y[j] * e).sum()
+    }
+
+    /// A row where nothing travels: radiance does not know the slope, and the spectrum is a product.
+    fn at_receiver(&self, frequencies: &[Row; 2]) -> Vec<Complex> {
+        let wave = |k: usize| -> Vec<Complex> {
+            let (window, frequency) = (self.axes[k].position, frequencies[k].position);
+            let coordinates = self.coordinates[k].iter();
+            coordinates
+                .map(|&t| Complex::from_polar(window.value(t), -TAU * frequency * t))
+                .collect()
+        };
+        let [x, y] = [wave(0), wave(1)];
+        let rows = self.values.outer_iter().zip(x);
+        let position: Complex = rows
+            .map(|(row, x)| x * row.iter().zip(&y).map(|(e, y)| y * e).sum::<Complex>())
+            .sum();
+        let slope = |k: usize, n| self.axes[k].slope_spectrum(frequencies[k].frequency(n)[1]);
+        (0..frequencies[0].count())
+            .map(|n| position * slope(0, n) * slope(1, n))
+            .collect()
+    }
+
+    /// A row after travel: Σ K(x') E(x', y') K(y').
+    fn travelled(&self, frequencies: &[Row; 2]) -> Vec<Complex> {
+        let kernels = |k: usize| self.axes[k].along(&self.coordinates[k], &frequencies[k]);
+        let [x, y]: [Kernels; 2] = [kernels(0), kernels(1)];
+        let (re, im) = (x.re.dot(&self.values), x.im.dot(&self.values));
+        let dot = |a: &Array2<f64>, b: &Array2<f64>, n| a.row(n).dot(&b.row(n));
+        (0..frequencies[0].count())
+            .map(|n| {
+                Complex::new(
+                    dot(&re, &y.re, n) - dot(&im, &y.im, n),
+                    dot(&re, &y.im, n) + dot(&im, &y.re, n),
+                )
+            })
+            .collect()
+    }
+
+    fn projection(&self, grid: &ProjectionGrid) -> Projection {
+        let across = self.across();
+        let bins = grid.bins;
+        let axis = &self.axes[0];
+        let spacing = 2.0 * axis.reach() / across.len() as f64;
+        let places = PLACES.max(places(2.0 * grid.half_x / bins as f64 / spacing));
+        let inside = move |cell: usize, half: f64| {
+            let fine = (bins * places) as f64;
+            (0..places).map(move |k| ((cell * places + k) as f64 + 0.5) / fine * 2.0 * half - half)
+        };
+        let mean = |(i, j): (usize, usize)| {
+            let rays =
+                inside(i, grid.half_x).flat_map(|x| inside(j, grid.half_u).map(move |u| (x, u)));
+            let sum: f64 = rays
+                .map(|(x, u)| {
+                    let window = axis.position.value(x) * axis.slope.value(u);
+                    window * interpolated(&across, (x - axis.after * u) / spacing)
+                })
+                .sum();
+            sum / (places * places) as f64
+        };
+        Projection {
+            grid: *grid,
+            values: Array2::from_shape_fn((bins, bins), mean),
+        }
+    }
+
+    /// Radiance integrated over y and v, for each x'.
+    fn across(&self) -> Vec<f64> {
+        let axis = &self.axes[1];
+        let kernel = axis.at(&self.coordinates[1], [0.0; 2]).into_iter();
+        let kernel: Array1<f64> = kernel.map(|k| k.re).collect();
+        // The table holds the area of a node; along x it is a value.
+        let spacing = 2.0 * self.axes[0].reach() / self.coordinates[0].len() as f64;
+        (self.values.dot(&kernel) / spacing).to_vec()
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a positive number, rounded up"
+)]
+fn places(nodes: f64) -> usize {
+    nodes.ceil() as usize
+}
+
+/// The straight line between the two values next to a place, in units of their spacing from the middle.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped first"
+)]
+fn interpolated(values: &[f64], place: f64) -> f64 {
+    let last = values.len() - 1;
+    let place = (place + 0.5 * last as f64).clamp(0.0, last as f64);
+    let below = (place as usize).min(last - 1);
+    let share = place - below as f64;
+    values[below] * (1.0 - share) + values[below + 1] * share
+}

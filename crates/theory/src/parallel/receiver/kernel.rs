@@ -1,0 +1,122 @@
+//! How light from one coordinate of the receiver adds to the spectrum of a window farther on.
+
+use crate::numerics::quadrature::gauss_legendre;
+use crate::parallel::row::{Parts, Row, add_scaled};
+use etendue_field::{Complex, Profile};
+use ndarray::{Array2, aview1};
+use std::f64::consts::TAU;
+
+/// One axis: a window in position and slope, `after` metres past the receiver.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Axis {
+    pub(crate) position: Profile,
+    pub(crate) slope: Profile,
+    pub(crate) after: f64,
+}
+
+/// Real and imaginary parts of kernels, [frequency, node].
+#[derive(Debug)]
+pub(crate) struct Kernels {
+    pub(crate) re: Array2<f64>,
+    pub(crate) im: Array2<f64>,
+}
+
+impl Axis {
+    /// The farthest coordinate of the receiver that is seen through the window.
+    pub(crate) fn reach(&self) -> f64 {
+        self.position.half_width() + self.after * self.slope.half_width()
+    }
+
+    /// K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and one frequency
+    /// (docs/theory.md, Eq. 19).
+    pub(crate) fn at(&self, coordinates: &[f64], [omega, nu]: [f64; 2]) -> Vec<Complex> {
+        let rule = self.rule([omega, nu]);
+        let wave = |x: f64, u: f64| Complex::cis(-TAU * (omega * x + nu * u));
+        let kernel = |&t: &f64| self.rays(t, &rule).map(|(w, x, u)| wave(x, u) * w).sum();
+        coordinates.iter().map(kernel).collect()
+    }
+
+    /// The same for all ν of a row.
+    pub(crate) fn along(&self, coordinates: &[f64], row: &Row) -> Kernels {
+        let rule = self.rule([row.position, row.step * row.half as f64]);
+        let mut re = Array2::zeros((row.count(), coordinates.len()));
+        let mut im = re.clone();
+        for (i, &t) in coordinates.iter().enumerate() {
+            let column = self.column(t, row, &rule);
+            re.column_mut(i).assign(&aview1(&column.re));
+            im.column_mut(i).assign(&aview1(&column.im));
+        }
+        Kernels { re, im }
+    }
+
+    fn column(&self, t: f64, row: &Row, rule: &[(f64, f64)]) -> Parts {
+        let mut sum = Parts::zeros(row.count());
+        let mut wave = Parts::zeros(row.count());
+        for (weight, x, u) in self.rays(t, rule) {
+            row.exponentials([x, u], weight, &mut wave);
+            add_scaled(&mut sum.re, &wave.re, 1.0);
+            add_scaled(&mut sum.im, &wave.im, 1.0);
+        }
+        sum
+    }
+
+    /// The spectrum of the profile in slopes, from its cosines: what K factors into where nothing travels.
+    pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
+        let half = self.slope.half_width();
+        let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);
+        let terms = self.slope.cosine_terms().into_iter();
+        terms
+            .map(|c| half * c.weight * (wave(nu - c.frequency) + wave(nu + c.frequency)))
+            .sum()
+    }
+
+    /// Slopes inside the window from the coordinate t of the receiver; an empty interval if there are none.
+    fn slopes(&self, t: f64) -> [f64; 2] {
+        let (h, k) = (self.position.half_width(), self.slope.half_width());
+        if self.after <= 0.0 {
+            return [-k, k];
+        }
+        let [low, high] = [-h, h].map(|edge| (edge - t) / self.after);
+        let low = low.max(-k);
+        [low, high.min(k).max(low)]
+    }
+
+    /// Rays from t through the window: weight, position and slope of each node.
+    fn rays(&self, t: f64, rule: &[(f64, f64)]) -> impl Iterator<Item = (f64, f64, f64)> {
+        let [low, high] = self.slopes(t);
+        let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
+        rule.iter().map(move |&(node, weight)| {
+            let u = middle + half * node;
+            let x = t + self.after * u;
+            let window = self.position.value(x) * self.slope.value(u);
+            (weight * half * window, x, u)
+        })
+    }
+
+    /// A Gauss rule on (−1, 1) with nodes enough for a frequency.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a positive whole number"
+    )]
+    fn rule(&self, frequency: [f64; 2]) -> Vec<(f64, f64)> {
+        gauss_legendre(self.nodes(frequency) as usize)
+    }
+
+    /// Nodes of the rule for a frequency: those of the waves, and some for 10⁻¹⁴.
+    pub(super) fn nodes(&self, frequency: [f64; 2]) -> f64 {
+        let waves = 2.0 * self.slope.half_width() * self.fastest(frequency);
+        // A node per half radian, π/2 per wave, is where Gauss rules begin to converge.
+        (16.0 + 1.7 * waves).ceil()
+    }
+
+    /// The highest frequency along u of the exponential and of the window.
+    fn fastest(&self, [omega, nu]: [f64; 2]) -> f64 {
+        let fastest = |profile: &Profile| {
+            let terms = profile.cosine_terms();
+            terms.iter().fold(0.0, |m: f64, c| m.max(c.frequency))
+        };
+        let window = self.after * fastest(&self.position) + fastest(&self.slope);
+        self.after * omega.abs() + nu.abs() + window
+    }
+}

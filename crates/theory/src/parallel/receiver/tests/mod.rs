@@ -1,0 +1,153 @@
+//! Lights, masks and windows for the checks of this module.
+
+mod points;
+mod spectra;
+
+use super::Receiver;
+use crate::parallel::chain::Layer;
+use crate::testing::square;
+use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
+
+fn area(shape: Shape, exponent: f64) -> Light {
+    Light::Area {
+        shape,
+        radiance: 1.7,
+        exponent,
+    }
+}
+
+fn disc(center: [f64; 2], radius: f64) -> Shape {
+    Shape::Disc(Disc { center, radius })
+}
+
+fn rectangle(center: [f64; 2], size: [f64; 2]) -> Shape {
+    Shape::Rectangle(Rectangle { center, size })
+}
+
+fn opaque(shapes: Vec<Shape>) -> Mask {
+    Mask::Opaque {
+        shapes,
+        half_planes: vec![],
+    }
+}
+
+/// A light, masks at distances before a receiver, and the distance of the light.
+struct Bench {
+    light: Light,
+    masks: Vec<(f64, Mask)>,
+    distance: f64,
+}
+
+impl Bench {
+    fn new(light: Light, masks: Vec<(f64, Mask)>) -> Self {
+        Self {
+            light,
+            masks,
+            distance: 2.0,
+        }
+    }
+
+    fn layers(&self) -> Vec<Layer<'_>> {
+        let masks = self.masks.iter();
+        masks
+            .map(|(distance, mask)| Layer {
+                distance: *distance,
+                mask,
+            })
+            .collect()
+    }
+
+    fn receiver(&self) -> Receiver<'_> {
+        self.after(0.0)
+    }
+
+    /// The receiver looked at that far on.
+    fn after(&self, after: f64) -> Receiver<'_> {
+        Receiver::new(&self.light, &self.layers(), self.distance, true, after, 0.6)
+    }
+
+    /// The share of light that passes from a point (a, b) of the light to (x, y) of the receiver, mask by mask.
+    fn passes(&self, [a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
+        let masks = self.masks.iter();
+        masks
+            .map(|(before, mask)| {
+                let way = 1.0 - before / self.distance;
+                let (x, y) = (a + way * (x - a), b + way * (y - b));
+                match mask {
+                    Mask::Opaque {
+                        shapes,
+                        half_planes,
+                    } => {
+                        let met = shapes.iter().any(|s| s.contains(x, y))
+                            || half_planes.iter().any(|h| h.contains(x, y));
+                        f64::from(u8::from(!met))
+                    }
+                    Mask::Grating(grating) => grating.transmittance(x, y),
+                }
+            })
+            .product()
+    }
+
+    /// L cosⁿθ · cos²θ / r², what a square metre of the light at (a, b) adds to the irradiance at (x, y).
+    fn added(&self, at: [f64; 2], point: [f64; 2]) -> f64 {
+        let Light::Area {
+            shape,
+            radiance,
+            exponent,
+        } = self.light
+        else {
+            unreachable!("area lights only")
+        };
+        if !shape.contains(at[0], at[1]) {
+            return 0.0;
+        }
+        let across = (point[0] - at[0]).hypot(point[1] - at[1]);
+        let r = across.hypot(self.distance);
+        let cosine = self.distance / r;
+        radiance * cosine.powf(exponent + 2.0) / (r * r) * self.passes(at, point)
+    }
+}
+
+/// Benches with every kind of light and mask, off the centre so that nothing hides behind a symmetry.
+fn benches() -> Vec<Bench> {
+    let slab = rectangle([0.13, -0.07], [0.5, 0.3]);
+    let round = disc([-0.1, 0.12], 0.25);
+    let few = vec![
+        rectangle([0.05, 0.1], [0.1, 0.08]),
+        disc([-0.12, 0.02], 0.07),
+        rectangle([0.21, -0.14], [0.12, 0.11]),
+    ];
+    let near = vec![disc([0.1, 0.1], 0.12), disc([-0.15, -0.1], 0.1)];
+    let edge = Mask::Opaque {
+        shapes: vec![Shape::Rectangle(square([0.1, 0.1], 0.15))],
+        half_planes: vec![HalfPlane {
+            axis: 1,
+            edge: -0.06,
+            above: false,
+        }],
+    };
+    let grating = |axis, frequency| {
+        Mask::Grating(Grating {
+            axis,
+            frequency,
+            modulation: 0.8,
+            phase: 0.7,
+        })
+    };
+    vec![
+        Bench::new(area(slab, 0.0), vec![]),
+        Bench::new(area(round, 0.0), vec![]),
+        Bench::new(area(slab, 0.0), vec![(1.0, opaque(few.clone()))]),
+        Bench::new(area(round, 0.0), vec![(1.0, opaque(few.clone()))]),
+        Bench::new(
+            area(round, 6.0),
+            vec![(1.2, opaque(few)), (0.5, opaque(near.clone()))],
+        ),
+        Bench::new(area(slab, 30.0), vec![(0.8, edge.clone())]),
+        Bench::new(area(slab, 0.0), vec![(1.0, grating(0, 6.0))]),
+        Bench::new(
+            area(round, 3.0),
+            vec![(1.1, grating(1, 5.0)), (0.7, edge), (0.4, opaque(near))],
+        ),
+    ]
+}

@@ -1,0 +1,148 @@
+//! What the light that leaves a receiver takes to predict, counted at some places of it.
+
+use super::density::Density;
+use super::kernel::Axis;
+use super::region::Region;
+use super::{Bundle, Receiver, exitant};
+use crate::mask::Barrier;
+use crate::parallel::work::Work;
+use etendue_field::{Light, ProjectionGrid, Rectangle, SliceGrid, Window};
+
+/// Places along each axis at which steps are counted.
+const SOME: usize = 4;
+/// Steps at a place that are counted: with more than these, a table of the fewest nodes is beyond all limits.
+const MOST: f64 = 1e8;
+/// Steps for a shape that is looked at, and for one that stops light.
+const SHAPE: f64 = 100.0;
+/// Steps of a sum over one node at one frequency.
+const SUM: f64 = 0.6;
+
+impl Receiver<'_> {
+    /// Slices, their error, `derivatives` and a picture.
+    pub(crate) fn work(
+        &self,
+        window: &Window,
+        grid: &SliceGrid,
+        picture: &ProjectionGrid,
+        derivatives: f64,
+    ) -> Work {
+        let nodes = self.nodes(window, grid.rho.max());
+        let axes = exitant::axes(window, self.after);
+        let place = self.mean_steps(&axes, nodes);
+        let places = (nodes * nodes) as f64;
+        // The error is told by a table with half as many nodes along each axis.
+        let tables = 2.25 + derivatives;
+        let irradiance = Work {
+            steps: tables * places * place,
+            bytes: 3.0 * 8.0 * places,
+            bytes_each: 0.0,
+            drivers: format!(
+                "{tables} tables of {nodes} x {nodes} places x {place:.0} steps for what shines on one, through shapes and nodes between fringes"
+            ),
+        };
+        let cells = (picture.bins * picture.bins) as f64;
+        let in_cell = 4.0_f64.max(nodes as f64 / picture.bins as f64 + 1.0);
+        let picture = Work {
+            steps: 20.0 * cells * in_cell * in_cell,
+            ..Work::none()
+        };
+        irradiance
+            .then(sums(&axes, nodes as f64, grid).times(1.25 + derivatives))
+            .then(picture)
+    }
+
+    /// Steps for the irradiance at a place, in the mean over some.
+    fn mean_steps(&self, axes: &[Axis; 2], nodes: usize) -> f64 {
+        let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
+        let at = |k: usize, i: usize| {
+            let share = (2 * i + 1) as f64 / SOME as f64 - 1.0;
+            share * axes[k].reach()
+        };
+        let places = (0..SOME).flat_map(|i| (0..SOME).map(move |j| [i, j]));
+        let steps = places.map(|[i, j]| self.steps([-at(0, i), at(1, j)], size));
+        steps.sum::<f64>() / (SOME * SOME) as f64
+    }
+
+    /// Steps of [`Self::cell`].
+    fn steps(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
+        let (bundle, region) = match &self.light {
+            Light::Area { shape, .. } => {
+                let bundle = Bundle::At(center);
+                (bundle, Region::shape(&bundle.seen(shape, self.distance)))
+            }
+            _ => {
+                let bundle = Bundle::From(self.distance);
+                let sides = Rectangle { center, size };
+                let sides = bundle.slopes([sides.extent(0), sides.extent(1)], 0.0);
+                (bundle, Region::rectangle(sides))
+            }
+        };
+        let density = self.density(&bundle, &self.barriers);
+        let mut steps = SHAPE;
+        self.count(&bundle, &region, &self.barriers, &density, &mut steps);
+        steps
+    }
+
+    /// Adds the steps of [`Self::passed`], up to [`MOST`].
+    fn count(
+        &self,
+        bundle: &Bundle,
+        region: &Region,
+        barriers: &[Barrier<'_>],
+        density: &Density<'_>,
+        steps: &mut f64,
+    ) {
+        let Some((barrier, rest)) = barriers.split_first() else {
+            *steps += region.steps(density);
+            return;
+        };
+        let before = barrier.distance;
+        let Some(open) = region.within(bundle.slopes(barrier.open, before)) else {
+            return;
+        };
+        let place = bundle.positions(open.bounds(), before);
+        barrier.shapes.meeting(place, |shape| {
+            *steps += SHAPE;
+            if *steps < MOST
+                && let Some(part) = open.cut(&bundle.seen(shape, before))
+            {
+                self.count(bundle, &part, rest, density, steps);
+            }
+        });
+        if *steps < MOST {
+            self.count(bundle, &open, rest, density, steps);
+        }
+    }
+}
+
+/// From a table to slices.
+fn sums(axes: &[Axis; 2], nodes: f64, grid: &SliceGrid) -> Work {
+    let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
+    let highest = [grid.rho.max(), grid.nu.max()];
+    let travels = axes[0].after > 0.0;
+    let rule = if travels {
+        axes.each_ref().map(|axis| axis.nodes(highest))
+    } else {
+        [0.0; 2]
+    };
+    // A rule of many nodes is found anew for each row, by recurrences as long.
+    let kernels = rule.map(|n| nodes * n * (2.0 * count + 40.0) + 10.0 * n * n);
+    let row = if travels {
+        kernels[0] + kernels[1] + 2.0 * SUM * nodes * nodes * count
+    } else {
+        5.0 * nodes * nodes + 50.0 * count
+    };
+    Work {
+        steps: azimuths * rows * row,
+        bytes: 32.0 * azimuths * rows * count,
+        bytes_each: if travels {
+            48.0 * nodes * count
+        } else {
+            32.0 * nodes
+        },
+        drivers: format!(
+            "{azimuths} x {rows} x {count} frequencies x {nodes} x {nodes} places, with {:.0} nodes over slopes",
+            rule[0].max(rule[1])
+        ),
+    }
+}

@@ -1,0 +1,329 @@
+//! Factors of slope alone: (1 + u² + v²)^p times the slope profiles of a window, as a short sum of products of
+//! cosine series (docs/theory.md, Eq. 5d).
+//!
+//! The product is taken apart by elimination with complete pivoting, a(u) b(v) at a time (Townsend and Trefethen
+//! 2013), and each factor is fitted by cosines of a period longer than the window, where it is
+//! smooth (a Fourier extension, Huybrechs 2010). Both stop at a measured residual.
+
+use crate::numerics::quadrature::gauss_legendre;
+use etendue_field::{CosineTerm, Profile};
+use std::f64::consts::{PI, TAU};
+
+/// Residual of the elimination, relative to the largest value.
+const RANK_RESIDUAL: f64 = 6e-9;
+/// Residual of the fits of a(u) and of b(v), relative to the largest value.
+const FIT_RESIDUAL: f64 = 2e-9;
+/// Nodes along half of a window.
+const NODES: usize = 192;
+/// Most terms of a series.
+const MOST_TERMS: usize = 120;
+/// Half periods tried, in half-widths: longer ones need fewer terms where the factor is wide.
+const EXTENSIONS: [f64; 3] = [2.0, 1.5, 1.15];
+/// Largest coefficient that a series may have: its digits are lost.
+const LARGEST_COEFFICIENT: f64 = 30.0;
+
+/// W(u) W(v) (1 + u² + v²)^p inside a window.
+#[derive(Clone, Debug)]
+pub(crate) struct Slope {
+    /// The sum of products: cosine terms along u and along v, frequencies in cycles per unit slope.
+    pub(crate) parts: Vec<[Vec<CosineTerm>; 2]>,
+    /// Root mean square error over the window, relative to that of the function itself; 0 for p = 0.
+    pub(crate) residual: f64,
+    /// Whether p = 0.
+    pub(crate) is_profile: bool,
+}
+
+impl Slope {
+    pub(crate) fn new(profiles: [&Profile; 2], power: f64) -> Self {
+        if power == 0.0 {
+            return Self {
+                parts: vec![profiles.map(Profile::cosine_terms)],
+                residual: 0.0,
+                is_profile: true,
+            };
+        }
+        let nodes = profiles.map(|p| nodes(p.half_width()));
+        let value = |u: f64, v: f64| {
+            profiles[0].value(u) * profiles[1].value(v) * (1.0 + u * u + v * v).powf(power)
+        };
+        let factors = eliminate(&nodes, value);
+        let series = [0, 1].map(|axis| {
+            let columns: Vec<_> = factors.iter().map(|f| f[axis].clone()).collect();
+            fit(profiles[axis].half_width(), &nodes[axis], &columns)
+        });
+        let [u, v] = series;
+        let parts: Vec<_> = u.into_iter().zip(v).map(|(a, b)| [a, b]).collect();
+        let residual = residual(&nodes, value, &parts);
+        Self {
+            parts,
+            residual,
+            is_profile: false,
+        }
+    }
+}
+
+/// Σ of cosine terms at `t`, inside their window.
+fn sum(terms: &[CosineTerm], t: f64) -> f64 {
+    let values = terms
+        .iter()
+        .map(|term| term.weight * (TAU * term.frequency * t).cos());
+    values.sum()
+}
+
+/// Gauss nodes on (0, half).
+fn nodes(half: f64) -> Vec<f64> {
+    let rule = gauss_legendre(NODES).into_iter();
+    rule.map(|(x, _)| 0.5 * half * (x + 1.0)).collect()
+}
+
+/// The function at nodes as Σ a b.
+fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec<f64>; 2]> {
+    let [u, v] = nodes;
+    let mut rest: Vec<Vec<f64>> = u
+        .iter()
+        .map(|&u| v.iter().map(|&v| value(u, v)).collect())
+        .collect();
+    let mut factors = Vec::new();
+    let (_, _, first) = pivot(&rest);
+    loop {
+        let (i, j, largest) = pivot(&rest);
+        if largest <= RANK_RESIDUAL * first || factors.len() == NODES {
+            return factors;
+        }
+        // Shared out evenly, so that a fit of either is as good.
+        let root = largest.sqrt();
+        let a: Vec<f64> = rest.iter().map(|row| row[j] / root).collect();
+        let b: Vec<f64> = rest[i]
+            .iter()
+            .map(|value| value * root / rest[i][j])
+            .collect();
+        for (row, a) in rest.iter_mut().zip(&a) {
+            row.iter_mut()
+                .zip(&b)
+                .for_each(|(value, b)| *value -= a * b);
+        }
+        factors.push([a, b]);
+    }
+}
+
+/// Row, column and absolute value of the largest element.
+fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
+    let mut best = (0, 0, 0.0);
+    for (i, row) in matrix.iter().enumerate() {
+        for (j, value) in row.iter().enumerate() {
+            if value.abs() > best.2 {
+                best = (i, j, value.abs());
+            }
+        }
+    }
+    best
+}
+
+/// Cosine series of some functions of one variable, given at nodes: the shortest of a few periods.
+fn fit(half: f64, nodes: &[f64], functions: &[Vec<f64>]) -> Vec<Vec<CosineTerm>> {
+    let mut best: Option<Fit> = None;
+    for extension in EXTENSIONS {
+        let most = best
+            .as_ref()
+            .filter(|fit| fit.is_good())
+            .map_or(MOST_TERMS, Fit::terms);
+        let fit = Fit::new(extension * half, nodes, functions, most);
+        if best.as_ref().is_none_or(|best| fit.beats(best)) {
+            best = Some(fit);
+        }
+    }
+    best.map(|fit| fit.series()).unwrap_or_default()
+}
+
+/// A least-squares fit by cosines, by modified Gram-Schmidt with the functions as further columns
+/// (Björck 1967).
+struct Fit {
+    half_period: f64,
+    /// Coefficients, [function][term].
+    coefficients: Vec<Vec<f64>>,
+    /// Largest residual.
+    residual: f64,
+}
+
+impl Fit {
+    fn new(half_period: f64, nodes: &[f64], functions: &[Vec<f64>], most: usize) -> Self {
+        let largest = functions.iter().map(|f| peak(f)).fold(0.0, f64::max);
+        let mut rests = functions.to_vec();
+        let mut basis: Vec<Vec<f64>> = Vec::new();
+        // Upper triangle of the basis, column by column, and the projections of the functions.
+        let mut triangle: Vec<Vec<f64>> = Vec::new();
+        let mut projections = vec![Vec::new(); functions.len()];
+        for n in 0..most {
+            let mut column: Vec<f64> = nodes
+                .iter()
+                .map(|t| (PI * n as f64 * t / half_period).cos())
+                .collect();
+            let mut entries: Vec<f64> = basis.iter().map(|q| remove(q, &mut column)).collect();
+            let norm = dot(&column, &column).sqrt();
+            entries.push(norm);
+            column.iter_mut().for_each(|c| *c /= norm);
+            for (rest, projection) in rests.iter_mut().zip(&mut projections) {
+                projection.push(remove(&column, rest));
+            }
+            basis.push(column);
+            triangle.push(entries);
+            if rests
+                .iter()
+                .all(|rest| peak(rest) <= FIT_RESIDUAL * largest)
+            {
+                break;
+            }
+        }
+        Self {
+            half_period,
+            coefficients: projections
+                .into_iter()
+                .map(|p| solve(&triangle, p))
+                .collect(),
+            residual: rests.iter().map(|r| peak(r)).fold(0.0, f64::max) / largest,
+        }
+    }
+
+    fn terms(&self) -> usize {
+        self.coefficients.first().map_or(0, Vec::len)
+    }
+
+    fn is_good(&self) -> bool {
+        let largest = self
+            .coefficients
+            .iter()
+            .map(|c| peak(c))
+            .fold(0.0, f64::max);
+        self.residual <= FIT_RESIDUAL && largest < LARGEST_COEFFICIENT
+    }
+
+    fn beats(&self, other: &Self) -> bool {
+        match (self.is_good(), other.is_good()) {
+            (true, true) => self.terms() < other.terms(),
+            (false, false) => self.half_period < other.half_period,
+            (good, _) => good,
+        }
+    }
+
+    fn series(&self) -> Vec<Vec<CosineTerm>> {
+        let term = |(n, &weight): (usize, &f64)| CosineTerm {
+            frequency: n as f64 / (2.0 * self.half_period),
+            weight,
+        };
+        let all = self.coefficients.iter();
+        all.map(|c| c.iter().enumerate().map(term).collect())
+            .collect()
+    }
+}
+
+/// Takes the part along the unit vector `q` out of `column`; returns its length.
+fn remove(q: &[f64], column: &mut [f64]) -> f64 {
+    let along = dot(q, column);
+    column.iter_mut().zip(q).for_each(|(c, q)| *c -= along * q);
+    along
+}
+
+/// The solution of an upper triangular system, given by columns.
+fn solve(triangle: &[Vec<f64>], mut right: Vec<f64>) -> Vec<f64> {
+    for n in (0..right.len()).rev() {
+        right[n] /= triangle[n][n];
+        let value = right[n];
+        for (r, entry) in right[..n].iter_mut().zip(&triangle[n]) {
+            *r -= value * entry;
+        }
+    }
+    right
+}
+
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    a.iter().zip(b).map(|(a, b)| a * b).sum()
+}
+
+/// Largest absolute value.
+fn peak(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |m, v| m.max(v.abs()))
+}
+
+/// Root mean square of what the parts leave, relative to the function.
+fn residual(
+    nodes: &[Vec<f64>; 2],
+    value: impl Fn(f64, f64) -> f64,
+    parts: &[[Vec<CosineTerm>; 2]],
+) -> f64 {
+    let tables = [0, 1].map(|axis| -> Vec<Vec<f64>> {
+        let row = |&t: &f64| parts.iter().map(|part| sum(&part[axis], t)).collect();
+        nodes[axis].iter().map(row).collect()
+    });
+    let (mut error, mut size) = (0.0, 0.0);
+    for (&u, a) in nodes[0].iter().zip(&tables[0]) {
+        for (&v, b) in nodes[1].iter().zip(&tables[1]) {
+            let expected = value(u, v);
+            error += (dot(a, b) - expected).powi(2);
+            size += expected.powi(2);
+        }
+    }
+    (error / size).sqrt()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The largest error between the nodes, and how many products and terms there are.
+    fn check(profiles: [Profile; 2], power: f64) -> (f64, usize, usize) {
+        let slope = Slope::new([&profiles[0], &profiles[1]], power);
+        let mut worst = 0.0;
+        for i in 0..60 {
+            for j in 0..60 {
+                let [u, v] = [(0, i), (1, j)].map(|(axis, i): (usize, i32)| {
+                    profiles[axis].half_width() * (f64::from(i) / 30.0 - 0.99)
+                });
+                let window = profiles[0].value(u) * profiles[1].value(v);
+                let expected = window * (1.0 + u * u + v * v).powf(power);
+                let parts = slope.parts.iter();
+                let got: f64 = parts.map(|p| sum(&p[0], u) * sum(&p[1], v)).sum();
+                worst = f64::max(worst, (got - expected).abs());
+            }
+        }
+        let terms = slope.parts[0].iter().map(Vec::len).max();
+        assert!(
+            slope.residual < 3.0 * worst + 1e-15,
+            "{} {worst}",
+            slope.residual
+        );
+        (worst, slope.parts.len(), terms.unwrap_or(0))
+    }
+
+    #[test]
+    fn parts_add_up_to_the_power() {
+        for half in [0.1, 0.3, 0.5, 1.0, 1.5] {
+            let gaussian = Profile::Gaussian {
+                width: 0.6 * half,
+                cut: half,
+            };
+            for profile in [Profile::Hann(half), Profile::Box(half), gaussian] {
+                for power in [0.5, -1.5, -2.0, -10.0, -50.0] {
+                    let (worst, rank, terms) = check([profile, profile], power);
+                    let scale = (1.0 + 2.0 * half * half).powf(f64::max(power, 0.0));
+                    // A few residuals of 6e-9 and 2e-9.
+                    assert!(worst < 2e-8 * scale, "{profile:?} {power}: {worst:e}");
+                    assert!(half > 0.5 || rank <= 5 && terms <= 24, "{rank} {terms}");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn profiles_may_differ() {
+        let (worst, ..) = check([Profile::Hann(0.3), Profile::Box(1.1)], -2.0);
+        assert!(worst < 2e-8); // as above
+    }
+
+    #[test]
+    fn no_power_is_the_profile_itself() {
+        let profile = Profile::Hann(0.5);
+        let slope = Slope::new([&profile, &profile], 0.0);
+        let terms = profile.cosine_terms();
+        assert_eq!(slope.parts, [[terms.clone(), terms]]);
+    }
+}

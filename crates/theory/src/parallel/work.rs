@@ -1,0 +1,214 @@
+//! What a prediction takes, told before it is made.
+//!
+//! Counted from the rules that the prediction itself follows: corners, nodes, shapes, frequencies. A guard, so that a scene
+//! that would run for days is refused at once. Each kind of prediction counts its own, this file the closed form.
+
+use crate::Chain;
+use crate::parallel::chain::Path;
+use crate::parallel::expansion::Expansion;
+use crate::parallel::patch::Fineness;
+use crate::parallel::projection::nodes_of_cells;
+use crate::parallel::slices::fineness;
+use crate::parallel::slope::Slope;
+use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
+
+/// The work of a prediction.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Work {
+    /// A core does one in about a nanosecond.
+    pub steps: f64,
+    /// Bytes held once.
+    pub bytes: f64,
+    /// Bytes held by each thread.
+    pub bytes_each: f64,
+    /// What most of the steps are made of, in words.
+    pub drivers: String,
+}
+
+impl Work {
+    /// Of what needs no prediction.
+    #[must_use]
+    pub fn none() -> Self {
+        Self {
+            steps: 0.0,
+            bytes: 0.0,
+            bytes_each: 0.0,
+            drivers: String::new(),
+        }
+    }
+
+    /// More than anyone would wait for, so that it was not counted to its end.
+    pub(crate) fn endless(drivers: String) -> Self {
+        Self {
+            steps: f64::INFINITY,
+            drivers,
+            ..Self::none()
+        }
+    }
+
+    /// One after the other.
+    pub(crate) fn then(self, next: Self) -> Self {
+        Self {
+            steps: self.steps + next.steps,
+            bytes: self.bytes.max(next.bytes),
+            bytes_each: self.bytes_each.max(next.bytes_each),
+            drivers: if next.steps > self.steps {
+                next.drivers
+            } else {
+                self.drivers
+            },
+        }
+    }
+}
+
+/// Products of shapes in different planes that are counted; of more the prediction would not end.
+pub(crate) const MOST_PARTS: usize = 500_000;
+
+/// What the slices, their derivatives and the projection of a chain take.
+#[must_use]
+pub fn work(chain: &Chain, window: &Window, grid: &SliceGrid, picture: &ProjectionGrid) -> Work {
+    let path = chain.path();
+    let derivatives = chain.parameters().len() as f64;
+    if let Some(receiver) = path.receiver() {
+        return receiver.work(window, grid, picture, derivatives);
+    }
+    // The series of slopes are short, their products with gratings may not be.
+    let slope = Slope::new([&window.u, &window.v], path.slope_power());
+    let of = |fineness: &Fineness| Expansion::within(&path, window, fineness, MOST_PARTS);
+    let Some(single) = of(&Fineness::single(&path)) else {
+        return too_many();
+    };
+    let round = path.has_discs().then(|| {
+        let strips = Fineness::for_projection(&path, window, picture.bins);
+        Some([of(&fineness(&path, window, grid))?, of(&strips)?])
+    });
+    let [slices, strips] = match &round {
+        None => [&single; 2],
+        Some(Some(round)) => round.each_ref(),
+        Some(None) => return too_many(),
+    };
+    let waves = [0, 1].map(|axis| waves(&path, window, &slope, axis));
+    // A finer rule over discs has (5/4)⁴ as many terms.
+    let finer = if path.has_discs() { 2.5 } else { 0.0 };
+    of_slices(slices, waves, slope.parts.len() as f64, grid)
+        .times(1.0 + derivatives + finer)
+        .then(of_projection(strips, &path, &slope, picture))
+}
+
+fn too_many() -> Work {
+    Work::endless(format!(
+        "more than {MOST_PARTS} products of shapes in different planes"
+    ))
+}
+
+/// Waves that multiply the polygons of a section, in one product.
+fn waves(path: &Path<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
+    let position: &Profile = [&window.x, &window.y][axis];
+    let position = position.cosine_terms().len() as f64;
+    let terms = |part: &[Vec<CosineTerm>; 2]| part[axis].len() as f64;
+    let slopes = slope.parts.iter().map(terms).fold(0.0, f64::max);
+    let gratings = path
+        .layers
+        .iter()
+        .filter(|layer| matches!(layer.mask, Mask::Grating(grating) if grating.axis == axis));
+    // Two cosines make two waves, and a grating is a constant and a cosine.
+    2.0 * position * slopes * 3.0_f64.powi(i32::try_from(gratings.count()).unwrap_or(i32::MAX))
+}
+
+/// Steps at a frequency for a wave and two directions of edges; for a wave and a polygon, whose corners cancel at some; for a wave
+/// at a corner; for a corner; for a product of shapes.
+const WAVE: f64 = 70.0;
+const CANCELLED: f64 = 12.0;
+const AT_CORNER: f64 = 2.0;
+const CORNER: f64 = 10.0;
+const TERM: f64 = 3.0;
+
+fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &SliceGrid) -> Work {
+    let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
+    let polygons = expansion
+        .sections
+        .each_ref()
+        .map(|s| s.polygons.len() as f64);
+    let corners = expansion
+        .sections
+        .each_ref()
+        .map(|s| s.polygons.iter().map(|p| p.corners().len()).sum::<usize>() as f64);
+    let terms = expansion.terms.len() as f64;
+    let directions = expansion
+        .sections
+        .each_ref()
+        .map(|s| s.directions.len() as f64);
+    let pairs = directions.map(|n| 0.5 * n * (n - 1.0));
+    let along = |axis: usize| {
+        let wave = WAVE * pairs[axis] + CANCELLED * polygons[axis] + AT_CORNER * corners[axis];
+        waves[axis] * wave + CORNER * corners[axis]
+    };
+    let row = count * products * (along(0) + along(1) + TERM * terms);
+    let [p, q] = polygons;
+    let phases = corners[0] * waves[0] + corners[1] * waves[1];
+    Work {
+        steps: azimuths * rows * row,
+        bytes: products * (16.0 * phases + 64.0 * (waves[0] + waves[1]))
+            + 24.0 * terms
+            + 400.0 * (p + q),
+        // Factors of all polygons, and quotients of some waves at a time.
+        bytes_each: count * (64.0 * (p + q) + 16.0 * 32.0 * pairs[0].max(pairs[1])),
+        drivers: format!(
+            "{azimuths} x {rows} x {count} frequencies x ({terms} products of shapes + {} corners of polygons x {} waves x {products} products of series)",
+            corners[0] + corners[1],
+            waves[0].max(waves[1]),
+        ),
+    }
+}
+
+/// Steps for the window at a node.
+const NODE: f64 = 12.0;
+
+fn of_projection(
+    expansion: &Expansion,
+    path: &Path<'_>,
+    slope: &Slope,
+    picture: &ProjectionGrid,
+) -> Work {
+    let bins = picture.bins as f64;
+    let nodes = nodes_of_cells(path, picture) as f64;
+    let series = if slope.is_profile {
+        0.0
+    } else {
+        slope.parts[0][0].len() as f64
+    };
+    let gratings = path.layers.len() as f64;
+    let touched = |polygon: &crate::parallel::polygon::Polygon| {
+        let slopes = polygon.corners().iter().map(|c| c.at[1]);
+        let low = slopes.clone().fold(f64::INFINITY, f64::min);
+        let columns = 0.5 * bins * (slopes.fold(f64::NEG_INFINITY, f64::max) - low) + 1.0;
+        let whole = if polygon.is_segment() {
+            0.0
+        } else {
+            0.25 * polygon.measure() * bins * bins
+        };
+        whole + 2.0 * columns
+    };
+    let polygons = &expansion.sections[0].polygons;
+    let touched: f64 = polygons.iter().map(touched).sum();
+    // A cell is two triangles or a few.
+    let each = 3.0 * nodes * nodes * (NODE + 2.0 * series + 10.0 * gratings);
+    Work {
+        steps: touched * each + expansion.terms.len() as f64 * 20.0 * slope.parts.len() as f64,
+        bytes: 400.0 * polygons.len() as f64,
+        bytes_each: 0.0,
+        drivers: format!(
+            "a picture of {touched:.0} pieces of polygons in cells x {nodes} x {nodes} nodes"
+        ),
+    }
+}
+
+impl Work {
+    pub(crate) fn times(self, times: f64) -> Self {
+        Self {
+            steps: self.steps * times,
+            drivers: format!("{times} x {}", self.drivers),
+            ..self
+        }
+    }
+}

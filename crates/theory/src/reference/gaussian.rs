@@ -1,0 +1,269 @@
+//! Closed forms under a Gaussian window that is not cut: for checks only.
+//!
+//! A [`Window`](etendue_field::Window) has a finite support, so this one exists nowhere else. All but the disc
+//! are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope; the slope is called v, as in the
+//! paper.
+
+use crate::numerics::quadrature::integrate;
+use crate::numerics::sinc::sinc;
+use crate::shading::g_hat;
+use complex_bessel::besselj;
+use etendue_field::Complex;
+use std::f64::consts::{PI, TAU};
+
+/// The window exp(−π(x²/a² + v²/b²)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Gaussian {
+    /// Width a along the position, in metres.
+    pub(crate) a: f64,
+    /// Width b along the slope; may be infinite.
+    pub(crate) b: f64,
+}
+
+/// What light has become after a distance under the window (docs/theory.md, Eq. 9).
+struct Travelled {
+    distance: f64,
+    /// 1/a².
+    inverse_a2: f64,
+    q: f64,
+    p: f64,
+}
+
+impl Travelled {
+    fn new(distance: f64, window: &Gaussian) -> Self {
+        let inverse_a2 = 1.0 / (window.a * window.a);
+        let inverse_b2 = 1.0 / (window.b * window.b);
+        let q = distance * distance * inverse_a2 + inverse_b2;
+        let p = inverse_b2 * inverse_a2 / q;
+        Self {
+            distance,
+            inverse_a2,
+            q,
+            p,
+        }
+    }
+
+    /// ω and Q at the frequencies of one axis.
+    fn frequencies(&self, [x, v]: [f64; 2]) -> [f64; 2] {
+        let omega = v + self.distance * x;
+        let big_q = x - self.distance * omega * self.inverse_a2 / self.q;
+        [omega, big_q]
+    }
+}
+
+/// A light, a plane of blockers, and a receiver.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Bench {
+    /// Width of the light, in metres; its radiance is 1.
+    pub(crate) light: f64,
+    /// Distance from the light to the blockers, in metres.
+    pub(crate) to_blockers: f64,
+    /// Distance from the blockers to where the light field is looked at, in metres.
+    pub(crate) below: f64,
+}
+
+/// A transparency ½(1 + m cos(2πf x + p)).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Grating {
+    /// Frequency f, cycles per metre.
+    pub(crate) frequency: f64,
+    /// Modulation m.
+    pub(crate) modulation: f64,
+    /// Phase p, in radians.
+    pub(crate) phase: f64,
+}
+
+impl Grating {
+    /// Its Fourier series: (frequency, coefficient).
+    #[must_use]
+    pub(crate) fn lines(&self) -> [(f64, Complex); 3] {
+        let side = Complex::from_polar(0.25 * self.modulation, self.phase);
+        [
+            (-self.frequency, side.conj()),
+            (0.0, Complex::from(0.5)),
+            (self.frequency, side),
+        ]
+    }
+}
+
+/// The field |x − D v| < w/2 of an area light of width w at distance D under the window:
+/// q^(−1/2) exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² + 1/b²,
+/// P = 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md, Eq. 9).
+///
+/// `distance` must not be zero when b is infinite.
+#[must_use]
+pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 2]) -> Complex {
+    let travelled = Travelled::new(distance, window);
+    let [omega, big_q] = travelled.frequencies(k);
+    let Travelled { p, q, .. } = travelled;
+    let half = 0.5 * width;
+    // Enough for the oscillation, and for the Gaussian where it is narrower than the light.
+    let nodes = 16 + count(2.0 * width * (big_q.abs() + p.sqrt()));
+    let integral = integrate(nodes, [-half, half], |y| {
+        Complex::from_polar((-PI * p * y * y).exp(), -TAU * big_q * y)
+    });
+    integral * ((-PI * omega * omega / q).exp() / q.sqrt())
+}
+
+/// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the area light's
+/// factor (docs/theory.md, Eq. 20).
+#[must_use]
+pub(crate) fn point_light(distance: f64, window: &Gaussian, k: [f64; 2]) -> f64 {
+    let travelled = Travelled::new(distance, window);
+    let [omega, _] = travelled.frequencies(k);
+    (-PI * omega * omega / travelled.q).exp() / travelled.q.sqrt()
+}
+
+/// The field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light under a window
+/// narrowed by the lobe, 1/b² + 1/c².
+#[must_use]
+pub(crate) fn spot(
+    width: f64,
+    lobe: f64,
+    distance: f64,
+    window: &Gaussian,
+    k: [f64; 2],
+) -> Complex {
+    let b = window.b.recip().hypot(lobe.recip()).recip();
+    area_light(width, distance, &Gaussian { a: window.a, b }, k)
+}
+
+/// The field of a disc of radius R at distance D, in 4D under the window of a and b along both axes:
+/// q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, ω and Q being vectors (docs/theory.md, Eq. 21).
+///
+/// Frequencies (Ωx, Ωy, Ωu, Ωv). The disc is centred, so the spectrum is real.
+#[must_use]
+pub(crate) fn disc_light(
+    radius: f64,
+    distance: f64,
+    window: &Gaussian,
+    [x, y, u, v]: [f64; 4],
+) -> f64 {
+    let travelled = Travelled::new(distance, window);
+    let [[omega_x, q_x], [omega_y, q_y]] = [[x, u], [y, v]].map(|k| travelled.frequencies(k));
+    let Travelled { p, q, .. } = travelled;
+    let (omega, big_q) = (omega_x.hypot(omega_y), q_x.hypot(q_y));
+    let nodes = 16 + count(4.0 * radius * (big_q + p.sqrt()));
+    let integral = integrate(nodes, [0.0, radius], |r| {
+        r * (-PI * p * r * r).exp() * j0(TAU * big_q * r)
+    });
+    TAU * integral * (-PI * omega * omega / q).exp() / q
+}
+
+/// The Bessel function J₀ of a real number.
+fn j0(z: f64) -> f64 {
+    besselj(0.0, Complex::from(z)).map_or(f64::NAN, |j| j.re)
+}
+
+/// The field exp(−π(α x² + 2β x v + γ v²)): a Gaussian window after travel, for one.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Tilted {
+    /// α, per square metre.
+    pub(crate) alpha: f64,
+    /// β, per metre.
+    pub(crate) beta: f64,
+    /// γ.
+    pub(crate) gamma: f64,
+}
+
+/// The spectra of a field alone, with x < 0 blocked and with x > 0 blocked:
+/// F₀ = γ^(−1/2) exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times the same without its last exponential times
+/// Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md, Eq. 22).
+#[must_use]
+pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
+    let Tilted { alpha, beta, gamma } = *field;
+    let a = (alpha - beta * beta / gamma).sqrt().recip();
+    let along = x - beta * v / gamma;
+    let scale = a * (-PI * v * v / gamma).exp() / gamma.sqrt();
+    let even = scale * (-PI * (a * along).powi(2)).exp();
+    let odd = scale / PI.sqrt() * dawson(PI.sqrt() * a * along);
+    let half = Complex::new(0.5 * even, -odd);
+    [even.into(), half, half.conj()]
+}
+
+/// Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule: the integrand is entire.
+fn dawson(x: f64) -> f64 {
+    integrate(24 + count(x * x), [0.0, x], |t| (t * t - x * x).exp())
+}
+
+/// The same light seen through a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
+#[must_use]
+pub(crate) fn through_grating(
+    bench: &Bench,
+    grating: &Grating,
+    window: &Gaussian,
+    [x, v]: [f64; 2],
+) -> Complex {
+    let distance = bench.to_blockers + bench.below;
+    let lines = grating.lines().into_iter();
+    lines
+        .map(|(f, c)| c * area_light(bench.light, distance, window, [x - f, v + f * bench.below]))
+        .sum()
+}
+
+/// The part of the light that a strip, (lowest, highest) in metres, blocks: a double integral over strip
+/// and light, v = (y − y₀)/d₁ and x = y + d₂ v.
+#[must_use]
+pub(crate) fn blocked_by_strip(
+    bench: &Bench,
+    strip: [f64; 2],
+    window: &Gaussian,
+    [omega_x, omega_v]: [f64; 2],
+) -> Complex {
+    let half = 0.5 * bench.light;
+    let nodes = 32 + count(2.0 * (bench.light + strip[1] - strip[0]) * omega_x.hypot(omega_v));
+    let sum: Complex = integrate(nodes, strip, |y| {
+        integrate(nodes, [-half, half], |origin| {
+            let v = (y - origin) / bench.to_blockers;
+            let x = y + bench.below * v;
+            let (p, q) = (x / window.a, v / window.b);
+            Complex::from_polar(
+                (-PI * (p * p + q * q)).exp(),
+                -TAU * (omega_x * x + omega_v * v),
+            )
+        })
+    });
+    sum / bench.to_blockers
+}
+
+/// A field times g(v) = (1 + v²)^(−3/2), from the same field under other Gaussian windows:
+/// g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds adds s²/π to 1/b²
+/// (docs/theory.md, Eq. 8).
+///
+/// The integrand is even and analytic in s: the trapezoid rule converges exponentially.
+#[must_use]
+pub(crate) fn shaded(window: &Gaussian, field: impl Fn(&Gaussian) -> Complex) -> Complex {
+    // Step 0.25 errs by exp(−π²/0.25²) = 1e-69, the end at 6.5 by exp(−6.5²) = 5e-19.
+    const STEP: f64 = 0.25;
+    let nodes = (1..=26).map(|j| STEP * f64::from(j));
+    let sum: Complex = nodes
+        .map(|s| {
+            let s2 = s * s;
+            let b = (1.0 / (window.b * window.b) + s2 / PI).sqrt().recip();
+            field(&Gaussian { a: window.a, b }) * (s2 * (-s2).exp())
+        })
+        .sum();
+    sum * (4.0 * STEP / PI.sqrt())
+}
+
+/// The spectrum of the irradiance below a grating, no window:
+/// Σ cₙ w sinc(w(Ωx − n f)) ĝ(DΩx − d₁ n f) (Durand et al. 2005, Eq. 7 without the albedo).
+#[must_use]
+pub(crate) fn irradiance(bench: &Bench, grating: &Grating, x: f64) -> Complex {
+    let w = bench.light;
+    let distance = bench.to_blockers + bench.below;
+    let lines = grating.lines().into_iter();
+    lines
+        .map(|(f, c)| c * w * sinc(w * (x - f)) * g_hat(distance * x - bench.to_blockers * f))
+        .sum()
+}
+
+/// A number of nodes.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a small positive number, rounded up"
+)]
+fn count(nodes: f64) -> usize {
+    nodes.ceil() as usize
+}

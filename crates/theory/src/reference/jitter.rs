@@ -1,0 +1,30 @@
+use crate::numerics::sinc::sinc;
+
+/// Opaque strips in a row, each moved by an offset of its own, uniform in ± half the jitter.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct JitteredArray {
+    /// Number N of strips.
+    pub(crate) count: usize,
+    /// Width s of a strip, in metres.
+    pub(crate) size: f64,
+    /// Distance p of neighbours before jitter, in metres.
+    pub(crate) pitch: f64,
+    /// Full width j of the offsets' distribution, in metres.
+    pub(crate) jitter: f64,
+}
+
+/// The expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered array, in m²:
+/// s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ) (docs/theory.md, Eq. 10).
+///
+/// The first term is the noise of the offsets, the second what is left of the lines of a regular array.
+#[must_use]
+pub(crate) fn jittered_array_power(array: &JitteredArray, omega: f64) -> f64 {
+    let n = array.count as f64;
+    let kept = sinc(array.jitter * omega).powi(2);
+    // D² has the period 1 in pΩ; near zero the quotient of sincs does not cancel.
+    let phase = array.pitch * omega;
+    let phase = phase - phase.round();
+    let lines = n * sinc(n * phase) / sinc(phase);
+    let strip = array.size * sinc(array.size * omega);
+    strip * strip * (n * (1.0 - kept) + lines * lines * kept)
+}
