@@ -14,8 +14,8 @@ const SHARE: f64 = 0.25;
 /// Fewest rays, for runs with few photons.
 const FEWEST: f64 = 5e5;
 
-/// A prediction ends when its error is a third of the photons' noise, which takes a twentieth off the
-/// power of the test, or when it has taken about as long as tracing the photons.
+/// A prediction ends when its error is a third of the photons' noise, which takes a twentieth off
+/// the power of the test, or when it has taken about as long as tracing the photons.
 pub(crate) fn budget(scene: &Scene) -> Budget {
     let photons = scene.run.photons as f64;
     Budget {
@@ -31,8 +31,8 @@ const OF_CLOSED_FORMS: f64 = 1e11;
 /// Bytes of a closed form on one core that are accepted.
 const BYTES: f64 = 1e9;
 
-/// Whether nets of rays take the place of a chain's closed form or quadrature: where that takes very
-/// long, or does not resolve a pattern.
+/// Whether nets of rays take the place of a chain's closed form or quadrature: where that takes
+/// very long, or does not resolve a pattern.
 pub(crate) fn is_sampled(plane: &VirtualPlane, chain: &Chain) -> bool {
     let (window, grid) = (&plane.window, &plane.grid);
     let picture = ProjectionGrid::new(window, PROJECTION_BINS);

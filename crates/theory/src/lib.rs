@@ -1,21 +1,26 @@
 //! Predicted spectra of local light fields, in closed form.
 //!
-//! In goes a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in planes, and the
-//! cosine and diffuse reflection of a receiver. Out come the values a measurement would have without noise: the
-//! [`slices`] of the windowed spectrum, how far they may be off ([`quadrature_error`]), their [`derivative`] by
-//! any number of the chain, and the [`projection`] on (x, u).
+//! In goes a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in planes,
+//! and the cosine and diffuse reflection of a receiver. Out come the values a measurement would
+//! have without noise: the [`slices`] of the windowed spectrum, how far they may be off
+//! ([`quadrature_error`]), their [`derivative`] by any number of the chain, and the [`projection`]
+//! on (x, u).
 //!
-//! Travel is a shear of (position, slope), so every edge stays a straight line and every field is a signed
-//! sum of products of convex polygons, one in (x, u) and one in (y, v); windows and gratings are sums of cosines.
-//! The transform of such a polygon is known in closed form: no quadrature, no grid, no aliasing. A disc is a
-//! weighted sum of rectangles, a factor of slope a sum of products of cosine series; both converge exponentially.
+//! Travel is a shear of (position, slope), so every edge stays a straight line and every field is a
+//! signed sum of products of convex polygons, one in (x, u) and one in (y, v); windows and gratings
+//! are sums of cosines. The transform of such a polygon is known in closed form: no quadrature, no
+//! grid, no aliasing. A disc is a weighted sum of rectangles, a factor of slope a sum of products
+//! of cosine series; both converge exponentially.
 //!
-//! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors, refraction, lenses) as affine
-//! maps of rays, with what they do to spectra and covariances; a chain does not use them. [`rays`] predicts what is behind mirrors,
-//! refracting surfaces and lenses: exactly, by following rays, and to first order, by a chain of those maps read off the same surfaces.
-//! [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments, in 2D.
+//! [`geometry`] has the steps of a light path that bend it (incidence, curvature, mirrors,
+//! refraction, lenses) as affine maps of rays, with what they do to spectra and covariances; a
+//! chain does not use them. [`rays`] predicts what is behind mirrors, refracting surfaces and
+//! lenses: exactly, by following rays, and to first order, by a chain of those maps read off the
+//! same surfaces. [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments,
+//! in 2D.
 //!
-//! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no evidence.
+//! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no
+//! evidence.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Light, Mask, Profile, Rectangle, Shape, SliceGrid, Window};

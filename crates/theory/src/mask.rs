@@ -143,8 +143,8 @@ impl<'a> Bins<'a> {
         cell.clamp(0.0, (self.side - 1) as f64) as usize
     }
 
-    /// Hands over every shape whose bounds meet a rectangle, once, in an order that depends on the rectangle
-    /// alone.
+    /// Hands over every shape whose bounds meet a rectangle, once, in an order that depends on the
+    /// rectangle alone.
     pub(crate) fn meeting(&self, sides: Sides, mut each: impl FnMut(&'a Shape)) {
         if self.shapes.is_empty() {
             return;

@@ -3,8 +3,8 @@
 use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Profile, Rectangle, Shape, Window};
 
-/// A square light of unit radiance on the central ray, then travel and blockers by turns; the planes are
-/// named a, b, c, …
+/// A square light of unit radiance on the central ray, then travel and blockers by turns; the
+/// planes are named a, b, c, …
 pub(crate) fn chain(light: f64, steps: &[(f64, Vec<Rectangle>)]) -> Chain {
     let steps = steps.iter().map(|(distance, blockers)| {
         let mask = (!blockers.is_empty()).then(|| rectangles(blockers));

@@ -1,10 +1,12 @@
 use crate::TwoPlane;
 
-/// Rays that are spread in one go: coordinates and positions are worked out for a group, then added.
+/// Rays that are spread in one go: coordinates and positions are worked out for a group, then
+/// added.
 pub(crate) const GROUP: usize = 32;
 
-/// Rays of a full block. The block is read once for each azimuth while the azimuth's fine grid stays in the
-/// cache; with four planes in turn, blocks of 16384 were 8 % faster than blocks of 4096.
+/// Rays of a full block. The block is read once for each azimuth while the azimuth's fine grid
+/// stays in the cache; with four planes in turn, blocks of 16384 were 8 % faster than blocks of
+/// 4096.
 const CAPACITY: usize = 16384;
 
 /// Rays waiting to be spread, one array for each coordinate, in the order in which they came.

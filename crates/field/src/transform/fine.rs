@@ -44,7 +44,8 @@ impl Workspace {
 impl FineTransform {
     /// The transform of fine grids laid out as `placement`, at the frequencies of `grid`.
     pub(crate) fn new(kernel: &Kernel, placement: Placement, grid: SliceGrid) -> Self {
-        // The scalar planner: the automatic one picks other algorithms on other processors, and other bits.
+        // The scalar planner: the automatic one picks other algorithms on other processors, and
+        // other bits.
         let mut planner = FftPlannerScalar::new();
         let correction = |axis: &FrequencyAxis, cells: usize| -> Vec<f64> {
             let index = |i: usize| (i as f64 - axis.half as f64) / cells as f64;
@@ -88,8 +89,8 @@ impl FineTransform {
 
     /// The slices [ρ ≥ 0, ν] of two azimuths from their padded fine grids, times `scale`.
     ///
-    /// Both are real, so they share one complex transform Z of a + ib: the parts with and without the
-    /// symmetry of a real field, (Z(m, n) ± conj Z(−m, −n))/2, belong to a and to ib.
+    /// Both are real, so they share one complex transform Z of a + ib: the parts with and without
+    /// the symmetry of a real field, (Z(m, n) ± conj Z(−m, −n))/2, belong to a and to ib.
     pub(crate) fn slices(
         &self,
         fine: [&[f64]; 2],

@@ -11,24 +11,26 @@ const HALF: usize = WIDTH / 2;
 /// Cells of a period for each frequency step from zero to the largest: an upsampling of 2.5.
 pub(crate) const UPSAMPLING: usize = 5;
 
-/// β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling. Of the amplitude of a
-/// point, 0.8·10⁻⁷ at most goes wrong along each axis; at an upsampling of 2 it would be 4·10⁻⁷.
+/// β of the kernel: the best of 2.30, 2.35, … per cell of width at this upsampling. Of the
+/// amplitude of a point, 0.8·10⁻⁷ at most goes wrong along each axis; at an upsampling of 2 it
+/// would be 4·10⁻⁷.
 const BETA: f64 = 2.35 * WIDTH as f64;
 
 /// Coefficients of each parity: the taps are polynomials of degree 2 · 4 − 1 = 7.
 const TERMS: usize = 4;
 
 /// The spreading kernel "exponential of semicircle", exp(β (√(1 − z²) − 1)) on |z| ≤ 1, z being the
-/// distance in units of four cells (Barnett, Magland and af Klinteberg 2019, SIAM J. Sci. Comput. 41(5)).
+/// distance in units of four cells (Barnett, Magland and af Klinteberg 2019, SIAM J. Sci. Comput.
+/// 41(5)).
 ///
-/// A point lies a fraction f of a cell beyond a cell of the fine grid and reaches eight cells; tap j, the
-/// weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in t = 2f − 1 that meets
-/// the kernel at Chebyshev nodes; its error is below 5·10⁻⁸, the kernel's peak being 1. The spectrum is
-/// divided by the transform of these polynomials, so only their roughness counts: a higher degree, or the
-/// kernel itself, gives the same error to two digits.
+/// A point lies a fraction f of a cell beyond a cell of the fine grid and reaches eight cells; tap
+/// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in t = 2f
+/// − 1 that meets the kernel at Chebyshev nodes; its error is below 5·10⁻⁸, the kernel's peak being
+/// 1. The spectrum is divided by the transform of these polynomials, so only their roughness
+/// counts: a higher degree, or the kernel itself, gives the same error to two digits.
 ///
-/// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps give all eight. Products and sums
-/// are rounded one by one, never fused, so that every SIMD level gives the same bits.
+/// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps give all eight. Products
+/// and sums are rounded one by one, never fused, so that every SIMD level gives the same bits.
 #[derive(Clone, Debug)]
 pub(crate) struct Kernel {
     /// Coefficients of t⁰, t², t⁴… of taps 0 to 3.
@@ -71,7 +73,8 @@ impl Kernel {
 
     /// The eight taps of four points at once: lane i of tap j belongs to point i.
     ///
-    /// Shorter chains of dependent steps than four times [`taps`](Self::taps), where the layout allows it.
+    /// Shorter chains of dependent steps than four times [`taps`](Self::taps), where the layout
+    /// allows it.
     #[inline(always)]
     pub(crate) fn taps_of_four<S: Simd>(&self, simd: S, f: f64x4<S>) -> [f64x4<S>; WIDTH] {
         let t = f * 2.0 - 1.0;
@@ -101,10 +104,11 @@ impl Kernel {
         horner(&self.even) + horner(&self.odd) * t
     }
 
-    /// The Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in cycles per cell.
+    /// The Fourier transform of the kernel, ∫ φ(d) e^(−2πi ξ d) dd, d in cells and ξ in cycles per
+    /// cell.
     ///
-    /// It is the transform of the very polynomials that spread, by a Gauss–Legendre rule on each cell,
-    /// exact to rounding for |ξ| ≤ 1/2.
+    /// It is the transform of the very polynomials that spread, by a Gauss–Legendre rule on each
+    /// cell, exact to rounding for |ξ| ≤ 1/2.
     pub(crate) fn transform(&self, xi: f64) -> f64 {
         let mut sum = 0.0;
         for (x, weight) in gauss_legendre(16) {
@@ -125,7 +129,8 @@ fn exact(tap: usize, f: f64) -> f64 {
     (BETA * ((1.0 - z * z).max(0.0).sqrt() - 1.0)).exp()
 }
 
-/// Coefficients of t⁰, t¹, … of the polynomial that meets `function` at the Chebyshev nodes of [−1, 1].
+/// Coefficients of t⁰, t¹, … of the polynomial that meets `function` at the Chebyshev nodes of [−1,
+/// 1].
 fn fit(function: impl Fn(f64) -> f64) -> [f64; 2 * TERMS] {
     const N: usize = 2 * TERMS;
     let node = |i: usize| PI * (i as f64 + 0.5) / N as f64;
@@ -168,7 +173,8 @@ mod tests {
                 assert_eq!(four[j].map(f64::to_bits), [tap.to_bits(); 4]);
             }
             for (j, tap) in one[0].iter().enumerate() {
-                assert!((kernel.tap(j, f) - tap).abs() <= 1e-16); // the same sums, a zero added first
+                // The same sums, a zero added first.
+                assert!((kernel.tap(j, f) - tap).abs() <= 1e-16);
             }
         }
         assert!(worst < 5e-8, "{worst:e}"); // the bound stated at `Kernel`

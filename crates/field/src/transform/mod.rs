@@ -21,13 +21,14 @@ use std::fmt;
 ///
 /// S_φ(ρ, ν) = Σ w e^(−2πi (ρ p + ν q)),  p = x cos φ + y sin φ,  q = u cos φ + v sin φ,
 ///
-/// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and
-/// af Klinteberg 2019, SIAM J. Sci. Comput. 41(5)): spread each ray over 8 × 8 cells of a grid 2.5
-/// times as fine as the frequencies ask, transform, divide by the transform of the spreading kernel.
+/// by a 2D non-uniform fast Fourier transform of type 1 for each azimuth (Barnett, Magland and af
+/// Klinteberg 2019, SIAM J. Sci. Comput. 41(5)): spread each ray over 8 × 8 cells of a grid 2.5
+/// times as fine as the frequencies ask, transform, divide by the transform of the spreading
+/// kernel.
 ///
-/// Error: below 2·10⁻⁷ Σ|w| at every frequency, reached by a single ray; rays spread out average it down. Window and radiance weight are the
-/// caller's: `w` is taken as it comes. The bits of the result depend on the rays and their order, not on the
-/// instructions a processor offers.
+/// Error: below 2·10⁻⁷ Σ|w| at every frequency, reached by a single ray; rays spread out average it
+/// down. Window and radiance weight are the caller's: `w` is taken as it comes. The bits of the
+/// result depend on the rays and their order, not on the instructions a processor offers.
 ///
 /// One plan serves any number of [`Accumulator`]s, on any number of threads.
 pub struct SliceTransform {
@@ -103,7 +104,8 @@ impl SliceTransform {
     }
 }
 
-/// Cells of a period: 2.5 for each frequency, at least two widths of the kernel, a product of 2, 3 and 5.
+/// Cells of a period: 2.5 for each frequency, at least two widths of the kernel, a product of 2, 3
+/// and 5.
 fn cells(axis: &FrequencyAxis) -> usize {
     let mut count = usize::max(UPSAMPLING * axis.half, 2 * WIDTH);
     while !is_smooth(count) {
@@ -162,7 +164,8 @@ impl Accumulator<'_> {
         slices
     }
 
-    /// Spreads the rays that wait. The azimuth is the outer loop: one fine grid at a time in the cache.
+    /// Spreads the rays that wait. The azimuth is the outer loop: one fine grid at a time in the
+    /// cache.
     fn flush(&mut self) {
         self.block.pad();
         let SliceTransform {

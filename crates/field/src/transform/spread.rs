@@ -19,8 +19,9 @@ pub(crate) struct Placement {
 }
 
 impl Placement {
-    /// Rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3, j − 3] of the
-    /// period: a ray reaches eight cells, and those outside are wrapped once, after all spreading.
+    /// Rows and columns of the padded fine grid, whose cell [i, j] is the cell [i − 3, j − 3] of
+    /// the period: a ray reaches eight cells, and those outside are wrapped once, after all
+    /// spreading.
     pub(crate) fn padded(&self) -> [usize; 2] {
         [self.rows + WIDTH, self.columns + WIDTH]
     }
@@ -42,8 +43,8 @@ struct Group {
 
 /// Adds the rays of a padded block to the padded fine grid of one azimuth, row by row.
 ///
-/// Done in three short loops over a group, not in one long one: a processor then has several rays in
-/// flight at a time, which is 1.8 times as fast.
+/// Done in three short loops over a group, not in one long one: a processor then has several rays
+/// in flight at a time, which is 1.8 times as fast.
 #[inline(always)]
 pub(crate) fn spread<S: Simd>(
     simd: S,
@@ -83,11 +84,12 @@ fn place(group: &mut Group, placement: &Placement, block: &Block, from: usize) {
 
 /// The cell of a point among the `count` of a period, and how far beyond it the point lies.
 ///
-/// A point outside the period is moved into it by whole periods. Nothing is lost: at frequencies m · spacing
-/// e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
+/// A point outside the period is moved into it by whole periods. Nothing is lost: at frequencies m
+/// · spacing e^(−2πi m · spacing · p) has the period 1/spacing in p, so the sum is the same.
 #[inline(always)]
 fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
-    /// 2⁵²: added to a smaller whole number, leaves it in the low bits; quicker than a checked cast.
+    /// 2⁵²: added to a smaller whole number, leaves it in the low bits; quicker than a checked
+    /// cast.
     const WHOLE: f64 = 4_503_599_627_370_496.0;
     let periods = a * along[0] + b * along[1];
     let cells = (periods - periods.floor()) * count as f64;

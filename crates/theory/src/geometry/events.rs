@@ -5,8 +5,9 @@ use super::{Map, Matrix, Media};
 impl Map<2> {
     /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
     ///
-    /// Incidence, curvature, mirror, back, outgoing at −θ₀. The product is x' = −x, θ' = −θ − (2k/cos θ₀) x
-    /// (docs/theory.md, Eq. 26): both shears of a curved surface add up (Durand et al. 2005, step 6).
+    /// Incidence, curvature, mirror, back, outgoing at −θ₀. The product is x' = −x, θ' = −θ −
+    /// (2k/cos θ₀) x (docs/theory.md, Eq. 26): both shears of a curved surface add up (Durand et
+    /// al. 2005, step 6).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, k: f64) -> Self {
         Self::incidence(theta0)
@@ -16,10 +17,11 @@ impl Map<2> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface of curvature k, in 1/m (convex positive, seen from where light comes), met at the angle θ₀.
+    /// Refraction at a surface of curvature k, in 1/m (convex positive, seen from where light
+    /// comes), met at the angle θ₀.
     ///
-    /// Incidence, curvature, refraction, back, and off the surface on its other side, where the central ray goes on
-    /// at θ₂. `None` as for [`refraction`](Self::refraction).
+    /// Incidence, curvature, refraction, back, and off the surface on its other side, where the
+    /// central ray goes on at θ₂. `None` as for [`refraction`](Self::refraction).
     #[must_use]
     pub fn refracting_surface(theta0: f64, k: f64, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;
@@ -29,9 +31,11 @@ impl Map<2> {
         Some(onto.then(&local).then(&off))
     }
 
-    /// A caustic: mirror reflection, then travel by a distance in metres (Durand et al. 2005, Fig. 11).
+    /// A caustic: mirror reflection, then travel by a distance in metres (Durand et al. 2005, Fig.
+    /// 11).
     ///
-    /// At the [focus](Self::focus) of the reflection, −cos θ₀/2k, positions depend on directions alone: parallel light is a point.
+    /// At the [focus](Self::focus) of the reflection, −cos θ₀/2k, positions depend on directions
+    /// alone: parallel light is a point.
     #[must_use]
     pub fn caustic(theta0: f64, k: f64, distance: f64) -> Self {
         Self::mirror_reflection(theta0, k).then(&Self::travel(distance))
@@ -39,10 +43,12 @@ impl Map<2> {
 }
 
 impl Map<4> {
-    /// Reflection by a mirror with the shape operator M (see [`curvature`](Self::curvature)), met at the angle θ₀.
+    /// Reflection by a mirror with the shape operator M (see [`curvature`](Self::curvature)), met
+    /// at the angle θ₀.
     ///
-    /// The product is x' = −x, y' = y, θ' = −θ − (2 M₁₁/c₀) x + 2 M₁₂ y, φ' = φ − 2 M₁₂ x + 2 c₀ M₂₂ y: a sphere of radius R focuses at
-    /// R/2 · cos θ₀ in the plane of incidence and at R/(2 cos θ₀) across it (Coddington's equations).
+    /// The product is x' = −x, y' = y, θ' = −θ − (2 M₁₁/c₀) x + 2 M₁₂ y, φ' = φ − 2 M₁₂ x + 2 c₀
+    /// M₂₂ y: a sphere of radius R focuses at R/2 · cos θ₀ in the plane of incidence and at R/(2
+    /// cos θ₀) across it (Coddington's equations).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, shape: Matrix<2>) -> Self {
         Self::incidence(theta0)
@@ -52,7 +58,8 @@ impl Map<4> {
             .then(&Self::outgoing(-theta0))
     }
 
-    /// Refraction at a surface with the shape operator M, met at the angle θ₀: as in 2D, and back with the cosine of θ₂.
+    /// Refraction at a surface with the shape operator M, met at the angle θ₀: as in 2D, and back
+    /// with the cosine of θ₂.
     #[must_use]
     pub fn refracting_surface(theta0: f64, shape: Matrix<2>, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;

@@ -4,7 +4,8 @@ use etendue_field::Complex;
 
 /// An affine map of rays, z' = A z + t, that keeps radiance (docs/theory.md, Eq. 1).
 ///
-/// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No other N has constructors.
+/// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No
+/// other N has constructors.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Map<const N: usize> {
     /// A, as rows.
@@ -36,7 +37,8 @@ impl<const N: usize> Map<N> {
         }
     }
 
-    /// The map that takes rays back; `None` if an elimination of A meets a pivot that is zero or not finite.
+    /// The map that takes rays back; `None` if an elimination of A meets a pivot that is zero or
+    /// not finite.
     #[must_use]
     pub fn inverse(&self) -> Option<Self> {
         let inverse = matrix::inverse(&self.matrix)?;
@@ -46,7 +48,8 @@ impl<const N: usize> Map<N> {
         })
     }
 
-    /// det A: how areas of ray space grow. Negative where orientation turns over, as on the way onto a surface.
+    /// det A: how areas of ray space grow. Negative where orientation turns over, as on the way
+    /// onto a surface.
     #[must_use]
     pub fn det(&self) -> f64 {
         matrix::determinant(&self.matrix)
@@ -64,8 +67,8 @@ impl<const N: usize> Map<N> {
         times(&transpose(&self.matrix), &omega)
     }
 
-    /// Where spectral content at Ω goes: A⁻ᵀ Ω, the inverse of [`transpose_apply`](Self::transpose_apply). `None` as for
-    /// [`inverse`](Self::inverse).
+    /// Where spectral content at Ω goes: A⁻ᵀ Ω, the inverse of
+    /// [`transpose_apply`](Self::transpose_apply). `None` as for [`inverse`](Self::inverse).
     #[must_use]
     pub fn content(&self, omega: [f64; N]) -> Option<[f64; N]> {
         Some(times(&transpose(&matrix::inverse(&self.matrix)?), &omega))
@@ -81,7 +84,8 @@ impl<const N: usize> Map<N> {
         }
     }
 
-    /// The spectrum after the map at Ω, |det A| e^(−2πi Ω·t) L(Aᵀ Ω), of a field with the spectrum L before.
+    /// The spectrum after the map at Ω, |det A| e^(−2πi Ω·t) L(Aᵀ Ω), of a field with the spectrum
+    /// L before.
     ///
     /// Frequencies in cycles per unit of each coordinate.
     #[must_use]
@@ -95,18 +99,20 @@ impl<const N: usize> Map<N> {
         congruent(&self.matrix, before)
     }
 
-    /// The covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, of S before. `None` as for [`inverse`](Self::inverse).
+    /// The covariance of |L| or |L|² after the map, A⁻ᵀ S A⁻¹, of S before. `None` as for
+    /// [`inverse`](Self::inverse).
     #[must_use]
     pub fn spectral_covariance(&self, before: &Matrix<N>) -> Option<Matrix<N>> {
         let inverse = matrix::inverse(&self.matrix)?;
         Some(congruent(&transpose(&inverse), before))
     }
 
-    /// How far the map is from keeping étendue: the largest entry of |Aᵀ J A − r J|, J = [[0, 1], [−1, 0]] in blocks, where r is
-    /// the index of refraction before over that after.
+    /// How far the map is from keeping étendue: the largest entry of |Aᵀ J A − r J|, J = [[0, 1],
+    /// [−1, 0]] in blocks, where r is the index of refraction before over that after.
     ///
-    /// Zero between two planes across the light, whatever stands between: n dx du is conserved in 2D (J then gives |det A − r|), and the
-    /// Lagrange invariant of every pair of rays in 4D. Maps onto or off a surface have a cosine too much or too little.
+    /// Zero between two planes across the light, whatever stands between: n dx du is conserved in
+    /// 2D (J then gives |det A − r|), and the Lagrange invariant of every pair of rays in 4D. Maps
+    /// onto or off a surface have a cosine too much or too little.
     #[must_use]
     pub fn symplectic_defect(&self, index_ratio: f64) -> f64 {
         let half = N / 2;
@@ -123,8 +129,8 @@ impl<const N: usize> Map<N> {
 }
 
 impl Map<2> {
-    /// The distance after which rays that were parallel before the map meet, −A₀₀/A₁₀ metres; negative if behind.
-    /// `None` if they stay parallel.
+    /// The distance after which rays that were parallel before the map meet, −A₀₀/A₁₀ metres;
+    /// negative if behind. `None` if they stay parallel.
     #[must_use]
     pub fn focus(&self) -> Option<f64> {
         let [[x, _], [slope, _]] = self.matrix;

@@ -66,7 +66,8 @@ pub(crate) fn inverse<const N: usize>(a: &Matrix<N>) -> Option<Matrix<N>> {
     eliminate(*a).ok().map(|(_, inverse)| inverse)
 }
 
-/// Determinant and inverse, by elimination with row pivoting; the determinant alone when there is no inverse.
+/// Determinant and inverse, by elimination with row pivoting; the determinant alone when there is
+/// no inverse.
 fn eliminate<const N: usize>(mut a: Matrix<N>) -> Result<(f64, Matrix<N>), f64> {
     let mut inverse = diagonal([1.0; N]);
     let mut determinant = 1.0;

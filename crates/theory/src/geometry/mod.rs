@@ -1,10 +1,10 @@
 //! What happens to rays near a central ray: every geometric step of a light path as one affine map.
 //!
-//! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step turns it into
-//! z' = A z + t and keeps its radiance, and so turns the spectrum L into
-//! L'(Ω) = |det A| e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md, Eq. 1). That is a [`Map`]; everything else here makes
-//! one, or says what one does to rays, spectra and covariances. Steps are chained by [`Map::then`] in the order in
-//! which light meets them:
+//! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step turns
+//! it into z' = A z + t and keeps its radiance, and so turns the spectrum L into L'(Ω) = |det A|
+//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md, Eq. 1). That is a [`Map`]; everything else here makes one,
+//! or says what one does to rays, spectra and covariances. Steps are chained by [`Map::then`] in
+//! the order in which light meets them:
 //!
 //! | step | constructor | in Durand et al. 2005 |
 //! |---|---|---|
@@ -18,17 +18,20 @@
 //! | outgoing angle: off the surface | [`outgoing`](Map::<2>::outgoing) | Eq. 10 |
 //! | turning the axes | [`Map::rotation`] | section 5.2 |
 //!
-//! In the frame of a light ray the last coordinates are slopes or angles to the central ray; to the order at which
-//! these maps hold, both are the same ([`plane_sphere`] has the exact change). Lengths are in metres, angles in radians.
+//! In the frame of a light ray the last coordinates are slopes or angles to the central ray; to the
+//! order at which these maps hold, both are the same ([`plane_sphere`] has the exact change).
+//! Lengths are in metres, angles in radians.
 //!
-//! **Surface frame.** N is the normal where the central ray hits, on the side the light comes from; (T, N) are right-handed
-//! axes of the plane of incidence, T to the right when N is up; B = N × T. Directions point away from the
-//! surface; their angle θ is counted from N towards T. s is arc length along T. With c₀ = cos θ₀: D = −(sin θ₀ T + c₀ N) and
-//! X = −c₀ T + sin θ₀ N before, D = sin θ₁ T + c₁ N and X = c₁ T − sin θ₁ N after, Y = B always. In 4D a direction is
-//! cos φ (sin θ T + cos θ N) + sin φ B: longitude θ, latitude φ.
+//! **Surface frame.** N is the normal where the central ray hits, on the side the light comes from;
+//! (T, N) are right-handed axes of the plane of incidence, T to the right when N is up; B = N × T.
+//! Directions point away from the surface; their angle θ is counted from N towards T. s is arc
+//! length along T. With c₀ = cos θ₀: D = −(sin θ₀ T + c₀ N) and X = −c₀ T + sin θ₀ N before, D =
+//! sin θ₁ T + c₁ N and X = c₁ T − sin θ₁ N after, Y = B always. In 4D a direction is cos φ (sin θ T
+//! + cos θ N) + sin φ B: longitude θ, latitude φ.
 //!
-//! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface is linear in the size e of the
-//! neighbourhood, with a relative error that falls as e, and as e² at normal incidence.
+//! **Order.** Travel, mirror and a thin lens are exact. A step between a light frame and a surface
+//! is linear in the size e of the neighbourhood, with a relative error that falls as e, and as e²
+//! at normal incidence.
 //!
 //! **The print.** What the paper prints differs in places; [`Print`] has both.
 //!

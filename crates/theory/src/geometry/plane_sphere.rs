@@ -1,11 +1,13 @@
 //! Two-plane and plane-sphere coordinates: slopes and angles, exactly.
 //!
-//! Positions stay. In 2D the slope is v = tan θ. In 4D the direction is D + u X + v Y, or longitude θ and latitude φ,
-//! cos φ (cos θ D + sin θ X) + sin φ Y, so u = tan θ and v = tan φ / cos θ (Durand et al. 2005, section 5.2, whose "co-latitude" φ is
-//! a latitude). Radiance is carried along; a density also needs the Jacobian. Angles in radians, within ± π/2.
+//! Positions stay. In 2D the slope is v = tan θ. In 4D the direction is D + u X + v Y, or longitude
+//! θ and latitude φ, cos φ (cos θ D + sin θ X) + sin φ Y, so u = tan θ and v = tan φ / cos θ
+//! (Durand et al. 2005, section 5.2, whose "co-latitude" φ is a latitude). Radiance is carried
+//! along; a density also needs the Jacobian. Angles in radians, within ± π/2.
 //!
-//! What this does to a spectrum is no map but, in 2D, the kernel [`plane_sphere_kernel`](super::plane_sphere_kernel). To take slopes
-//! for angles is right to second order: frequencies are stretched by 1 + v² at the slope v.
+//! What this does to a spectrum is no map but, in 2D, the kernel
+//! [`plane_sphere_kernel`](super::plane_sphere_kernel). To take slopes for angles is right to
+//! second order: frequencies are stretched by 1 + v² at the slope v.
 
 /// (x, v) to (x, θ).
 #[must_use]

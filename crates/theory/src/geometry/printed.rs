@@ -3,15 +3,16 @@ use std::f64::consts::TAU;
 
 /// Which print of the geometric operators is asked for (docs/theory.md, section 7).
 ///
-/// What Durand et al. 2005 print for the steps on and off a surface differs from ray geometry, and between their text and their table.
-/// Mirror and travel are printed right.
+/// What Durand et al. 2005 print for the steps on and off a surface differs from ray geometry, and
+/// between their text and their table. Mirror and travel are printed right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Print {
     /// As ray geometry has it: the maps of this module.
     Corrected,
     /// The numbered equations: 9, 11, 10, and 19 for a surface in 3D.
     Equations,
-    /// Table 1: its light incidence, curvature and outgoing angle. It has no line for 3D; there Eq. 19 with the table's sign.
+    /// Table 1: its light incidence, curvature and outgoing angle. It has no line for 3D; there Eq.
+    /// 19 with the table's sign.
     Table,
 }
 
@@ -39,7 +40,8 @@ impl Print {
         Map::<2>::curvature(self.sign() * k).spectrum_map()
     }
 
-    /// Back from the frames of the local normals: the inverse of [`curvature`](Self::curvature), as step 6 says.
+    /// Back from the frames of the local normals: the inverse of [`curvature`](Self::curvature), as
+    /// step 6 says.
     #[must_use]
     pub fn back(self, k: f64) -> SpectrumMap<2> {
         Map::<2>::back(self.sign() * k).spectrum_map()
@@ -69,7 +71,8 @@ impl Print {
             .then(&self.outgoing(-theta0))
     }
 
-    /// Light incidence in 4D: (x, θ) as in 2D; the paper leaves out that the latitude turns over, which no print gets wrong.
+    /// Light incidence in 4D: (x, θ) as in 2D; the paper leaves out that the latitude turns over,
+    /// which no print gets wrong.
     #[must_use]
     pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
         SpectrumMap::sections(&self.incidence(theta0), &Map::mirror().spectrum_map())

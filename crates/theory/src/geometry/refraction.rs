@@ -10,7 +10,8 @@ pub struct Media {
 }
 
 impl Media {
-    /// n₁/n₂: what [`Map::symplectic_defect`] asks for, and how étendue in (x, u) changes along each axis.
+    /// n₁/n₂: what [`Map::symplectic_defect`] asks for, and how étendue in (x, u) changes along
+    /// each axis.
     #[must_use]
     pub fn index_ratio(&self) -> f64 {
         self.before / self.after
@@ -25,9 +26,11 @@ impl Media {
         }
     }
 
-    /// The angle θ₂ of the refracted ray, n₁ sin θ₁ = n₂ sin θ₂ (Snell's law). `None` where all light is reflected.
+    /// The angle θ₂ of the refracted ray, n₁ sin θ₁ = n₂ sin θ₂ (Snell's law). `None` where all
+    /// light is reflected.
     ///
-    /// As every angle on a surface it says where light seems to come from: the refracted central ray runs along −(sin θ₂ T + cos θ₂ N).
+    /// As every angle on a surface it says where light seems to come from: the refracted central
+    /// ray runs along −(sin θ₂ T + cos θ₂ N).
     #[must_use]
     pub fn refracted(&self, theta1: f64) -> Option<f64> {
         let sine = self.index_ratio() * theta1.sin();
@@ -36,11 +39,13 @@ impl Media {
 }
 
 impl Map<2> {
-    /// Refraction of local directions, Snell's law made linear at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos θ₀/(n₂ cos θ₂).
+    /// Refraction of local directions, Snell's law made linear at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
+    /// θ₀/(n₂ cos θ₂).
     ///
-    /// By differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md, Eq. 27); the paper has no refraction. Directions stay flipped, and
-    /// light goes on through the surface: the next step back into a light frame is the inverse of the incidence at θ₂.
-    /// `None` where all light is reflected, and at the critical angle, where there is no derivative.
+    /// By differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md, Eq. 27); the paper has no
+    /// refraction. Directions stay flipped, and light goes on through the surface: the next step
+    /// back into a light frame is the inverse of the incidence at θ₂. `None` where all light is
+    /// reflected, and at the critical angle, where there is no derivative.
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;
@@ -53,10 +58,11 @@ impl Map<2> {
 }
 
 impl Map<4> {
-    /// Refraction of local directions: the longitude as in 2D, and n₁ φ = n₂ φ' out of the plane of incidence.
+    /// Refraction of local directions: the longitude as in 2D, and n₁ φ = n₂ φ' out of the plane of
+    /// incidence.
     ///
-    /// The tangential part of n ω is the same on both sides; along B that is n sin φ, along T it is n cos φ sin θ, where cos φ is 1 to
-    /// first order (docs/theory.md, Eq. 27).
+    /// The tangential part of n ω is the same on both sides; along B that is n sin φ, along T it is
+    /// n cos φ sin θ, where cos φ is 1 to first order (docs/theory.md, Eq. 27).
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let in_plane = Map::<2>::refraction(theta0, media)?;

@@ -4,8 +4,8 @@ use std::f64::consts::TAU;
 
 /// What a step does to spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
 ///
-/// A [`Map`](super::Map) has one, with factor |det A|, matrix Aᵀ and phase t. One that was printed wrong need not be that of any
-/// map of rays, which is why it has a type of its own.
+/// A [`Map`](super::Map) has one, with factor |det A|, matrix Aᵀ and phase t. One that was printed
+/// wrong need not be that of any map of rays, which is why it has a type of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumMap<const N: usize> {
     /// What the spectrum is multiplied by.

@@ -1,15 +1,19 @@
-//! Steps between the frame of the central ray, the surface it hits, and the frames of the surface's local normals.
+//! Steps between the frame of the central ray, the surface it hits, and the frames of the surface's
+//! local normals.
 //!
-//! Angles of incidence θ₀ and outgoing angles θ₁ lie within ± π/2; at grazing incidence a scale is infinite. Signs are those of the
-//! [module](super): with N up, positive angles lie to the right, and a mirror has θ₁ = −θ₀.
+//! Angles of incidence θ₀ and outgoing angles θ₁ lie within ± π/2; at grazing incidence a scale is
+//! infinite. Signs are those of the [module](super): with N up, positive angles lie to the right,
+//! and a mirror has θ₁ = −θ₀.
 
 use super::Map;
 
 impl Map<2> {
-    /// Light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the direction θ₀ and its directions are flipped.
+    /// Light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the direction θ₀ and its
+    /// directions are flipped.
     ///
-    /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005 multiplies by the cosine twice, Table 1
-    /// in the argument, and both leave 2π out of the phase ([`Print`](super::Print)).
+    /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005
+    /// multiplies by the cosine twice, Table 1 in the argument, and both leave 2π out of the phase
+    /// ([`Print`](super::Print)).
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self {
@@ -18,15 +22,18 @@ impl Map<2> {
         }
     }
 
-    /// Curvature, into the frames of the local normals: θ' = θ − k s. k > 0 is convex, |k| = 1/R in 1/m.
+    /// Curvature, into the frames of the local normals: θ' = θ − k s. k > 0 is convex, |k| = 1/R in
+    /// 1/m.
     ///
-    /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 has the sign of [`back`](Self::back)).
+    /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 has the sign of
+    /// [`back`](Self::back)).
     #[must_use]
     pub fn curvature(k: f64) -> Self {
         Self::linear([[1.0, 0.0], [-k, 1.0]])
     }
 
-    /// Back from the frames of the local normals: θ = θ' + k s (Durand et al. 2005, step 6). The inverse of [`curvature`](Self::curvature).
+    /// Back from the frames of the local normals: θ = θ' + k s (Durand et al. 2005, step 6). The
+    /// inverse of [`curvature`](Self::curvature).
     #[must_use]
     pub fn back(k: f64) -> Self {
         Self::curvature(-k)
@@ -34,8 +41,8 @@ impl Map<2> {
 
     /// Outgoing angle: x = s cos θ₁, θ = θₒ − θ₁. Light leaves in the direction θ₁.
     ///
-    /// L'(Ωx, Ωθ) = e^(2πi Ωθ θ₁) cos θ₁ · L(cos θ₁ Ωx, Ωθ). Eq. 10 and Table 1 of Durand et al. 2005 divide Ωx by the cosine and leave
-    /// 2π out of the phase.
+    /// L'(Ωx, Ωθ) = e^(2πi Ωθ θ₁) cos θ₁ · L(cos θ₁ Ωx, Ωθ). Eq. 10 and Table 1 of Durand et al.
+    /// 2005 divide Ωx by the cosine and leave 2π out of the phase.
     #[must_use]
     pub fn outgoing(theta1: f64) -> Self {
         Self {
@@ -48,22 +55,26 @@ impl Map<2> {
 impl Map<4> {
     /// Light incidence in the plane of (X, D): s_x = −x/cos θ₀, s_y = y, θᵢ = θ + θ₀, φᵢ = −φ.
     ///
-    /// Flipping directions turns the latitude over, which section 5.2 of Durand et al. 2005 does not say.
+    /// Flipping directions turns the latitude over, which section 5.2 of Durand et al. 2005 does
+    /// not say.
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self::sections(&Map::<2>::incidence(theta0), &Map::mirror())
     }
 
-    /// Curvature, into the frames of the local normals: (θ', φ') = (θ, φ) − diag(1, cos θ₀) M s for directions about the longitude θ₀.
+    /// Curvature, into the frames of the local normals: (θ', φ') = (θ, φ) − diag(1, cos θ₀) M s for
+    /// directions about the longitude θ₀.
     ///
-    /// `shape` is M, the derivative of the normal along (T, B), symmetric, in 1/m, convex positive: diag(k₁, k₂) in principal axes.
-    /// Eq. 19 of Durand et al. 2005 leaves cos θ₀ out: tilting the normal about T moves a direction at longitude θ₀ by that much less.
+    /// `shape` is M, the derivative of the normal along (T, B), symmetric, in 1/m, convex positive:
+    /// diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 leaves cos θ₀ out: tilting the
+    /// normal about T moves a direction at longitude θ₀ by that much less.
     #[must_use]
     pub fn curvature(shape: Matrix2, theta0: f64) -> Self {
         Self::tilt(shape, -1.0, theta0)
     }
 
-    /// Back from the frames of the local normals: (θ, φ) = (θ', φ') + diag(1, cos θ₁) M s for directions about the longitude θ₁.
+    /// Back from the frames of the local normals: (θ, φ) = (θ', φ') + diag(1, cos θ₁) M s for
+    /// directions about the longitude θ₁.
     #[must_use]
     pub fn back(shape: Matrix2, theta1: f64) -> Self {
         Self::tilt(shape, 1.0, theta1)

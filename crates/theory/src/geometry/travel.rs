@@ -7,8 +7,8 @@ use std::array;
 impl<const N: usize> Map<N> {
     /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
-    /// Exact for all slopes between parallel planes; never for angles. L'(Ωx, Ωu) = L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the
-    /// slips of Eq. 2 mended: docs/theory.md, section 1).
+    /// Exact for all slopes between parallel planes; never for angles. L'(Ωx, Ωu) = L(Ωx, Ωu + d
+    /// Ωx) (Durand et al. 2005, Eq. 3, with the slips of Eq. 2 mended: docs/theory.md, section 1).
     #[must_use]
     pub fn travel(distance: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
@@ -21,7 +21,8 @@ impl<const N: usize> Map<N> {
 
     /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. Positive f converges.
     ///
-    /// The ideal lens: it images planes onto planes exactly in slopes (docs/theory.md, Eq. 24). The paper has no lens.
+    /// The ideal lens: it images planes onto planes exactly in slopes (docs/theory.md, Eq. 24). The
+    /// paper has no lens.
     #[must_use]
     pub fn thin_lens(focal_length: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);
@@ -34,10 +35,11 @@ impl<const N: usize> Map<N> {
         }))
     }
 
-    /// The mirror reflection of local directions, θ' = −θ and φ' = −φ, in the frames of the local normals.
+    /// The mirror reflection of local directions, θ' = −θ and φ' = −φ, in the frames of the local
+    /// normals.
     ///
-    /// L'(Ωx, Ωθ) = L(Ωx, −Ωθ) (Durand et al. 2005, Eq. 14). An ideal mirror has the BRDF δ/cos θ, so no cosine goes with it;
-    /// the paper's bare Dirac (section 4.2) would leave a factor cos θ₀.
+    /// L'(Ωx, Ωθ) = L(Ωx, −Ωθ) (Durand et al. 2005, Eq. 14). An ideal mirror has the BRDF δ/cos θ,
+    /// so no cosine goes with it; the paper's bare Dirac (section 4.2) would leave a factor cos θ₀.
     #[must_use]
     pub fn mirror() -> Self {
         let signs = array::from_fn(|i| if i < N / 2 { 1.0 } else { -1.0 });
@@ -46,11 +48,12 @@ impl<const N: usize> Map<N> {
 }
 
 impl Map<4> {
-    /// The axes turned by an angle, in radians, from the first to the second: x' = x cos + y sin, y' = −x sin + y cos, and
-    /// alike for directions. A is orthogonal.
+    /// The axes turned by an angle, in radians, from the first to the second: x' = x cos + y sin,
+    /// y' = −x sin + y cos, and alike for directions. A is orthogonal.
     ///
-    /// Exact for two-plane coordinates turned about the central ray: so the plane of incidence is brought onto X. About a normal it turns
-    /// (s_x, s_y) exactly and (θ, φ) to first order in the angle to the normal (Durand et al. 2005, section 5.2).
+    /// Exact for two-plane coordinates turned about the central ray: so the plane of incidence is
+    /// brought onto X. About a normal it turns (s_x, s_y) exactly and (θ, φ) to first order in the
+    /// angle to the normal (Durand et al. 2005, section 5.2).
     #[must_use]
     pub fn rotation(angle: f64) -> Self {
         let (sin, cos) = angle.sin_cos();

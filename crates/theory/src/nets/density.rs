@@ -57,8 +57,8 @@ impl Density {
         }
     }
 
-    /// That of a window's profile. Next to the border it is a little larger than the profile, so that
-    /// no ray stands for much more than its share.
+    /// That of a window's profile. Next to the border it is a little larger than the profile, so
+    /// that no ray stands for much more than its share.
     pub(crate) fn of(profile: &Profile) -> Self {
         let half = profile.half_width();
         let inside = |t: f64| profile.value(t * (1.0 - 1e-9)) + 1e-3;
@@ -108,8 +108,8 @@ impl Density {
     }
 }
 
-/// A density over where rays are aimed at, one coordinate of a plane. They land a little beside it, so
-/// it is wider than the window, and it ends nowhere.
+/// A density over where rays are aimed at, one coordinate of a plane. They land a little beside it,
+/// so it is wider than the window, and it ends nowhere.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
     near: Density,

@@ -1,10 +1,10 @@
 //! Sums over rays that stand for a light field, by randomised quasi-Monte Carlo.
 //!
-//! Whatever has no closed form is an integral over rays: positions and slopes at the plane, and points
-//! of the light. Its nodes are those of scrambled nets ([`sobol`]). Each of [`REPLICATES`] independent
-//! nets is a prediction of its own, without bias, and their spread is the error of their mean: a rule
-//! that is too coarse says so, because the nets disagree. Nodes are added until the error is below
-//! what is asked, or a budget is spent.
+//! Whatever has no closed form is an integral over rays: positions and slopes at the plane, and
+//! points of the light. Its nodes are those of scrambled nets ([`sobol`]). Each of [`REPLICATES`]
+//! independent nets is a prediction of its own, without bias, and their spread is the error of
+//! their mean: a rule that is too coarse says so, because the nets disagree. Nodes are added until
+//! the error is below what is asked, or a budget is spent.
 
 mod density;
 mod sobol;
@@ -39,8 +39,8 @@ pub struct Budget {
 }
 
 impl Budget {
-    /// Of a trial by which ways of drawing rays are told apart. With fewer, those that are best with
-    /// few rays win.
+    /// Of a trial by which ways of drawing rays are told apart. With fewer, those that are best
+    /// with few rays win.
     pub(crate) const TRIAL: Self = Self {
         nodes: 65_536.0,
         error: 0.0,
@@ -105,8 +105,8 @@ struct Running {
     moments: Moments,
 }
 
-/// Sums over the nodes of independent nets, doubled until the budget says to stop. The same bytes on
-/// any number of threads.
+/// Sums over the nodes of independent nets, doubled until the budget says to stop. The same bytes
+/// on any number of threads.
 pub(crate) fn sums(
     integrand: &(impl Integrand + ?Sized),
     window: &Window,

@@ -1,8 +1,8 @@
 //! Points of Sobol' nets, scrambled independently.
 //!
 //! A net of 2ᵐ points has one in each of the boxes into which halving the sides of the unit cube in
-//! turn divides it. Scrambling moves each point at random and keeps that, so that the mean over a net
-//! is an unbiased estimate, and nets scrambled with different keys are independent (Owen 1997).
+//! turn divides it. Scrambling moves each point at random and keeps that, so that the mean over a
+//! net is an unbiased estimate, and nets scrambled with different keys are independent (Owen 1997).
 
 use etendue_field::random::unit;
 
@@ -102,7 +102,8 @@ fn scrambled(value: u32, key: u32) -> u32 {
     x.reverse_bits()
 }
 
-/// A hash of 32 bits, each of which every bit of the result depends on (the finaliser of `MurmurHash3`).
+/// A hash of 32 bits, each of which every bit of the result depends on (the finaliser of
+/// `MurmurHash3`).
 fn mixed_bits(mut x: u32) -> u32 {
     x = (x ^ (x >> 16)).wrapping_mul(0x85EB_CA6B);
     x = (x ^ (x >> 13)).wrapping_mul(0xC2B2_AE35);
@@ -144,7 +145,8 @@ mod tests {
         }
     }
 
-    /// The error of a smooth mean over six coordinates falls much faster than that of random points.
+    /// The error of a smooth mean over six coordinates falls much faster than that of random
+    /// points.
     #[test]
     fn nets_beat_random_points() {
         let f = |p: &[f64; DIMENSIONS]| p.iter().map(|x| 1.0 + 0.5 * (x - 0.5)).product::<f64>();

@@ -6,10 +6,10 @@ use etendue_field::{Complex, Window};
 
 /// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
 ///
-/// brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), the factors being transforms of convex polygons, evaluated one by
-/// one; exact for uniform rectangles, half-planes and gratings, 10⁻⁸ for factors of slope, by a quadrature
-/// for discs (see [`quadrature_error`](crate::quadrature_error)) and for diffuse reflection. It is the truth for [`slices`](crate::slices).
-/// Unit: W m⁻² sr⁻¹ · m².
+/// brightness · Σ terms ± F(Ωx, Ωu) F(Ωy, Ωv), the factors being transforms of convex polygons,
+/// evaluated one by one; exact for uniform rectangles, half-planes and gratings, 10⁻⁸ for factors
+/// of slope, by a quadrature for discs (see [`quadrature_error`](crate::quadrature_error)) and for
+/// diffuse reflection. It is the truth for [`slices`](crate::slices). Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
     let path = chain.path();

@@ -12,7 +12,8 @@ pub struct Source {
 /// What happens to the light field on its way.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operator {
-    /// Free travel (docs/theory.md, Eq. 2): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3).
+    /// Free travel (docs/theory.md, Eq. 2): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d
+    /// Ωx) (Durand et al. 2005, Eq. 3).
     Travel {
         /// Where the light comes from.
         from: String,
@@ -21,23 +22,26 @@ pub enum Operator {
         /// The distance d, in metres.
         distance: f64,
     },
-    /// A mask in the plane where the light is now: a product with 1 − Σ shapes and half-planes, which must not
-    /// overlap each other, or with a cosine grating (Durand et al. 2005, Eq. 4).
+    /// A mask in the plane where the light is now: a product with 1 − Σ shapes and half-planes,
+    /// which must not overlap each other, or with a cosine grating (Durand et al. 2005, Eq. 4).
     Visibility {
         /// Name of the mask.
         name: String,
         /// What it lets through; coordinates relative to the central ray.
         mask: Mask,
     },
-    /// A product with G = (1 + u² + v²)⁻² (docs/theory.md, Eq. 7): radiance becomes differential irradiance.
+    /// A product with G = (1 + u² + v²)⁻² (docs/theory.md, Eq. 7): radiance becomes differential
+    /// irradiance.
     Cosine {
         /// Name of the surface.
         name: String,
     },
-    /// Diffuse reflection: the integral over both slopes, times albedo/π. Exitant radiance, constant in slope
-    /// (Durand et al. 2005, section 5.1; the factor G is a [`Cosine`](Self::Cosine) before it).
+    /// Diffuse reflection: the integral over both slopes, times albedo/π. Exitant radiance,
+    /// constant in slope (Durand et al. 2005, section 5.1; the factor G is a
+    /// [`Cosine`](Self::Cosine) before it).
     ///
-    /// The frame turns round: the central ray goes back along −D, x' = −x, y' = y. Only travel may follow.
+    /// The frame turns round: the central ray goes back along −D, x' = −x, y' = y. Only travel may
+    /// follow.
     Diffuse {
         /// Name of the surface.
         name: String,
@@ -48,20 +52,22 @@ pub enum Operator {
 
 /// A light path: the source and the operators in the order the light meets them.
 ///
-/// The predicted light field is the radiance where the last operator ends, in two-plane coordinates (with a
-/// cosine and nothing after it: the differential irradiance).
+/// The predicted light field is the radiance where the last operator ends, in two-plane coordinates
+/// (with a cosine and nothing after it: the differential irradiance).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// The light.
     pub source: Source,
-    /// What happens to its light, in order. At most one diffuse reflection, after which it only travels.
+    /// What happens to its light, in order. At most one diffuse reflection, after which it only
+    /// travels.
     pub operators: Vec<Operator>,
 }
 
 /// A plane with a mask, seen from the end of a [`Path`].
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Layer<'a> {
-    /// Distance the light has travelled since it, in metres: the ray (x, u) was at x − distance · u there.
+    /// Distance the light has travelled since it, in metres: the ray (x, u) was at x − distance · u
+    /// there.
     pub(crate) distance: f64,
     pub(crate) mask: &'a Mask,
 }
@@ -125,7 +131,8 @@ impl Chain {
     }
 }
 
-/// Light that goes through pictures is followed ray by ray (`rays`), that of an environment not at all.
+/// Light that goes through pictures is followed ray by ray (`rays`), that of an environment not at
+/// all.
 pub(crate) fn no_closed_form() -> ! {
     panic!("a projector, a beam or an environment has no closed form here")
 }

@@ -1,20 +1,21 @@
-//! The transforms of many polygons along a row of frequencies, without an exponential per polygon and
-//! frequency (docs/theory.md, section 3).
+//! The transforms of many polygons along a row of frequencies, without an exponential per polygon
+//! and frequency (docs/theory.md, section 3).
 //!
-//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, between edges of directions d
-//! and e:
+//! Eq. 5 there with the field k exp(−2πi k·p) telescopes to the corners p, between edges of
+//! directions d and e:
 //!
 //! F(k) = 1/(4π²) Σ (d × e) / ((k·d)(k·e)) · exp(−2πi k·p)
 //!
-//! The quotient depends on the pair of directions alone, and a chain has few; the exponential is a product
-//! of one in the position and one in the slope. Each exponential of the window shifts k by ± s, so a corner
-//! needs, with θ = 2π s·p and c± the quotients at k ± s,
+//! The quotient depends on the pair of directions alone, and a chain has few; the exponential is a
+//! product of one in the position and one in the slope. Each exponential of the window shifts k by
+//! ± s, so a corner needs, with θ = 2π s·p and c± the quotients at k ± s,
 //!
 //! exp(−2πi k·p) Σ_s (c₊ + c₋) cos θ + i (c₋ − c₊) sin θ.
 //!
 //! The end of a segment along d has the quotient ± 1/(2πi k·d).
 //!
-//! Where a (k ± s)·d is nearly zero the corners cancel and [`Polygon::transform`] takes their place.
+//! Where a (k ± s)·d is nearly zero the corners cancel and [`Polygon::transform`] takes their
+//! place.
 
 use crate::parallel::expansion::Section;
 use crate::parallel::polygon::{self, Polygon, cross, dot};
@@ -23,8 +24,8 @@ use crate::parallel::wave::Wave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// Smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two of them in one
-/// quotient cost 1/CANCELLATION² = 1000 roundings.
+/// Smallest |k·edge|, for the longest edge of a direction, at which corners are used. Two of them
+/// in one quotient cost 1/CANCELLATION² = 1000 roundings.
 const CANCELLATION: f64 = 0.03;
 /// Waves taken at a time, so that their quotients stay in the cache.
 const WAVES_AT_A_TIME: usize = 32;
@@ -49,7 +50,8 @@ pub(crate) struct Corners<'a> {
     corners: Vec<Corner>,
     /// (cos θ, sin θ) of each corner and wave, [corner, wave].
     phases: Vec<[f64; 2]>,
-    /// Pairs of directions that meet at a corner, the lower index first; equal at the end of a segment.
+    /// Pairs of directions that meet at a corner, the lower index first; equal at the end of a
+    /// segment.
     pairs: Vec<[usize; 2]>,
     /// Directions of an edge, each with the largest |k·d| at which it is nearly zero.
     edges: Vec<(usize, f64)>,
@@ -57,7 +59,8 @@ pub(crate) struct Corners<'a> {
 
 /// The quotients of some waves along a row.
 struct Quotients {
-    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` as they will multiply.
+    /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` as they will
+    /// multiply.
     values: Parts,
     /// Cells left to the plain transform: n, the shifted frequency, its weight.
     left: Vec<(usize, [f64; 2], Complex)>,
@@ -146,7 +149,8 @@ impl<'a> Corners<'a> {
         edges.any(|&(d, smallest)| dot(k, directions[d]).abs() < smallest)
     }
 
-    /// (d × e) / (4π² (k·d)(k·e)) of each pair of directions; 1/(2π k·d) of a direction with itself.
+    /// (d × e) / (4π² (k·d)(k·e)) of each pair of directions; 1/(2π k·d) of a direction with
+    /// itself.
     fn pair_quotients(&self, k: [f64; 2]) -> impl Iterator<Item = f64> {
         self.pairs.iter().map(move |pair| {
             let [d, e] = pair.map(|i| self.section.directions[i]);

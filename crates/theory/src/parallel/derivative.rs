@@ -4,12 +4,13 @@ use etendue_field::{SliceGrid, Slices, Window};
 
 /// Step of the forward difference, relative to the value of the parameter.
 ///
-/// Its error is half the second derivative times the step: a parameter turns phases by up to some tens of
-/// radians, so some 10⁻³ of the derivative. Rounding adds 10⁻¹²/10⁻⁴ = 10⁻⁸ of the spectrum.
+/// Its error is half the second derivative times the step: a parameter turns phases by up to some
+/// tens of radians, so some 10⁻³ of the derivative. Rounding adds 10⁻¹²/10⁻⁴ = 10⁻⁸ of the
+/// spectrum.
 const RELATIVE_STEP: f64 = 1e-4;
 
-/// The derivative of the slices by a parameter, per unit of it: the forward difference with a step of 10⁻⁴ of
-/// the parameter's value (of its unit, where it is zero).
+/// The derivative of the slices by a parameter, per unit of it: the forward difference with a step
+/// of 10⁻⁴ of the parameter's value (of its unit, where it is zero).
 ///
 /// `prediction` must be the slices of the chain itself, on the same window and grid.
 ///
@@ -87,7 +88,8 @@ mod tests {
                     worst = f64::max(worst, (derivative - central).norm());
                     largest = f64::max(largest, central.norm());
                 }
-                // Half a second derivative times the forward step of 1e-4: phases here stay below 20.
+                // Half a second derivative times the forward step of 1e-4: phases here stay below
+                // 20.
                 let close = 2e-3 * largest;
                 assert!(worst < close, "{parameter:?}: {}", worst / largest);
             }

@@ -30,10 +30,11 @@ impl Discs {
 
 /// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md, Eq. 5b).
 ///
-/// It stands for the disc under every integral with something smooth: ∫ A(R cos t) dB(R sin t), A and B being
-/// the integrals over the two rectangles' sides, once A and B have been written in the cosines and sines of odd
-/// multiples of t that their oddness leaves. With the sum over multiples m < 2n in closed form,
-/// π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), c(i) = −(−1)^i / sin(π i/2n), c(0) = 0.
+/// It stands for the disc under every integral with something smooth: ∫ A(R cos t) dB(R sin t), A
+/// and B being the integrals over the two rectangles' sides, once A and B have been written in the
+/// cosines and sines of odd multiples of t that their oddness leaves. With the sum over multiples m
+/// < 2n in closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), c(i) =
+/// −(−1)^i / sin(π i/2n), c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<Patch> {
     let angle = FRAC_PI_2 / n as f64;
     let node = |j: usize| angle * (j as f64 + 0.5);
@@ -149,7 +150,9 @@ mod tests {
     #[test]
     fn strips_are_of_second_order() {
         let [coarse, fine] = [64, 128].map(|n| worst(Discs::Strips(n)));
-        assert!((coarse / fine - 4.0).abs() < 0.2, "{}", coarse / fine); // 4, the next order is small
-        assert!(fine < 1e-4, "{fine}"); // (π Ω R)² / 128² is 0.014, over what is left at such frequencies
+        // 4, the next order is small.
+        assert!((coarse / fine - 4.0).abs() < 0.2, "{}", coarse / fine);
+        // (π Ω R)² / 128² is 0.014, over what is left at such frequencies.
+        assert!(fine < 1e-4, "{fine}");
     }
 }

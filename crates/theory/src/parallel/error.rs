@@ -6,14 +6,16 @@ use etendue_field::{SliceGrid, Slices, Window};
 /// Lowest order to which discs converge.
 const ORDER: i32 = 4;
 
-/// How far `slices`, the prediction of the same chain, may be off: ‖error‖/‖F‖ over the grid. `None` where it is
-/// a closed form.
+/// How far `slices`, the prediction of the same chain, may be off: ‖error‖/‖F‖ over the grid.
+/// `None` where it is a closed form.
 ///
-/// * Discs: the difference to a prediction that takes them apart a quarter finer, over 1 − 0.8⁴. Where masks and
-///   windows have corners within a disc the error falls as n⁻⁴, elsewhere faster than exponentially
-///   (docs/theory.md, section 3), so that the difference is nearly all of it.
-/// * Diffuse reflection: a third of the difference to half as many nodes, since the rule is of second order.
-/// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window, about 10⁻⁹.
+/// * Discs: the difference to a prediction that takes them apart a quarter finer, over 1 − 0.8⁴.
+///   Where masks and windows have corners within a disc the error falls as n⁻⁴, elsewhere faster
+///   than exponentially (docs/theory.md, section 3), so that the difference is nearly all of it.
+/// * Diffuse reflection: a third of the difference to half as many nodes, since the rule is of
+///   second order.
+/// * Spots, points and cosines: the residual of the series of (1 + u² + v²)^p over the window,
+///   about 10⁻⁹.
 #[must_use]
 pub fn quadrature_error(
     chain: &Chain,
@@ -75,7 +77,8 @@ mod tests {
         quadrature_error(chain, window, &grid(), &slices)
     }
 
-    /// The error of a disc as a light, and as a blocker before a square light, with travel before and after.
+    /// The error of a disc as a light, and as a blocker before a square light, with travel before
+    /// and after.
     fn errors(profile: fn(f64) -> Profile, radius: f64, distances: [f64; 2]) -> [f64; 2] {
         let round = disc([0.02, 0.01], radius);
         let light = chain_of(spot(round, 0.0), distances.map(|d| (d, None)));
@@ -93,8 +96,10 @@ mod tests {
                 let smooth = errors(Profile::Hann, radius, distances);
                 let hard = errors(Profile::Box, radius, distances);
                 let said = format!("{radius} {distances:?}: {smooth:?} {hard:?}");
-                assert!(smooth.iter().all(|e| *e < 1e-7), "{said}"); // beyond π R Ω nodes: exponential
-                // Corners of the box: n⁻⁴. The largest disc lets a five-hundredth of the light past.
+                // Beyond π R Ω nodes: exponential.
+                assert!(smooth.iter().all(|e| *e < 1e-7), "{said}");
+                // Corners of the box: n⁻⁴. The largest disc lets a five-hundredth of the light
+                // past.
                 assert!(hard.iter().all(|e| *e < 5e-5), "{said}");
             }
         }

@@ -14,13 +14,14 @@ const PAIRS_PER_TERM: usize = 8;
 /// A range that every ray passes.
 const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 
-/// The (position, slope) plane of one axis: the polygons that light fills in it, in units of the half-widths
-/// of the window.
+/// The (position, slope) plane of one axis: the polygons that light fills in it, in units of the
+/// half-widths of the window.
 #[derive(Debug)]
 pub(crate) struct Section {
     /// Half-widths in position (metres) and slope.
     pub(crate) half: [f64; 2],
-    /// Unit of the polygons' measure: metre · slope, or slope of the segments that a point light fills.
+    /// Unit of the polygons' measure: metre · slope, or slope of the segments that a point light
+    /// fills.
     pub(crate) unit: f64,
     /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
     pub(crate) directions: Vec<[f64; 2]>,
@@ -41,16 +42,17 @@ pub(crate) struct Term {
 /// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
 /// (docs/theory.md, Eqs. 4 and 5d).
 ///
-/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times one in (y, v), so the product
-/// source · Π_layers (1 − Σ blockers) is a signed sum of products of convex polygons. All other factors are
-/// products of waves, with a sum outside where the two sections do not separate.
+/// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times one in (y, v), so
+/// the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex polygons.
+/// All other factors are products of waves, with a sum outside where the two sections do not
+/// separate.
 #[derive(Debug)]
 pub(crate) struct Expansion {
     /// (x, u) and (y, v).
     pub(crate) sections: [Section; 2],
     pub(crate) terms: Vec<Term>,
-    /// Products of the waves of both sections, to be added: the window and gratings; more than one for
-    /// a factor of slope.
+    /// Products of the waves of both sections, to be added: the window and gratings; more than one
+    /// for a factor of slope.
     pub(crate) products: Vec<[Vec<Wave>; 2]>,
     /// The radiance, or the intensity of a point.
     pub(crate) brightness: f64,
@@ -89,7 +91,8 @@ impl Section {
         })
     }
 
-    /// The part of a polygon whose rays were in `extent` (metres) a `distance` ago; `None` if empty.
+    /// The part of a polygon whose rays were in `extent` (metres) a `distance` ago; `None` if
+    /// empty.
     fn strip(&mut self, polygon: usize, distance: f64, extent: [f64; 2]) -> Option<usize> {
         if extent.map(f64::to_bits) == EVERYWHERE.map(f64::to_bits) {
             return Some(polygon);
@@ -109,8 +112,8 @@ impl Section {
         index
     }
 
-    /// ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, k in cycles per metre and per unit slope: one
-    /// polygon transform for each exponential. Unit: metre · slope; for segments, slope.
+    /// ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, k in cycles per metre and per unit
+    /// slope: one polygon transform for each exponential. Unit: metre · slope; for segments, slope.
     pub(crate) fn value(&self, waves: &[Wave], polygon: &Polygon, k: [f64; 2]) -> Complex {
         let k = self.reduced(k);
         let shifts = waves.iter().flat_map(Wave::shifts);
@@ -168,7 +171,8 @@ impl Expansion {
         }
     }
 
-    /// The light and the opaque masks; stops and says no where there are more terms or polygons than `most`.
+    /// The light and the opaque masks; stops and says no where there are more terms or polygons
+    /// than `most`.
     fn multiply_out(&mut self, path: &Path<'_>, fineness: &Fineness, most: usize) -> bool {
         self.shine(path, fineness.0[0]);
         let layers = path.layers.iter();

@@ -11,8 +11,8 @@ use rayon::prelude::*;
 
 /// The spectrum of a chain on a 4D grid of frequencies: multiples of a spacing along each axis.
 ///
-/// It is a sum of products of a factor over (Ωx, Ωu) and one over (Ωy, Ωv), so tables of the factors are all that
-/// is kept, and a frequency is read off them as it is asked for.
+/// It is a sum of products of a factor over (Ωx, Ωu) and one over (Ωy, Ωv), so tables of the
+/// factors are all that is kept, and a frequency is read off them as it is asked for.
 #[derive(Debug)]
 pub struct Harmonics {
     expansion: Expansion,
@@ -33,9 +33,11 @@ struct Table {
 const LARGEST: usize = 100_000_000;
 
 impl Harmonics {
-    /// Tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along each axis.
+    /// Tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along each
+    /// axis.
     ///
-    /// `None` behind a diffuse reflection, which is no such product, and where the tables would be larger than 1.6 GB.
+    /// `None` behind a diffuse reflection, which is no such product, and where the tables would be
+    /// larger than 1.6 GB.
     #[must_use]
     pub fn new(
         chain: &Chain,

@@ -4,14 +4,15 @@ use etendue_field::{Light, Mask, Shape};
 /// A number of a [`Chain`] that a measurement may be asked for. Indices are those of operators.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// The side of a rectangular light along X, its other side keeping the proportion, or the radius of a disc.
+    /// The side of a rectangular light along X, its other side keeping the proportion, or the
+    /// radius of a disc.
     SourceSize,
     /// The exponent n of a spot's cosⁿθ.
     SpotExponent,
     /// The distance of a travel.
     Travel(usize),
-    /// The side along X, or the radius, of the first shape of an opaque mask; all its shapes keep the
-    /// proportion, all centres stay.
+    /// The side along X, or the radius, of the first shape of an opaque mask; all its shapes keep
+    /// the proportion, all centres stay.
     BlockerSide(usize),
     /// The edge of the first half-plane of an opaque mask; nothing else moves.
     HalfPlaneEdge(usize),

@@ -11,7 +11,8 @@ const SPARE_NODES: f64 = 6.0;
 const MOST_NODES: f64 = 72.0;
 /// How far out, in largest frequencies, edges in other planes are followed.
 const FARTHEST: f64 = 4.0;
-/// Share of that which is resolved: the rest is the corners of the grid of frequencies, where there is little.
+/// Share of that which is resolved: the rest is the corners of the grid of frequencies, where there
+/// is little.
 const FAR_SHARE: f64 = 0.7;
 /// Most terms of an expansion that discs may make.
 const MOST_TERMS: f64 = 3e5;
@@ -134,8 +135,8 @@ impl Fineness {
     }
 }
 
-/// How fast integrals over the lines x − h u = c may change with c: they are the spectrum of all the rest of the
-/// field along the line of frequencies (Ωx − γ, Ωu + h γ).
+/// How fast integrals over the lines x − h u = c may change with c: they are the spectrum of all
+/// the rest of the field along the line of frequencies (Ωx − γ, Ωu + h γ).
 struct Rates {
     /// Largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
@@ -167,9 +168,9 @@ impl Rates {
         rates
     }
 
-    /// Under the window alone the spectrum is near zero, so that γ is both near Ωx and near −Ωu/h. Edges in a
-    /// plane at distance g spread it along Ωu = −g Ωx, which the line meets at γ = (Ωu + g Ωx)/(g − h); far out on
-    /// it there is little.
+    /// Under the window alone the spectrum is near zero, so that γ is both near Ωx and near −Ωu/h.
+    /// Edges in a plane at distance g spread it along Ωu = −g Ωx, which the line meets at γ = (Ωu +
+    /// g Ωx)/(g − h); far out on it there is little.
     fn at(&self, plane: usize) -> f64 {
         let h = self.planes[plane];
         let [x, u] = self.frequency;

@@ -7,7 +7,8 @@ use crate::numerics::sinc::sinc;
 use etendue_field::Complex;
 use std::f64::consts::TAU;
 
-/// Below this largest phase, in radians, the series is used; above it the edge form keeps 14 digits.
+/// Below this largest phase, in radians, the series is used; above it the edge form keeps 14
+/// digits.
 const SERIES_PHASE: f64 = 0.2;
 /// Terms of the series: the next is SERIES_PHASE¹¹ · 12/13! = 4e-17 of the area.
 const SERIES_TERMS: u32 = 11;
@@ -21,9 +22,11 @@ pub(crate) struct Corner {
     pub(crate) edge: usize,
 }
 
-/// A convex polygon, corners counter-clockwise; or a segment, which has two corners, the lower slope first.
+/// A convex polygon, corners counter-clockwise; or a segment, which has two corners, the lower
+/// slope first.
 ///
-/// A segment along (shear, 1) stands for δ(position − shear · slope): its integrals are over the slope.
+/// A segment along (shear, 1) stands for δ(position − shear · slope): its integrals are over the
+/// slope.
 #[derive(Clone, Debug)]
 pub(crate) struct Polygon(Vec<Corner>);
 
@@ -40,8 +43,8 @@ fn minus(a: [f64; 2], b: [f64; 2]) -> [f64; 2] {
 }
 
 impl Polygon {
-    /// The square |position| < 1, |slope| < 1; `edges` are the directions of its sides of constant slope
-    /// and of constant position.
+    /// The square |position| < 1, |slope| < 1; `edges` are the directions of its sides of constant
+    /// slope and of constant position.
     pub(crate) fn square(edges: [usize; 2]) -> Self {
         let corner = |x, u, side: usize| Corner {
             at: [x, u],
@@ -55,7 +58,8 @@ impl Polygon {
         ])
     }
 
-    /// The segment position = `shear` · slope inside the square; `edge` is the direction (shear, 1).
+    /// The segment position = `shear` · slope inside the square; `edge` is the direction (shear,
+    /// 1).
     pub(crate) fn segment(shear: f64, edge: usize) -> Self {
         let end = 1.0 / shear.abs().max(1.0);
         let corner = |u: f64| Corner {
@@ -129,7 +133,8 @@ impl Polygon {
         })
     }
 
-    /// The part where `low` ≤ position − `shear` · slope ≤ `high`; `edge` is the direction (shear, 1).
+    /// The part where `low` ≤ position − `shear` · slope ≤ `high`; `edge` is the direction (shear,
+    /// 1).
     pub(crate) fn strip(&self, shear: f64, [low, high]: [f64; 2], edge: usize) -> Self {
         self.clipped([1.0, -shear], high, edge)
             .clipped([-1.0, shear], -low, edge)
@@ -175,8 +180,8 @@ impl Polygon {
         Complex::cis(-TAU * dot(k, middle)) * (e[1] * sinc(dot(k, e)))
     }
 
-    /// i/(2π|k|²) Σ (n·k) exp(−2πi k·c) sinc(k·e) over the edges e with midpoints c and outward normals
-    /// n = (e_y, −e_x): the divergence theorem with the field k exp(−2πi k·p).
+    /// i/(2π|k|²) Σ (n·k) exp(−2πi k·c) sinc(k·e) over the edges e with midpoints c and outward
+    /// normals n = (e_y, −e_x): the divergence theorem with the field k exp(−2πi k·p).
     fn edge_form(&self, k: [f64; 2]) -> Complex {
         let mut sum = Complex::ZERO;
         for (a, b) in self.sides() {
@@ -187,8 +192,8 @@ impl Polygon {
         sum * Complex::new(0.0, 1.0 / (TAU * dot(k, k)))
     }
 
-    /// The transform about the first corner as a power series in the phases β, γ of the other two corners
-    /// of each triangle: 2 area Σ (−i)ⁿ hₙ(β, γ)/(n + 2)!, hₙ = βⁿ + βⁿ⁻¹γ + … + γⁿ.
+    /// The transform about the first corner as a power series in the phases β, γ of the other two
+    /// corners of each triangle: 2 area Σ (−i)ⁿ hₙ(β, γ)/(n + 2)!, hₙ = βⁿ + βⁿ⁻¹γ + … + γⁿ.
     fn series(&self, k: [f64; 2]) -> Complex {
         let mut sum = Complex::ZERO;
         for [b, c] in self.triangles() {
@@ -267,7 +272,8 @@ mod tests {
         let strip = Polygon::square([0, 1]).strip(shear, [-0.5 * width, 0.5 * width], 2);
         let cuts = |p: Polygon| p.clipped(cut[0], 0.3, 3).clipped(cut[1], 0.2, 4);
         let (strip, segment) = (cuts(strip), cuts(Polygon::segment(shear, 2)));
-        // Ends of the strip are slanted: second order in the width, some 1e-10; 1e-16/width of rounding.
+        // Ends of the strip are slanted: second order in the width, some 1e-10; 1e-16/width of
+        // rounding.
         assert!((strip.measure() / width - segment.measure()).abs() < 1e-9);
         for k in FREQUENCIES {
             let difference = strip.transform(k) / width - segment.transform(k);

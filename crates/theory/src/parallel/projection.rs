@@ -11,8 +11,9 @@ use ndarray::Array2;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
-/// Nodes along each direction of a triangle. The window is smooth inside a cell: with Hann profiles the
-/// error is below 1e-11 for 8 bins and below rounding for 32. Each cycle of a grating in a cell takes more.
+/// Nodes along each direction of a triangle. The window is smooth inside a cell: with Hann profiles
+/// the error is below 1e-11 for 8 bins and below rounding for 32. Each cycle of a grating in a cell
+/// takes more.
 const NODES: usize = 5;
 /// Nodes for each cycle.
 const NODES_PER_CYCLE: f64 = 5.0;
@@ -21,9 +22,9 @@ const MOST_NODES: f64 = 200.0;
 
 /// The windowed light field integrated over y and v, as means over cells of (x, u).
 ///
-/// Exact in y and v (the factor at frequency zero). Each polygon is cut to each cell, where the window is
-/// integrated by a Gauss rule: no aliasing at edges. Discs are strips, a twentieth of a cell and more.
-/// Unit: W m⁻² sr⁻¹ · m.
+/// Exact in y and v (the factor at frequency zero). Each polygon is cut to each cell, where the
+/// window is integrated by a Gauss rule: no aliasing at edges. Discs are strips, a twentieth of a
+/// cell and more. Unit: W m⁻² sr⁻¹ · m.
 #[must_use]
 pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Projection {
     let path = chain.path();

@@ -1,4 +1,5 @@
-//! A chain whose closed form takes too long, or does not resolve a pattern: the same light by nets of rays.
+//! A chain whose closed form takes too long, or does not resolve a pattern: the same light by nets
+//! of rays.
 
 use crate::nets::{Budget, Moved};
 use crate::parallel::chain::Path;

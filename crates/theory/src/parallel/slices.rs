@@ -14,9 +14,9 @@ const ORTHOGONAL: f64 = 1e-15;
 
 /// The slices of the spectrum on a grid: the values of [`at`](crate::at), from sums over corners.
 ///
-/// Rows of constant (azimuth, ρ) are computed in parallel, each by one thread, so the result is the same for
-/// any number of threads. Differs from [`at`](crate::at) by less than 1e-10 of the largest value (with discs,
-/// by the error of their quadrature). Unit: W m⁻² sr⁻¹ · m².
+/// Rows of constant (azimuth, ρ) are computed in parallel, each by one thread, so the result is the
+/// same for any number of threads. Differs from [`at`](crate::at) by less than 1e-10 of the largest
+/// value (with discs, by the error of their quadrature). Unit: W m⁻² sr⁻¹ · m².
 #[must_use]
 pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
     let path = chain.path();
@@ -83,8 +83,8 @@ impl<'a> Product<'a> {
         }
     }
 
-    /// The factors of all polygons of section `axis` in the row at ρ, [polygon, ν]; `along` is the cosine of the
-    /// angle between the azimuth and the axis.
+    /// The factors of all polygons of section `axis` in the row at ρ, [polygon, ν]; `along` is the
+    /// cosine of the angle between the azimuth and the axis.
     fn factors(&self, axis: usize, rho: f64, along: f64, grid: &SliceGrid) -> Vec<Complex> {
         let section = &self.expansion.sections[axis];
         if along.abs() < ORTHOGONAL {
@@ -124,8 +124,8 @@ mod tests {
     use crate::testing::*;
     use etendue_field::{FrequencyAxis, Light, Profile, Rectangle};
 
-    /// A grid whose frequencies fall on the shifts of Hann profiles of half-width 1/2 and on the lines
-    /// k·d = 0 of distances 1 and 2: wherever the corners cancel.
+    /// A grid whose frequencies fall on the shifts of Hann profiles of half-width 1/2 and on the
+    /// lines k·d = 0 of distances 1 and 2: wherever the corners cancel.
     fn singular_grid(azimuths: usize, half: usize) -> SliceGrid {
         let axis = FrequencyAxis { half, spacing: 0.5 };
         SliceGrid {
@@ -204,7 +204,8 @@ mod tests {
         for chain in chains() {
             for window in [window(hann, hann), window(Profile::Box(half), hann), mixed] {
                 let worst = difference(&chain, &window, &singular_grid(4, 6));
-                // A thousand roundings where two directions nearly cancel, over a lit part of about 1/20.
+                // A thousand roundings where two directions nearly cancel, over a lit part of about
+                // 1/20.
                 assert!(worst < 1e-12, "{worst:e} {:?}", chain.describe());
             }
         }
@@ -236,7 +237,8 @@ mod tests {
             },
         };
         let worst = difference(&chain, &window, &grid);
-        assert!(worst < 1e-11, "{worst:e}"); // positions of 20 m in a window of 1 mm lose digits in both
+        // Positions of 20 m in a window of 1 mm lose digits in both.
+        assert!(worst < 1e-11, "{worst:e}");
     }
 
     #[test]
@@ -261,7 +263,8 @@ mod tests {
         let slices = slices(&chain, &window, &singular_grid(5, 3));
         for slice in slices.half.outer_iter() {
             let difference = slice[[0, 3]] - slices.at_zero();
-            assert!(difference.norm() < 1e-13 * slices.at_zero()); // rounding of one sum in two orders
+            // Rounding of one sum in two orders.
+            assert!(difference.norm() < 1e-13 * slices.at_zero());
         }
     }
 }

@@ -1,9 +1,9 @@
-//! Factors of slope alone: (1 + u² + v²)^p times the slope profiles of a window, as a short sum of products of
-//! cosine series (docs/theory.md, Eq. 5d).
+//! Factors of slope alone: (1 + u² + v²)^p times the slope profiles of a window, as a short sum of
+//! products of cosine series (docs/theory.md, Eq. 5d).
 //!
-//! The product is taken apart by elimination with complete pivoting, a(u) b(v) at a time (Townsend and Trefethen
-//! 2013), and each factor is fitted by cosines of a period longer than the window, where it is
-//! smooth (a Fourier extension, Huybrechs 2010). Both stop at a measured residual.
+//! The product is taken apart by elimination with complete pivoting, a(u) b(v) at a time (Townsend
+//! and Trefethen 2013), and each factor is fitted by cosines of a period longer than the window,
+//! where it is smooth (a Fourier extension, Huybrechs 2010). Both stop at a measured residual.
 
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::{CosineTerm, Profile};
@@ -27,7 +27,8 @@ const LARGEST_COEFFICIENT: f64 = 30.0;
 pub(crate) struct Slope {
     /// The sum of products: cosine terms along u and along v, frequencies in cycles per unit slope.
     pub(crate) parts: Vec<[Vec<CosineTerm>; 2]>,
-    /// Root mean square error over the window, relative to that of the function itself; 0 for p = 0.
+    /// Root mean square error over the window, relative to that of the function itself; 0 for p =
+    /// 0.
     pub(crate) residual: f64,
     /// Whether p = 0.
     pub(crate) is_profile: bool,

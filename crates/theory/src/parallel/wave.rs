@@ -17,7 +17,8 @@ pub(crate) struct Shift {
     pub(crate) frequency: [f64; 2],
     /// The weight without the phase of the wave.
     pub(crate) amplitude: f64,
-    /// +1 or −1: this exponential is exp(−i sign (2π s·p + phase)), s being the frequency of its wave.
+    /// +1 or −1: this exponential is exp(−i sign (2π s·p + phase)), s being the frequency of its
+    /// wave.
     pub(crate) sign: f64,
     pub(crate) weight: Complex,
 }
@@ -38,7 +39,8 @@ impl Wave {
         }
     }
 
-    /// A product of cosine terms along the position and along the slope, frequencies in cycles per unit.
+    /// A product of cosine terms along the position and along the slope, frequencies in cycles per
+    /// unit.
     pub(crate) fn of_terms(terms: [&[CosineTerm]; 2], half: [f64; 2]) -> Vec<Self> {
         let along = |axis: usize| -> Vec<Self> {
             let waves = terms[axis].iter().map(|term| {

@@ -1,7 +1,8 @@
 //! What a prediction takes, told before it is made.
 //!
-//! Counted from the rules that the prediction itself follows: corners, nodes, shapes, frequencies. A guard, so that a scene
-//! that would run for days is refused at once. Each kind of prediction counts its own, this file the closed form.
+//! Counted from the rules that the prediction itself follows: corners, nodes, shapes, frequencies.
+//! A guard, so that a scene that would run for days is refused at once. Each kind of prediction
+//! counts its own, this file the closed form.
 
 use crate::Chain;
 use crate::parallel::chain::Path;
@@ -115,8 +116,8 @@ fn waves(path: &Path<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
     2.0 * position * slopes * 3.0_f64.powi(i32::try_from(gratings.count()).unwrap_or(i32::MAX))
 }
 
-/// Steps at a frequency for a wave and two directions of edges; for a wave and a polygon, whose corners cancel at some; for a wave
-/// at a corner; for a corner; for a product of shapes.
+/// Steps at a frequency for a wave and two directions of edges; for a wave and a polygon, whose
+/// corners cancel at some; for a wave at a corner; for a corner; for a product of shapes.
 const WAVE: f64 = 70.0;
 const CANCELLED: f64 = 12.0;
 const AT_CORNER: f64 = 2.0;

@@ -17,7 +17,8 @@ pub(crate) struct Incidence {
     pub(crate) t: DVec3,
     pub(crate) b: DVec3,
     pub(crate) theta0: f64,
-    /// The angle about D by which the leg's frame is turned so that X lies in the plane of incidence, within ± π/2.
+    /// The angle about D by which the leg's frame is turned so that X lies in the plane of
+    /// incidence, within ± π/2.
     pub(super) turn: f64,
 }
 
@@ -46,7 +47,8 @@ impl Incidence {
         }
     }
 
-    /// The derivative of the normal along (T, B) at a point of a patch: its shape operator, per metre, convex positive as seen along N.
+    /// The derivative of the normal along (T, B) at a point of a patch: its shape operator, per
+    /// metre, convex positive as seen along N.
     pub(crate) fn shape(&self, patch: &Patch, point: DVec3) -> Matrix<2> {
         let gradient = patch.gradient(patch.frame.to_local(point));
         let side = patch.frame.vector_to_world(gradient).dot(self.n).signum();
@@ -94,7 +96,8 @@ impl System {
 }
 
 impl Element {
-    /// The frame of the next leg: mirrored, (−X, Y, D), at a mirror; else turned to the new direction by the smallest angle.
+    /// The frame of the next leg: mirrored, (−X, Y, D), at a mirror; else turned to the new
+    /// direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {
         if !matches!(self.event, Specular::Mirror) {
             return arriving.turned_to(direction);

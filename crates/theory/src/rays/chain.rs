@@ -10,12 +10,15 @@ use glam::DVec3;
 /// The chain of first-order maps from the light to a plane.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FirstOrder {
-    /// What it does to spectra of radiance. Beside the |det A| of its maps its factor has (n₂/n₁)² of each refraction, by which radiance grows.
+    /// What it does to spectra of radiance. Beside the |det A| of its maps its factor has (n₂/n₁)²
+    /// of each refraction, by which radiance grows.
     pub map: SpectrumMap<4>,
-    /// The steps in words, in the order of light; what is within the plane's surface or the light is not among them.
+    /// The steps in words, in the order of light; what is within the plane's surface or the light
+    /// is not among them.
     pub steps: Vec<String>,
-    /// Distances on the last leg, in metres from the last surface, at which rays meet that left the light parallel; ascending, negative if behind.
-    /// At most two: in the plane of incidence and across it, where these are its principal planes.
+    /// Distances on the last leg, in metres from the last surface, at which rays meet that left the
+    /// light parallel; ascending, negative if behind. At most two: in the plane of incidence and
+    /// across it, where these are its principal planes.
     pub foci: Vec<f64>,
 }
 
@@ -30,10 +33,11 @@ impl FirstOrder {
     }
 }
 
-/// The chain read off the geometry: distances, angles and curvatures where the central ray goes. `None` where it misses an element or is
-/// totally reflected.
+/// The chain read off the geometry: distances, angles and curvatures where the central ray goes.
+/// `None` where it misses an element or is totally reflected.
 ///
-/// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and no lens.
+/// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and
+/// no lens.
 #[must_use]
 pub fn chain(system: &System, plane: &Plane, print: Print) -> Option<FirstOrder> {
     let hits = system.hits()?;
@@ -153,8 +157,8 @@ impl Walk {
         Some(self)
     }
 
-    /// Onto a surface, into its local normals, and the event there. The shape operator, and the longitude of the central ray afterwards
-    /// (directions of refracted light stay flipped).
+    /// Onto a surface, into its local normals, and the event there. The shape operator, and the
+    /// longitude of the central ray afterwards (directions of refracted light stay flipped).
     fn event(&mut self, element: &Element, hit: &Hit) -> Option<(Matrix<2>, f64)> {
         let incidence = &hit.incidence;
         let theta0 = incidence.theta0;
@@ -255,7 +259,8 @@ impl Walk {
         }
     }
 
-    /// From the leg's frame to that of a plane across it, which may be turned about D and moved across.
+    /// From the leg's frame to that of a plane across it, which may be turned about D and moved
+    /// across.
     fn reach_frame(&mut self, plane: &Frame) {
         debug_assert!(
             (plane.d - self.frame.d).length() < 1e-9,
@@ -293,9 +298,11 @@ impl Walk {
     }
 }
 
-/// A thin lens, from the frame of one leg to that of the next, to first order about a central ray that may cross it anywhere at any slope.
+/// A thin lens, from the frame of one leg to that of the next, to first order about a central ray
+/// that may cross it anywhere at any slope.
 ///
-/// In the lens's own frame positions stay and slopes fall by position over focal length; at its centre along its axis that is [`Map::thin_lens`].
+/// In the lens's own frame positions stay and slopes fall by position over focal length; at its
+/// centre along its axis that is [`Map::thin_lens`].
 fn lens(frame: &Frame, hit: &Hit, focal_length: f64) -> Option<Map<4>> {
     let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| on_lens(frame, leg));
     let power = Map::<4>::thin_lens(focal_length);

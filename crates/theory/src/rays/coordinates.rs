@@ -6,7 +6,8 @@ use etendue_field::{Frame, Orientation, Quantity, TwoPlane};
 use glam::DVec3;
 
 impl Plane {
-    /// The coordinates of a ray that is on its last leg, and the quantity in ray space per flux. `None` if it does not pass.
+    /// The coordinates of a ray that is on its last leg, and the quantity in ray space per flux.
+    /// `None` if it does not pass.
     pub(super) fn coordinates(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
@@ -43,7 +44,8 @@ impl Plane {
         passes.then(|| (z, secant_squared * secant_squared * self.factor(z)))
     }
 
-    /// Where light leaves the surface it met last, or meets this one; and the unit normal there, on the side of the plane's D.
+    /// Where light leaves the surface it met last, or meets this one; and the unit normal there, on
+    /// the side of the plane's D.
     fn hit(&self, ray: &Ray) -> Option<(DVec3, DVec3)> {
         let Some(patch) = &self.patch else {
             let (s, t) = crossing(&self.frame, ray)?;

@@ -1,8 +1,9 @@
 //! How rays of the light are drawn: by the light, or by where they are aimed at.
 //!
-//! To first order a ray of the light lands where the central ray's neighbourhood maps it. So a place in
-//! the window, or slopes there, tell which ray of the light to follow; where that ray really lands is
-//! found by following it. The density of what is drawn is known exactly, whatever the rays do.
+//! To first order a ray of the light lands where the central ray's neighbourhood maps it. So a
+//! place in the window, or slopes there, tell which ray of the light to follow; where that ray
+//! really lands is found by following it. The density of what is drawn is known exactly, whatever
+//! the rays do.
 
 use super::System;
 use super::emission::{Emission, point_of};
@@ -99,7 +100,8 @@ impl Draw {
         Some(Self { emission, by })
     }
 
-    /// A ray and its density in the emission's coordinates; `None` for one that the light does not emit.
+    /// A ray and its density in the emission's coordinates; `None` for one that the light does not
+    /// emit.
     pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64)> {
         let [a, b, c, d, ..] = *at;
         let Emission { inner, shape, .. } = &self.emission;

@@ -6,7 +6,8 @@ use crate::parallel::chain::no_closed_form;
 use etendue_field::{Light, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 
-/// What the light's rays are counted by: two of the coordinates x, y, u, v, and for an area light the other two as well.
+/// What the light's rays are counted by: two of the coordinates x, y, u, v, and for an area light
+/// the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Emission {
     /// Indices of those two coordinates.
@@ -55,7 +56,8 @@ impl System {
         }
     }
 
-    /// The densities of the two coordinates of a picture, in proportion to it; `None` where there is none.
+    /// The densities of the two coordinates of a picture, in proportion to it; `None` where there
+    /// is none.
     pub(super) fn picture_densities(&self) -> Option<[Density; 2]> {
         let (Light::Projector { image, .. } | Light::Beam { image, .. }) = self.light else {
             return None;
@@ -90,7 +92,8 @@ impl System {
     }
 }
 
-/// The point of a shape at (a, b) of the unit square; equal areas of one are equal shares of the other.
+/// The point of a shape at (a, b) of the unit square; equal areas of one are equal shares of the
+/// other.
 pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
     match shape {
         Shape::Rectangle(rectangle) => {

@@ -1,13 +1,15 @@
 //! Windowed spectra behind specular surfaces, by following rays: no photons, no random numbers.
 //!
-//! In goes a [`System`], a light, masks across its first leg and the mirrors, refracting surfaces and lenses that the central ray
-//! visits, and a [`Plane`]. Out come the [`exact`] slices of the windowed spectrum: rays are followed through the real geometry, and a
-//! quadrature over the light sums them, with its error stated. Beside them is the [`chain`] of first-order maps
-//! ([`geometry`](crate::geometry)) read off the same system, and the [`linear`] prediction it makes by the same quadrature. So a measured
-//! difference from the first-order chain splits into noise, linearisation, and faults.
+//! In goes a [`System`], a light, masks across its first leg and the mirrors, refracting surfaces
+//! and lenses that the central ray visits, and a [`Plane`]. Out come the [`exact`] slices of the
+//! windowed spectrum: rays are followed through the real geometry, and a quadrature over the light
+//! sums them, with its error stated. Beside them is the [`chain`] of first-order maps
+//! ([`geometry`](crate::geometry)) read off the same system, and the [`linear`] prediction it makes
+//! by the same quadrature. So a measured difference from the first-order chain splits into noise,
+//! linearisation, and faults.
 //!
-//! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and (x, y) are along X and Y. A ray
-//! carries flux:
+//! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
+//! (x, y) are along X and Y. A ray carries flux:
 //!
 //! | light | flux |
 //! |---|---|
@@ -16,8 +18,9 @@
 //! | beam | E · image(x, y) dx dy |
 //! | area light | L₀ (1 + u² + v²)^(−2 − n/2) dx dy du dv |
 //!
-//! Flux is kept at every surface. A ray that misses a patch, is totally reflected, or would have to go back is lost. At a plane across the
-//! central ray flux Φ stands for Φ (1 + u² + v²)² in radiance space, on a surface for Φ/(cos θ cos² φ): docs/theory.md, section 8.
+//! Flux is kept at every surface. A ray that misses a patch, is totally reflected, or would have to
+//! go back is lost. At a plane across the central ray flux Φ stands for Φ (1 + u² + v²)² in
+//! radiance space, on a surface for Φ/(cos θ cos² φ): docs/theory.md, section 8.
 //!
 //! On a surface itself (`LocalNormals`) the integral is over its area.
 //!
@@ -95,7 +98,8 @@ use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};
 pub struct System {
     /// What shines from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks across the first leg and their distances from the light, metres. Opaque discs have edges that rectangles do not fit, and the quadrature converges slowly.
+    /// Masks across the first leg and their distances from the light, metres. Opaque discs have
+    /// edges that rectangles do not fit, and the quadrature converges slowly.
     pub layers: Vec<(f64, Mask)>,
     /// The surfaces, in the order of light.
     pub elements: Vec<Element>,
@@ -108,16 +112,16 @@ pub struct Element {
     pub name: String,
     /// Where it is.
     pub patch: Patch,
-    /// What it does. Refraction goes from the side the ray comes from. A thin lens is flat; its slopes are those in the patch's frame
-    /// (X, Y and the side light goes to).
+    /// What it does. Refraction goes from the side the ray comes from. A thin lens is flat; its
+    /// slopes are those in the patch's frame (X, Y and the side light goes to).
     pub event: Specular,
 }
 
 /// Where the light field is looked at, after all elements of a [`System`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Plane {
-    /// Its frame in coordinates of the frame at the light: O on the central ray, D along it; on a surface T, B and the normal there, on the side
-    /// to which directions point.
+    /// Its frame in coordinates of the frame at the light: O on the central ray, D along it; on a
+    /// surface T, B and the normal there, on the side to which directions point.
     pub frame: Frame,
     /// What its coordinates are counted from.
     pub orientation: Orientation,
@@ -125,7 +129,8 @@ pub struct Plane {
     pub longitude: f64,
     /// The surface, for local normals; without it they are all along D.
     pub patch: Option<Patch>,
-    /// On a surface: light that arrives at it, directions turned around. The surface is then not among the elements; else it is the last.
+    /// On a surface: light that arrives at it, directions turned around. The surface is then not
+    /// among the elements; else it is the last.
     pub arriving: bool,
     /// What is recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
     pub quantity: Quantity,

@@ -3,18 +3,23 @@ use super::{Plane, System};
 use etendue_field::{Frame, Light, Orientation, Shape, Specular};
 use glam::{DQuat, DVec3};
 
-/// A number of a [`System`] and the [`Plane`] behind it that a measurement may be asked for. Indices are those of elements.
+/// A number of a [`System`] and the [`Plane`] behind it that a measurement may be asked for.
+/// Indices are those of elements.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
     /// The first width of a picture, the second keeping the proportion.
     ImageWidth,
-    /// The side of a rectangular light along X, its other side keeping the proportion, or the radius of a disc.
+    /// The side of a rectangular light along X, its other side keeping the proportion, or the
+    /// radius of a disc.
     SourceSize,
-    /// The way of the central ray from an element, or the light (0), to the next, or the plane: whatever comes later moves along D.
+    /// The way of the central ray from an element, or the light (0), to the next, or the plane:
+    /// whatever comes later moves along D.
     Travel(usize),
-    /// The angle of incidence θ₀ of the central ray: the patch turns about B, and nothing else does.
+    /// The angle of incidence θ₀ of the central ray: the patch turns about B, and nothing else
+    /// does.
     Incidence(usize),
-    /// A curvature of a patch, k₁ (0) or k₂ (1). Those that equal it, and k₃, go with it on spheres and cylinders. The vertex stays.
+    /// A curvature of a patch, k₁ (0) or k₂ (1). Those that equal it, and k₃, go with it on spheres
+    /// and cylinders. The vertex stays.
     Curvature(usize, usize),
     /// Index of refraction of the denser side of a surface.
     Index(usize),
@@ -92,7 +97,8 @@ impl System {
         }
     }
 
-    /// Its value, in its unit. `None` if the system does not have it, or its central ray does not arrive.
+    /// Its value, in its unit. `None` if the system does not have it, or its central ray does not
+    /// arrive.
     #[must_use]
     pub fn value(&self, plane: &Plane, parameter: Parameter) -> Option<f64> {
         let mut value = None;
@@ -103,15 +109,18 @@ impl System {
         value
     }
 
-    /// The same system and plane with another value of one parameter, in its unit. `None` as for [`value`](Self::value).
+    /// The same system and plane with another value of one parameter, in its unit. `None` as for
+    /// [`value`](Self::value).
     #[must_use]
     pub fn with(&self, plane: &Plane, parameter: Parameter, value: f64) -> Option<(Self, Plane)> {
         self.changed(plane, parameter, |_| value)
     }
 
-    /// The same system with a light `factor` times as large: the picture's widths over slopes or positions, or the shape about the central ray.
+    /// The same system with a light `factor` times as large: the picture's widths over slopes or
+    /// positions, or the shape about the central ray.
     ///
-    /// With windows as much narrower and frequencies as much higher, what first-order maps leave out falls with the factor (docs/theory.md, section 7).
+    /// With windows as much narrower and frequencies as much higher, what first-order maps leave
+    /// out falls with the factor (docs/theory.md, section 7).
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Self {
         let mut system = self.clone();

@@ -17,12 +17,14 @@ use glam::DVec3;
 pub struct RaySlices {
     /// The slices of the windowed spectrum.
     pub slices: Slices,
-    /// Independent predictions of which they are the mean, none of them biased; empty where a rule converges.
+    /// Independent predictions of which they are the mean, none of them biased; empty where a rule
+    /// converges.
     pub replicates: Vec<Slices>,
-    /// ‖error‖/‖F‖: the standard error of the mean of the replicates, or twice what finer rules change. Infinite if
-    /// no ray arrives beside the central one.
+    /// ‖error‖/‖F‖: the standard error of the mean of the replicates, or twice what finer rules
+    /// change. Infinite if no ray arrives beside the central one.
     pub error: f64,
-    /// Second central moments of the windowed light field, in the plane's coordinates; `None` if no light arrives.
+    /// Second central moments of the windowed light field, in the plane's coordinates; `None` if no
+    /// light arrives.
     pub covariance: Option<Matrix<4>>,
     /// The windowed light field integrated over y and v, as means over cells of (x, u).
     pub projection: Projection,
@@ -39,8 +41,9 @@ const FOR_PICTURES: Budget = Budget {
 
 /// The slices of the windowed spectrum, rays followed through the geometry as it is.
 ///
-/// Of a projector, point or beam without opaque masks by a midpoint rule, where that converges; else over nets of
-/// rays. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes on any number of threads.
+/// Of a projector, point or beam without opaque masks by a midpoint rule, where that converges;
+/// else over nets of rays. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes
+/// on any number of threads.
 #[must_use]
 pub fn exact(system: &System, plane: &Plane, over: Over<'_>, budget: Budget) -> RaySlices {
     let masks = Masks::new(&system.layers);
@@ -56,11 +59,12 @@ pub fn exact(system: &System, plane: &Plane, over: Over<'_>, budget: Budget) -> 
     )
 }
 
-/// The slices that a first-order chain predicts, such as that of [`chain`](super::chain()), over the same rays.
+/// The slices that a first-order chain predicts, such as that of [`chain`](super::chain()), over
+/// the same rays.
 ///
-/// The radiance of ray z at the light goes to A z + t, A being the transpose of the map's matrix and t its phase,
-/// and its spectrum is multiplied by the map's factor: F = factor · ∫ ℓ(z) W(A z + t) e^(−2πi Ω·(A z + t)) dz.
-/// Masks of the first leg are exact.
+/// The radiance of ray z at the light goes to A z + t, A being the transpose of the map's matrix
+/// and t its phase, and its spectrum is multiplied by the map's factor: F = factor · ∫ ℓ(z) W(A z +
+/// t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact.
 #[must_use]
 pub fn linear(
     system: &System,

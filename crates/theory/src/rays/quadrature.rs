@@ -1,7 +1,8 @@
-//! A midpoint rule over the rays of a light that has two coordinates: a projector, a point or a beam.
+//! A midpoint rule over the rays of a light that has two coordinates: a projector, a point or a
+//! beam.
 //!
-//! At the border of the region that lands in the window nothing is left, so that the error is aliasing: it
-//! vanishes when there are more nodes than cycles.
+//! At the border of the region that lands in the window nothing is left, so that the error is
+//! aliasing: it vanishes when there are more nodes than cycles.
 
 use super::region::{Field, Finder};
 use super::sums::sums;
@@ -16,13 +17,13 @@ const MOST: usize = 1500;
 const FEWEST: f64 = 16.0;
 /// Relative change at which a rule is good enough.
 const ENOUGH: f64 = 1e-4;
-/// What is left of an error over what a finer rule takes off: a Hann window's falls as n⁻³ beyond its
-/// frequencies, (5/4)³ being 2.
+/// What is left of an error over what a finer rule takes off: a Hann window's falls as n⁻³ beyond
+/// its frequencies, (5/4)³ being 2.
 const LEFT: f64 = 2.0;
 
 impl<F: Field> Finder<'_, F> {
-    /// The slices, and ‖error‖/‖F‖: twice what finer rules change on slices at right angles. `None` if that does
-    /// not come below 10⁻⁴.
+    /// The slices, and ‖error‖/‖F‖: twice what finer rules change on slices at right angles. `None`
+    /// if that does not come below 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),
@@ -57,8 +58,8 @@ impl<F: Field> Finder<'_, F> {
         (0..count).into_par_iter().flat_map_iter(row).collect()
     }
 
-    /// Nodes along each coordinate that should do: a midpoint rule integrates exactly what has fewer cycles than
-    /// nodes.
+    /// Nodes along each coordinate that should do: a midpoint rule integrates exactly what has
+    /// fewer cycles than nodes.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

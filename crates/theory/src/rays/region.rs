@@ -9,8 +9,9 @@ use etendue_field::{TwoPlane, Window};
 /// A box in two coordinates: lowest and highest along each.
 pub(super) type Region = [[f64; 2]; 2];
 
-/// A light field as its rays: from a ray at the light (x, y, u, v) to its coordinates at the plane and what it adds to ray space there per
-/// unit of the emission's coordinates. `None` if it does not arrive.
+/// A light field as its rays: from a ray at the light (x, y, u, v) to its coordinates at the plane
+/// and what it adds to ray space there per unit of the emission's coordinates. `None` if it does
+/// not arrive.
 pub(super) trait Field: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
 impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> Field for F {}
 
@@ -34,7 +35,8 @@ pub(super) struct Finder<'a, F> {
 /// Where the central ray lands, and how that changes with the ray, [at plane, at light].
 pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
-/// That of rays as they are, whatever masks stop; `None` if the central ray, or one beside it, does not arrive.
+/// That of rays as they are, whatever masks stop; `None` if the central ray, or one beside it, does
+/// not arrive.
 pub(super) fn neighbourhood(system: &System, plane: &Plane) -> Option<Neighbourhood> {
     const STEP: f64 = 1e-6;
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
@@ -70,8 +72,9 @@ impl<F: Field> Finder<'_, F> {
         Node { z, weight }
     }
 
-    /// The region of rays that land in the window: the box about the parallelogram that a linear map gives, then moved, widened and narrowed
-    /// until all that arrives lies within it. `None` if nothing arrives.
+    /// The region of rays that land in the window: the box about the parallelogram that a linear
+    /// map gives, then moved, widened and narrowed until all that arrives lies within it. `None` if
+    /// nothing arrives.
     pub(super) fn region(&self) -> Option<Region> {
         let mut region = self.linear_region()?;
         let reach = self.emission.reach;

@@ -1,7 +1,8 @@
 //! Σ w e^(−2πi Ω·z) over rays, at all frequencies of a grid of slices.
 //!
-//! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) a product of one factor along ρ and one along ν. Summed over
-//! rays that is a matrix product of their real and imaginary parts; ± ν share it.
+//! On one azimuth a ray is a point (a, b), and its exponential at (m Δρ, n Δν) a product of one
+//! factor along ρ and one along ν. Summed over rays that is a matrix product of their real and
+//! imaginary parts; ± ν share it.
 
 use crate::nets::Node;
 use etendue_field::{Complex, SliceGrid, Slices};
@@ -16,7 +17,8 @@ const BLOCK: usize = 256;
 const PARTS: usize = 16;
 /// Powers of a factor before it is computed anew: each step adds a rounding.
 const POWERS: usize = 32;
-/// Powers that are computed side by side, each the last but `LANES` times e^(i angle) to the `LANES`.
+/// Powers that are computed side by side, each the last but `LANES` times e^(i angle) to the
+/// `LANES`.
 const LANES: usize = 8;
 
 /// The sums on all slices. The same bytes on any number of threads; rounding below 10⁻¹² of Σ |w|.

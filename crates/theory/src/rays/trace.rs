@@ -22,10 +22,12 @@ impl Ray {
         }
     }
 
-    /// The distance to a patch, and the unit normal there on the side of the patch's D. `None` if the patch is missed or behind.
+    /// The distance to a patch, and the unit normal there on the side of the patch's D. `None` if
+    /// the patch is missed or behind.
     ///
-    /// By Newton's method from the tangent plane at the vertex. Along a ray the quadric is a polynomial of degree two, so there is one root on
-    /// either side of its extremum, and the nearer to the tangent plane is found.
+    /// By Newton's method from the tangent plane at the vertex. Along a ray the quadric is a
+    /// polynomial of degree two, so there is one root on either side of its extremum, and the
+    /// nearer to the tangent plane is found.
     pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
         let point = patch.frame.to_local(self.point);
         let direction = patch.frame.vector_to_local(self.direction);
@@ -63,7 +65,8 @@ impl Element {
         Some(Ray { point, direction })
     }
 
-    /// The direction after the event, for light along `direction` that hits `point`; `normal` is on the side of the patch's D.
+    /// The direction after the event, for light along `direction` that hits `point`; `normal` is on
+    /// the side of the patch's D.
     fn bend(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<DVec3> {
         match self.event {
             Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),

@@ -1,8 +1,8 @@
 //! Closed forms under a Gaussian window that is not cut: for checks only.
 //!
-//! A [`Window`](etendue_field::Window) has a finite support, so this one exists nowhere else. All but the disc
-//! are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope; the slope is called v, as in the
-//! paper.
+//! A [`Window`](etendue_field::Window) has a finite support, so this one exists nowhere else. All
+//! but the disc are in 2D; frequencies are (Ωx, Ωv), in cycles per metre and per unit slope; the
+//! slope is called v, as in the paper.
 
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
@@ -86,9 +86,9 @@ impl Grating {
     }
 }
 
-/// The field |x − D v| < w/2 of an area light of width w at distance D under the window:
-/// q^(−1/2) exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² + 1/b²,
-/// P = 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md, Eq. 9).
+/// The field |x − D v| < w/2 of an area light of width w at distance D under the window: q^(−1/2)
+/// exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² + 1/b², P =
+/// 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md, Eq. 9).
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
@@ -105,8 +105,8 @@ pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 
     integral * ((-PI * omega * omega / q).exp() / q.sqrt())
 }
 
-/// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the area light's
-/// factor (docs/theory.md, Eq. 20).
+/// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the
+/// area light's factor (docs/theory.md, Eq. 20).
 #[must_use]
 pub(crate) fn point_light(distance: f64, window: &Gaussian, k: [f64; 2]) -> f64 {
     let travelled = Travelled::new(distance, window);
@@ -114,8 +114,8 @@ pub(crate) fn point_light(distance: f64, window: &Gaussian, k: [f64; 2]) -> f64 
     (-PI * omega * omega / travelled.q).exp() / travelled.q.sqrt()
 }
 
-/// The field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light under a window
-/// narrowed by the lobe, 1/b² + 1/c².
+/// The field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light under a
+/// window narrowed by the lobe, 1/b² + 1/c².
 #[must_use]
 pub(crate) fn spot(
     width: f64,
@@ -128,8 +128,9 @@ pub(crate) fn spot(
     area_light(width, distance, &Gaussian { a: window.a, b }, k)
 }
 
-/// The field of a disc of radius R at distance D, in 4D under the window of a and b along both axes:
-/// q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, ω and Q being vectors (docs/theory.md, Eq. 21).
+/// The field of a disc of radius R at distance D, in 4D under the window of a and b along both
+/// axes: q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, ω and Q being vectors
+/// (docs/theory.md, Eq. 21).
 ///
 /// Frequencies (Ωx, Ωy, Ωu, Ωv). The disc is centred, so the spectrum is real.
 #[must_use]
@@ -166,8 +167,8 @@ pub(crate) struct Tilted {
     pub(crate) gamma: f64,
 }
 
-/// The spectra of a field alone, with x < 0 blocked and with x > 0 blocked:
-/// F₀ = γ^(−1/2) exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times the same without its last exponential times
+/// The spectra of a field alone, with x < 0 blocked and with x > 0 blocked: F₀ = γ^(−1/2)
+/// exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times the same without its last exponential times
 /// Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md, Eq. 22).
 #[must_use]
 pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
@@ -201,8 +202,8 @@ pub(crate) fn through_grating(
         .sum()
 }
 
-/// The part of the light that a strip, (lowest, highest) in metres, blocks: a double integral over strip
-/// and light, v = (y − y₀)/d₁ and x = y + d₂ v.
+/// The part of the light that a strip, (lowest, highest) in metres, blocks: a double integral over
+/// strip and light, v = (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
 pub(crate) fn blocked_by_strip(
     bench: &Bench,

@@ -57,7 +57,8 @@ enum Step<const N: usize> {
     Lobe(f64),
 }
 
-/// Follows a chain row by row and compares all it tells: matrices, covariances, determinants, spectral covariances.
+/// Follows a chain row by row and compares all it tells: matrices, covariances, determinants,
+/// spectral covariances.
 fn assert_chain<const N: usize>(block: &Value, steps: &[Step<N>]) {
     let rows = samples(&block["rows"]);
     assert_eq!(rows.len(), steps.len() + 1);

@@ -1,4 +1,5 @@
-//! A light, a cosine grating and a receiver: the walk along a light path of Durand et al. 2005, Fig. 6.
+//! A light, a cosine grating and a receiver: the walk along a light path of Durand et al. 2005,
+//! Fig. 6.
 
 use super::*;
 use crate::reference::gaussian::{self, Grating};

@@ -1,4 +1,5 @@
-//! Two half-planes that meet: each lets half of the light pass, both none (Durand et al. 2005, Fig. 7).
+//! Two half-planes that meet: each lets half of the light pass, both none (Durand et al. 2005, Fig.
+//! 7).
 
 use super::*;
 use crate::at;
@@ -34,7 +35,8 @@ fn phases_make_both_halves_dark() {
         let [open, a, b] = gaussian::half_planes(&field, frequency(sample));
         // What passes both is what passes neither's blocked part: F₀ − (F₀ − F_A) − (F₀ − F_B).
         let both = a + b - open;
-        assert!((both - complex(&sample["both"])).norm() < 1e-16); // the sum of a number and its conjugate
+        // The sum of a number and its conjugate.
+        assert!((both - complex(&sample["both"])).norm() < 1e-16);
         // Magnitudes alone would leave light.
         let blind = a.norm() + b.norm() - open.norm();
         let zero = frequency(sample).iter().all(|k| k.abs() < 1e-9);

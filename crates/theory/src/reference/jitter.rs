@@ -13,10 +13,12 @@ pub(crate) struct JitteredArray {
     pub(crate) jitter: f64,
 }
 
-/// The expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered array, in m²:
-/// s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ) (docs/theory.md, Eq. 10).
+/// The expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered array, in
+/// m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ) (docs/theory.md, Eq.
+/// 10).
 ///
-/// The first term is the noise of the offsets, the second what is left of the lines of a regular array.
+/// The first term is the noise of the offsets, the second what is left of the lines of a regular
+/// array.
 #[must_use]
 pub(crate) fn jittered_array_power(array: &JitteredArray, omega: f64) -> f64 {
     let n = array.count as f64;

@@ -1,7 +1,9 @@
-//! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, apart from this crate.
+//! Checks against `tests/reference.json`: numbers computed with mpmath at 25 digits, apart from
+//! this crate.
 //!
-//! Where a block uses the Gaussian window that is not cut, its closed form is checked, and wherever the
-//! field is made of polygons also the polygon path with a cut at 3.4 widths, where the window is 2e-16.
+//! Where a block uses the Gaussian window that is not cut, its closed form is checked, and wherever
+//! the field is made of polygons also the polygon path with a cut at 3.4 widths, where the window
+//! is 2e-16.
 
 mod area;
 pub(crate) mod gaussian;
@@ -52,7 +54,8 @@ fn frequency_4d(sample: &Value) -> [f64; 4] {
     ["ox", "oy", "ou", "ov"].map(|name| number(&sample[name]))
 }
 
-/// The largest deviation relative to the largest expected value; at least `count` samples are required.
+/// The largest deviation relative to the largest expected value; at least `count` samples are
+/// required.
 fn deviation(count: usize, pairs: impl IntoIterator<Item = (Complex, Complex)>) -> f64 {
     let pairs: Vec<_> = pairs.into_iter().collect();
     assert!(pairs.len() >= count);

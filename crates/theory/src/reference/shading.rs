@@ -160,7 +160,8 @@ fn reflection<'a>(parameters: &Value, before: Factor<'a>, lobe: Option<Lobe>) ->
             lobe,
             after: Factor::One,
         }],
-        // Content of angles 0.04 wide reaches ± 30, moved by what positions and angles have in common.
+        // Content of angles 0.04 wide reaches ± 30, moved by what positions and angles have in
+        // common.
         lattice: Lattice::circle(60.0),
     }
 }
@@ -210,10 +211,11 @@ fn every_step_of_a_reflection() {
     assert_seen("a lobe 5 % wider", last(&wider));
 }
 
-/// Where a ray that leaves the circle at arc length s with the local direction θ is seen in the frame of central rays at an
-/// angle: (x, θ) and ∂x/∂s at a fixed direction.
+/// Where a ray that leaves the circle at arc length s with the local direction θ is seen in the
+/// frame of central rays at an angle: (x, θ) and ∂x/∂s at a fixed direction.
 ///
-/// The frame is that after the reflection: X = c T − sin N. Before it, rays run against their direction and X points the other way.
+/// The frame is that after the reflection: X = c T − sin N. Before it, rays run against their
+/// direction and X points the other way.
 fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     let turn = k * s;
     let point = [turn.sin() / k, (turn.cos() - 1.0) / k];
@@ -227,7 +229,8 @@ fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     )
 }
 
-/// Step 7 by trapezoids over arc length, local incident and local outgoing angle, of rays off the circle as it is.
+/// Step 7 by trapezoids over arc length, local incident and local outgoing angle, of rays off the
+/// circle as it is.
 fn traced(parameters: &Value, bells: &[Bell], lobe: Option<f64>, omega: [f64; 2]) -> Complex {
     let p = |name: &str| number(&parameters[name]);
     let (k, theta0, theta1) = (p("k"), p("th0"), p("th1"));
@@ -280,7 +283,8 @@ fn rays_off_the_circle() {
             deviation(5, pairs)
         };
         let off = off(&bells);
-        assert!(off < 1e-6, "{name}: {off:e}"); // both are quadratures, the file's said to be good to 1e-6
+        // Both are quadratures, the file's said to be good to 1e-6.
+        assert!(off < 1e-6, "{name}: {off:e}");
         println!("{name}, traced: {off:.1e} of the largest value");
         // The chain is of first order: a few per cent at this size, and it is seen.
         let light = |w: [f64; 2]| -> Complex { bells.iter().map(|b| b.spectrum(w)).sum() };

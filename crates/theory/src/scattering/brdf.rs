@@ -4,7 +4,8 @@ use etendue_field::{Brdf, Fresnel, Lobe};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// The BRDF for light that comes from `from` and leaves along `to`, unit vectors away from the surface with this unit normal; sr⁻¹.
+/// The BRDF for light that comes from `from` and leaves along `to`, unit vectors away from the
+/// surface with this unit normal; sr⁻¹.
 pub(super) fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let (cos_from, cos_to) = (normal.dot(from), normal.dot(to));
     if cos_from <= 0.0 || cos_to <= 0.0 {
@@ -54,7 +55,8 @@ pub(super) fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     brdf.albedo * lobe
 }
 
-/// tan² of the tilt of the microfacet that reflects one direction into the other, and the cosine at which it is met.
+/// tan² of the tilt of the microfacet that reflects one direction into the other, and the cosine at
+/// which it is met.
 fn half_way(normal: DVec3, from: DVec3, to: DVec3) -> [f64; 2] {
     let half = (from + to).normalize();
     let cos = half.dot(normal);
@@ -76,7 +78,8 @@ fn microfacets(
         / (4.0 * cos_from * cos_to)
 }
 
-/// Smith's shadowing of Beckmann slopes: 2/(1 + erf a + e^(−a²)/(a√π)), a = 1/(α tan θ) (Walter et al. 2007, Eq. 26).
+/// Smith's shadowing of Beckmann slopes: 2/(1 + erf a + e^(−a²)/(a√π)), a = 1/(α tan θ) (Walter et
+/// al. 2007, Eq. 26).
 fn beckmann_shadow(cos: f64, roughness: f64) -> f64 {
     let sine = (1.0 - cos * cos).max(0.0).sqrt();
     if sine <= 0.0 {
@@ -123,7 +126,8 @@ mod tests {
         assert!((inside - 1.0).abs() < 1e-14); // rounding
     }
 
-    /// ∫ D cos dω = 1 through the lobe at normal incidence, where f = D G₁/(4 cos): the weak white furnace without shadowing.
+    /// ∫ D cos dω = 1 through the lobe at normal incidence, where f = D G₁/(4 cos): the weak white
+    /// furnace without shadowing.
     #[test]
     fn lobes_hold_what_they_say() {
         let normal = DVec3::Z;

@@ -9,12 +9,15 @@ use glam::DVec3;
 
 /// What the central ray does, to first order in the neighbourhood.
 ///
-/// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals, T lying in the plane of incidence.
+/// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals, T
+/// lying in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// From (x, y, u, v) at the light to local coordinates of where light comes from: travel, incidence, curvature.
+    /// From (x, y, u, v) at the light to local coordinates of where light comes from: travel,
+    /// incidence, curvature.
     pub onto: Map<4>,
-    /// From local coordinates of where light goes to those of the plane: back, outgoing angle, travel.
+    /// From local coordinates of where light goes to those of the plane: back, outgoing angle,
+    /// travel.
     pub off: Map<4>,
     /// Longitude θ₀ of where the central ray comes from.
     pub incidence: f64,
@@ -33,10 +36,12 @@ pub struct Chain {
 /// Step of the differences that maps are read off with, metres and radians.
 const STEP: f64 = 1e-5;
 
-/// The chain of a system up to a plane on its surface or beyond; `None` where the central ray does not get there.
+/// The chain of a system up to a plane on its surface or beyond; `None` where the central ray does
+/// not get there.
 ///
-/// Its maps are the derivatives of where rays go; without twist they are those of Durand et al. 2005, Eqs. 9–11 and 19, corrected
-/// (docs/theory.md, section 7), which its tests hold them against.
+/// Its maps are the derivatives of where rays go; without twist they are those of Durand et al.
+/// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), which its tests hold them
+/// against.
 #[must_use]
 pub fn chain(system: &System, plane: &Plane) -> Option<Chain> {
     let central = Ray {

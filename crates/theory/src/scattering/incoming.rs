@@ -11,7 +11,8 @@ pub(super) enum Part {
     Whole,
     /// A point of an area light. Densities of such are per square metre.
     Point([f64; 2]),
-    /// A direction of an environment, as the slopes of its rays. Densities of such are per steradian.
+    /// A direction of an environment, as the slopes of its rays. Densities of such are per
+    /// steradian.
     Slopes([f64; 2]),
 }
 

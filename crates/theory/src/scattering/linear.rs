@@ -31,7 +31,8 @@ impl<'a> Linear<'a> {
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
         let across = [[d / det, -b / det], [-c / det, a / det]];
-        // u at a point whose place across the axis stays: the light's place moves back by the distance.
+        // u at a point whose place across the axis stays: the light's place moves back by the
+        // distance.
         let slope =
             |row: usize, column: usize| m[row][2 + column] - chain.distance * m[row][column];
         Some(Self {
@@ -83,8 +84,8 @@ impl<'a> Linear<'a> {
         irradiance * self.kernel(&brdf, center, theta, [to_theta + theta, to_phi + phi])
     }
 
-    /// The BRDF as it meets the central ray, which comes from `center`, at angles from the mirror direction; a factor of the angle of incidence
-    /// stays one.
+    /// The BRDF as it meets the central ray, which comes from `center`, at angles from the mirror
+    /// direction; a factor of the angle of incidence stays one.
     fn kernel(&self, brdf: &Brdf, center: DVec3, from: f64, [theta, phi]: [f64; 2]) -> f64 {
         let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, from.cos());
         match brdf.lobe {

@@ -12,7 +12,8 @@ pub enum Parameter {
     Albedo,
     /// The exponent or the roughness of its lobe.
     Lobe,
-    /// A curvature of the surface, k₁ (0) or k₂ (1); those that equal it go with it, and so does k₃ where it equals it.
+    /// A curvature of the surface, k₁ (0) or k₂ (1); those that equal it go with it, and so does k₃
+    /// where it equals it.
     Curvature(usize),
 }
 

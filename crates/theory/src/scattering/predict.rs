@@ -37,9 +37,9 @@ pub struct Prediction {
 /// The windowed spectrum of what a surface scatters.
 ///
 /// Rays are drawn at the plane, and for each four parts of the light that shines on the point it
-/// leaves (docs/theory.md, Eq. 40). `chain` is that of [`chain`](super::chain()); it tells where rays
-/// are worth drawing. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes on any
-/// number of threads.
+/// leaves (docs/theory.md, Eq. 40). `chain` is that of [`chain`](super::chain()); it tells where
+/// rays are worth drawing. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes
+/// on any number of threads.
 #[must_use]
 pub fn predict(
     system: &System,
@@ -100,8 +100,8 @@ fn best(cost: impl Fn(Strategy) -> f64) -> Strategy {
 /// What differs a little from a prediction, over the same rays.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Differences {
-    /// The slices that the first-order chain predicts less those of the prediction; `None` where the
-    /// central ray does not arrive.
+    /// The slices that the first-order chain predicts less those of the prediction; `None` where
+    /// the central ray does not arrive.
     pub linear: Option<Slices>,
     /// The derivatives of the slices, per unit of each parameter.
     pub derivatives: Vec<Slices>,
@@ -110,9 +110,9 @@ pub struct Differences {
 /// The first-order chain's slices and the derivatives by some parameters, all as differences of the
 /// radiance of the same rays: good to about a per cent of what they are.
 ///
-/// Parts of the light move with the light, so that its edges are no edges of a difference. Shadows do
-/// not move with masks: what is lit on one side alone adds noise, the less the farther the sides are
-/// apart.
+/// Parts of the light move with the light, so that its edges are no edges of a difference. Shadows
+/// do not move with masks: what is lit on one side alone adds noise, the less the farther the sides
+/// are apart.
 #[must_use]
 pub fn differences(
     system: &System,

@@ -1,15 +1,19 @@
 //! How fast a glossy reflection changes across an image.
 
-/// The frequency below which 99 % of the energy of [`cosine_hat`](super::cosine_hat) lies, in cycles per radian.
+/// The frequency below which 99 % of the energy of [`cosine_hat`](super::cosine_hat) lies, in
+/// cycles per radian.
 pub const COSINE_CUTOFF: f64 = 0.376;
 
-/// What the image of a glossy surface in some environment is made of (Durand et al. 2005, section 6.2).
+/// What the image of a glossy surface in some environment is made of (Durand et al. 2005, section
+/// 6.2).
 ///
-/// Bandwidths are the largest |Ωv| at a fixed point, which is the eye, in cycles per unit slope there. The eye is the larger scale:
-/// where d is not zero the blur by the cosine, [`COSINE_CUTOFF`], is neglected.
+/// Bandwidths are the largest |Ωv| at a fixed point, which is the eye, in cycles per unit slope
+/// there. The eye is the larger scale: where d is not zero the blur by the cosine,
+/// [`COSINE_CUTOFF`], is neglected.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Criterion {
-    /// k, in 1/m, convex positive. Its sign matters: a concave surface first undoes what travel does.
+    /// k, in 1/m, convex positive. Its sign matters: a concave surface first undoes what travel
+    /// does.
     pub curvature: f64,
     /// θ₀, where the light comes from, radians from the normal.
     pub incidence: f64,
@@ -26,7 +30,8 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// An environment with content at all frequencies: Ω_ρ |1 + 2kd/cos θ₁|. The right form of Eq. 20.
+    /// An environment with content at all frequencies: Ω_ρ |1 + 2kd/cos θ₁|. The right form of Eq.
+    /// 20.
     #[must_use]
     pub fn environment(&self) -> f64 {
         self.lobe_cutoff * self.doubled_shear().abs()
@@ -38,22 +43,25 @@ impl Criterion {
         self.lobe_cutoff.min(self.environment_cutoff) * self.doubled_shear().abs()
     }
 
-    /// An edge before an even environment: Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|. The right form of Eq. 21.
+    /// An edge before an even environment: Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|. The right form of
+    /// Eq. 21.
     #[must_use]
     pub fn blocker(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() + self.edge()).abs()
     }
 
-    /// An edge before an environment that ends at Ω_e, at most: Ω_ρ |1 + 2kd/cos θ₁| + d cos θ₀/(d' cos θ₁) (Ω_ρ + Ω_e).
+    /// An edge before an environment that ends at Ω_e, at most: Ω_ρ |1 + 2kd/cos θ₁| + d cos θ₀/(d'
+    /// cos θ₁) (Ω_ρ + Ω_e).
     ///
-    /// A small bright light behind an edge makes shadows sharp on any BRDF, which [`blocker`](Self::blocker) does not see.
+    /// A small bright light behind an edge makes shadows sharp on any BRDF, which
+    /// [`blocker`](Self::blocker) does not see.
     #[must_use]
     pub fn combined(&self) -> f64 {
         self.environment() + self.edge() * (self.lobe_cutoff + self.environment_cutoff)
     }
 
-    /// The largest |Ωx| of the light that leaves the surface, across it and in cycles per metre, with the blur of the cosine:
-    /// [cos θ₀/d' (Ω_ρ + Ω_cos + Ω_e) + 2|k| Ω_ρ + |k| Ω_cos]/cos θ₁.
+    /// The largest |Ωx| of the light that leaves the surface, across it and in cycles per metre,
+    /// with the blur of the cosine: [cos θ₀/d' (Ω_ρ + Ω_cos + Ω_e) + 2|k| Ω_ρ + |k| Ω_cos]/cos θ₁.
     #[must_use]
     pub fn surface(&self) -> f64 {
         let behind = self.lobe_cutoff + COSINE_CUTOFF + self.environment_cutoff;
@@ -61,14 +69,15 @@ impl Criterion {
         (self.nearness() * behind + turned) / self.outgoing.cos()
     }
 
-    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as a size: it lacks the 1, which d ≫ 1 does not make small (2kd/cos θ₁ ≫ 1 would).
+    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as a size: it lacks the 1, which d ≫ 1 does not make
+    /// small (2kd/cos θ₁ ≫ 1 would).
     #[must_use]
     pub fn printed_environment(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
     }
 
-    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|: it lacks the 1 and cos θ₀, and the text takes the absolute value of
-    /// the curvature.
+    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|: it lacks the 1 and cos θ₀, and the
+    /// text takes the absolute value of the curvature.
     #[must_use]
     pub fn printed_blocker(&self) -> f64 {
         let nearness = self.blocker_distance.map_or(0.0, f64::recip);

@@ -5,29 +5,34 @@ use crate::numerics::sinc::sinc;
 use libm::lgamma as ln_gamma;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2 cos(π²Ω)/(1 − (2πΩ)²), with Ω in cycles per radian
-/// (Durand et al. 2005, Eq. 13).
+/// The transform of the clamped cosine, cos θ where |θ| < π/2 and 0 elsewhere: 2 cos(π²Ω)/(1 −
+/// (2πΩ)²), with Ω in cycles per radian (Durand et al. 2005, Eq. 13).
 ///
-/// Written π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ, which does not cancel where the quotient is 0/0: cos⁺(1/2π) = π/2. It is 2 at
-/// zero and falls as 1/Ω², because the cosine has a corner at π/2. 99 % of its energy lies below 0.376. As the coefficients of a Fourier
-/// series it has another scale: [`cosine_series`].
+/// Written π/2 [sinc((1 − w)/2) + sinc((1 + w)/2)], w = 2πΩ, which does not cancel where the
+/// quotient is 0/0: cos⁺(1/2π) = π/2. It is 2 at zero and falls as 1/Ω², because the cosine has a
+/// corner at π/2. 99 % of its energy lies below 0.376. As the coefficients of a Fourier series it
+/// has another scale: [`cosine_series`].
 #[must_use]
 pub fn cosine_hat(omega: f64) -> f64 {
     let w = TAU * omega;
     FRAC_PI_2 * (sinc(0.5 * (1.0 - w)) + sinc(0.5 * (1.0 + w)))
 }
 
-/// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full circle: [`cosine_hat`](n/2π)/2π.
+/// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full circle:
+/// [`cosine_hat`](n/2π)/2π.
 ///
-/// A transform over the circle taken for a series is 2π too large (Durand et al. 2005, Eq. 13, is the transform).
+/// A transform over the circle taken for a series is 2π too large (Durand et al. 2005, Eq. 13, is
+/// the transform).
 #[must_use]
 pub fn cosine_series(n: i32) -> f64 {
     cosine_hat(f64::from(n) / TAU) / TAU
 }
 
-/// The transform of cos² φ on |φ| < π/2: how the cosine acts along latitudes in 4D, dE = ℓ cos θ cos² φ dθ dφ.
+/// The transform of cos² φ on |φ| < π/2: how the cosine acts along latitudes in 4D, dE = ℓ cos θ
+/// cos² φ dθ dφ.
 ///
-/// π/2 sinc(w/2) + π/4 [sinc((w − 2)/2) + sinc((w + 2)/2)], w = 2πΩ. Durand et al. 2005, section 5.2, has no formula for it.
+/// π/2 sinc(w/2) + π/4 [sinc((w − 2)/2) + sinc((w + 2)/2)], w = 2πΩ. Durand et al. 2005, section
+/// 5.2, has no formula for it.
 #[must_use]
 pub fn cosine_squared_hat(omega: f64) -> f64 {
     let w = TAU * omega;
@@ -35,10 +40,11 @@ pub fn cosine_squared_hat(omega: f64) -> f64 {
     0.5 * PI * sinc(0.5 * w) + 0.25 * PI * sides
 }
 
-/// The transform of cosⁿ θ on |θ| < π/2, n ≥ 0: π Γ(n + 1)/(2ⁿ Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)) (Gradshteyn and Ryzhik, 3.631.9).
+/// The transform of cosⁿ θ on |θ| < π/2, n ≥ 0: π Γ(n + 1)/(2ⁿ Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ))
+/// (Gradshteyn and Ryzhik, 3.631.9).
 ///
-/// The second gamma function has poles where 1 + n/2 − πΩ is 0, −1, …; there the transform is zero. Relative error about
-/// 10⁻¹⁵ (n + Ω) ln(n + Ω) where it is not near one of its zeros.
+/// The second gamma function has poles where 1 + n/2 − πΩ is 0, −1, …; there the transform is zero.
+/// Relative error about 10⁻¹⁵ (n + Ω) ln(n + Ω) where it is not near one of its zeros.
 #[must_use]
 pub fn cosine_power_hat(exponent: f64, omega: f64) -> f64 {
     let (middle, side) = (1.0 + 0.5 * exponent, PI * omega.abs());
@@ -66,7 +72,8 @@ mod tests {
                 assert!((got - plain).abs() < close, "{n} {omega}: {got} {plain}");
             }
             let [one, two] = [1.0, 2.0].map(|n| cosine_power_hat(n, omega));
-            assert!((cosine_hat(omega) - one).abs() < 1e-13); // rounding of ln Γ up to 25, three times
+            // Rounding of ln Γ up to 25, three times.
+            assert!((cosine_hat(omega) - one).abs() < 1e-13);
             assert!((cosine_squared_hat(omega) - two).abs() < 1e-13); // likewise
         }
     }

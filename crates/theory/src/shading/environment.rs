@@ -1,14 +1,16 @@
 //! Environment maps: light that depends on direction alone, on a surface that turns under it.
 //!
-//! ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx), and after the curvature step a spectrum on the line Ωx = kΩθ. Each Ωx then has
-//! one value, and the convolution with the cosine becomes a product (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the
-//! curvature in 1/m, convex positive; angles are on the surface, those of light that has been flipped. `environment` is env^.
+//! ℓ(s, θ) = env(θ) has the spectrum env^(Ωθ) δ(Ωx), and after the curvature step a spectrum on the
+//! line Ωx = kΩθ. Each Ωx then has one value, and the convolution with the cosine becomes a product
+//! (Durand et al. 2005, section 6.1 and Fig. 14). k ≠ 0 is the curvature in 1/m, convex positive;
+//! angles are on the surface, those of light that has been flipped. `environment` is env^.
 
 use super::cosine_hat;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
-/// The differential irradiance dE' in the frames of the local normals: 1/|k| env^(Ωx/k) cos⁺^(Ωθ − Ωx/k).
+/// The differential irradiance dE' in the frames of the local normals: 1/|k| env^(Ωx/k) cos⁺^(Ωθ −
+/// Ωx/k).
 #[must_use]
 pub fn differential_irradiance(
     k: f64,
@@ -21,8 +23,8 @@ pub fn differential_irradiance(
 
 /// The differential irradiance dE'_r after the mirror step: 1/|k| env^(Ωx/k) cos⁺^(Ωθ + Ωx/k).
 ///
-/// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺(Ωx/k − Ωθ), without hats and 1/|k|, and with the sign from before
-/// the mirror.
+/// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺(Ωx/k − Ωθ), without hats and 1/|k|,
+/// and with the sign from before the mirror.
 #[must_use]
 pub fn mirrored_differential_irradiance(
     k: f64,
@@ -33,7 +35,8 @@ pub fn mirrored_differential_irradiance(
     differential_irradiance(k, [x, -theta], environment)
 }
 
-/// The irradiance along the surface: 1/|k| env^(Ωx/k) cos⁺^(Ωx/k), which is E(s) = ∫ env(θ) cos⁺(θ − k s) dθ.
+/// The irradiance along the surface: 1/|k| env^(Ωx/k) cos⁺^(Ωx/k), which is E(s) = ∫ env(θ) cos⁺(θ
+/// − k s) dθ.
 ///
 /// A product of spectra, and so a convolution in the primal (Ramamoorthi and Hanrahan 2001).
 #[must_use]

@@ -5,15 +5,18 @@ use super::panels::even_transform;
 use etendue_field::Complex;
 use std::f64::consts::FRAC_PI_2;
 
-/// Halvings of the panels towards grazing angles, where the reflectance of what has an index of N changes over 1/N; good beyond 1000.
+/// Halvings of the panels towards grazing angles, where the reflectance of what has an index of N
+/// changes over 1/N; good beyond 1000.
 const GRAZING: i32 = 12;
 /// Halvings towards the critical angle, where it has a root.
 const CRITICAL: i32 = 40;
 
-/// An interface that reflects unpolarised light by its angle of incidence alone: the factor f(θ) of a separable BRDF.
+/// An interface that reflects unpolarised light by its angle of incidence alone: the factor f(θ) of
+/// a separable BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Fresnel {
-    /// A transparent medium. An index below 1 is that of light inside a denser one, all of which is reflected beyond asin(index).
+    /// A transparent medium. An index below 1 is that of light inside a denser one, all of which is
+    /// reflected beyond asin(index).
     Dielectric {
         /// Refractive index of the medium beyond over that before.
         index: f64,
@@ -33,8 +36,8 @@ pub enum Fresnel {
 }
 
 impl Fresnel {
-    /// The share of unpolarised radiance that is reflected: the mean of both polarisations (Born and Wolf 1999, section 1.5). θ from the
-    /// normal, in radians, |θ| ≤ π/2.
+    /// The share of unpolarised radiance that is reflected: the mean of both polarisations (Born
+    /// and Wolf 1999, section 1.5). θ from the normal, in radians, |θ| ≤ π/2.
     #[must_use]
     pub fn reflectance(&self, theta: f64) -> f64 {
         let (sine, cosine) = theta.sin_cos();
@@ -53,10 +56,12 @@ impl Fresnel {
         0.5 * (across.norm_sqr() + along.norm_sqr())
     }
 
-    /// The transform of F(θ) cos⁺(θ), Ω in cycles per radian: the kernel that Fresnel reflection and cosine make together
-    /// (Durand et al. 2005, Fig. 12-b, who give no formula). Real and even.
+    /// The transform of F(θ) cos⁺(θ), Ω in cycles per radian: the kernel that Fresnel reflection
+    /// and cosine make together (Durand et al. 2005, Fig. 12-b, who give no formula). Real and
+    /// even.
     ///
-    /// By quadrature to 10⁻¹²; Schlick's in closed form, F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁ with the transforms Cₙ of cosⁿ.
+    /// By quadrature to 10⁻¹²; Schlick's in closed form, F₀ C₁ + (1 − F₀) Σ (−1)ⁱ (5 over i) Cᵢ₊₁
+    /// with the transforms Cₙ of cosⁿ.
     #[must_use]
     pub fn cosine_hat(&self, omega: f64) -> f64 {
         if let Self::Schlick { normal_reflectance } = *self {
@@ -70,7 +75,8 @@ impl Fresnel {
         })
     }
 
-    /// Panels that shorten towards grazing angles, and towards the critical angle, where there is a root.
+    /// Panels that shorten towards grazing angles, and towards the critical angle, where there is a
+    /// root.
     fn ends(&self) -> Vec<f64> {
         let halved = |most: i32| (1..=most).map(|n| 0.5_f64.powi(n));
         let mut ends: Vec<f64> = halved(GRAZING).map(|h| FRAC_PI_2 * (1.0 - h)).collect();

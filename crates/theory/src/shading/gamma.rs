@@ -3,7 +3,8 @@
 use libm::lgamma as ln_gamma;
 use std::f64::consts::PI;
 
-/// 1/Γ(z) for every real z, as a factor with a sign and the logarithm of another; the factor is 0 at z = 0, −1, −2, …
+/// 1/Γ(z) for every real z, as a factor with a sign and the logarithm of another; the factor is 0
+/// at z = 0, −1, −2, …
 ///
 /// Below zero by reflection, 1/Γ(z) = sin(πz)/π · Γ(1 − z).
 pub(super) fn reciprocal_gamma(z: f64) -> (f64, f64) {
@@ -33,7 +34,8 @@ mod tests {
     fn factorials_and_halves() {
         let mut factorial = 1.0;
         for n in 1..=20 {
-            assert!((ln_gamma(f64::from(n)).exp() / factorial - 1.0).abs() < 1e-13); // rounding of ln Γ up to 40
+            // Rounding of ln Γ up to 40.
+            assert!((ln_gamma(f64::from(n)).exp() / factorial - 1.0).abs() < 1e-13);
             factorial *= f64::from(n);
         }
         // Γ(1/2) = √π and Γ(−3/2) = 4√π/3.
@@ -49,7 +51,8 @@ mod tests {
             // 1/Γ(z) = z/Γ(z + 1) on both sides of each.
             for z in [z + 0.1, z - 0.1] {
                 let step = z * reciprocal(z + 1.0);
-                assert!((reciprocal(z) / step - 1.0).abs() < 1e-13, "{z}"); // rounding of ln Γ up to 20
+                // Rounding of ln Γ up to 20.
+                assert!((reciprocal(z) / step - 1.0).abs() < 1e-13, "{z}");
             }
         }
     }

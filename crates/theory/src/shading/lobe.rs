@@ -5,13 +5,14 @@ use super::panels::{doubling, even_transform};
 use crate::numerics::quadrature::integrate;
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// A lobe ρ'(δ) of unit integral over δ = θ_o' − θ_r', the angle from the mirror direction in 2D, in radians (Durand et al. 2005,
-/// Eq. 15, whose θ_o lacks its prime).
+/// A lobe ρ'(δ) of unit integral over δ = θ_o' − θ_r', the angle from the mirror direction in 2D,
+/// in radians (Durand et al. 2005, Eq. 15, whose θ_o lacks its prime).
 ///
-/// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of microfacet normals, whose tilt is half of
-/// δ. The factor 1/(4 cos θ_i' cos θ_o') and the shadowing of a microfacet BRDF are left out, which makes it depend on more than δ, and so
-/// is the Fresnel factor, for which there is [`Fresnel`](super::Fresnel). The distributions are the slices through the plane of incidence of those in
-/// 3D.
+/// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of
+/// microfacet normals, whose tilt is half of δ. The factor 1/(4 cos θ_i' cos θ_o') and the
+/// shadowing of a microfacet BRDF are left out, which makes it depend on more than δ, and so is the
+/// Fresnel factor, for which there is [`Fresnel`](super::Fresnel). The distributions are the slices
+/// through the plane of incidence of those in 3D.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Lobe {
     /// cosⁿ δ on |δ| < π/2.
@@ -74,7 +75,8 @@ impl Lobe {
 
     /// ρ̂'(Ω), Ω in cycles per radian: real, even, 1 at zero (Durand et al. 2005, Eq. 16).
     ///
-    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others by quadrature, to 10⁻¹².
+    /// Phong: Γ(1 + n/2)²/(Γ(1 + n/2 + πΩ) Γ(1 + n/2 − πΩ)); Gaussian: exp(−2π²σ²Ω²); the others by
+    /// quadrature, to 10⁻¹².
     #[must_use]
     pub fn spectrum(&self, omega: f64) -> f64 {
         match *self {
@@ -88,10 +90,12 @@ impl Lobe {
         }
     }
 
-    /// The frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per radian; `fraction` in (0, 1).
+    /// The frequency below which a share of the energy ∫ |ρ̂'|² dΩ lies, in cycles per radian;
+    /// `fraction` in (0, 1).
     ///
-    /// Gaussian: 0.2899/σ for 99 %, 0.2206/σ for 95 %. What Durand et al. 2005, section 6.2, call Ω_ρ and choose by hand. By summing to
-    /// 10⁻⁹; where a lobe has a jump, as GGX has at the end, the last part in 10⁶ may lie beyond what is searched, and the answer is not a number.
+    /// Gaussian: 0.2899/σ for 99 %, 0.2206/σ for 95 %. What Durand et al. 2005, section 6.2, call
+    /// Ω_ρ and choose by hand. By summing to 10⁻⁹; where a lobe has a jump, as GGX has at the end,
+    /// the last part in 10⁶ may lie beyond what is searched, and the answer is not a number.
     #[must_use]
     pub fn cutoff(&self, fraction: f64) -> f64 {
         const NODES: usize = 16;
@@ -177,7 +181,8 @@ mod tests {
         for lobe in LOBES {
             assert!((lobe.spectrum(0.0) - 1.0).abs() < 1e-12, "{lobe:?}"); // as promised
             for omega in [0.0, 0.3, 2.0, 11.0] {
-                // Trapezoids: exponentially good for what vanishes at the ends, or is periodic at whole 2πΩ.
+                // Trapezoids: exponentially good for what vanishes at the ends, or is periodic at
+                // whole 2πΩ.
                 if matches!(lobe, Lobe::Ggx { .. } | Lobe::Phong { .. }) && omega != 0.0 {
                     continue;
                 }
@@ -198,7 +203,8 @@ mod tests {
 
     #[test]
     fn ggx_at_whole_numbers_of_the_circle() {
-        // 1/(p − q cos δ)² has the Fourier coefficients of a Poisson kernel's derivative: rⁿ (1 + n s), s = √(p² − q²)/p.
+        // 1/(p − q cos δ)² has the Fourier coefficients of a Poisson kernel's derivative: rⁿ (1 + n
+        // s), s = √(p² − q²)/p.
         let alpha: f64 = 0.3;
         let lobe = Lobe::Ggx { roughness: alpha };
         let a = alpha * alpha;

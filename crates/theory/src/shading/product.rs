@@ -5,19 +5,21 @@ use std::f64::consts::TAU;
 
 /// Frequencies n·`spacing` up to `reach` on both sides, at which spectra are summed.
 ///
-/// Such a sum is not an approximation as long as light and factor end: its error is the product of the factor with copies of the light moved
-/// by 1/`spacing` along the axis (Poisson's formula), and what the light has beyond `reach`.
+/// Such a sum is not an approximation as long as light and factor end: its error is the product of
+/// the factor with copies of the light moved by 1/`spacing` along the axis (Poisson's formula), and
+/// what the light has beyond `reach`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lattice {
     /// Cycles per unit of the axis between two frequencies.
     pub spacing: f64,
-    /// The largest frequency at which the *light* still has content, in cycles per unit of the axis.
+    /// The largest frequency at which the *light* still has content, in cycles per unit of the
+    /// axis.
     pub reach: f64,
 }
 
 impl Lattice {
-    /// The frequencies of a Fourier series on the full circle, 1/2π apart: exact for factors on the half-circle and light that ends
-    /// before ± 3π/2.
+    /// The frequencies of a Fourier series on the full circle, 1/2π apart: exact for factors on the
+    /// half-circle and light that ends before ± 3π/2.
     #[must_use]
     pub fn circle(reach: f64) -> Self {
         let spacing = 1.0 / TAU;
@@ -36,7 +38,8 @@ impl Lattice {
     }
 }
 
-/// The spectrum at Ω of f(θ) ℓ(x, θ): ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al. 2005, Eq. 12, whose ⊗ with a Dirac this is).
+/// The spectrum at Ω of f(θ) ℓ(x, θ): ∫ L(Ωx, q) f̂(Ωθ − q) dq (Durand et al. 2005, Eq. 12, whose ⊗
+/// with a Dirac this is).
 ///
 /// `factor` is f̂, in cycles per radian; `before` is L.
 #[must_use]
@@ -50,7 +53,8 @@ pub fn angular_product(
     lattice.sum(|q| before([x, q]) * factor(theta - q))
 }
 
-/// A wave A e^(2πi f s) of a texture along the surface. A real texture has each with its conjugate at −f.
+/// A wave A e^(2πi f s) of a texture along the surface. A real texture has each with its conjugate
+/// at −f.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wave {
     /// f, in cycles per metre of arc length.
@@ -59,9 +63,11 @@ pub struct Wave {
     pub amplitude: Complex,
 }
 
-/// The spectrum at Ω of T(s) ℓ(s, θ) for a texture that is a sum of waves: Σ A L(Ωx − f, Ωθ) (Durand et al. 2005, Eq. 18).
+/// The spectrum at Ω of T(s) ℓ(s, θ) for a texture that is a sum of waves: Σ A L(Ωx − f, Ωθ)
+/// (Durand et al. 2005, Eq. 18).
 ///
-/// Only positions are affected, so it may come before or after the step back from the local normals, but before the outgoing angle.
+/// Only positions are affected, so it may come before or after the step back from the local
+/// normals, but before the outgoing angle.
 #[must_use]
 pub fn texture(waves: &[Wave], omega: [f64; 2], before: &dyn Fn([f64; 2]) -> Complex) -> Complex {
     let [x, theta] = omega;
@@ -71,10 +77,11 @@ pub fn texture(waves: &[Wave], omega: [f64; 2], before: &dyn Fn([f64; 2]) -> Com
         .sum()
 }
 
-/// The spectrum at Ω of the reflection by a BRDF ρ(s, δ) that varies in space: ∫ L(q, Ωθ) ρ̂(Ωx − q, Ωθ) dq, a convolution
-/// along Ωx alone (Durand et al. 2005, section 4.5, "semi-convolution").
+/// The spectrum at Ω of the reflection by a BRDF ρ(s, δ) that varies in space: ∫ L(q, Ωθ) ρ̂(Ωx −
+/// q, Ωθ) dq, a convolution along Ωx alone (Durand et al. 2005, section 4.5, "semi-convolution").
 ///
-/// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. A `brdf` that does not depend on Ωθ is a texture.
+/// `brdf` is the transform of ρ in both variables; `lattice` is along Ωx, in cycles per metre. A
+/// `brdf` that does not depend on Ωθ is a texture.
 #[must_use]
 pub fn semi_convolution(
     lattice: &Lattice,

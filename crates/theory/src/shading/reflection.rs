@@ -44,13 +44,15 @@ impl Step {
 /// A factor of a local direction, as its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// 1: none. With no [`Lobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine. Nothing ends at the horizon then.
+    /// 1: none. With no [`Lobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine.
+    /// Nothing ends at the horizon then.
     One,
     /// cos⁺.
     Cosine,
     /// Fresnel reflectance times cos⁺.
     Fresnel(Fresnel),
-    /// Any other, the cosine included where one is due: f̂(Ω), in cycles per radian. Asymmetric ones are complex.
+    /// Any other, the cosine included where one is due: f̂(Ω), in cycles per radian. Asymmetric
+    /// ones are complex.
     Other(&'a dyn Fn(f64) -> Complex),
 }
 
@@ -101,18 +103,21 @@ pub struct Reflection<'a> {
     pub curvature: f64,
     /// The BRDF, as a sum.
     pub terms: Vec<Term<'a>>,
-    /// Frequencies along Ωθ at which products are summed. Its reach covers the content of the light in the frames of the local normals.
+    /// Frequencies along Ωθ at which products are summed. Its reach covers the content of the light
+    /// in the frames of the local normals.
     pub lattice: Lattice,
 }
 
 impl Reflection<'_> {
     /// The spectrum at Ω after a step, of light with the spectrum `before` in the light frame.
     ///
-    /// To first order in the size of the neighbourhood, as are the [maps](crate::geometry); cosine, lobe and factors are exact. Between the
-    /// cosine and the BRDF a sum of terms is that of their differential irradiances.
+    /// To first order in the size of the neighbourhood, as are the [maps](crate::geometry); cosine,
+    /// lobe and factors are exact. Between the cosine and the BRDF a sum of terms is that of their
+    /// differential irradiances.
     ///
-    /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without h (docs/theory.md, Eq. 36). For an asymmetric f that is
-    /// f̂(−Ωθ), of which Table 1 of Durand et al. 2005 drops the sign; their Eqs. 15 to 17 lack primes and hats.
+    /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
+    /// h (docs/theory.md, Eq. 36). For an asymmetric f that is f̂(−Ωθ), of which Table 1 of Durand
+    /// et al. 2005 drops the sign; their Eqs. 15 to 17 lack primes and hats.
     #[must_use]
     pub fn spectrum(&self, step: Step, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
         let k = self.curvature;

@@ -49,7 +49,8 @@ fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
     };
     let back = map.inverse().unwrap();
     let after = |z: [f64; 2]| field(back.apply(z));
-    // The trapezoid rule on a lattice: both fields are below 1e-20 at its edges and above half of its frequency.
+    // The trapezoid rule on a lattice: both fields are below 1e-20 at its edges and above half of
+    // its frequency.
     let transform = |f: &dyn Fn([f64; 2]) -> f64, [ox, ot]: [f64; 2]| -> Complex {
         let nodes = (-120..=120).map(|i| 0.04 * f64::from(i));
         let rows = nodes.clone().map(|x| -> Complex {
@@ -100,11 +101,13 @@ fn covariance_of_sampled_rays() {
 fn windows_and_lobes() {
     let wide = gaussian_window(&FIELD, [f64::INFINITY; 4]).unwrap();
     assert!(apart(&Map::linear(wide), &Map::linear(FIELD)) < 1e-16); // rounding
-    // The light of a point is singular, its window is not: on x = D u, 1/σ² adds up to 1/σu² + D²/σx².
+    // The light of a point is singular, its window is not: on x = D u, 1/σ² adds up to 1/σu² +
+    // D²/σx².
     let point = [[4.0, 2.0], [2.0, 1.0]];
     let seen = gaussian_window(&point, [0.5, 0.3]).unwrap();
     let along: f64 = 1.0 / (1.0 + 4.0 / 0.25 + 1.0 / 0.09);
-    assert!((seen[1][1] - along).abs() < 1e-16 && (seen[0][0] - 4.0 * along).abs() < 1e-16); // rounding
+    // Rounding.
+    assert!((seen[1][1] - along).abs() < 1e-16 && (seen[0][0] - 4.0 * along).abs() < 1e-16);
     assert!(power_spectrum(&point).is_none());
     let blurred = gaussian_lobe(&FIELD, 0.1);
     assert!((blurred[2][2] - 0.03).abs() < 1e-16 && (blurred[3][3] - 0.04).abs() < 1e-16);

@@ -69,7 +69,8 @@ fn laguerre_polynomials_at_even_orders() {
     }
 }
 
-/// The definition, its path moved up by a height at which nothing oscillates fast: the upright ends are where tan t = ± i coth.
+/// The definition, its path moved up by a height at which nothing oscillates fast: the upright ends
+/// are where tan t = ± i coth.
 fn by_definition(v: f64, theta: f64) -> f64 {
     let (a, b) = (TAU * v, TAU * theta);
     let height = 0.4;

@@ -24,7 +24,8 @@ fn apart<const N: usize>(a: &Map<N>, b: &Map<N>) -> f64 {
     offsets.chain(entries).fold(0.0, f64::max)
 }
 
-/// Numbers spread evenly over (−1, 1), and jointly over the coordinates: multiples of roots of primes.
+/// Numbers spread evenly over (−1, 1), and jointly over the coordinates: multiples of roots of
+/// primes.
 fn scatter(index: usize, coordinate: usize) -> f64 {
     let prime: f64 = [2.0, 3.0, 5.0, 7.0][coordinate];
     2.0 * ((index as f64 + 1.0) * prime.sqrt()).fract() - 1.0

@@ -1,4 +1,5 @@
-//! The misprints of the paper, one by one: none is what rays do, though some hide behind each other.
+//! The misprints of the paper, one by one: none is what rays do, though some hide behind each
+//! other.
 
 use super::rays::{circle, error_and_order};
 use super::trace::{Surface, reflected};
@@ -85,7 +86,8 @@ fn no_misprint_follows_the_rays() {
             "{what}: {error:e}, {order}"
         );
     }
-    // Two phases of a mirror cancel; alone, an angle that is off does not get smaller with the neighbourhood.
+    // Two phases of a mirror cancel; alone, an angle that is off does not get smaller with the
+    // neighbourhood.
     let alone = mirror(&phase[0], Corrected, &right[1]);
     let (error, order) = error_and_order(&rays(&alone), traced);
     assert!(error > 100.0 && order < -0.9, "phase: {error:e}, {order}");

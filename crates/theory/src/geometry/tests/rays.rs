@@ -1,4 +1,5 @@
-//! Maps against traced rays: the error falls with the neighbourhood's size, as its first or second power.
+//! Maps against traced rays: the error falls with the neighbourhood's size, as its first or second
+//! power.
 
 use super::trace::{Axes, Surface, reflected, refracted};
 use super::*;
@@ -7,7 +8,8 @@ use crate::geometry::plane_sphere::{to_angles, to_slopes};
 /// Half of the largest neighbourhood.
 const SIZE: f64 = 1e-3;
 
-/// The largest error of a map over rays of a neighbourhood of size e, relative to e, and the power of e it falls with.
+/// The largest error of a map over rays of a neighbourhood of size e, relative to e, and the power
+/// of e it falls with.
 pub(super) fn error_and_order<const N: usize>(
     map: &Map<N>,
     traced: impl Fn([f64; N]) -> [f64; N],
@@ -88,7 +90,8 @@ fn other_rules_of_refraction_do_not_converge() {
     let in_plane = Map::<2>::refraction(theta0, &GLASS).unwrap();
     let across = Map::<2>::refraction(0.0, &GLASS).unwrap();
     let off = Map::<4>::incidence(theta2).inverse().unwrap();
-    // Latitudes refracted by the rule for longitudes; nothing refracted across; the cosine of the way in on the way back.
+    // Latitudes refracted by the rule for longitudes; nothing refracted across; the cosine of the
+    // way in on the way back.
     let wrong = [
         (Map::<2>::linear(in_plane.matrix), theta0, theta2),
         (Map::identity(), theta0, theta2),
@@ -112,7 +115,8 @@ fn other_rules_of_refraction_do_not_converge() {
 #[test]
 fn foci_of_a_hollow_sphere() {
     let (radius, theta0) = (2.0, 0.7_f64);
-    // Neighbours of the central ray, parallel to it; the error of the central difference is of the order of e².
+    // Neighbours of the central ray, parallel to it; the error of the central difference is of the
+    // order of e².
     let e = 1e-4;
     let crossing = |axis: usize| {
         let ends = [-e, e].map(|offset| {
@@ -127,7 +131,8 @@ fn foci_of_a_hollow_sphere() {
     let expected = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()]; // Coddington
     for (axis, expected) in expected.into_iter().enumerate() {
         let traced = crossing(axis);
-        assert!((traced - expected).abs() < 1e-7, "{traced}"); // e² = 1e-8, and a curvature of order one
+        // E² = 1e-8, and a curvature of order one.
+        assert!((traced - expected).abs() < 1e-7, "{traced}");
         let got = -map[axis][axis] / map[axis + 2][axis];
         assert!((got - expected).abs() < 1e-14, "{got}"); // rounding
     }

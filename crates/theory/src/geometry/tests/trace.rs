@@ -61,7 +61,8 @@ impl Axes {
     }
 }
 
-/// The surface 2 N·p + pᵀ Q p = 0 through the origin: a sphere of curvature k for Q = k 1, else a graph with the shape operator M.
+/// The surface 2 N·p + pᵀ Q p = 0 through the origin: a sphere of curvature k for Q = k 1, else a
+/// graph with the shape operator M.
 #[derive(Clone, Copy)]
 pub(super) struct Surface([Vector; 3]);
 

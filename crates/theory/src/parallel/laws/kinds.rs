@@ -26,7 +26,8 @@ fn with_cosine(mut chain: Chain) -> Chain {
     chain
 }
 
-/// The largest difference from quasi-random rays, relative to what arrives at zero frequency without masks.
+/// The largest difference from quasi-random rays, relative to what arrives at zero frequency
+/// without masks.
 fn error(chain: &Chain, value: impl Fn([f64; 4]) -> Complex) -> f64 {
     let truth = brute_force(chain, &hann(), &FREQUENCIES, RAYS);
     let pairs = FREQUENCIES.iter().zip(truth);
@@ -120,7 +121,8 @@ fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex 
 fn assert_seen(name: &str, chain: &Chain, fault: impl Fn([f64; 4]) -> Complex) {
     let right = error(chain, |k| at(chain, &hann(), k));
     let wrong = error(chain, fault);
-    assert!(right < 5e-4, "{name}: {right:e}"); // smooth: the points are better than where masks cut
+    // Smooth: the points are better than where masks cut.
+    assert!(right < 5e-4, "{name}: {right:e}");
     assert!(wrong > 5e-3, "{name}: {wrong:e}"); // ten times that
 }
 
@@ -174,7 +176,8 @@ fn discs_and_points_agree_with_closed_forms() {
     }
 }
 
-/// Without the root of its √(1 + u² + v²) a point 2 m away is 2 % too dark under Gaussians of widths 1 and ½.
+/// Without the root of its √(1 + u² + v²) a point 2 m away is 2 % too dark under Gaussians of
+/// widths 1 and ½.
 #[test]
 fn the_root_of_a_point_is_two_per_cent() {
     let window = gaussian_window(1.0, 0.5);

@@ -59,7 +59,8 @@ fn two_half_planes_in_one_mask_leave_a_slit() {
     }
 }
 
-/// ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip) ℓ̂(Ωx − f, Ωu + h f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)), h being the distance since.
+/// ½ ℓ̂(Ωx, Ωu) + m/4 (e^(ip) ℓ̂(Ωx − f, Ωu + h f) + e^(−ip) ℓ̂(Ωx + f, Ωu − h f)), h being the
+/// distance since.
 #[test]
 fn a_grating_is_three_copies() {
     let (f, phase, modulation, h) = (3.0, 0.4, 0.9, 0.7);
@@ -75,11 +76,13 @@ fn a_grating_is_three_copies() {
         };
         let sum = copy(0.0) * 0.5 + (copy(1.0) + copy(-1.0)) * (0.25 * modulation);
         let difference = sum - at(&seen, &hann(), [x, y, u, v]);
-        assert!(difference.norm() < 1e-9 * zero(&open)); // discs taken apart for different frequencies
+        // Discs taken apart for different frequencies.
+        assert!(difference.norm() < 1e-9 * zero(&open));
     }
 }
 
-/// Content at (0, f Δh), outside the wedge between the lines of the two depths: each grating alone has nothing there.
+/// Content at (0, f Δh), outside the wedge between the lines of the two depths: each grating alone
+/// has nothing there.
 #[test]
 fn two_gratings_leave_the_wedge() {
     // On a zero of the transform of the window, whose half-widths are 0.5 and 0.3.
@@ -90,7 +93,8 @@ fn two_gratings_leave_the_wedge() {
     let k = [0.0, 0.0, f * between, 0.0];
     let value = |chain: &Chain| at(chain, &hann(), k).norm() / zero(chain);
     let both = value(&seen(mask(), mask()));
-    // (m/4)² of (½)² from the difference of the two frequencies; half of it is the edge of the window.
+    // (m/4)² of (½)² from the difference of the two frequencies; half of it is the edge of the
+    // window.
     assert!(
         (both / (0.9_f64.powi(2) / 4.0) - 1.0).abs() < 0.05,
         "{both}"
@@ -123,7 +127,8 @@ fn travels_add_up_with_gratings_and_points() {
         ];
         for k in FREQUENCIES {
             let difference = at(&whole, &hann(), k) - at(&parts, &hann(), k);
-            assert!(difference.norm() < 1e-15 * zero(&whole)); // the same polygons, distances are exact
+            // The same polygons, distances are exact.
+            assert!(difference.norm() < 1e-15 * zero(&whole));
         }
     }
 }

@@ -87,7 +87,8 @@ fn two_halves_in_one_plane_block_everything() {
     let half = |side: f64| vec![square([side * 0.95, 0.0], 2.0)];
     let one = chain(0.2, &[(1.0, half(1.0)), (1.0, vec![])]);
     let both = chain(0.2, &[(1.0, half(1.0)), (0.0, half(-1.0)), (1.0, vec![])]);
-    assert!(zero(&one) > 0.01 * zero(&chain(0.2, &[(2.0, vec![])]))); // something passes a single one
+    // Something passes a single one.
+    assert!(zero(&one) > 0.01 * zero(&chain(0.2, &[(2.0, vec![])])));
     for k in FREQUENCIES {
         assert!(at(&both, &hann(), k).norm() < 1e-13 * zero(&one)); // rounding of four products
     }

@@ -26,8 +26,8 @@ fn with_slopes(half: f64, profile: fn(f64) -> Profile) -> Window {
     window(Profile::Hann(0.5), profile(half))
 }
 
-/// What leaves the floor is albedo/π times the integral of what arrives over all slopes, mirrored in x, times the
-/// slope window: two ways to the same numbers.
+/// What leaves the floor is albedo/π times the integral of what arrives over all slopes, mirrored
+/// in x, times the slope window: two ways to the same numbers.
 #[test]
 fn exitant_radiance_is_what_arrives() {
     let light = lambertian(square([0.05, -0.02], 0.3));
@@ -56,7 +56,8 @@ fn exitant_radiance_is_what_arrives() {
             let expected =
                 at(&arriving, &all, [-x, y, 0.0, 0.0]) * (ALBEDO / PI * hann(u) * hann(v));
             let error = (at(&leaving, &seen, [x, y, u, v]) - expected).norm() / largest;
-            assert!(error < 1e-5, "{error:e}"); // the receiver's rule of second order, some 400 nodes
+            // The receiver's rule of second order, some 400 nodes.
+            assert!(error < 1e-5, "{error:e}");
         }
     }
 }

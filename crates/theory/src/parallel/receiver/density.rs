@@ -15,7 +15,8 @@ const ARC: usize = 10;
 const LEVELS: usize = 24;
 /// Steps of a closed form.
 const CLOSED: f64 = 100.0;
-/// A rectangle that needs no more nodes than this is integrated by them: in the closed form its corners cancel.
+/// A rectangle that needs no more nodes than this is integrated by them: in the closed form its
+/// corners cancel.
 const FEW: usize = 16;
 
 /// The lobe (1 + u² + v²)^(−p), u and v being slopes.
@@ -93,11 +94,13 @@ impl Counts {
     }
 }
 
-/// Nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to the error e^(−[`NATS`]).
+/// Nodes that integrate (1 + u² + v²)^(−p) e^(2πifu) over an interval of u to the error
+/// e^(−[`NATS`]).
 ///
-/// The rule errs by ρ^(−2n) times the largest value on the ellipse around the interval that reaches b into the
-/// imaginary direction, ln ρ = arsinh(2b/length) (Trefethen 2013, *Approximation Theory and Approximation
-/// Practice*, Theorem 19.3); b < 1 keeps away from the poles, and the best of some b is taken.
+/// The rule errs by ρ^(−2n) times the largest value on the ellipse around the interval that reaches
+/// b into the imaginary direction, ln ρ = arsinh(2b/length) (Trefethen 2013, *Approximation Theory
+/// and Approximation Practice*, Theorem 19.3); b < 1 keeps away from the poles, and the best of
+/// some b is taken.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -125,8 +128,8 @@ pub(crate) struct Integrator {
 }
 
 impl Integrator {
-    /// For (1 + u² + v²)^(−`power`) behind gratings whose frequencies, in cycles per slope along u and along
-    /// v, add up to `frequencies`.
+    /// For (1 + u² + v²)^(−`power`) behind gratings whose frequencies, in cycles per slope along u
+    /// and along v, add up to `frequencies`.
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {
             lobe: Lobe::new(power),
@@ -184,7 +187,8 @@ impl Density<'_> {
         along * across.map(|g| g.transmittance(0.0, v)).product::<f64>()
     }
 
-    /// Parts, and the rule on (−1, 1) of each, for an arc of that length and at most a quarter turn.
+    /// Parts, and the rule on (−1, 1) of each, for an arc of that length and at most a quarter
+    /// turn.
     pub(crate) fn arc(&self, length: f64) -> (usize, &[(f64, f64)]) {
         let [u, v] = self.integrator.counts.each_ref().map(|c| c.of(length));
         let [panels, nodes] = [0, 1].map(|k| u[k].max(v[k]));
@@ -338,7 +342,8 @@ mod tests {
             };
             for sides in [[[-0.2, 0.25], [-0.1, 0.3]], [[0.3, 0.8], [0.2, 0.21]]] {
                 let error = density.rectangle(sides) / brute(&density, sides) - 1.0;
-                assert!(error.abs() < 3e-12, "{frequency} {sides:?} {error:e}"); // as promised at NATS
+                // As promised at NATS.
+                assert!(error.abs() < 3e-12, "{frequency} {sides:?} {error:e}");
             }
         }
     }

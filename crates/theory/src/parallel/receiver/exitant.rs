@@ -19,13 +19,14 @@ const PER_CYCLE: f64 = 4.0;
 const ACROSS: f64 = 8.0;
 /// Fewest nodes across what is resolved.
 const LEAST: f64 = 4.0;
-/// How the error falls with the spacing of the nodes: irradiance has kinks where penumbras begin and end.
+/// How the error falls with the spacing of the nodes: irradiance has kinks where penumbras begin
+/// and end.
 const ORDER: i32 = 2;
 /// Places in a cell of a projection along each axis, at least.
 const PLACES: usize = 4;
 
-/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame round: x' = −x,
-/// y' = y, as D' = −D and X' = −X.
+/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame round:
+/// x' = −x, y' = y, as D' = −D and X' = −X.
 pub(super) struct Table {
     axes: [Axis; 2],
     /// x' and y' of the nodes: the middles of equal cells.
@@ -37,9 +38,10 @@ pub(super) struct Table {
 impl Receiver<'_> {
     /// The slices of the spectrum of the reflected light, after its travel, under a window.
     ///
-    /// Midpoint rule of second order over the receiver, [`quadrature_error`](Self::quadrature_error) says how
-    /// good; exact in slopes. Rows are computed in parallel, each by one thread: the same for any number of
-    /// threads. Unit: W m⁻² sr⁻¹ · m².
+    /// Midpoint rule of second order over the receiver,
+    /// [`quadrature_error`](Self::quadrature_error) says how good; exact in slopes. Rows are
+    /// computed in parallel, each by one thread: the same for any number of threads. Unit: W m⁻²
+    /// sr⁻¹ · m².
     pub(crate) fn slices(&self, window: &Window, grid: &SliceGrid) -> Slices {
         self.slices_with(self.nodes(window, grid.rho.max()), window, grid)
     }
@@ -61,8 +63,8 @@ impl Receiver<'_> {
         self.table(window, self.nodes(window, 0.0)).projection(grid)
     }
 
-    /// Relative L2 error of slices: what half as many nodes along each axis change, over 2² − 1 since the error
-    /// is of second order in their spacing. `None` if the slices are zero.
+    /// Relative L2 error of slices: what half as many nodes along each axis change, over 2² − 1
+    /// since the error is of second order in their spacing. `None` if the slices are zero.
     pub(crate) fn quadrature_error(
         &self,
         window: &Window,
@@ -77,8 +79,8 @@ impl Receiver<'_> {
         error.is_finite().then_some(error)
     }
 
-    /// Nodes along each axis: enough for the narrowest penumbra or period, and for frequencies up to the
-    /// highest. Even, so that they can be halved.
+    /// Nodes along each axis: enough for the narrowest penumbra or period, and for frequencies up
+    /// to the highest. Even, so that they can be halved.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
@@ -97,13 +99,14 @@ impl Receiver<'_> {
         x.max(y)
     }
 
-    /// Whether nodes tell apart all that shines on the receiver: finer patterns would be aliased, and the error
-    /// that coarser nodes tell would be as well.
+    /// Whether nodes tell apart all that shines on the receiver: finer patterns would be aliased,
+    /// and the error that coarser nodes tell would be as well.
     pub(crate) fn is_resolved(&self, window: &Window) -> bool {
         let cell = self.side(window) / NODES[1];
         self.barriers.iter().all(|barrier| {
             let beyond = self.distance - barrier.distance;
-            // Lengths in a mask's plane are this much longer on the receiver, for a point of the light.
+            // Lengths in a mask's plane are this much longer on the receiver, for a point of the
+            // light.
             let grown = self.distance / beyond;
             let is_told = |length: f64| length * grown > LEAST * cell;
             let penumbra = self.width() * barrier.distance / beyond;
@@ -128,7 +131,8 @@ impl Receiver<'_> {
         }
     }
 
-    /// The shortest length over which the irradiance changes: a penumbra, or the period of a grating.
+    /// The shortest length over which the irradiance changes: a penumbra, or the period of a
+    /// grating.
     fn finest(&self) -> f64 {
         let width = self.width();
         let lengths = self.barriers.iter().map(|barrier| {
@@ -211,7 +215,8 @@ impl Table {
         values.map(|((i, j), e)| along_x[i] * along_y[j] * e).sum()
     }
 
-    /// A row where nothing travels: radiance does not know the slope, and the spectrum is a product.
+    /// A row where nothing travels: radiance does not know the slope, and the spectrum is a
+    /// product.
     fn at_receiver(&self, frequencies: &[Row; 2]) -> Vec<Complex> {
         let wave = |k: usize| -> Vec<Complex> {
             let (window, frequency) = (self.axes[k].position, frequencies[k].position);
@@ -294,7 +299,8 @@ fn places(nodes: f64) -> usize {
     nodes.ceil() as usize
 }
 
-/// The straight line between the two values next to a place, in units of their spacing from the middle.
+/// The straight line between the two values next to a place, in units of their spacing from the
+/// middle.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -27,8 +27,8 @@ impl Axis {
         self.position.half_width() + self.after * self.slope.half_width()
     }
 
-    /// K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and one frequency
-    /// (docs/theory.md, Eq. 19).
+    /// K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and one
+    /// frequency (docs/theory.md, Eq. 19).
     pub(crate) fn at(&self, coordinates: &[f64], [omega, nu]: [f64; 2]) -> Vec<Complex> {
         let rule = self.rule([omega, nu]);
         let wave = |x: f64, u: f64| Complex::cis(-TAU * (omega * x + nu * u));
@@ -60,7 +60,8 @@ impl Axis {
         sum
     }
 
-    /// The spectrum of the profile in slopes, from its cosines: what K factors into where nothing travels.
+    /// The spectrum of the profile in slopes, from its cosines: what K factors into where nothing
+    /// travels.
     pub(crate) fn slope_spectrum(&self, nu: f64) -> f64 {
         let half = self.slope.half_width();
         let wave = |frequency: f64| crate::numerics::sinc::sinc(2.0 * half * frequency);
@@ -70,7 +71,8 @@ impl Axis {
             .sum()
     }
 
-    /// Slopes inside the window from the coordinate t of the receiver; an empty interval if there are none.
+    /// Slopes inside the window from the coordinate t of the receiver; an empty interval if there
+    /// are none.
     fn slopes(&self, t: f64) -> [f64; 2] {
         let (h, k) = (self.position.half_width(), self.slope.half_width());
         if self.after <= 0.0 {

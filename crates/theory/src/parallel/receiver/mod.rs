@@ -1,10 +1,11 @@
-//! Diffuse reflection by quadrature: the irradiance of a Lambertian receiver, and the light that leaves it.
+//! Diffuse reflection by quadrature: the irradiance of a Lambertian receiver, and the light that
+//! leaves it.
 //!
-//! A light, masks in planes across the central ray, and the receiver are parallel. A ray that arrives at
-//! (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before, so that whatever stands upstream
-//! is seen from a point as the same shape, smaller. The irradiance
-//! E(x, y) = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a sum over light and blockers so seen, with signs, of integrals
-//! over rectangles and discs (docs/theory.md, section 4b).
+//! A light, masks in planes across the central ray, and the receiver are parallel. A ray that
+//! arrives at (x, y) with slopes (u, v) was at (x − h u, y − h v) a distance h before, so that
+//! whatever stands upstream is seen from a point as the same shape, smaller. The irradiance E(x, y)
+//! = ∫ L(u, v) (1 + u² + v²)⁻² du dv is a sum over light and blockers so seen, with signs, of
+//! integrals over rectangles and discs (docs/theory.md, section 4b).
 
 mod density;
 mod exitant;
@@ -36,7 +37,8 @@ pub(crate) struct Receiver<'a> {
     albedo: f64,
 }
 
-/// How slopes tell positions upstream: position = origin + b · slope at a distance h before the receiver.
+/// How slopes tell positions upstream: position = origin + b · slope at a distance h before the
+/// receiver.
 #[derive(Clone, Copy, Debug)]
 enum Bundle {
     /// Rays that arrive at a point of the receiver: b = −h.
@@ -107,10 +109,11 @@ impl Bundle {
 }
 
 impl<'a> Receiver<'a> {
-    /// A receiver of an albedo `distance` from the light, `layers` between them, whose light travels `after`
-    /// more; metres.
+    /// A receiver of an albedo `distance` from the light, `layers` between them, whose light
+    /// travels `after` more; metres.
     ///
-    /// With `cosine` off, radiance is added up over slopes without (1 + u² + v²)⁻²: wrong on purpose.
+    /// With `cosine` off, radiance is added up over slopes without (1 + u² + v²)⁻²: wrong on
+    /// purpose.
     pub(crate) fn new(
         light: &Light,
         layers: &[Layer<'a>],
@@ -178,9 +181,9 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Mean irradiance over a rectangle of the receiver around a point, if the light is a point; else the
-    /// irradiance at the middle. Shadows of a point light end abruptly, and a value in the middle of a cell would
-    /// say nothing of the rest.
+    /// Mean irradiance over a rectangle of the receiver around a point, if the light is a point;
+    /// else the irradiance at the middle. Shadows of a point light end abruptly, and a value in the
+    /// middle of a cell would say nothing of the rest.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         let Light::Point { intensity } = self.light else {
             return self.irradiance(center[0], center[1]);
@@ -202,7 +205,8 @@ impl<'a> Receiver<'a> {
         )
     }
 
-    /// The light of a region that passes barriers, one after the other: all, less what each shape stops.
+    /// The light of a region that passes barriers, one after the other: all, less what each shape
+    /// stops.
     fn passed(
         &self,
         bundle: &Bundle,
@@ -238,8 +242,8 @@ impl<'a> Receiver<'a> {
         }
     }
 
-    /// Radiance that leaves the receiver, the same in all directions: albedo / π · E (the paper's Eq. 6 with
-    /// the π that energy asks for).
+    /// Radiance that leaves the receiver, the same in all directions: albedo / π · E (the paper's
+    /// Eq. 6 with the π that energy asks for).
     fn exitance(&self) -> f64 {
         self.albedo / PI
     }

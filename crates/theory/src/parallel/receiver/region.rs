@@ -66,7 +66,8 @@ impl Region {
         }
     }
 
-    /// Without the discs that hold the rectangle or another disc; `None` if two of its parts do not meet.
+    /// Without the discs that hold the rectangle or another disc; `None` if two of its parts do not
+    /// meet.
     fn simplified(mut self) -> Option<Self> {
         let [u, v] = self.sides;
         if u[0] >= u[1] || v[0] >= v[1] {
@@ -93,8 +94,9 @@ impl Region {
 
     /// The integral of a density over it.
     ///
-    /// By Green's theorem that of A(u, v) = ∫ density du along its boundary over v: arcs of the circles, on
-    /// which everything is smooth, and upright edges of the rectangle (docs/theory.md, Eq. 16).
+    /// By Green's theorem that of A(u, v) = ∫ density du along its boundary over v: arcs of the
+    /// circles, on which everything is smooth, and upright edges of the rectangle (docs/theory.md,
+    /// Eq. 16).
     pub(crate) fn integral(&self, density: &Density<'_>) -> f64 {
         let Some(first) = self.discs.first() else {
             return density.rectangle(self.sides);

@@ -10,7 +10,8 @@ use etendue_field::{Light, ProjectionGrid, Rectangle, SliceGrid, Window};
 
 /// Places along each axis at which steps are counted.
 const SOME: usize = 4;
-/// Steps at a place that are counted: with more than these, a table of the fewest nodes is beyond all limits.
+/// Steps at a place that are counted: with more than these, a table of the fewest nodes is beyond
+/// all limits.
 const MOST: f64 = 1e8;
 /// Steps for a shape that is looked at, and for one that stops light.
 const SHAPE: f64 = 100.0;

@@ -20,8 +20,9 @@ fn slices_of(grid: &SliceGrid, value: impl Fn([f64; 4]) -> Complex) -> Slices {
     slices
 }
 
-/// The spectrum at distance d of a projector's field, as a Gauss rule over slopes sums it up: on x = d u, y = d v it is the image times
-/// √(1 + u² + v²), the point being farther away aside (docs/theory.md, section 2). Without that where not `exact`.
+/// The spectrum at distance d of a projector's field, as a Gauss rule over slopes sums it up: on x
+/// = d u, y = d v it is the image times √(1 + u² + v²), the point being farther away aside
+/// (docs/theory.md, section 2). Without that where not `exact`.
 fn at_distance(d: f64, width: f64, window: &Window, grid: &SliceGrid, exact: bool) -> Slices {
     let most = (window.x.half_width() / d).min(window.u.half_width());
     // Up to 22 cycles take 70 nodes.
@@ -200,7 +201,8 @@ fn plane_mirror_is_a_travel() {
 
 #[test]
 fn lens_images_a_slide() {
-    // A slide: a Lambertian light of 1 cm² with a grating right at it, at a = 0.5 m from a lens of f = 0.3 m; its image is at b = 0.75 m.
+    // A slide: a Lambertian light of 1 cm² with a grating right at it, at a = 0.5 m from a lens of
+    // f = 0.3 m; its image is at b = 0.75 m.
     let (a, f) = (0.5, 0.3);
     let b = 1.0 / (1.0 / f - 1.0 / a);
     let patch = placed(&Frame::IDENTITY, a, 0.0, [0.0; 2], [0.0; 3]);
@@ -223,7 +225,8 @@ fn lens_images_a_slide() {
         slices.half[[0, 1, 1]].norm() / slices.at_zero()
     };
     let sharp = contrast(b);
-    // m/2 = 0.45 of a grating where it is sharp; the window of a few of its periods leaves all of it but a few in a hundred.
+    // m/2 = 0.45 of a grating where it is sharp; the window of a few of its periods leaves all of
+    // it but a few in a hundred.
     assert!((sharp - 0.45).abs() < 0.02, "{sharp}");
     // 5 cm beside, slopes of ± 0.05 smear ± 2.5 mm, a third of a period of 7.5 mm.
     assert!(contrast(b + 0.05) < 0.9 * sharp);

@@ -103,7 +103,8 @@ fn after(system: &System, distance: f64) -> Plane {
     across(last.travelled(distance))
 }
 
-/// A surface across a leg: its normal is −D turned by θ₀ within the plane at the angle `azimuth` about D, its principal axes by `twist` about it.
+/// A surface across a leg: its normal is −D turned by θ₀ within the plane at the angle `azimuth`
+/// about D, its principal axes by `twist` about it.
 fn placed(
     leg: &Frame,
     distance: f64,

@@ -1,8 +1,10 @@
-//! How fast the first-order prediction comes closer to the exact one, as everything but the geometry shrinks.
+//! How fast the first-order prediction comes closer to the exact one, as everything but the
+//! geometry shrinks.
 
 use super::*;
 
-/// ‖linear − exact‖/‖exact‖ at a size e: windows and light e times as wide, frequencies 1/e times as high.
+/// ‖linear − exact‖/‖exact‖ at a size e: windows and light e times as wide, frequencies 1/e times
+/// as high.
 fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Print) -> f64 {
     let window = window(Profile::Hann(widths[0] * e), Profile::Hann(widths[1] * e));
     let grid = grid(3, widths.map(|w| w * e));

@@ -153,7 +153,8 @@ fn projector(width: f64) -> Light {
     }
 }
 
-/// Behind blockers, a flat Lambertian surface at normal incidence is the receiver of the closed forms.
+/// Behind blockers, a flat Lambertian surface at normal incidence is the receiver of the closed
+/// forms.
 #[test]
 fn flat_lambertian_surface_is_the_receiver() {
     let blocker = vec![Shape::Rectangle(Rectangle {
@@ -220,7 +221,8 @@ fn chain_is_the_product_of_operators() {
             let a = read.matrix.as_flattened().iter().chain(&read.offset);
             let b = put.matrix.as_flattened().iter().chain(&put.offset);
             let worst = a.zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
-            assert!(worst < 1e-8, "{theta0} {k}: {worst:e}\n{read:?}\n{put:?}"); // differences of 1e-16 over 1e-5
+            // Differences of 1e-16 over 1e-5.
+            assert!(worst < 1e-8, "{theta0} {k}: {worst:e}\n{read:?}\n{put:?}");
         }
     }
 }
@@ -275,7 +277,8 @@ fn first_order_is_of_its_order() {
     }
 }
 
-/// A lobe around the normal, a cosine left out, an exponent off by 5 %: each is a worse neighbour than first order.
+/// A lobe around the normal, a cosine left out, an exponent off by 5 %: each is a worse neighbour
+/// than first order.
 #[test]
 fn wrong_operators_are_seen() {
     let theta0 = 0.6;
@@ -307,8 +310,9 @@ fn wrong_operators_are_seen() {
     assert!(exact_error(&sharper) > 0.005);
 }
 
-/// ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its middle: the product of spherical harmonics that is the convolution with the clamped
-/// cosine (Ramamoorthi and Hanrahan 2001; in 2D the paper's section 6.1).
+/// ∫ L cos⁺ dω of a spherical Gaussian, at an angle γ from its middle: the product of spherical
+/// harmonics that is the convolution with the clamped cosine (Ramamoorthi and Hanrahan 2001; in 2D
+/// the paper's section 6.1).
 fn harmonic_irradiance(width: f64, gamma: f64) -> f64 {
     let squared = width * width;
     let legendre = |l: i32, x: f64| {
@@ -411,5 +415,6 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     let grid = grid([0.1, 0.4]);
     let chain = chain(&system, &plane).unwrap();
     let error = linearised(&system, &plane, &window, &grid, &chain);
-    assert!(error < 3e-3, "{error}"); // (k s)³ of 0.08³, and what tilts of both axes do to each other
+    // (k s)³ of 0.08³, and what tilts of both axes do to each other.
+    assert!(error < 3e-3, "{error}");
 }

@@ -66,7 +66,8 @@ impl Bench {
         Receiver::new(&self.light, &self.layers(), self.distance, true, after, 0.6)
     }
 
-    /// The share of light that passes from a point (a, b) of the light to (x, y) of the receiver, mask by mask.
+    /// The share of light that passes from a point (a, b) of the light to (x, y) of the receiver,
+    /// mask by mask.
     fn passes(&self, [a, b]: [f64; 2], [x, y]: [f64; 2]) -> f64 {
         let masks = self.masks.iter();
         masks
@@ -88,7 +89,8 @@ impl Bench {
             .product()
     }
 
-    /// L cosⁿθ · cos²θ / r², what a square metre of the light at (a, b) adds to the irradiance at (x, y).
+    /// L cosⁿθ · cos²θ / r², what a square metre of the light at (a, b) adds to the irradiance at
+    /// (x, y).
     fn added(&self, at: [f64; 2], point: [f64; 2]) -> f64 {
         let Light::Area {
             shape,
@@ -108,7 +110,8 @@ impl Bench {
     }
 }
 
-/// Benches with every kind of light and mask, off the centre so that nothing hides behind a symmetry.
+/// Benches with every kind of light and mask, off the centre so that nothing hides behind a
+/// symmetry.
 fn benches() -> Vec<Bench> {
     let slab = rectangle([0.13, -0.07], [0.5, 0.3]);
     let round = disc([-0.1, 0.12], 0.25);

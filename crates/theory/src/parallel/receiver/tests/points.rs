@@ -36,7 +36,8 @@ fn disc_seen_from_anywhere() {
             let (r2, h2) = ((radius / offset).powi(2), (distance / offset).powi(2));
             let z = 1.0 + h2 + r2;
             let root = (z * z - 4.0 * r2).sqrt();
-            // 1 − (z − 2R²)/√ without its cancellation, (√² − (z − 2R²)²) = 4R²(z − 1 − R²) = 4R²H².
+            // 1 − (z − 2R²)/√ without its cancellation, (√² − (z − 2R²)²) = 4R²(z − 1 − R²) =
+            // 4R²H².
             let expected = 2.0 * r2 * h2 / (root * (root + z - 2.0 * r2));
             let got = receiver.irradiance(0.2, -0.1 + offset) / (1.7 * PI);
             // The root loses digits below the edge of a large disc.
@@ -99,7 +100,8 @@ fn benches_against_sums_over_the_light() {
             let got = receiver.irradiance(point[0], point[1]);
             let all = open.receiver().irradiance(point[0], point[1]);
             let error = (got - brute).abs() / all;
-            assert!(error < 3e-4, "{number} {point:?}: {got} {brute} {error:e}"); // ten times POINTS^(−3/4)
+            // Ten times POINTS^(−3/4).
+            assert!(error < 3e-4, "{number} {point:?}: {got} {brute} {error:e}");
         }
     }
 }

@@ -49,19 +49,22 @@ fn fast_and_plain_sums_agree() {
                 let (rho, nu) = (m as f64 * grid.rho.spacing, grid.nu.value(n));
                 let plain = table.at(grid.frequency(k, rho, nu));
                 let error = (slices.half[[k, m, n]] - plain).norm() / slices.at_zero();
-                assert!(error < 1e-12, "{after} {k} {m} {n}: {error:e}"); // rounding, and Gauss rules to 1e-14
+                // Rounding, and Gauss rules to 1e-14.
+                assert!(error < 1e-12, "{after} {k} {m} {n}: {error:e}");
             }
         }
     }
 }
 
-/// Points that fill a cube of six dimensions evenly: multiples of square roots of primes (Richtmyer 1951).
+/// Points that fill a cube of six dimensions evenly: multiples of square roots of primes (Richtmyer
+/// 1951).
 pub(super) fn cube(count: u32) -> impl Iterator<Item = [f64; 6]> {
     let steps = [2.0_f64, 3.0, 5.0, 7.0, 11.0, 13.0].map(f64::sqrt);
     (1..=count).map(move |n| steps.map(|s| (0.5 + s * f64::from(n)).fract()))
 }
 
-/// The spectrum at frequencies by rays drawn at random through the window and from the light, followed back.
+/// The spectrum at frequencies by rays drawn at random through the window and from the light,
+/// followed back.
 fn drawn(bench: &Bench, after: f64, window: &Window, rays: u32) -> Vec<Complex> {
     let Light::Area { shape, .. } = bench.light else {
         unreachable!("area lights only")
@@ -73,7 +76,8 @@ fn drawn(bench: &Bench, after: f64, window: &Window, rays: u32) -> Vec<Complex> 
     for point in cube(rays) {
         let [x, y, u, v] = [0, 1, 2, 3].map(|k| halves[k] * (2.0 * point[k] - 1.0));
         let weight = window.value(&TwoPlane { x, y, u, v });
-        // D' = −D, X' = −X and Y' = D' × X' = Y: back along the ray, then x in the frame of arrival is −x'.
+        // D' = −D, X' = −X and Y' = D' × X' = Y: back along the ray, then x in the frame of arrival
+        // is −x'.
         let floor = [-(x - after * u), y - after * v];
         let at = [0, 1].map(|k| bounds.center[k] + bounds.size[k] * (point[4 + k] - 0.5));
         let radiance = 0.6 / PI * bench.added(at, floor) * weight;
@@ -249,7 +253,8 @@ fn hard_shadows_of_a_point_light() {
     let bench = Bench::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
     let receiver = bench.receiver();
     let [x, y, u, v] = [2.0, -3.0, 1.0, 0.5];
-    // In the turned frame, over a rectangle of the receiver; the shadow is 4/3 as large as the mask.
+    // In the turned frame, over a rectangle of the receiver; the shadow is 4/3 as large as the
+    // mask.
     let lit = |along_x: [f64; 2], along_y: [f64; 2]| -> Complex {
         integrate(40, along_x, |s| {
             integrate(40, along_y, |t| {
