@@ -80,10 +80,59 @@ pub(crate) struct Reflection {
     pub(crate) after: f64,
 }
 
+/// A light whose field has closed forms between parallel planes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Emitter {
+    /// A flat shape of radiance L₀ cosⁿθ, n being the exponent.
+    Area {
+        shape: Shape,
+        radiance: f64,
+        exponent: f64,
+    },
+    /// A point on the central ray.
+    Point { intensity: f64 },
+}
+
+impl Emitter {
+    /// # Panics
+    /// When light goes through a picture or comes from far away: `rays` and `scattering` predict that.
+    pub(crate) fn new(light: &Light) -> Self {
+        match *light {
+            Light::Area {
+                shape,
+                radiance,
+                exponent,
+            } => Self::Area {
+                shape,
+                radiance,
+                exponent,
+            },
+            Light::Point { intensity } => Self::Point { intensity },
+            _ => panic!("a projector, a beam or an environment has no closed form here"),
+        }
+    }
+
+    /// As the other theories know it.
+    pub(crate) fn light(self) -> Light {
+        match self {
+            Self::Area {
+                shape,
+                radiance,
+                exponent,
+            } => Light::Area {
+                shape,
+                radiance,
+                exponent,
+            },
+            Self::Point { intensity } => Light::Point { intensity },
+        }
+    }
+}
+
 /// A chain up to its end, or up to its diffuse surface, seen from there.
 #[derive(Clone, Debug)]
 pub(crate) struct Path<'a> {
-    pub(crate) light: &'a Light,
+    pub(crate) light: Emitter,
     /// Distance from the light, in metres.
     pub(crate) distance: f64,
     /// The masks on the way, in the order of light.
@@ -100,7 +149,7 @@ impl Chain {
     /// When anything but travel follows a diffuse reflection.
     pub(crate) fn path(&self) -> Path<'_> {
         let mut path = Path {
-            light: &self.source.light,
+            light: Emitter::new(&self.source.light),
             distance: 0.0,
             layers: Vec::new(),
             cosines: 0,
@@ -131,21 +180,12 @@ impl Chain {
     }
 }
 
-/// Light that goes through pictures is followed ray by ray (`rays`), that of an environment not at
-/// all.
-pub(crate) fn no_closed_form() -> ! {
-    panic!("a projector, a beam or an environment has no closed form here")
-}
-
 impl Path<'_> {
     /// Shapes of the light: one, or none of a point.
     pub(crate) fn light_shapes(&self) -> &[Shape] {
-        match self.light {
-            Light::Area { shape, .. } => std::slice::from_ref(shape),
-            Light::Point { .. } => &[],
-            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
-                no_closed_form()
-            }
+        match &self.light {
+            Emitter::Area { shape, .. } => std::slice::from_ref(shape),
+            Emitter::Point { .. } => &[],
         }
     }
 
@@ -153,11 +193,8 @@ impl Path<'_> {
     /// (its distance to (x, y) is D √(1 + u² + v²)), −2 from each cosine.
     pub(crate) fn slope_power(&self) -> f64 {
         let light = match self.light {
-            Light::Area { exponent, .. } => -0.5 * exponent,
-            Light::Point { .. } => 0.5,
-            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
-                no_closed_form()
-            }
+            Emitter::Area { exponent, .. } => -0.5 * exponent,
+            Emitter::Point { .. } => 0.5,
         };
         light - 2.0 * f64::from(self.cosines)
     }

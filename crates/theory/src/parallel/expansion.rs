@@ -1,10 +1,10 @@
-use crate::parallel::chain::{Path, no_closed_form};
+use crate::parallel::chain::{Emitter, Path};
 use crate::parallel::disc::Discs;
 use crate::parallel::patch::{Fineness, Patch};
 use crate::parallel::polygon::Polygon;
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
-use etendue_field::{Complex, Light, Mask, Profile, Window};
+use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
 
 /// Polygons smaller than this, in units of the window's half-widths, are left out: below rounding.
@@ -206,20 +206,17 @@ impl Expansion {
     /// The light itself.
     fn shine(&mut self, path: &Path<'_>, discs: Discs) {
         match path.light {
-            Light::Area {
+            Emitter::Area {
                 shape, radiance, ..
             } => {
-                self.brightness = *radiance;
-                self.terms = self.inside(&Patch::of_shape(shape, discs), path.distance);
+                self.brightness = radiance;
+                self.terms = self.inside(&Patch::of_shape(&shape, discs), path.distance);
             }
-            Light::Point { intensity } => {
-                self.brightness = *intensity;
+            Emitter::Point { intensity } => {
+                self.brightness = intensity;
                 for section in &mut self.sections {
                     section.become_segment(path.distance);
                 }
-            }
-            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
-                no_closed_form()
             }
         }
     }

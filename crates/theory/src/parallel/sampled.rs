@@ -134,7 +134,7 @@ impl Chain {
         };
         let Some(reflection) = path.reflection else {
             let system = rays::System {
-                light: path.light.clone(),
+                light: path.light.light(),
                 layers: masks(&path),
                 elements: Vec::new(),
             };
@@ -160,7 +160,7 @@ impl Chain {
             fresnel: Fresnel::White,
         };
         let system = scattering::System {
-            light: path.light.clone(),
+            light: path.light.light(),
             layers: masks(&path),
             name: String::new(),
             patch,

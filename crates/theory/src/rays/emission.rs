@@ -2,7 +2,6 @@
 
 use super::System;
 use crate::nets::Density;
-use crate::parallel::chain::no_closed_form;
 use etendue_field::{Light, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 
@@ -32,7 +31,7 @@ impl System {
             Light::Point { .. } => ([2, 3], None, None),
             Light::Beam { image, .. } => ([0, 1], Some(image), None),
             Light::Area { shape, .. } => ([2, 3], None, Some(shape)),
-            Light::Environment { .. } => no_closed_form(),
+            Light::Environment { .. } => from_far_away(),
         };
         let mut cycles = [0.0; 2];
         if let Some(image) = image {
@@ -87,7 +86,7 @@ impl System {
             Light::Area {
                 radiance, exponent, ..
             } => radiance * cosine.powi(4) * cosine.powf(exponent),
-            Light::Environment { .. } => no_closed_form(),
+            Light::Environment { .. } => from_far_away(),
         }
     }
 }
@@ -108,4 +107,9 @@ pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
             [x + r * cos, y + r * sin]
         }
     }
+}
+
+/// A ray of an environment leaves no plane.
+fn from_far_away() -> ! {
+    panic!("rays of an environment are not followed from the light")
 }

@@ -2,9 +2,9 @@
 
 use super::Receiver;
 use super::kernel::{Axis, Kernels};
-use crate::parallel::chain::no_closed_form;
+use crate::parallel::chain::Emitter;
 use crate::parallel::row::Row;
-use etendue_field::{Complex, Light, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
+use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -120,14 +120,11 @@ impl Receiver<'_> {
     /// The width of the light.
     fn width(&self) -> f64 {
         match self.light {
-            Light::Area { shape, .. } => match shape {
+            Emitter::Area { shape, .. } => match shape {
                 Shape::Rectangle(r) => r.size[0].min(r.size[1]),
                 Shape::Disc(d) => d.radius,
             },
-            Light::Point { .. } => 0.0,
-            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
-                no_closed_form()
-            }
+            Emitter::Point { .. } => 0.0,
         }
     }
 

@@ -17,16 +17,16 @@ mod tests;
 mod work;
 
 use crate::mask::{Barrier, Sides};
-use crate::parallel::chain::{Layer, no_closed_form};
+use crate::parallel::chain::{Emitter, Layer};
 use density::{Density, Integrator};
-use etendue_field::{Disc, Grating, Light, Rectangle, Shape};
+use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::Region;
 use std::f64::consts::{PI, TAU};
 
 /// A Lambertian receiver, what shines on it, and how far its light then travels.
 #[derive(Debug)]
 pub(crate) struct Receiver<'a> {
-    light: Light,
+    light: Emitter,
     barriers: Vec<Barrier<'a>>,
     /// From the light to the receiver.
     distance: f64,
@@ -115,7 +115,7 @@ impl<'a> Receiver<'a> {
     /// With `cosine` off, radiance is added up over slopes without (1 + u² + v²)⁻²: wrong on
     /// purpose.
     pub(crate) fn new(
-        light: &Light,
+        light: Emitter,
         layers: &[Layer<'a>],
         distance: f64,
         cosine: bool,
@@ -124,12 +124,9 @@ impl<'a> Receiver<'a> {
     ) -> Self {
         let shading = if cosine { 2.0 } else { 0.0 };
         let (lobe, bundle) = match light {
-            Light::Area { exponent, .. } => (0.5 * exponent, Bundle::At([0.0; 2])),
+            Emitter::Area { exponent, .. } => (0.5 * exponent, Bundle::At([0.0; 2])),
             // Its radiance is I √(1 + u² + v²) δ(x − D u) δ(y − D v).
-            Light::Point { .. } => (-0.5, Bundle::From(distance)),
-            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
-                no_closed_form()
-            }
+            Emitter::Point { .. } => (-0.5, Bundle::From(distance)),
         };
         let barriers: Vec<_> = layers
             .iter()
@@ -144,7 +141,7 @@ impl<'a> Receiver<'a> {
         };
         let integrator = Integrator::new(lobe + shading, [frequency(0), frequency(1)]);
         Self {
-            light: light.clone(),
+            light,
             barriers,
             distance,
             integrator,
@@ -158,14 +155,14 @@ impl<'a> Receiver<'a> {
     /// To 10⁻¹² of the irradiance without blockers.
     pub(crate) fn irradiance(&self, x: f64, y: f64) -> f64 {
         match self.light {
-            Light::Area {
+            Emitter::Area {
                 shape, radiance, ..
             } => {
                 let bundle = Bundle::At([x, y]);
                 let region = Region::shape(&bundle.seen(&shape, self.distance));
                 radiance * self.received(&bundle, region)
             }
-            Light::Point { intensity } => {
+            Emitter::Point { intensity } => {
                 let [u, v] = [x, y].map(|c| c / self.distance);
                 let bundle = Bundle::From(self.distance);
                 let through = self.barriers.iter().map(|barrier| {
@@ -175,9 +172,6 @@ impl<'a> Receiver<'a> {
                 let lobe = self.density(&bundle, &[]).value(u, v);
                 through.product::<f64>() * intensity * lobe / self.distance.powi(2)
             }
-            Light::Projector { .. } | Light::Beam { .. } | Light::Environment { .. } => {
-                no_closed_form()
-            }
         }
     }
 
@@ -185,7 +179,7 @@ impl<'a> Receiver<'a> {
     /// else the irradiance at the middle. Shadows of a point light end abruptly, and a value in the
     /// middle of a cell would say nothing of the rest.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
-        let Light::Point { intensity } = self.light else {
+        let Emitter::Point { intensity } = self.light else {
             return self.irradiance(center[0], center[1]);
         };
         // dx dy = D² du dv cancels the square of the distance.

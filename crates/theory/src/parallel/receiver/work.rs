@@ -5,8 +5,9 @@ use super::kernel::Axis;
 use super::region::Region;
 use super::{Bundle, Receiver, exitant};
 use crate::mask::Barrier;
+use crate::parallel::chain::Emitter;
 use crate::parallel::work::Work;
-use etendue_field::{Light, ProjectionGrid, Rectangle, SliceGrid, Window};
+use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 
 /// Places along each axis at which steps are counted.
 const SOME: usize = 4;
@@ -67,7 +68,7 @@ impl Receiver<'_> {
     /// Steps of [`Self::cell`].
     fn steps(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         let (bundle, region) = match &self.light {
-            Light::Area { shape, .. } => {
+            Emitter::Area { shape, .. } => {
                 let bundle = Bundle::At(center);
                 (bundle, Region::shape(&bundle.seen(shape, self.distance)))
             }

@@ -4,7 +4,7 @@ mod points;
 mod spectra;
 
 use super::Receiver;
-use crate::parallel::chain::Layer;
+use crate::parallel::chain::{Emitter, Layer};
 use crate::testing::square;
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
@@ -63,7 +63,14 @@ impl Bench {
 
     /// The receiver looked at that far on.
     fn after(&self, after: f64) -> Receiver<'_> {
-        Receiver::new(&self.light, &self.layers(), self.distance, true, after, 0.6)
+        Receiver::new(
+            Emitter::new(&self.light),
+            &self.layers(),
+            self.distance,
+            true,
+            after,
+            0.6,
+        )
     }
 
     /// The share of light that passes from a point (a, b) of the light to (x, y) of the receiver,

@@ -132,7 +132,14 @@ fn planted_faults_are_seen() {
         let layers = bench.layers();
         let distance = bench.distance;
         deviation(
-            &Receiver::new(&bench.light, &layers, distance, cosine, after, albedo),
+            &Receiver::new(
+                Emitter::new(&bench.light),
+                &layers,
+                distance,
+                cosine,
+                after,
+                albedo,
+            ),
             &drawn,
         )
     };
