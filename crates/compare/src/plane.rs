@@ -118,7 +118,8 @@ impl Sides<'_> {
         let first_order = first_order.map(|f| f.report(self.measurement, self.index, exact, seed));
         let tally = self.measurement.tally(self.index);
         let agrees = agrees(self.predicted, &tally, p_value, level);
-        let is_blurred = agreement.is_blurred(self.prediction, agrees);
+        let is_blurred = agreement.is_blurred(self.prediction, agrees)
+            || self.prediction.found_nothing() && !agrees;
         let verdict = if is_blurred {
             Verdict::Undecided
         } else {

@@ -66,6 +66,12 @@ impl Prediction {
         !self.replicates.is_empty()
     }
 
+    /// Whether theory's rays found no way to the plane. That is no proof that there is none.
+    pub(crate) fn found_nothing(&self) -> bool {
+        let is_dark = || self.slices.half.iter().all(|f| f.norm_sqr() <= 0.0);
+        self.class != Class::Reference && self.is_statistical() && is_dark()
+    }
+
     /// ‖error‖/‖slices‖ that no replicates show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
         self.quadrature_error.filter(|_| !self.is_statistical())

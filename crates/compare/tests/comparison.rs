@@ -127,6 +127,23 @@ fn prediction(width: f64) -> Prediction {
     }
 }
 
+/// Rays that found nothing prove no darkness: light that photons see is no fault then.
+#[test]
+fn rays_that_found_nothing_decide_nothing() {
+    let [truth, _] = spectrum(0.3);
+    let measurement = measurement(&truth, 0.02, 2);
+    let mut nothing = prediction(0.3);
+    nothing.slices = Slices::zeros(plane().grid);
+    let verdict = |prediction: &Prediction| {
+        let compared = compare(&measurement, 0, prediction, 0.01, 1).unwrap();
+        compared.report.verdict
+    };
+    // A closed form that is dark is sure of it.
+    assert_eq!(verdict(&nothing), Verdict::Fail);
+    nothing.replicates = vec![Slices::zeros(plane().grid); 32];
+    assert_eq!(verdict(&nothing), Verdict::Undecided);
+}
+
 /// Another measurement in place of theory: its noise counts, and so does a difference from it.
 #[test]
 fn a_reference_is_judged_with_its_own_noise() {

@@ -11,7 +11,7 @@
 //! | travel | [`Map::travel`] | Eq. 3 |
 //! | thin lens | [`Map::thin_lens`] | – |
 //! | light incidence: onto the surface | [`incidence`](Map::<2>::incidence) | Eq. 9 |
-//! | curvature: into the frames of local normals | [`curvature`](Map::<2>::curvature) | Eq. 11, 19 |
+//! | curvature: into local frames | [`2D`](Map::<2>::curvature), [`4D`](Map::<4>::curvature) | 11, 19 |
 //! | mirror | [`Map::mirror`] | Eq. 14 |
 //! | refraction | [`refraction`](Map::<2>::refraction) | – |
 //! | back from the local normals | [`back`](Map::<2>::back) | step 6 |

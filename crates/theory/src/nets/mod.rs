@@ -27,24 +27,15 @@ const OF_DERIVATIVES: usize = 8;
 /// Nodes of each of those: a derivative good to a per cent is good enough.
 const NODES_OF_DERIVATIVES: u32 = 1 << 15;
 /// Nodes of a net before its error is first looked at.
-const FIRST: u32 = 1 << 9;
+const FIRST: u32 = 1 << 11;
 
 /// When to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
-    /// Most nodes in all.
+    /// Most nodes in all; between half of them and all are used.
     pub nodes: f64,
     /// ‖error‖/‖F‖ that is good enough.
     pub error: f64,
-}
-
-impl Budget {
-    /// Of a trial by which ways of drawing rays are told apart. With fewer, those that are best
-    /// with few rays win.
-    pub(crate) const TRIAL: Self = Self {
-        nodes: 65_536.0,
-        error: 0.0,
-    };
 }
 
 /// A system and its plane with a little more and a little less of a parameter.
@@ -109,16 +100,40 @@ struct Running {
 /// on any number of threads.
 pub(crate) fn sums(
     integrand: &(impl Integrand + ?Sized),
-    window: &Window,
-    grid: &SliceGrid,
+    (window, grid): (&Window, &SliceGrid),
     bins: usize,
     budget: Budget,
 ) -> Sums {
+    let nets = begin(integrand, grid, bins, 0, REPLICATES);
+    doubled(integrand, (window, grid), nets, budget)
+}
+
+/// ‖error‖/‖F‖ of a few rays, by which ways of drawing rays are told apart. With fewer, those that
+/// are best with few rays win. Its nets are no part of a prediction: else the way would win whose
+/// heavy rays these nets happen to miss.
+pub(crate) fn trial(
+    integrand: &(impl Integrand + ?Sized),
+    (window, grid): (&Window, &SliceGrid),
+) -> f64 {
+    const TRIED: Budget = Budget {
+        nodes: 0.0,
+        error: f64::INFINITY,
+    };
+    let nets = begin(integrand, grid, 1, REPLICATES, REPLICATES);
+    doubled(integrand, (window, grid), nets, TRIED).error
+}
+
+fn doubled(
+    integrand: &(impl Integrand + ?Sized),
+    (window, grid): (&Window, &SliceGrid),
+    mut running: Vec<Running>,
+    budget: Budget,
+) -> Sums {
+    let bins = running[0].projection.nrows();
     let picture = ProjectionGrid::new(window, bins);
     let transform = SliceTransform::new(grid);
-    let mut running = begin(integrand, grid, bins, REPLICATES);
-    let mut each = 0;
-    let mut more = FIRST;
+    let (mut each, mut more) = (0, FIRST);
+    let mut was_enough = budget.error.is_infinite();
     loop {
         running
             .par_iter_mut()
@@ -126,10 +141,12 @@ pub(crate) fn sums(
         each += more;
         let nodes = f64::from(each) * REPLICATES as f64;
         let error = relative_error(running.iter().map(|net| &net.slices[0]));
-        if error <= budget.error || 2.0 * nodes > budget.nodes || each > 1 << 29 {
+        // Twice in a row: nets that have not met their heavy rays yet agree too well.
+        let is_enough = error <= budget.error;
+        if is_enough && was_enough || 2.0 * nodes > budget.nodes || each > 1 << 29 {
             return finished(running, picture, f64::from(each), error);
         }
-        more = each;
+        (more, was_enough) = (each, is_enough);
     }
 }
 
@@ -141,7 +158,7 @@ pub(crate) fn means(
 ) -> Vec<Slices> {
     let picture = ProjectionGrid::new(window, 1);
     let transform = SliceTransform::new(grid);
-    let mut running = begin(integrand, grid, 1, OF_DERIVATIVES);
+    let mut running = begin(integrand, grid, 1, 0, OF_DERIVATIVES);
     running
         .par_iter_mut()
         .for_each(|net| net.add(integrand, &transform, &picture, NODES_OF_DERIVATIVES));
@@ -193,6 +210,7 @@ fn begin(
     integrand: &(impl Integrand + ?Sized),
     grid: &SliceGrid,
     bins: usize,
+    first: usize,
     replicates: usize,
 ) -> Vec<Running> {
     let running = |replicate| Running {
@@ -201,7 +219,7 @@ fn begin(
         projection: Array2::zeros((bins, bins)),
         moments: Moments::default(),
     };
-    (0..).take(replicates).map(running).collect()
+    (0..).skip(first).take(replicates).map(running).collect()
 }
 
 impl Running {
@@ -371,7 +389,7 @@ mod tests {
             nodes: 0.0,
             error: 0.0,
         };
-        let found = sums(&Waves, &window, &grid, 4, budget);
+        let found = sums(&Waves, (&window, &grid), 4, budget);
         assert!((found.nodes - f64::from(FIRST) * REPLICATES as f64).abs() < 0.5);
         let (replicate, field) = (5, 1);
         let mut net = Net::new(replicate);
@@ -404,7 +422,7 @@ mod tests {
         };
         let on = |threads| {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
-            let run = || sums(&Waves, &window, &grid, 4, budget);
+            let run = || sums(&Waves, (&window, &grid), 4, budget);
             let found = pool.build().unwrap().install(run);
             (found.slices, found.projection, found.covariance)
         };

@@ -13,7 +13,9 @@ pub struct Source {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operator {
     /// Free travel (docs/theory.md, Eq. 2): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d
-    /// Ωx) (Durand et al. 2005, Eq. 3).
+    /// Ωx) (Durand et al. 2005, Eq. 3). As a map it is
+    /// [`Map::travel`](crate::geometry::Map::travel); here distances add up, and polygons are
+    /// sheared.
     Travel {
         /// Where the light comes from.
         from: String,

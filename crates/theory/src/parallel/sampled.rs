@@ -57,7 +57,7 @@ impl Chain {
         match model {
             Model::Rays(system) => {
                 let found = rays::exact(&system, &plane, over, budget);
-                let moved = self.moved(parameters, |chain| match chain.model(over.0) {
+                let moved = self.moved(parameters, over, |chain| match chain.model(over.0) {
                     (Model::Rays(system), plane) => (system, plane),
                     (Model::Scattering(_), _) => {
                         unreachable!("a parameter changes no kind of chain")
@@ -74,7 +74,7 @@ impl Chain {
             Model::Scattering(system) => {
                 let chain = scattering::chain(&system, &plane);
                 let found = scattering::predict(&system, &plane, chain.as_ref(), over, budget);
-                let moved = self.moved(parameters, |chain| match chain.model(over.0) {
+                let moved = self.moved(parameters, over, |chain| match chain.model(over.0) {
                     (Model::Scattering(system), plane) => (*system, plane),
                     (Model::Rays(_), _) => unreachable!("a parameter changes no kind of chain"),
                 });
@@ -95,13 +95,25 @@ impl Chain {
     fn moved<S>(
         &self,
         parameters: &[Parameter],
+        over: rays::Over<'_>,
         model: impl Fn(&Self) -> (S, rays::Plane),
     ) -> Vec<Moved<S>> {
-        // Shadows move with masks: wide enough apart that some rays see it.
+        // Shadows move with masks: wide enough apart that some rays see it, and so near that phases
+        // turn by a third of a radian at most.
         const STEP: f64 = 1e-2;
+        const PHASE: f64 = 0.05;
         let moved = |parameter: &Parameter| {
             let value = self.value(*parameter);
-            let step = STEP * if value == 0.0 { 1.0 } else { value.abs() };
+            let size = if value == 0.0 { 1.0 } else { value.abs() };
+            let most = match parameter {
+                Parameter::SpotExponent | Parameter::GratingPhase(_) => f64::INFINITY,
+                Parameter::GratingFrequency(_) => PHASE / over.0.x.half_width(),
+                Parameter::SourceSize
+                | Parameter::Travel(_)
+                | Parameter::BlockerSide(_)
+                | Parameter::HalfPlaneEdge(_) => PHASE / over.1.rho.max().max(f64::MIN_POSITIVE),
+            };
+            let step = (STEP * size).min(most);
             let at = |value| model(&self.with(*parameter, value));
             Moved {
                 apart: 2.0 * step,

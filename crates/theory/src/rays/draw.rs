@@ -72,6 +72,9 @@ impl Draw {
                 crate::geometry::from_fn(|i, j| jacobian[row + i][columns[j]])
             };
             let aimed = Map::linear(block(emission.inner));
+            if !tells_apart(&aimed) {
+                return None;
+            }
             Some(By::Aim {
                 targets: [0, 1].map(|i| Target::new(&profiles[row + i])),
                 center: [center[row], center[row + 1]],
@@ -90,6 +93,9 @@ impl Draw {
                     matrix: *jacobian,
                     offset: *center,
                 };
+                if !tells_apart(&rays) {
+                    return None;
+                }
                 By::Back {
                     targets: Box::new(profiles.map(|profile| Target::new(&profile))),
                     map: rays.inverse()?,
@@ -151,4 +157,11 @@ impl Draw {
             }
         }
     }
+}
+
+/// Whether a map takes no direction of rays nearly to nothing, as it does at a focus.
+fn tells_apart<const N: usize>(map: &Map<N>) -> bool {
+    let size = |row: &[f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let most: f64 = map.matrix.iter().map(size).product();
+    map.det().abs() > 1e-8 * most
 }

@@ -33,6 +33,11 @@ pub struct RaySlices {
 /// What a prediction is over: a window, frequencies and the cells of a picture.
 pub type Over<'a> = (&'a Window, &'a SliceGrid, &'a ProjectionGrid);
 
+/// Where neither is asked for.
+const NO_PICTURES: Budget = Budget {
+    nodes: 0.0,
+    error: f64::INFINITY,
+};
 /// Rays of a picture and of moments, where slices are by a rule.
 const FOR_PICTURES: Budget = Budget {
     nodes: 1e6,
@@ -74,14 +79,12 @@ pub fn linear(
     budget: Budget,
 ) -> RaySlices {
     let masks = Masks::new(&system.layers);
-    let field = exact_field(system, plane, &masks);
-    let lands = neighbourhood(system, plane);
-    let strategy = lands.and_then(|lands| best(&field, system, &lands, over));
     let rays = rays(map);
     let lands = (rays.offset, rays.matrix);
     let field = linear_field(system, plane, &masks, map);
+    let strategy = best(&field, system, &lands, over);
     let way = strategy.map(|strategy| (lands, strategy));
-    predict(&field, system, way, over, [budget, Budget::TRIAL])
+    predict(&field, system, way, over, [budget, NO_PICTURES])
 }
 
 /// The derivatives of the exact slices by some parameters, per unit of each.
@@ -225,7 +228,7 @@ fn predict(
     } else {
         of_slices
     };
-    let mut sums = nets::sums(&drawn[..], window, grid, picture.bins, budget);
+    let mut sums = nets::sums(&drawn[..], (window, grid), picture.bins, budget);
     let replicates = sums.slices.swap_remove(0);
     let (slices, replicates, error) = match by_rule {
         Some((slices, error)) => (slices, Vec::new(), error),
@@ -254,8 +257,7 @@ fn best(
             draw: &draw,
             window,
         }];
-        let trial = nets::sums(&drawn[..], window, grid, 1, Budget::TRIAL);
-        Some((trial.error, strategy))
+        Some((nets::trial(&drawn[..], (window, grid)), strategy))
     });
     let best = tried.min_by(|(a, _), (b, _)| a.total_cmp(b));
     best.map(|(_, strategy)| strategy)

@@ -59,7 +59,9 @@ impl Masks<'_> {
             (Light::Beam { irradiance, image }, _) => ([0.0; 2], irradiance * image.value(x, y)),
             (Light::Area { .. } | Light::Environment { .. }, _) => ([0.0; 2], 0.0),
         };
-        let passes = if weight > 0.0 {
+        // Behind its plane a light does not shine; one from far away shines forward everywhere.
+        let is_behind = z <= 0.0 && !matches!(light, Light::Environment { .. });
+        let passes = if weight > 0.0 && !is_behind {
             self.transmittance(point, slopes)
         } else {
             0.0

@@ -49,16 +49,14 @@ pub fn predict(
     budget: Budget,
 ) -> Prediction {
     let field = |strategy| Field::new(system, plane, window, chain, strategy);
-    let strategy = best(|strategy| {
-        let trial = nets::sums(&field(strategy), window, grid, 1, Budget::TRIAL);
-        trial.error * trial.error * strategy.time()
-    });
+    let strategy =
+        best(|strategy| nets::trial(&field(strategy), (window, grid)).powi(2) * strategy.time());
     let field = field(strategy);
     let budget = Budget {
         nodes: budget.nodes / cost(system),
         ..budget
     };
-    let mut sums = nets::sums(&field, window, grid, picture.bins, budget);
+    let mut sums = nets::sums(&field, (window, grid), picture.bins, budget);
     let replicates = sums.slices.swap_remove(0);
     Prediction {
         slices: nets::mean(replicates.iter()),
@@ -209,6 +207,15 @@ impl<'a> Field<'a> {
     }
 }
 
+/// What a ray adds over the density with which it was drawn; nothing is nothing over any density.
+fn over(radiance: f64, density: f64) -> f64 {
+    if radiance == 0.0 {
+        0.0
+    } else {
+        radiance / density
+    }
+}
+
 /// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
 fn radiance(
     system: &System,
@@ -236,7 +243,7 @@ impl Integrand for Field<'_> {
             return;
         };
         let parts = self.lights.each(&leaving, [at[4], at[5]]);
-        let radiance = parts.map(|(part, density)| self.radiance(&leaving, part) / density);
+        let radiance = parts.map(|(part, density)| over(self.radiance(&leaving, part), density));
         nodes[0] = Node {
             z,
             weight: factor * radiance.sum::<f64>(),
@@ -267,7 +274,7 @@ impl<'a> Side<'a> {
         let leaving = self.system.leaving(self.plane, z)?;
         let (part, density) = self.lights.draw(&leaving, at)?;
         let radiance = radiance(self.system, self.plane, &self.masks, &leaving, part);
-        Some(radiance / density)
+        Some(over(radiance, density))
     }
 }
 
@@ -304,7 +311,7 @@ impl Integrand for Around<'_> {
             let part = field.lights.draw(&leaving, at);
             put(part.map_or(0.0, |(part, density)| {
                 let exact = field.radiance(&leaving, part);
-                (linear.radiance(&field.masks, z, part) - exact) / density
+                over(linear.radiance(&field.masks, z, part) - exact, density)
             }));
         }
         for (apart, sides) in moved {

@@ -94,7 +94,7 @@ impl<'a> Pixels<'a> {
             let [a, b, c] = rows.map(row);
             let from = map.direction([i as f64 + 0.5, j as f64 + 0.5]);
             // Environments shine forward; a cell on the border does in part.
-            let shines = from.dot(forward) > -TAU / h as f64;
+            let shines = from.dot(forward) > -(0.5 * PI / h as f64 + PI / w as f64);
             let cosine = from.dot(normal).max(GRAZING);
             if shines {
                 (a + 2.0 * b + c) * cosine * solid_angle(h, j)

@@ -143,7 +143,7 @@ impl Reflection<'_> {
         term.before.times(&self.lattice, omega, &local)
     }
 
-    /// Steps 3 to 5 of a term.
+    /// Steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005.
     fn reflected(&self, term: &Term<'_>, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
         let mirrored = |w| Map::mirror().spectrum(w, &|w| self.lit(term, w, before));
         let blurred = |w: [f64; 2]| match &term.lobe {
