@@ -34,7 +34,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
-  cargo run --release -p etendue-validation -- nets         ten minutes; writes docs/nets.md
+  cargo run --release -p etendue-validation -- nets         three minutes; writes docs/nets.md
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]

@@ -64,7 +64,8 @@ fn verdict(scene: &Scene, measurement: &Measurement, prediction: &Prediction) ->
     report(scene, measurement, 0, prediction).verdict
 }
 
-/// The prediction of rays as they go, without the chain of affine maps, which has a verdict of its own.
+/// The prediction of rays as they go, without the chain of affine maps, which has a verdict of its
+/// own.
 fn as_it_is(scene: &Scene, plane: usize) -> Prediction {
     Prediction {
         first_order: None,
@@ -87,7 +88,8 @@ fn row(scene: &Scene, class: Class, by: &str, seconds: f64, report: &PlaneReport
     );
 }
 
-/// Every plane of a scene has its class, and no verdict is that it fails: by photons, and by backward rays
+/// Every plane of a scene has its class, and no verdict is that it fails: by photons, and by
+/// backward rays
 /// where photons leave it undecided and the light has them.
 fn holds(name: &str, planes: &[(&str, Class)]) {
     let scene = scene(name);
@@ -164,7 +166,8 @@ fn scenes_that_were_wrong_do_not_fail() {
     holds("projector_two_occluders", &dark);
 }
 
-/// The chain to first order is the prediction as it is plus a difference, and its test does not know the noise
+/// The chain to first order is the prediction as it is plus a difference, and its test does not
+/// know the noise
 /// of either: of 2e5 backward rays it makes a failure.
 #[test]
 #[ignore = "the chain of scattered light is held to be known without noise"]
@@ -193,7 +196,8 @@ fn a_fine_grating_is_decided() {
     assert_eq!(verdict(&scene, &photons, &by_nodes), Verdict::Fail);
 }
 
-/// A small map under a narrow lobe, on the surface and off it; a lobe a fifth wider is told from it.
+/// A small map under a narrow lobe, on the surface and off it; a lobe a fifth wider is told from
+/// it.
 #[test]
 fn a_small_map_is_decided() {
     let scene = scene("small_map_phong");

@@ -158,7 +158,8 @@ fn light(kind: Kind, dice: &mut Dice) -> String {
     }
 }
 
-/// Masks before z = 0.9, none to three. Pictures have one that is opaque at least: without, they are predicted
+/// Masks before z = 0.9, none to three. Pictures have one that is opaque at least: without, they
+/// are predicted
 /// by a rule that is not of nets. So are points.
 fn blockers(kind: Kind, dice: &mut Dice) -> String {
     if kind == Kind::Sky {
@@ -175,16 +176,14 @@ fn blockers(kind: Kind, dice: &mut Dice) -> String {
             2 => {
                 let (edge, axis) = (dice.between(-0.1, 0.1), ["X", "Y"][dice.of(2)]);
                 let side = ["Above", "Below"][dice.of(2)];
-                format!(
-                    "Shapes({name}, shapes: [HalfPlane(axis: {axis}, edge: {edge}, opaque: {side})])"
-                )
+                let half = format!("HalfPlane(axis: {axis}, edge: {edge}, opaque: {side})");
+                format!("Shapes({name}, shapes: [{half}])")
             }
             _ => {
                 let (frequency, axis) = (dice.between(1.0, 8.0), ["X", "Y"][dice.of(2)]);
                 let [m, p] = [dice.between(0.3, 1.0), dice.between(-3.0, 3.0)];
-                format!(
-                    "Grating({name}, axis: {axis}, frequency: {frequency}, modulation: {m}, phase: {p})"
-                )
+                let bars = format!("axis: {axis}, frequency: {frequency}");
+                format!("Grating({name}, {bars}, modulation: {m}, phase: {p})")
             }
         }
     };
