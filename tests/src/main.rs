@@ -10,6 +10,7 @@ mod calibration;
 mod faults;
 mod hostile;
 mod kills;
+mod nets;
 mod noise;
 mod predicted;
 mod report;
@@ -33,6 +34,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
+  cargo run --release -p etendue-validation -- nets         three minutes; writes docs/nets.md
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
@@ -90,6 +92,8 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
+    /// Errors that predictions by nets of rays state, against the truth; into docs/nets.md.
+    Nets,
     /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if it does not bear one.
     Hostile(hostile::Options),
     /// The program killed, started twice at once and on full disks; exit code 1 if it leaves a broken result or loses a file.
@@ -112,6 +116,9 @@ fn main() -> ExitCode {
     let command = Cli::parse().command;
     if let Command::Bandwidth { photons } = command {
         return bandwidth::page(photons);
+    }
+    if matches!(command, Command::Nets) {
+        return nets::page();
     }
     if let Command::Hostile(options) = &command {
         return attacked(hostile::hostile(options));
@@ -254,8 +261,8 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Table1 { photons } => table1::table1(photons),
         Command::Shading { photons } => shading::shading(photons),
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
-        // Attacks have reports of their own.
-        Command::Hostile(_) | Command::Kills(_) => Vec::new(),
+        // These have reports of their own.
+        Command::Nets | Command::Hostile(_) | Command::Kills(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);

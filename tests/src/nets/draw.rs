@@ -1,0 +1,276 @@
+//! Scenes drawn at random from the vocabulary of scene files, as their text.
+//!
+//! A scene is a function of its number. Sizes are metres, slopes tangents, as in any scene file.
+
+use etendue_field::random::{self, Stream};
+
+/// What stands between light and plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    /// Light across the way, behind masks.
+    Across,
+    /// Of a point.
+    PointAcross,
+    /// Times the cosine of a receiver.
+    Cosine,
+    /// Reflected by a diffuse receiver.
+    Diffuse,
+    /// The same in the light of a point.
+    PointDiffuse,
+    /// Behind a mirror.
+    Mirror,
+    /// Behind a refracting surface.
+    Refraction,
+    /// Behind a thin lens.
+    Lens,
+    /// A projector or a beam before one of these.
+    Picture,
+    /// Reflected by a BRDF.
+    Brdf,
+    /// The same in the light of an environment.
+    Sky,
+}
+
+impl Kind {
+    /// How many scenes there are of each: 130 with a closed form, 70 without.
+    pub(super) const ALL: [(Self, usize); 11] = [
+        (Self::Across, 40),
+        (Self::PointAcross, 20),
+        (Self::Cosine, 20),
+        (Self::Diffuse, 30),
+        (Self::PointDiffuse, 20),
+        (Self::Mirror, 14),
+        (Self::Refraction, 10),
+        (Self::Lens, 8),
+        (Self::Picture, 8),
+        (Self::Brdf, 22),
+        (Self::Sky, 8),
+    ];
+
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Self::Across => "area light, masks",
+            Self::PointAcross => "point, masks",
+            Self::Cosine => "area light, masks, cosine",
+            Self::Diffuse => "area light, masks, diffuse",
+            Self::PointDiffuse => "point, masks, diffuse",
+            Self::Mirror => "mirror",
+            Self::Refraction => "interface",
+            Self::Lens => "thin lens",
+            Self::Picture => "projector or beam",
+            Self::Brdf => "BRDF",
+            Self::Sky => "BRDF, environment",
+        }
+    }
+
+    /// Whether there are closed forms to compare with.
+    pub(super) fn is_chain(self) -> bool {
+        matches!(
+            self,
+            Self::Across | Self::PointAcross | Self::Cosine | Self::Diffuse | Self::PointDiffuse
+        )
+    }
+}
+
+/// Random numbers of one scene, in the order they are asked for.
+pub(super) struct Dice {
+    index: u64,
+    next: u32,
+}
+
+/// The seed of all scenes: fixed beforehand, and not chosen.
+const SEED: u64 = 1;
+
+impl Dice {
+    pub(super) fn new(index: u64) -> Self {
+        Self { index, next: 0 }
+    }
+
+    fn word(&mut self) -> u32 {
+        self.next += 1;
+        random::words(SEED, Stream::Jitter, self.index, self.next)[0]
+    }
+
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * random::unit(self.word())
+    }
+
+    pub(super) fn of(&mut self, count: usize) -> usize {
+        random::index(self.word(), count)
+    }
+}
+
+/// A scene of a kind, as the text of its file.
+pub(super) fn scene(kind: Kind, dice: &mut Dice) -> String {
+    let [x, u] = [dice.between(0.15, 0.5), dice.between(0.15, 0.45)];
+    let window = match dice.of(4) {
+        0 => format!("(x: Box({x}), u: Hann({u}))"),
+        1 => format!("(x: Gaussian(width: {x}, cut: {x}), u: Hann({u}))"),
+        _ => format!("(x: Hann({x}), u: Hann({u}))"),
+    };
+    // Five steps of each frequency.
+    let [rho, nu] = [x, u].map(|half| 2.4 / half);
+    let frequencies = format!("(azimuths: 2, rho: (max: {rho}), nu: (max: {nu}))");
+    let light = light(kind, dice);
+    let (surface, name, planes) = if kind.is_chain() {
+        parallel(kind, dice)
+    } else {
+        smooth(kind, dice)
+    };
+    let blockers = blockers(kind, dice);
+    format!(
+        "(light: {light}, blockers: [{blockers}], surfaces: [{surface}],\n\
+         path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"{name}\"]),\n\
+         planes: [{planes}], window: {window}, frequencies: {frequencies})"
+    )
+}
+
+fn light(kind: Kind, dice: &mut Dice) -> String {
+    let size = dice.between(0.05, 0.5);
+    let point = "Point(center: (0, 0, 0))".to_owned();
+    match kind {
+        Kind::PointAcross | Kind::PointDiffuse => point,
+        Kind::Sky => {
+            let lobe = |dice: &mut Dice| {
+                let [x, y] = [dice.between(-0.6, 0.6), dice.between(-0.6, 0.6)];
+                let width = dice.between(0.05, 0.5);
+                format!("(from: ({x}, {y}, -1), width: {width}, radiance: 1)")
+            };
+            let lobes = [lobe(dice), lobe(dice)].join(", ");
+            format!("Environment(center: (0, 0, 0), map: Lobes([{lobes}]))")
+        }
+        Kind::Picture if dice.of(2) == 0 => {
+            format!("Beam(center: (0, 0, 0), image: (width: ({size}, 0.2)))")
+        }
+        Kind::Picture => format!("Projector(center: (0, 0, 0), image: (width: ({size}, 0.2)))"),
+        _ => match dice.of(4) {
+            0 => format!("Disc(center: (0, 0, 0), radius: {})", 0.5 * size),
+            1 => {
+                let exponent = dice.between(1.0, 30.0).round();
+                let bulb = ["Disc", "Square"][dice.of(2)];
+                format!("Spot(center: (0, 0, 0), bulb: {bulb}({size}), exponent: {exponent})")
+            }
+            _ => {
+                let other = dice.between(0.05, 0.5);
+                format!("Rectangle(center: (0, 0, 0), size: ({size}, {other}))")
+            }
+        },
+    }
+}
+
+/// Masks before z = 0.9, none to three. Pictures have one that is opaque at least: without, they
+/// are predicted
+/// by a rule that is not of nets. So are points.
+fn blockers(kind: Kind, dice: &mut Dice) -> String {
+    if kind == Kind::Sky {
+        return String::new();
+    }
+    let opaque = matches!(kind, Kind::Picture | Kind::PointAcross);
+    let count = dice.of(4).max(usize::from(opaque));
+    let layer = |i: usize| {
+        let z = 0.3 + 0.25 * i as f64 + dice.between(0.0, 0.2);
+        let name = format!("name: \"mask {i}\", center: (0, 0, {z})");
+        let choice = dice.of(if opaque && i == 0 { 3 } else { 4 });
+        match choice {
+            0 | 1 => format!("Shapes({name}, shapes: [{}])", shapes(dice, choice == 0)),
+            2 => {
+                let (edge, axis) = (dice.between(-0.1, 0.1), ["X", "Y"][dice.of(2)]);
+                let side = ["Above", "Below"][dice.of(2)];
+                let half = format!("HalfPlane(axis: {axis}, edge: {edge}, opaque: {side})");
+                format!("Shapes({name}, shapes: [{half}])")
+            }
+            _ => {
+                let (frequency, axis) = (dice.between(1.0, 8.0), ["X", "Y"][dice.of(2)]);
+                let [m, p] = [dice.between(0.3, 1.0), dice.between(-3.0, 3.0)];
+                let bars = format!("axis: {axis}, frequency: {frequency}");
+                format!("Grating({name}, {bars}, modulation: {m}, phase: {p})")
+            }
+        }
+    };
+    let layers: Vec<String> = (0..count).map(layer).collect();
+    layers.join(", ")
+}
+
+/// Rectangles or discs in the cells of a board, some of four.
+fn shapes(dice: &mut Dice, square: bool) -> String {
+    let pitch = dice.between(0.1, 0.35);
+    let count = 1 + dice.of(4);
+    let shape = |i: usize| {
+        let [column, row] = [i % 2, i / 2].map(|k| (k as f64 - 0.5) * pitch);
+        let [w, h] = [dice.between(0.3, 0.9), dice.between(0.3, 0.9)].map(|share| share * pitch);
+        if square {
+            format!("Rectangle(center: ({column}, {row}), size: ({w}, {h}))")
+        } else {
+            format!("Disc(center: ({column}, {row}), radius: {})", 0.5 * w)
+        }
+    };
+    let shapes: Vec<String> = (0..count).map(shape).collect();
+    shapes.join(", ")
+}
+
+/// A floor, its name, and a plane at it.
+fn parallel(kind: Kind, dice: &mut Dice) -> (String, &'static str, String) {
+    let z = dice.between(1.1, 2.0);
+    let floor = format!("Rectangle(name: \"floor\", center: (0, 0, {z}), size: (20, 20))");
+    let plane = match kind {
+        Kind::Cosine => "at: Before(\"floor\"), quantity: DifferentialIrradiance".to_owned(),
+        Kind::Diffuse | Kind::PointDiffuse if dice.of(2) == 0 => "at: After(\"floor\")".to_owned(),
+        Kind::Diffuse | Kind::PointDiffuse => {
+            format!("at: Distance({})", z + dice.between(0.05, 0.3))
+        }
+        _ => "at: Before(\"floor\")".to_owned(),
+    };
+    (floor, "floor", format!("(name: \"plane\", {plane})"))
+}
+
+/// A smooth surface, its name, and a plane behind it.
+fn smooth(kind: Kind, dice: &mut Dice) -> (String, &'static str, String) {
+    let angle = dice.between(0.05, 0.7);
+    let event = match kind {
+        Kind::Mirror => "Mirror".to_owned(),
+        Kind::Refraction => "Refraction(front: 1, back: 1.5)".to_owned(),
+        Kind::Lens => format!("ThinLens({})", dice.between(0.4, 2.0)),
+        Kind::Picture => ["Mirror", "Refraction(front: 1, back: 1.5)"][dice.of(2)].to_owned(),
+        _ => brdf(dice),
+    };
+    let (form, angle) = match dice.of(4) {
+        _ if kind == Kind::Lens => ("Plane".to_owned(), 0.0),
+        0 => ("Plane".to_owned(), angle),
+        1 => (format!("Cylinder({})", dice.between(-0.3, 0.8)), angle),
+        2 => {
+            let [a, b] = [dice.between(-0.3, 0.8), dice.between(-0.3, 0.8)];
+            (format!("Paraboloid({a}, {b})"), angle)
+        }
+        _ => (format!("Sphere({})", dice.between(-0.3, 0.8)), angle),
+    };
+    let [x, z] = [angle.sin(), -angle.cos()];
+    let surface = format!(
+        "Smooth(name: \"surface\", center: (0, 0, 1), facing: ({x}, 0, {z}), form: {form}, \
+         aperture: 0.8, event: {event})"
+    );
+    let plane = if dice.of(2) == 0 {
+        "at: After(\"surface\")".to_owned()
+    } else {
+        format!("at: Distance({})", dice.between(1.1, 1.6))
+    };
+    (surface, "surface", format!("(name: \"plane\", {plane})"))
+}
+
+fn brdf(dice: &mut Dice) -> String {
+    let roughness = dice.between(0.05, 0.5);
+    let lobe = match dice.of(4) {
+        0 => "Lambertian".to_owned(),
+        1 => format!("Phong({})", dice.between(5.0, 300.0).round()),
+        2 => format!("Beckmann({roughness})"),
+        _ => format!("Ggx({roughness})"),
+    };
+    let texture = match dice.of(3) {
+        0 => format!(", texture: Checkerboard({})", dice.between(0.1, 0.4)),
+        1 => format!(
+            ", texture: Cosine(axis: X, frequency: {}, modulation: 0.9, phase: 0)",
+            dice.between(1.0, 6.0)
+        ),
+        _ => String::new(),
+    };
+    format!("Reflects(brdf: (lobe: {lobe}){texture})")
+}

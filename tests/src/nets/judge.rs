@@ -1,0 +1,241 @@
+//! What scenes drawn at random say of stated errors, in tables.
+
+use super::draw::Kind;
+use super::scene::{Measured, Outcome};
+use crate::report::Section;
+use crate::statistics::{mean, uniformity};
+
+/// Standard errors of shares and means that are borne.
+const BORNE: f64 = 3.0;
+/// The largest L2 ratio that is borne: one real number is beyond it in 3·10⁻⁵ of all scenes.
+const LARGEST: f64 = 5.0;
+/// The mean square of a Student's t with 31 degrees of freedom.
+const OF_ONE: f64 = 31.0 / 29.0;
+/// The share of Student's t with 31 degrees of freedom beyond 1, 2 and 3.
+const STUDENT: [f64; 3] = [0.3251, 0.0543, 0.0053];
+/// Scenes with the largest ratios that are listed.
+const WORST: usize = 12;
+
+/// The share of complex numbers that are beyond a distance.
+fn beyond(distance: f64) -> f64 {
+    (1.0 + 2.0 * distance.powi(2) / 31.0).powi(-15)
+}
+
+/// What scenes are judged by.
+type Reading = fn(&Outcome) -> &Measured;
+
+/// All tables, and those of planted faults.
+pub(super) fn sections(outcomes: &[Outcome], left_out: usize) -> Vec<Section> {
+    let sound: Reading = |outcome| &outcome.sound;
+    let all = judged(outcomes, sound, 1.0);
+    let mut sections = vec![all.0, by_kind(outcomes, left_out), worst(outcomes)];
+    let is_sound = all.1;
+    sections[0].passed = is_sound;
+    let faults: [(&str, Reading, f64); 3] = [
+        ("Densities 2 % too large", |outcome| &outcome.planted, 1.0),
+        ("Stated errors 20 % too small", sound, 0.8),
+        ("Stated errors 25 % too large", sound, 1.25),
+    ];
+    for (title, reading, scale) in faults {
+        let (mut section, passed) = judged(outcomes, reading, scale);
+        section.title = format!("Planted: {}", title.to_lowercase());
+        section.text = "Required: with the bounds above, this fails.".to_owned();
+        section.passed = is_sound && !passed;
+        sections.push(section);
+    }
+    sections
+}
+
+/// Whether scenes of a kind are in a group.
+type Belongs = fn(Kind) -> bool;
+
+/// The shares beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
+fn judged(outcomes: &[Outcome], reading: Reading, scale: f64) -> (Section, bool) {
+    let mut rows = Vec::new();
+    let mut passed = true;
+    let groups: [(&str, Belongs); 3] = [
+        ("all", |_| true),
+        ("against closed forms", Kind::is_chain),
+        ("against more rays", |kind| !kind.is_chain()),
+    ];
+    for (name, belongs) in groups {
+        let of_group = outcomes.iter().filter(|outcome| belongs(outcome.kind));
+        let of_group: Vec<&Measured> = of_group.map(reading).collect();
+        let (cells, as_expected) = row(name, &of_group, scale);
+        passed &= as_expected;
+        rows.push(cells);
+    }
+    let [one, two, three] = [1.0, 2.0, 3.0].map(|d| 100.0 * beyond(d));
+    let [a, b, c] = STUDENT.map(|share| 100.0 * share);
+    let section = Section {
+        title: format!("{} scenes", outcomes.len()),
+        text: format!(
+            "Four complex numbers a scene, and the one at zero frequency; ± is the standard error \
+            over the scenes, whose \
+             four numbers may depend on each other. \
+             Expected beyond 1, 2, 3: {one:.1}, {two:.2} and {three:.2} %; at zero {a:.1}, {b:.1} \
+             and {c:.2} %. \
+             Required: every share within {BORNE} of its errors; p of the first of the four \
+             numbers uniform by \
+             Kolmogorov–Smirnov at 1 % over the three groups; the mean square of L2 ratios within \
+             {BORNE} of its errors of \
+             1 to {OF_ONE:.3}; no L2 ratio above {LARGEST}. The nets are the same in all scenes, \
+             so that these have errors in \
+             common: ± of the mean square is the scatter of the same number from 16 pairs of \
+             nets; that of the shares does \
+             not know of it."
+        ),
+        header: vec![
+            "scenes",
+            "number",
+            "d > 1",
+            "d > 2",
+            "d > 3",
+            "at zero > 1",
+            "at zero > 2",
+            "at zero > 3",
+            "KS p of uniformity",
+            "mean square of L2 ratios",
+        ],
+        rows,
+        passed,
+    };
+    (section, passed)
+}
+
+/// Those of a group of scenes, and whether they are as expected.
+fn row(name: &str, of_group: &[&Measured], scale: f64) -> (Vec<String>, bool) {
+    let mut passed = true;
+    let mut cells = vec![name.to_owned(), of_group.len().to_string()];
+    for distance in [1.0, 2.0, 3.0] {
+        let of_scene = |measured: &&Measured| {
+            let far = measured.apart.iter().filter(|d| **d / scale > distance);
+            far.count() as f64 / measured.apart.len() as f64
+        };
+        let shares: Vec<f64> = of_group.iter().map(of_scene).collect();
+        let numbers = (of_group.len() * of_group[0].apart.len()) as f64;
+        passed &= put(&mut cells, &shares, beyond(distance), numbers);
+    }
+    for (distance, expected) in [1.0, 2.0, 3.0].into_iter().zip(STUDENT) {
+        let is_far = |measured: &&Measured| f64::from(measured.zero.abs() / scale > distance);
+        let shares: Vec<f64> = of_group.iter().map(is_far).collect();
+        passed &= put(&mut cells, &shares, expected, of_group.len() as f64);
+    }
+    let p: Vec<f64> = of_group
+        .iter()
+        .map(|m| beyond(m.apart[0] / scale))
+        .collect();
+    let uniform = uniformity(&p);
+    let squares: Vec<f64> = of_group.iter().map(|m| (m.ratio / scale).powi(2)).collect();
+    let [square, over_scenes] = mean(&squares);
+    let error = common(of_group, scale).max(over_scenes);
+    passed &= uniform >= 0.01 / 3.0;
+    passed &= (1.0 - BORNE * error..OF_ONE + BORNE * error).contains(&square);
+    passed &= of_group.iter().all(|m| m.ratio / scale < LARGEST);
+    cells.push(format!("{uniform:.3}"));
+    cells.push(format!("{square:.3} ± {error:.3}"));
+    (cells, passed)
+}
+
+/// The standard error of a mean square over scenes: the nets are the same in all of them, so it is
+/// told by the
+/// scatter of what pairs of nets make of it.
+fn common(of_group: &[&Measured], scale: f64) -> f64 {
+    let count = of_group[0].pairs.len();
+    let squares = (0..count).map(|pair| {
+        let of_scenes = of_group.iter().map(|m| m.pairs[pair] / (scale * scale));
+        of_scenes.sum::<f64>() / of_group.len() as f64
+    });
+    let [_, error] = mean(&squares.collect::<Vec<_>>());
+    error * (count as f64).sqrt()
+}
+
+/// Adds a share to a row; whether it is as expected of so many numbers.
+fn put(cells: &mut Vec<String>, shares: &[f64], expected: f64, numbers: f64) -> bool {
+    let [share, error] = mean(shares);
+    // Where few are far, their scatter over the scenes says little.
+    let error = error.max((expected * (1.0 - expected) / numbers).sqrt());
+    cells.push(format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error));
+    (share - expected).abs() < BORNE * error
+}
+
+/// Shares and ratios of each kind of scene.
+fn by_kind(outcomes: &[Outcome], left_out: usize) -> Section {
+    let row = |(kind, _): (Kind, usize)| {
+        let of_kind: Vec<&Outcome> = outcomes.iter().filter(|o| o.kind == kind).collect();
+        let mut ratios: Vec<f64> = of_kind.iter().map(|o| o.sound.ratio).collect();
+        ratios.sort_by(f64::total_cmp);
+        let share = |distance: f64| {
+            let all = of_kind.iter().flat_map(|o| &o.sound.apart);
+            let far = all.clone().filter(|d| **d > distance).count() as f64;
+            format!("{:.1} %", 100.0 * far / all.count() as f64)
+        };
+        let squares: Vec<f64> = ratios.iter().map(|r| r * r).collect();
+        let [square, error] = mean(&squares);
+        let largest = |of: fn(&Outcome) -> f64| of_kind.iter().map(|o| of(o)).fold(0.0, f64::max);
+        let least = of_kind.iter().map(|o| o.stated).fold(f64::MAX, f64::min);
+        vec![
+            kind.name().to_owned(),
+            ratios.len().to_string(),
+            share(1.0),
+            share(2.0),
+            share(3.0),
+            format!(
+                "{:.2}, {:.2}, {:.2}",
+                ratios[0],
+                ratios[ratios.len() / 2],
+                ratios[ratios.len() - 1]
+            ),
+            format!("{square:.2} ± {error:.2}"),
+            format!("{:.1e} to {:.1e}", least, largest(|o| o.stated)),
+            format!("{:.3}", largest(|o| o.of_truth)),
+        ]
+    };
+    Section {
+        title: "By kind of scene".to_owned(),
+        text: format!(
+            "{left_out} scenes were left out since their truth is not known to a tenth of the \
+            stated error. \
+             Required: nothing more than above."
+        ),
+        header: vec![
+            "kind",
+            "scenes",
+            "d > 1",
+            "d > 2",
+            "d > 3",
+            "L2 ratio: least, median, largest",
+            "mean square",
+            "stated errors",
+            "largest error of the truth, in stated errors",
+        ],
+        rows: Kind::ALL.into_iter().map(row).collect(),
+        passed: true,
+    }
+}
+
+/// The scenes with the largest ratios.
+fn worst(outcomes: &[Outcome]) -> Section {
+    let mut all: Vec<&Outcome> = outcomes.iter().collect();
+    all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));
+    let row = |outcome: &&Outcome| {
+        let distances = outcome.sound.apart.iter().map(|d| format!("{d:.2}"));
+        vec![
+            outcome.number.to_string(),
+            outcome.kind.name().to_owned(),
+            format!("{:.2}", outcome.sound.ratio),
+            format!("{:.1e}", outcome.stated),
+            format!("{:+.2}", outcome.sound.zero),
+            distances.collect::<Vec<_>>().join(", "),
+        ]
+    };
+    Section {
+        title: "The scenes farthest off".to_owned(),
+        text:
+            "By L2 ratio. A number makes the same scene again. Required: nothing more than above."
+                .to_owned(),
+        header: vec!["number", "kind", "L2 ratio", "stated", "at zero", "d"],
+        rows: all.iter().take(WORST).map(row).collect(),
+        passed: true,
+    }
+}

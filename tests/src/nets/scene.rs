@@ -1,0 +1,272 @@
+//! One scene drawn at random: how far its prediction by nets is from the truth, in its own errors.
+
+use super::draw::{Dice, Kind, scene};
+use etendue_compare::{Applicability, Theory};
+use etendue_field::{Complex, Slices, VirtualPlane};
+use etendue_field::{ProjectionGrid, Window};
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_theory::{Budget, REPLICATES, rays, scattering};
+
+/// What is known of the light field of a scene.
+pub(super) struct Outcome {
+    pub(super) kind: Kind,
+    /// Its number: [`super::draw`] makes the same scene of it again.
+    pub(super) number: u64,
+    /// ‖error‖/‖F‖ as stated.
+    pub(super) stated: f64,
+    /// Error of the truth, over what is stated.
+    pub(super) of_truth: f64,
+    /// The prediction against the truth.
+    pub(super) sound: Measured,
+    /// The same had a density with which rays are drawn been 2 % too large, and their weights too
+    /// small.
+    pub(super) planted: Measured,
+}
+
+/// How far a prediction is from the truth.
+pub(super) struct Measured {
+    /// ‖F − truth‖/‖truth‖ over what is stated.
+    pub(super) ratio: f64,
+    /// Squares of the same for the means of neighbouring pairs of nets, whose error is four times
+    /// that of all.
+    pub(super) pairs: Vec<f64>,
+    /// (F − truth)/(standard error) at zero frequency.
+    pub(super) zero: f64,
+    /// The same elsewhere: Hotelling's T of real and imaginary part, over √2.
+    pub(super) apart: Vec<f64>,
+}
+
+/// Scenes of each kind, those that theory does not take and those that leave no light drawn again.
+pub(super) fn outcomes(each: impl Fn(&Outcome)) -> (Vec<Outcome>, usize) {
+    let (mut outcomes, mut left_out, mut number) = (Vec::new(), 0, 0);
+    for (kind, count) in Kind::ALL {
+        let mut found = 0;
+        while found < count {
+            number += 1;
+            match outcome(kind, number) {
+                Ok(Some(outcome)) => {
+                    each(&outcome);
+                    outcomes.push(outcome);
+                    found += 1;
+                }
+                Ok(None) => {}
+                Err(Untold) => left_out += 1,
+            }
+        }
+    }
+    (outcomes, left_out)
+}
+
+/// The truth is not known well enough.
+struct Untold;
+
+/// What a prediction comes to.
+struct Found {
+    slices: Slices,
+    replicates: Vec<Slices>,
+    error: f64,
+}
+
+/// Shares of the stated error that the truth may be off.
+const OF_STATED: f64 = 0.1;
+/// How many times as many nodes are the truth where there is no closed form.
+const HUNDREDFOLD: f64 = 128.0;
+/// A density that is too large by this factor.
+const PLANTED: f64 = 1.02;
+/// Above this there is hardly any light: a few rays make the prediction.
+const DARK: f64 = 0.3;
+
+/// `None` where theory has no word or no light comes.
+fn outcome(kind: Kind, number: u64) -> Result<Option<Outcome>, Untold> {
+    let mut dice = Dice::new(number);
+    let text = scene(kind, &mut dice);
+    let doublings = if kind.is_chain() { dice.of(3) } else { 0 };
+    let budget = Budget {
+        nodes: 65_536.0 * [1.0, 2.0, 4.0][doublings],
+        error: [0.0, 5e-3][dice.of(2)],
+    };
+    let file = SceneFile::parse(&text).expect("a drawn scene is a scene file");
+    let Ok(scene) = resolve("drawn", file, ".".as_ref(), u64::MAX) else {
+        return Ok(None);
+    };
+    let plane = &scene.planes[0];
+    let Some(theory) = theory(&scene, plane) else {
+        return Ok(None);
+    };
+    let Some(found) = found(&theory, plane, budget) else {
+        return Ok(None);
+    };
+    let is_lit = found.error < DARK;
+    if !is_lit || found.replicates.is_empty() {
+        return Ok(None);
+    }
+    let (truth, error) = truth(&theory, plane, budget, found.error)?;
+    Ok(Some(Outcome {
+        kind,
+        number,
+        stated: found.error,
+        of_truth: error / found.error,
+        sound: measured(&found, &truth),
+        planted: measured(&found.scaled(1.0 / PLANTED), &truth),
+    }))
+}
+
+fn measured(found: &Found, truth: &Slices) -> Measured {
+    Measured {
+        ratio: distance(&found.slices, truth) / found.error,
+        pairs: found
+            .replicates
+            .chunks_exact(2)
+            .map(|pair| of_pair(pair, truth, found.error))
+            .collect(),
+        zero: at_zero(found, truth),
+        apart: SINGLE.map(|at| at_frequency(found, truth, at)).to_vec(),
+    }
+}
+
+/// The squared L2 ratio of the mean of two of the nets.
+fn of_pair(pair: &[Slices], truth: &Slices, error: f64) -> f64 {
+    let mut mean = pair[0].clone();
+    mean.half += &pair[1].half;
+    mean.half /= Complex::from(2.0);
+    let of_all = (REPLICATES as f64 / 2.0).sqrt();
+    (distance(&mean, truth) / (of_all * error)).powi(2)
+}
+
+impl Found {
+    fn scaled(&self, factor: f64) -> Self {
+        let times = |slices: &Slices| {
+            let mut slices = slices.clone();
+            slices.half *= Complex::from(factor);
+            slices
+        };
+        Self {
+            slices: times(&self.slices),
+            replicates: self.replicates.iter().map(times).collect(),
+            error: self.error,
+        }
+    }
+}
+
+/// Single frequencies: [azimuth, ρ ≥ 0, ν] by number, ν = 0 being the fifth.
+const SINGLE: [[usize; 3]; 4] = [[0, 1, 4], [1, 2, 6], [0, 3, 3], [1, 5, 8]];
+
+fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
+    let applicability = Applicability::new(scene, plane);
+    applicability.dark.is_none().then_some(applicability.theory)
+}
+
+/// A prediction by nets.
+fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<Found> {
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    let over = (&plane.window, &plane.grid, &picture);
+    match theory {
+        Theory::Parallel(chain) => {
+            // The derivative by one parameter is not looked at; without any there is no prediction.
+            let parameters = chain.parameters();
+            let found = chain.sampled(&parameters[..1], over, budget);
+            Some(Found {
+                slices: found.slices,
+                replicates: found.replicates,
+                error: found.error,
+            })
+        }
+        Theory::Specular(system, at) => {
+            let found = rays::exact(system, at, over, budget);
+            Some(Found {
+                slices: found.slices,
+                replicates: found.replicates,
+                error: found.error,
+            })
+        }
+        Theory::Scattering(system, at) => {
+            let chain = scattering::chain(system, at);
+            let found = scattering::predict(system, at, chain.as_ref(), over, budget);
+            Some(Found {
+                slices: found.slices,
+                replicates: found.replicates,
+                error: found.error,
+            })
+        }
+        Theory::None => None,
+    }
+}
+
+/// The truth and its error: a closed form, or as many more rays as make the error small.
+fn truth(
+    theory: &Theory,
+    plane: &VirtualPlane,
+    budget: Budget,
+    stated: f64,
+) -> Result<(Slices, f64), Untold> {
+    let enough = OF_STATED * stated;
+    if let Theory::Parallel(chain) = theory {
+        let window: &Window = &plane.window;
+        // A quadrature over the receiver has the more nodes the higher the frequencies.
+        for more in [1, 2, 4] {
+            let mut grid = plane.grid;
+            grid.rho.half *= more;
+            let slices = etendue_theory::slices(chain, window, &grid);
+            let error = etendue_theory::quadrature_error(chain, window, &grid, &slices);
+            let error = error.unwrap_or(0.0);
+            if error < enough {
+                return Ok((within(&slices, plane), error));
+            }
+        }
+        return Err(Untold);
+    }
+    let more = Budget {
+        nodes: HUNDREDFOLD * budget.nodes,
+        error: 0.8 * enough,
+    };
+    let found = found(theory, plane, more).ok_or(Untold)?;
+    Ok((found.slices, found.error))
+}
+
+/// Slices at the lower of their frequencies, those of the plane.
+fn within(slices: &Slices, plane: &VirtualPlane) -> Slices {
+    let mut lower = Slices::zeros(plane.grid);
+    for (at, value) in lower.half.indexed_iter_mut() {
+        *value = slices.half[at];
+    }
+    lower
+}
+
+/// ‖a − b‖/‖b‖.
+fn distance(a: &Slices, b: &Slices) -> f64 {
+    let squared = |of: &mut dyn Iterator<Item = Complex>| of.map(|z| z.norm_sqr()).sum::<f64>();
+    let both = a.half.iter().zip(&b.half);
+    let apart = squared(&mut both.map(|(a, b)| a - b));
+    (apart / squared(&mut b.half.iter().copied())).sqrt()
+}
+
+/// Residuals of the replicates at one frequency.
+fn residuals(found: &Found, truth: &Slices, at: [usize; 3]) -> Vec<Complex> {
+    let replicates = found.replicates.iter();
+    replicates.map(|r| r.half[at] - truth.half[at]).collect()
+}
+
+/// Student's t of a real number.
+fn at_zero(found: &Found, truth: &Slices) -> f64 {
+    let zero = [0, 0, truth.grid.nu.half];
+    let values: Vec<f64> = residuals(found, truth, zero).iter().map(|d| d.re).collect();
+    let [mean, error] = crate::statistics::mean(&values);
+    mean / error
+}
+
+/// Hotelling's T over √2: with circular noise |d|/σ.
+fn at_frequency(found: &Found, truth: &Slices, at: [usize; 3]) -> f64 {
+    let values = residuals(found, truth, at);
+    let r = values.len() as f64;
+    let mean = values.iter().sum::<Complex>() / r;
+    let [mut xx, mut xy, mut yy] = [0.0; 3];
+    for d in &values {
+        let d = d - mean;
+        xx += d.re * d.re;
+        xy += d.re * d.im;
+        yy += d.im * d.im;
+    }
+    let [xx, xy, yy] = [xx, xy, yy].map(|sum| sum / (r * (r - 1.0)));
+    let squared = yy * mean.re.powi(2) - 2.0 * xy * mean.re * mean.im + xx * mean.im.powi(2);
+    (0.5 * squared / (xx * yy - xy * xy)).sqrt()
+}
