@@ -12,7 +12,7 @@ const OF_NOISE: f64 = 8.0;
 /// Rays of a prediction, as a share of the photons, so that it takes less time than tracing them.
 const SHARE: f64 = 0.25;
 /// Fewest rays, for runs with few photons.
-const FEWEST: f64 = 5e5;
+const FEWEST: f64 = 1.1e6;
 
 /// A prediction ends when its error is a third of the photons' noise, which takes a twentieth off
 /// the power of the test, or when it has taken about as long as tracing the photons.

@@ -130,7 +130,7 @@ fn replicates(plane: &VirtualPlane, theory: &Theory) -> f64 {
     match theory {
         Theory::Parallel(chain) if !is_sampled(plane, chain) => 0.0,
         Theory::None => 0.0,
-        Theory::Parallel(_) | Theory::Scattering(..) => each,
-        Theory::Specular(..) => 2.0 * each,
+        Theory::Parallel(_) => each,
+        Theory::Specular(..) | Theory::Scattering(..) => 2.0 * each,
     }
 }

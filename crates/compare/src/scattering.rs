@@ -4,7 +4,7 @@ use crate::budget::budget;
 use crate::class::Class;
 use crate::first_order::{FirstOrder, FirstOrderChain, distance};
 use crate::prediction::{PredictedParameter, Prediction};
-use etendue_field::{ProjectionGrid, VirtualPlane};
+use etendue_field::{ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use etendue_theory::rays::Plane;
@@ -31,8 +31,13 @@ impl Prediction {
         let over = (window, grid);
         let around = scattering::differences(system, at, chain.as_ref(), &moved, over, &exact);
         let first_order = chain.as_ref().zip(around.linear);
-        let first_order = first_order.map(|(chain, mut slices)| {
-            slices.half += &exact.slices.half;
+        let first_order = first_order.map(|(chain, difference)| {
+            // Its noise is that of the exact prediction; the difference has little of its own.
+            let near = |slices: &Slices| Slices {
+                half: &slices.half + &difference.half,
+                ..*slices
+            };
+            let slices = near(&exact.slices);
             FirstOrder {
                 chain: FirstOrderChain {
                     error: distance(&slices, &exact.slices),
@@ -42,7 +47,7 @@ impl Prediction {
                     as_printed: false,
                 },
                 slices,
-                replicates: Vec::new(),
+                replicates: exact.replicates.iter().map(near).collect(),
             }
         });
         let parameters = all.into_iter().zip(around.derivatives);

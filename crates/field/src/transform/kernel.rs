@@ -24,9 +24,9 @@ const TERMS: usize = 4;
 /// 41(5)).
 ///
 /// A point lies a fraction f of a cell beyond a cell of the fine grid and reaches eight cells; tap
-/// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in t = 2f
-/// − 1 that meets the kernel at Chebyshev nodes; its error is below 5·10⁻⁸, the kernel's peak being
-/// 1. The spectrum is divided by the transform of these polynomials, so only their roughness
+/// j, the weight of cell j, is the kernel at z = (j − 3 − f)/4. Each tap is a polynomial in
+/// t = 2f − 1 that meets the kernel at Chebyshev nodes; its error is below 5·10⁻⁸ of the kernel's
+/// peak. The spectrum is divided by the transform of these polynomials, so only their roughness
 /// counts: a higher degree, or the kernel itself, gives the same error to two digits.
 ///
 /// Tap 7 − j at t is tap j at −t, so the even and odd parts of four taps give all eight. Products

@@ -245,7 +245,8 @@ impl Running {
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
                 }
             }
-            let Node { z, weight } = nodes[0];
+            // There may be no field: no derivative was asked for.
+            let Node { z, weight } = nodes.first().copied().unwrap_or(Node::DARK);
             if let Some(cell) = picture.cell(z[0], z[2]).filter(|_| weight != 0.0) {
                 self.projection[cell] += weight;
             }
