@@ -29,6 +29,10 @@ const NODES_OF_DERIVATIVES: u32 = 1 << 15;
 /// Nodes of a net before its error is first looked at.
 const FIRST: u32 = 1 << 11;
 
+/// Fewest nodes of a net that a prediction stops with because its error is small: nets that have not
+/// met their heavy rays yet agree too well.
+const LEAST: u32 = 1 << 14;
+
 /// When to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Budget {
@@ -133,7 +137,7 @@ fn doubled(
     let picture = ProjectionGrid::new(window, bins);
     let transform = SliceTransform::new(grid);
     let (mut each, mut more) = (0, FIRST);
-    let mut was_enough = budget.error.is_infinite();
+    let least = if budget.error.is_infinite() { 0 } else { LEAST };
     loop {
         running
             .par_iter_mut()
@@ -141,12 +145,11 @@ fn doubled(
         each += more;
         let nodes = f64::from(each) * REPLICATES as f64;
         let error = relative_error(running.iter().map(|net| &net.slices[0]));
-        // Twice in a row: nets that have not met their heavy rays yet agree too well.
-        let is_enough = error <= budget.error;
-        if is_enough && was_enough || 2.0 * nodes > budget.nodes || each > 1 << 29 {
+        let is_enough = error <= budget.error && each >= least;
+        if is_enough || 2.0 * nodes > budget.nodes || each > 1 << 29 {
             return finished(running, picture, f64::from(each), error);
         }
-        (more, was_enough) = (each, is_enough);
+        more = each;
     }
 }
 
