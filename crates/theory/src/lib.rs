@@ -59,6 +59,7 @@ pub mod scattering;
 pub mod shading;
 #[cfg(test)]
 mod testing;
+mod words;
 
 pub use nets::{Budget, Moved, REPLICATES, work_of_nets};
 pub use parallel::{

@@ -14,7 +14,6 @@ pub(crate) use sobol::{DIMENSIONS, Net};
 
 use crate::Work;
 use crate::geometry::Matrix;
-use crate::rays::Plane;
 use etendue_field::transform::SliceTransform;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
 use ndarray::{Array2, Array3};
@@ -42,13 +41,13 @@ pub struct Budget {
     pub error: f64,
 }
 
-/// A system and its plane with a little more and a little less of a parameter.
+/// What a prediction is of, with a little more and a little less of a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moved<S> {
     /// How far apart the values are, in the parameter's unit.
     pub apart: f64,
     /// With more, and with less.
-    pub sides: [(S, Plane); 2],
+    pub sides: [S; 2],
 }
 
 /// A ray at a plane.

@@ -1,4 +1,5 @@
 use crate::Chain;
+use crate::numerics::distance;
 use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::parallel::slope::Slope;
 use etendue_field::{SliceGrid, Slices, Window};
@@ -38,20 +39,6 @@ pub fn quadrature_error(
         error += distance(slices, &finer) / (1.0 - 0.8_f64.powi(ORDER));
     }
     Some(error)
-}
-
-/// ‖a − b‖/‖b‖; 0 if both are dark.
-pub(crate) fn distance(a: &Slices, b: &Slices) -> f64 {
-    let (mut error, mut size) = (0.0, 0.0);
-    for (a, b) in a.half.iter().zip(&b.half) {
-        error += (a - b).norm_sqr();
-        size += b.norm_sqr();
-    }
-    if error == 0.0 {
-        0.0
-    } else {
-        (error / size).sqrt()
-    }
 }
 
 #[cfg(test)]

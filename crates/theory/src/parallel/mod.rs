@@ -7,7 +7,7 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | the chain, and what may change in it | `chain`, `parameter`, `words` |
+//! | the chain, and what may change in it | `chain`, `parameter`, `describe` |
 //! | its spectra: slices, one frequency, derivatives, pictures, harmonics on a 4D grid | `slices`, `at`, `derivative`, `projection`, `harmonics` |
 //! | terms of the product over masks, as polygons | `expansion`, `patch`, `disc`, `polygon`, `corners` |
 //! | windows, gratings and factors of slope, as waves | `wave`, `slope`, `row` |
@@ -18,8 +18,9 @@ mod at;
 pub(crate) mod chain;
 mod corners;
 mod derivative;
+mod describe;
 mod disc;
-pub(crate) mod error;
+mod error;
 pub(crate) mod expansion;
 mod harmonics;
 #[cfg(test)]
@@ -34,7 +35,6 @@ mod sampled;
 mod slices;
 mod slope;
 mod wave;
-pub(crate) mod words;
 pub(crate) mod work;
 
 pub use at::at;

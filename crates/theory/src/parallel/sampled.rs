@@ -97,7 +97,7 @@ impl Chain {
         parameters: &[Parameter],
         over: rays::Over<'_>,
         model: impl Fn(&Self) -> (S, rays::Plane),
-    ) -> Vec<Moved<S>> {
+    ) -> Vec<Moved<(S, rays::Plane)>> {
         // Shadows move with masks: wide enough apart that some rays see it, and so near that phases
         // turn by a third of a radian at most.
         const STEP: f64 = 1e-2;

@@ -1,9 +1,9 @@
 //! The first-order chain of a system.
 
 use super::central::{Hit, Incidence};
-use super::words::{self, degrees, number};
 use super::{Element, Plane, System};
 use crate::geometry::{Map, Matrix, Print, SpectrumMap};
+use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
 

@@ -1,12 +1,11 @@
-//! Windowed spectra behind specular surfaces, by following rays: no photons, no random numbers.
+//! Windowed spectra behind specular surfaces, by following rays (docs/theory.md, section 8).
 //!
-//! In goes a [`System`], a light, masks across its first leg and the mirrors, refracting surfaces
-//! and lenses that the central ray visits, and a [`Plane`]. Out come the [`exact`] slices of the
-//! windowed spectrum: rays are followed through the real geometry, and a quadrature over the light
-//! sums them, with its error stated. Beside them is the [`chain`] of first-order maps
-//! ([`geometry`](crate::geometry)) read off the same system, and the [`linear`] prediction it makes
-//! by the same quadrature. So a measured difference from the first-order chain splits into noise,
-//! linearisation, and faults.
+//! In goes a [`System`]: a light, masks across its first leg, and the mirrors, refracting surfaces
+//! and lenses that the central ray visits. In goes a [`Plane`]. [`exact()`] follows rays through the
+//! real geometry and sums them, by a rule where that converges and over scrambled nets elsewhere.
+//! Beside it are the [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) read off
+//! the same system, and the [`linear()`] prediction that it makes. So a measured difference from the
+//! first-order chain splits into noise, linearisation and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
 //! (x, y) are along X and Y. A ray carries flux:
@@ -24,7 +23,7 @@
 //!
 //! On a surface itself (`LocalNormals`) the integral is over its area.
 //!
-//! This module shares no intersection, no sampling and no transform with the tracers.
+//! This module shares no intersection and no sampling with the tracers.
 //!
 //! ```
 //! use etendue_field::{FrequencyAxis, Frame, Image, Light, Orientation, Patch, Profile,
@@ -81,7 +80,6 @@ mod sums;
 #[cfg(test)]
 mod tests;
 mod trace;
-pub(crate) mod words;
 
 pub use chain::{FirstOrder, chain};
 pub use parameter::Parameter;

@@ -94,7 +94,7 @@ pub fn linear(
 pub fn derivatives(
     system: &System,
     plane: &Plane,
-    moved: &[Moved<System>],
+    moved: &[Moved<(System, Plane)>],
     over: Over<'_>,
 ) -> Vec<Slices> {
     let zeros = || vec![Slices::zeros(*over.1); moved.len()];
@@ -124,7 +124,7 @@ pub fn derivatives(
         })
         .collect();
     let mut means = nets::means(&fields[..], over.0, over.1).into_iter();
-    let derivative = |moved: &Moved<System>| {
+    let derivative = |moved: &Moved<(System, Plane)>| {
         let (mut above, below) = (means.next()?, means.next()?);
         above.half -= &below.half;
         above.half /= Complex::from(moved.apart);
@@ -136,7 +136,7 @@ pub fn derivatives(
 impl System {
     /// It with a little more and a little less of a parameter; `None` if it does not have that.
     #[must_use]
-    pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<Self>> {
+    pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<(Self, Plane)>> {
         const STEP: f64 = 1e-3;
         let value = self.value(plane, parameter)?;
         let size = match parameter {

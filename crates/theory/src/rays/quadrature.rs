@@ -7,7 +7,7 @@
 use super::region::{Field, Finder};
 use super::sums::sums;
 use crate::nets::Node;
-use crate::parallel::error::distance;
+use crate::numerics::distance;
 use etendue_field::{SliceGrid, Slices};
 use rayon::prelude::*;
 

@@ -2,8 +2,8 @@
 
 use super::System;
 use crate::geometry::{Map, Matrix};
-use crate::rays::words::{self, degrees, number};
 use crate::rays::{Incidence, Plane, Ray};
+use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity};
 use glam::DVec3;
 
@@ -214,7 +214,7 @@ fn reflection(system: &System) -> Vec<String> {
         )),
     }
     let varies = |pattern: &Pattern| match pattern {
-        Pattern::Cosine(grating) => crate::parallel::words::formula(grating, ["s", "t"]),
+        Pattern::Cosine(grating) => words::formula(grating, ["s", "t"]),
         Pattern::Picture(picture) => {
             let [w, h] = picture.size;
             format!("picture of {} x {} m", number(w), number(h))

@@ -1,21 +1,18 @@
-//! Windowed spectra behind a surface that reflects by a BRDF: no photons, no random numbers.
+//! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
-//! In goes a [`System`], a light, masks across its way and a curved surface with a BRDF that may
-//! vary over it, and a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or across
-//! its way onwards. Out come the [`exact`] slices of the windowed spectrum. The radiance of each
-//! ray at the plane is an integral over what shines on the point that it leaves,
+//! In goes a [`System`]: a light, masks across its way, and a curved surface with a BRDF that may
+//! vary over it. In goes a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or across
+//! its way onwards. [`predict()`] sums rays of the plane over scrambled nets, and for each of them a
+//! part of the light that shines on the point it leaves,
 //!
-//! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi,
+//! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
-//! and the spectrum is a midpoint rule over the four coordinates of the plane: windows end
-//! smoothly, so that it converges fast. Opaque rectangles in the way are taken out of the light one
-//! by one, never met at an edge.
+//! Beside it is the chain of first-order operators (Durand et al. 2005, section 4): affine maps onto
+//! the surface and off it, a product with the clamped cosine, and a convolution with the lobe of the
+//! BRDF that the central ray meets. [`differences()`] sums what it is off, and derivatives, over the
+//! same rays.
 //!
-//! Beside it is the chain of first-order operators (Durand et al. 2005, section 4): affine maps
-//! onto the surface and off it, a product with the clamped cosine, and a convolution with the lobe
-//! of the BRDF that the central ray meets ([`linear`]), by the same rule.
-//!
-//! This module shares no intersection, no BRDF, no sampling and no transform with the tracers.
+//! This module shares no intersection, no BRDF and no sampling with the tracers.
 
 mod brdf;
 mod chain;

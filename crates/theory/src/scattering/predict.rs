@@ -116,7 +116,7 @@ pub fn differences(
     system: &System,
     plane: &Plane,
     chain: Option<&Chain>,
-    moved: &[Moved<System>],
+    moved: &[Moved<(System, Plane)>],
     (window, grid): (&Window, &SliceGrid),
     prediction: &Prediction,
 ) -> Differences {
@@ -148,7 +148,7 @@ pub fn differences(
 impl System {
     /// It with a little more and a little less of a parameter; `None` if it does not have that.
     #[must_use]
-    pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<Self>> {
+    pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<(Self, Plane)>> {
         const STEP: f64 = 1e-3;
         let value = self.value(parameter)?;
         let step = STEP * value.abs().max(0.1);

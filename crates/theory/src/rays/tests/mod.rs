@@ -1,7 +1,7 @@
 use super::*;
 use crate::Budget;
 use crate::geometry::{Print, SpectrumMap};
-use crate::parallel::error::distance;
+use crate::numerics::distance;
 use etendue_field::{
     Complex, FrequencyAxis, Image, Profile, ProjectionGrid, SliceGrid, Slices, Window,
 };

@@ -1,7 +1,7 @@
 use super::*;
 use crate::Budget;
 use crate::geometry::Map;
-use crate::parallel::error::distance;
+use crate::numerics::distance;
 use crate::rays::Plane;
 use crate::testing::{chain_of, opaque, window};
 use crate::{Operator, slices};

@@ -1,7 +1,8 @@
 //! Chains in words.
 
+use crate::words::{formula, opaque};
 use crate::{Chain, Operator, Source};
-use etendue_field::{Disc, Grating, Image, Light, Mask, Rectangle, Shape, tidy};
+use etendue_field::{Disc, Image, Light, Mask, Rectangle, Shape, tidy};
 
 impl Chain {
     /// The chain in words: one line for each step.
@@ -96,39 +97,4 @@ fn in_words(shape: &Shape) -> String {
         }) => format!("rectangle {width} x {height} m"),
         Shape::Disc(Disc { radius, .. }) => format!("disc of radius {radius} m"),
     }
-}
-
-/// E.g. "4 opaque rectangles, 1 half-plane".
-pub(crate) fn opaque(shapes: &[Shape], half_planes: usize) -> String {
-    let discs = shapes
-        .iter()
-        .filter(|s| matches!(s, Shape::Disc(_)))
-        .count();
-    let kinds = [
-        (shapes.len() - discs, "rectangle"),
-        (discs, "disc"),
-        (half_planes, "half-plane"),
-    ];
-    let mut present = kinds.into_iter().filter(|(count, _)| *count > 0);
-    let plural = |count| if count == 1 { "" } else { "s" };
-    let Some((count, kind)) = present.next() else {
-        return "nothing opaque".into();
-    };
-    let first = format!("{count} opaque {kind}{}", plural(count));
-    present.fold(first, |text, (count, kind)| {
-        format!("{text}, {count} {kind}{}", plural(count))
-    })
-}
-
-/// E.g. "½(1 + 0.9 cos(2π 5 x + 0.3))".
-pub(crate) fn formula(grating: &Grating, names: [&str; 2]) -> String {
-    let Grating {
-        axis,
-        frequency,
-        modulation,
-        phase,
-    } = grating;
-    let t = names[*axis];
-    let (sign, size) = (if *phase < 0.0 { '−' } else { '+' }, tidy(phase.abs()));
-    format!("½(1 + {modulation} cos(2π {frequency} {t} {sign} {size}))")
 }

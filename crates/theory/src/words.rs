@@ -1,0 +1,88 @@
+//! Steps of light in words: maps, masks and numbers.
+
+use crate::geometry::Matrix;
+use etendue_field::{Grating, Mask, Shape, tidy};
+
+/// A number to six decimals, without those that are zero.
+pub(crate) fn number(x: f64) -> String {
+    let rounded = (x * 1e6).round() / 1e6;
+    let sign = if rounded < 0.0 { "−" } else { "" };
+    format!("{sign}{}", rounded.abs())
+}
+
+/// An angle in degrees.
+pub(crate) fn degrees(radians: f64) -> String {
+    let rounded = (radians.to_degrees() * 1e3).round() / 1e3;
+    format!("{}°", number(rounded))
+}
+
+pub(crate) fn travel(distance: f64, from: &str, to: &str) -> String {
+    let sign = if distance < 0.0 { '−' } else { '+' };
+    let size = number(distance.abs());
+    let distance = number(distance);
+    format!("map  travel {distance} m, {from} to {to}: ℓ̂(Ωx, Ωu {sign} {size} Ωx)")
+}
+
+pub(crate) fn turn(angle: f64, into: &str) -> String {
+    format!("map  axes turned by {} into {into}", degrees(angle))
+}
+
+pub(crate) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
+    let off_diagonal = b.abs().max(c.abs());
+    let [a, b, c, d] = [a, b, c, d].map(number);
+    if off_diagonal < 1e-9 {
+        format!("κ = diag({a}, {d}) m⁻¹")
+    } else {
+        format!("κ = ({a}, {b}; {c}, {d}) m⁻¹")
+    }
+}
+
+pub(crate) fn mask(mask: &Mask) -> String {
+    match mask {
+        Mask::Opaque {
+            shapes,
+            half_planes,
+        } => format!(
+            "multiply  visibility of {}",
+            opaque(shapes, half_planes.len())
+        ),
+        Mask::Grating(grating) => {
+            format!("multiply  grating {}", formula(grating, ["x", "y"]))
+        }
+    }
+}
+
+/// E.g. "4 opaque rectangles, 1 half-plane".
+pub(crate) fn opaque(shapes: &[Shape], half_planes: usize) -> String {
+    let discs = shapes
+        .iter()
+        .filter(|s| matches!(s, Shape::Disc(_)))
+        .count();
+    let kinds = [
+        (shapes.len() - discs, "rectangle"),
+        (discs, "disc"),
+        (half_planes, "half-plane"),
+    ];
+    let mut present = kinds.into_iter().filter(|(count, _)| *count > 0);
+    let plural = |count| if count == 1 { "" } else { "s" };
+    let Some((count, kind)) = present.next() else {
+        return "nothing opaque".into();
+    };
+    let first = format!("{count} opaque {kind}{}", plural(count));
+    present.fold(first, |text, (count, kind)| {
+        format!("{text}, {count} {kind}{}", plural(count))
+    })
+}
+
+/// E.g. "½(1 + 0.9 cos(2π 5 x + 0.3))".
+pub(crate) fn formula(grating: &Grating, names: [&str; 2]) -> String {
+    let Grating {
+        axis,
+        frequency,
+        modulation,
+        phase,
+    } = grating;
+    let t = names[*axis];
+    let (sign, size) = (if *phase < 0.0 { '−' } else { '+' }, tidy(phase.abs()));
+    format!("½(1 + {modulation} cos(2π {frequency} {t} {sign} {size}))")
+}
