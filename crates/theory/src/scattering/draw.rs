@@ -45,6 +45,18 @@ impl Strategy {
         ]
     }
 
+    /// This one without what makes no difference to a system.
+    pub(super) fn in_effect(self, system: &System) -> Self {
+        let has_extent = has_extent(&system.light);
+        let has_lobe = angular_width(&system.reflectance.brdf).is_some();
+        let has_center = !matches!(system.light, Light::Environment { .. });
+        Self {
+            mirrored: self.mirrored && has_lobe && has_center,
+            by_lobe: self.by_lobe && has_lobe && has_extent,
+            quarters: self.quarters && has_extent,
+        }
+    }
+
     /// About how long a ray takes, one drawn by the window and one part of the light being 1.
     pub(super) fn time(self) -> f64 {
         if self.quarters { 1.7 } else { 1.0 }
@@ -203,17 +215,12 @@ impl<'a> Lights<'a> {
     }
 
     fn under(system: &'a System, sky: Option<Arc<Sky<'a>>>, strategy: Strategy) -> Self {
-        let has_extent = has_extent(&system.light);
-        let has_lobe = angular_width(&system.reflectance.brdf).is_some();
+        let strategy = strategy.in_effect(system);
         Self {
             system,
             sky,
-            by_lobe: strategy.by_lobe && has_extent && has_lobe,
-            side: if strategy.quarters && has_extent {
-                2
-            } else {
-                1
-            },
+            by_lobe: strategy.by_lobe,
+            side: if strategy.quarters { 2 } else { 1 },
         }
     }
 

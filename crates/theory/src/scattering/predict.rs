@@ -49,8 +49,9 @@ pub fn predict(
     budget: Budget,
 ) -> Prediction {
     let field = |strategy| Field::new(system, plane, window, chain, strategy);
-    let strategy =
-        best(|strategy| nets::trial(&field(strategy), (window, grid)).powi(2) * strategy.time());
+    let strategy = best(system, |strategy| {
+        nets::trial(&field(strategy), (window, grid)).powi(2) * strategy.time()
+    });
     let field = field(strategy);
     let budget = Budget {
         nodes: budget.nodes / cost(system),
@@ -82,11 +83,14 @@ fn cost(system: &System) -> f64 {
 }
 
 /// The strategy that costs least, each choice being tried once.
-fn best(cost: impl Fn(Strategy) -> f64) -> Strategy {
+fn best(system: &System, cost: impl Fn(Strategy) -> f64) -> Strategy {
     let mut best = Strategy::default();
     let mut least = cost(best);
     for choice in 0..best.neighbours().len() {
-        let next = best.neighbours()[choice];
+        let next = best.neighbours()[choice].in_effect(system);
+        if next == best {
+            continue;
+        }
         let tried = cost(next);
         if tried < least {
             (best, least) = (next, tried);
