@@ -189,3 +189,33 @@ fn picked(shares: &[f64], at: f64) -> (usize, f64) {
 fn share(shares: &[f64], i: usize) -> f64 {
     shares[i] - if i == 0 { 0.0 } else { shares[i - 1] }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::sync::Arc;
+
+    /// However few the columns of a map, light that shines forward is drawn.
+    #[test]
+    fn narrow_maps_lose_no_light() {
+        let sizes = [[1, 1], [1, 8], [3, 64], [16, 8]].into_iter();
+        let fronts = [DVec3::X, DVec3::Z, DVec3::NEG_Z];
+        for ([w, h], front) in sizes.flat_map(|size| fronts.map(|front| (size, front))) {
+            let map = LatLong::from_fn(w, h, |_| 1.0);
+            let environment = Environment {
+                frame: Frame::new(DVec3::ZERO, front, DVec3::Y).unwrap(),
+                map: EnvironmentMap::LatLong(Arc::new(map)),
+            };
+            let sky = Sky::new(&environment, DVec3::NEG_Z).unwrap();
+            for i in 0..4000 {
+                let t = f64::from(i);
+                let (s, c) = (2.4 * t).sin_cos();
+                let cos = (t + 0.5) / 4000.0;
+                let sin = (1.0 - cos * cos).sqrt();
+                // Along directions that go forward.
+                let from = environment.origin_of(DVec3::new(sin * c, sin * s, cos));
+                assert!(sky.density(from) > 0.0, "{w} x {h}: {from}");
+            }
+        }
+    }
+}
