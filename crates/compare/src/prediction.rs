@@ -200,7 +200,7 @@ impl Prediction {
             .filter(|parameter| value(*parameter).is_some())
             .filter_map(|parameter| Some((parameter, system.moved(at, parameter)?)))
             .unzip();
-        let derivatives = rays::derivatives(system, at, &moved, over);
+        let derivatives = rays::derivatives(&moved, over, &exact);
         let parameters = all.into_iter().zip(derivatives);
         let parameters = parameters.filter_map(|(parameter, derivative)| {
             Some(PredictedParameter {

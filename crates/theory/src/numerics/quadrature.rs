@@ -1,3 +1,5 @@
+//! Integrals by Gauss–Legendre rules.
+
 pub(crate) use etendue_field::gauss_legendre;
 
 /// ∫ f over (low, high), with n nodes.

@@ -64,7 +64,7 @@ impl Chain {
                     }
                 });
                 Sampled {
-                    derivatives: rays::derivatives(&system, &plane, &moved, over),
+                    derivatives: rays::derivatives(&moved, over, &found),
                     slices: found.slices,
                     replicates: found.replicates,
                     error: found.error,

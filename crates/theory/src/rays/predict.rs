@@ -28,6 +28,8 @@ pub struct RaySlices {
     pub covariance: Option<Matrix<4>>,
     /// The windowed light field integrated over y and v, as means over cells of (x, u).
     pub projection: Projection,
+    /// `None` if no ray arrives beside the central one.
+    strategy: Option<Strategy>,
 }
 
 /// What a prediction is over: a window, frequencies and the cells of a picture.
@@ -92,16 +94,12 @@ pub fn linear(
 /// Central differences, the rays of both sides drawn alike: good to about a per cent.
 #[must_use]
 pub fn derivatives(
-    system: &System,
-    plane: &Plane,
     moved: &[Moved<(System, Plane)>],
     over: Over<'_>,
+    prediction: &RaySlices,
 ) -> Vec<Slices> {
     let zeros = || vec![Slices::zeros(*over.1); moved.len()];
-    let masks = Masks::new(&system.layers);
-    let field = exact_field(system, plane, &masks);
-    let lands = neighbourhood(system, plane);
-    let Some(strategy) = lands.and_then(|lands| best(&field, system, &lands, over)) else {
+    let Some(strategy) = prediction.strategy else {
         return zeros();
     };
     let sides = || moved.iter().flat_map(|moved| &moved.sides);
@@ -200,7 +198,7 @@ fn predict(
     [of_slices, of_pictures]: [Budget; 2],
 ) -> RaySlices {
     let draw = way.and_then(|(lands, strategy)| Draw::new(system, window, &lands, strategy));
-    let (Some((lands, _)), Some(draw)) = (way, draw) else {
+    let (Some((lands, strategy)), Some(draw)) = (way, draw) else {
         return RaySlices::dark(grid, picture);
     };
     let drawn = [Drawn {
@@ -240,6 +238,7 @@ fn predict(
         error,
         covariance: sums.covariance,
         projection: sums.projection,
+        strategy: Some(strategy),
     }
 }
 
@@ -300,6 +299,7 @@ impl RaySlices {
                 grid: *picture,
                 values: ndarray::Array2::zeros((picture.bins, picture.bins)),
             },
+            strategy: None,
         }
     }
 }

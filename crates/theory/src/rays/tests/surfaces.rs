@@ -83,7 +83,7 @@ fn derivatives_by_every_parameter() {
         .iter()
         .map(|parameter| system.moved(&plane, *parameter).unwrap())
         .collect();
-    let slopes = derivatives(&system, &plane, &moved, (&window, &grid, &picture));
+    let slopes = derivatives(&moved, (&window, &grid, &picture), &prediction);
     for (parameter, slope) in parameters.into_iter().zip(slopes) {
         let value = system.value(&plane, parameter).unwrap();
         let name = system.name(parameter);
