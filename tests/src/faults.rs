@@ -8,7 +8,7 @@ use etendue_field::{
 };
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::{Chain, Operator, Parameter};
+use etendue_theory::{Chain, Model, Operator, Parameter};
 use etendue_trace::Tracer;
 
 /// All planted faults at one number of photons; the first row is the scene without a fault.
@@ -120,7 +120,7 @@ fn elsewhere() -> Vec<(&'static str, Faults)> {
     let scaled = |which: fn(&Parameter) -> bool, factor: f64| {
         chained(move |c: &mut Chain| {
             if let Some(p) = c.parameters().into_iter().find(which) {
-                *c = c.with(p, factor * c.value(p));
+                scale(c, p, factor);
             }
         })
     };
@@ -152,7 +152,8 @@ fn elsewhere() -> Vec<(&'static str, Faults)> {
                     chained(|c| {
                         let phase = |p: &Parameter| matches!(p, Parameter::GratingPhase(_));
                         if let Some(p) = c.parameters().into_iter().find(phase) {
-                            *c = c.with(p, c.value(p) + 0.05);
+                            let value = c.value(p).expect("its own");
+                            *c = c.with(p, value + 0.05).expect("its own");
                         }
                     }),
                 ),
@@ -345,11 +346,17 @@ fn predictions() -> Vec<(&'static str, Box<Predict>)> {
     ]
 }
 
+/// Multiplies one of the parameters of a chain.
+fn scale(chain: &mut Chain, parameter: Parameter, factor: f64) {
+    let value = chain.value(parameter).expect("a parameter of the chain");
+    *chain = chain.with(parameter, factor * value).expect("the same");
+}
+
 /// Multiplies the `nth` travel of a chain, if it has so many.
 fn scale_travel(chain: &mut Chain, nth: usize, factor: f64) {
     let is_travel = |p: &Parameter| matches!(p, Parameter::Travel(_));
     if let Some(travel) = chain.parameters().into_iter().filter(is_travel).nth(nth) {
-        *chain = chain.with(travel, factor * chain.value(travel));
+        scale(chain, travel, factor);
     }
 }
 

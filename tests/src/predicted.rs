@@ -1,10 +1,9 @@
 //! Slices that theory predicts for a system, tampered with or not.
 
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
-use etendue_theory::Budget;
 use etendue_theory::geometry::SpectrumMap;
-use etendue_theory::rays::{self, Plane};
 use etendue_theory::scattering::{self, Chain};
+use etendue_theory::{Budget, Model, Prediction, View, rays};
 
 /// Rays of a prediction: errors of a fifth of the photons' noise.
 const BUDGET: Budget = Budget {
@@ -13,43 +12,34 @@ const BUDGET: Budget = Budget {
 };
 
 /// Behind specular surfaces.
-pub(crate) fn traced(
-    system: &rays::System,
-    at: &Plane,
-    window: &Window,
-    grid: &SliceGrid,
-) -> rays::RaySlices {
+pub(crate) fn traced(view: &View<rays::System>, window: &Window, grid: &SliceGrid) -> Prediction {
     let picture = ProjectionGrid::new(window, 1);
-    rays::exact(system, at, (window, grid, &picture), BUDGET)
+    view.predict(&[], (window, grid, &picture), BUDGET)
 }
 
 /// Behind specular surfaces, by a chain.
 pub(crate) fn linear(
-    system: &rays::System,
-    at: &Plane,
+    view: &View<rays::System>,
     window: &Window,
     grid: &SliceGrid,
     map: &SpectrumMap<4>,
 ) -> Slices {
     let picture = ProjectionGrid::new(window, 1);
-    rays::linear(system, at, (window, grid, &picture), map, BUDGET).slices
+    rays::linear(view, (window, grid, &picture), map, BUDGET).slices
 }
 
 /// Behind a surface with a BRDF: as it is, and by a chain.
 pub(crate) fn scattered(
-    system: &scattering::System,
-    at: &Plane,
+    view: &View<scattering::System>,
     plane: &VirtualPlane,
     chain: &Chain,
 ) -> [Slices; 2] {
-    let (window, grid) = (&plane.window, &plane.grid);
-    let picture = ProjectionGrid::new(window, 1);
-    let over = (window, grid, &picture);
-    let exact = scattering::predict(system, at, Some(chain), over, BUDGET);
-    let around = scattering::differences(system, at, Some(chain), &[], (window, grid), &exact);
-    let mut linear = exact.slices.clone();
-    if let Some(difference) = around.linear {
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    let over = (&plane.window, &plane.grid, &picture);
+    let found = scattering::beside(view, chain, over, BUDGET);
+    let mut linear = found.slices.clone();
+    if let Some(difference) = found.to_first_order {
         linear.half += &difference.half;
     }
-    [exact.slices, linear]
+    [found.slices, linear]
 }

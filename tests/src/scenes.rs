@@ -81,12 +81,13 @@ pub(crate) fn traced_backwards(scene: &Scene) -> Option<Measurement> {
 pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<Prediction> {
     let planes = scene.planes.iter().enumerate();
     planes
-        .map(
-            |(i, plane)| match Applicability::new(scene, plane).class() {
-                Class::Exact | Class::FirstOrder => Prediction::new(scene, plane),
+        .map(|(i, plane)| {
+            let theory = Applicability::new(scene, plane);
+            match theory.class() {
+                Class::Exact | Class::FirstOrder => Prediction::new(scene, plane, &theory),
                 Class::Reference => referred(scene, i, reference.expect("a reference")),
-            },
-        )
+            }
+        })
         .collect()
 }
 
@@ -95,7 +96,9 @@ pub(crate) fn predicted(scene: &Scene, reference: Option<&Measurement>) -> Vec<P
 /// # Panics
 /// When it has too few batches.
 pub(crate) fn referred(scene: &Scene, index: usize, reference: &Measurement) -> Prediction {
-    Prediction::reference(scene, index, reference, index).expect("a scene has 32 batches")
+    let theory = Applicability::new(scene, &scene.planes[index]);
+    let reference = Prediction::reference(scene, index, &theory, reference, index);
+    reference.expect("a scene has 32 batches")
 }
 
 /// A plane held against a prediction.

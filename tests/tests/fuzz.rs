@@ -1,6 +1,6 @@
 //! Mutated scene files: whatever is in the file, the answer is a scene or a fault, never a panic.
 
-use etendue_compare::{Prediction, compare, sidak};
+use etendue_compare::{Applicability, Prediction, compare, sidak};
 use etendue_field::Mask;
 use etendue_field::random::{self, Stream};
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -153,7 +153,7 @@ fn whole_run(scene: &Scene) {
     let measurement = measure(&tracer, &scene.planes, batches, &|_| ());
     let level = sidak(scene.run.alpha, scene.planes.len());
     for (i, plane) in scene.planes.iter().enumerate() {
-        let prediction = Prediction::new(scene, plane);
+        let prediction = Prediction::new(scene, plane, &Applicability::new(scene, plane));
         assert!(
             prediction.slices.half.iter().all(|s| s.is_finite()),
             "{plane:?}"

@@ -36,7 +36,8 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .iter()
         .enumerate()
         .map(|(i, plane)| {
-            let prediction = Prediction::new(predicted, plane);
+            let prediction =
+                Prediction::new(predicted, plane, &Applicability::new(predicted, plane));
             compare(&measurement, i, &prediction, level, 1)
                 .expect("a resolved scene has enough batches")
                 .report

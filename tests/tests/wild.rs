@@ -10,10 +10,12 @@ use etendue_compare::{
     Applicability, Class, PlaneReport, Prediction, Theory, Verdict, compare, scattered, sidak,
     system,
 };
-use etendue_field::{EnvironmentMap, LatLong, Light, PhotonSource, ProjectionGrid, Slices};
+use etendue_field::{
+    EnvironmentMap, LatLong, Light, PhotonSource, ProjectionGrid, Slices, VirtualPlane,
+};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_theory::{Budget, rays, scattering};
+use etendue_theory::{Budget, Model, View, scattering};
 use etendue_trace::{Backward, Tracer};
 use std::sync::Arc;
 use std::time::Instant;
@@ -66,12 +68,21 @@ fn verdict(scene: &Scene, measurement: &Measurement, prediction: &Prediction) ->
     report(scene, measurement, 0, prediction).verdict
 }
 
+fn by_theory(scene: &Scene, plane: &VirtualPlane) -> Prediction {
+    Prediction::new(scene, plane, &Applicability::new(scene, plane))
+}
+
+fn by_reference(scene: &Scene, plane: usize, reference: &Measurement) -> Prediction {
+    let theory = Applicability::new(scene, &scene.planes[plane]);
+    Prediction::reference(scene, plane, &theory, reference, plane).unwrap()
+}
+
 /// The prediction of rays as they go, without the chain of affine maps, which has a verdict of its
 /// own.
 fn as_it_is(scene: &Scene, plane: usize) -> Prediction {
     Prediction {
         first_order: None,
-        ..Prediction::new(scene, &scene.planes[plane])
+        ..by_theory(scene, &scene.planes[plane])
     }
 }
 
@@ -109,11 +120,8 @@ fn holds_in(scene: &Scene, planes: &[(&str, Class)]) {
         assert_eq!(found, *class, "{name}: {called}");
         let begun = Instant::now();
         let prediction = match class {
-            Class::Reference => {
-                let reference = by_rays.as_ref().unwrap();
-                Prediction::reference(scene, i, reference, i).unwrap()
-            }
-            _ => Prediction::new(scene, plane),
+            Class::Reference => by_reference(scene, i, by_rays.as_ref().unwrap()),
+            _ => by_theory(scene, plane),
         };
         let seconds = begun.elapsed().as_secs_f64();
         let judged = report(scene, &by_photons, i, &prediction);
@@ -185,7 +193,7 @@ fn the_chain_of_a_small_map_does_not_fail() {
 fn a_fine_grating_is_decided() {
     let scene = scene("fine_grating_floor");
     let (photons, plane) = (photons(&scene), &scene.planes[0]);
-    let prediction = Prediction::new(&scene, plane);
+    let prediction = by_theory(&scene, plane);
     assert!(!prediction.replicates.is_empty(), "nets predict it");
     assert_eq!(verdict(&scene, &photons, &prediction), Verdict::Pass);
     let Theory::Parallel(chain) = Applicability::new(&scene, plane).theory else {
@@ -226,8 +234,8 @@ fn a_wide_glow_is_decided() {
     let rays = backward(&scene);
     let prediction = as_it_is(&scene, 0);
     assert_eq!(verdict(&scene, &rays, &prediction), Verdict::Pass);
-    let (mut system, at) = scattered(&scene, plane).unwrap();
-    let Light::Environment { environment } = &mut system.light else {
+    let mut view = scattered(&scene, plane).unwrap();
+    let Light::Environment { environment } = &mut view.system.light else {
         panic!("an environment")
     };
     let EnvironmentMap::Lobes(lobes) = &environment.map else {
@@ -240,7 +248,7 @@ fn a_wide_glow_is_decided() {
         let seen = angle < CUT * lobe.width;
         if seen { glow.radiance(from) } else { 0.0 }
     })));
-    let cut = by_scattering(&scene, &system, &at, prediction);
+    let cut = by_scattering(&scene, &view, prediction);
     assert_eq!(verdict(&scene, &rays, &cut), Verdict::Fail);
 }
 
@@ -270,8 +278,8 @@ fn a_surface_in_its_own_shadow_is_decided() {
     let scene = scene("self_shadow");
     for plane in 0..2 {
         decided_by_reference(&scene, plane, |scene, reference| {
-            let (system, at) = scattered(scene, &scene.planes[plane]).unwrap();
-            by_scattering(scene, &system, &at, reference)
+            let view = scattered(scene, &scene.planes[plane]).unwrap();
+            by_scattering(scene, &view, reference)
         });
     }
 }
@@ -285,7 +293,7 @@ fn decided_by_reference(
     let reasons = Applicability::new(scene, &scene.planes[plane]).reasons;
     assert!(!reasons.is_empty());
     let (photons, rays) = (photons(scene), backward(scene));
-    let reference = Prediction::reference(scene, plane, &rays, plane).unwrap();
+    let reference = by_reference(scene, plane, &rays);
     let judged = report(scene, &photons, plane, &reference);
     assert_eq!(judged.verdict, Verdict::Pass);
     let regardless = theory(scene, reference);
@@ -302,7 +310,7 @@ fn darkness_behind_two_occluders_is_decided() {
     for (plane, at) in scene.planes.iter().enumerate() {
         let reason = Applicability::new(&scene, at).dark.unwrap();
         assert!(reason.contains("below and above"), "{reason}");
-        let prediction = Prediction::new(&scene, at);
+        let prediction = by_theory(&scene, at);
         let judged = report(&scene, &dark, plane, &prediction);
         assert_eq!(judged.verdict, Verdict::Pass);
         assert!(
@@ -323,25 +331,19 @@ const BUDGET: Budget = Budget {
 
 fn by_specular(scene: &Scene, plane: usize, like: Prediction) -> Prediction {
     let plane = &scene.planes[plane];
-    let (system, at) = system(scene, plane).unwrap();
+    let view = system(scene, plane).unwrap();
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
-    let found = rays::exact(&system, &at, over, BUDGET);
+    let found = view.predict(&[], over, BUDGET);
     replaced(like, found.slices, found.replicates)
 }
 
-fn by_scattering(
-    scene: &Scene,
-    system: &scattering::System,
-    at: &rays::Plane,
-    like: Prediction,
-) -> Prediction {
+fn by_scattering(scene: &Scene, view: &View<scattering::System>, like: Prediction) -> Prediction {
     let grid = like.slices.grid;
     let window = &scene.planes[0].window;
     let picture = ProjectionGrid::new(window, 1);
     let over = (window, &grid, &picture);
-    let chain = scattering::chain(system, at);
-    let found = scattering::predict(system, at, chain.as_ref(), over, BUDGET);
+    let found = view.predict(&[], over, BUDGET);
     replaced(like, found.slices, found.replicates)
 }
 

@@ -36,8 +36,9 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let scenes = scenes?;
     if args.measure {
         for scene in &scenes {
-            method::check(scene, args.photons.method)?;
-            limits::check_work(scene)?;
+            let theories = Applicability::of_planes(scene);
+            method::check(scene, &theories, args.photons.method)?;
+            limits::check_work(scene, &theories)?;
         }
     }
     let inputs: Vec<_> = scenes
@@ -248,10 +249,10 @@ fn said_at(point: &[(String, f64)], text: String) -> String {
 
 /// What the criteria do not know of.
 fn beyond_criteria(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let Theory::Scattering(system, _) = Applicability::new(scene, plane).theory else {
+    let Theory::Scattering(view) = Applicability::new(scene, plane).theory else {
         return Vec::new();
     };
-    let (name, reflectance) = (&system.name, &system.reflectance);
+    let (name, reflectance) = (&view.system.name, &view.system.reflectance);
     let mut warnings = Vec::new();
     if reflectance.blend.is_some() || reflectance.texture.is_some() {
         warnings.push(format!(

@@ -22,7 +22,8 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
         ))
     });
     let picture = picture.transpose()?;
-    deliver(&description(&scene))?;
+    let theories = Applicability::of_planes(&scene);
+    deliver(&description(&scene, &theories))?;
     warnings::describe(&scene);
     if let Some((path, bytes, file)) = picture {
         file.write(&bytes)?;
@@ -30,7 +31,7 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     }
     // As many threads as `run` takes unless told otherwise.
     let threads = available_parallelism().map_or(1, NonZero::get);
-    limits::check(&scene, threads)?;
+    limits::check(&scene, &theories, threads)?;
     Ok(0)
 }
 
@@ -67,7 +68,7 @@ fn rays(chain: &FirstOrder) -> Vec<String> {
     lines
 }
 
-fn description(scene: &Scene) -> String {
+fn description(scene: &Scene, theories: &[Applicability]) -> String {
     let run = &scene.run;
     let mut lines = vec![
         format!("{}: sound", scene.name),
@@ -80,8 +81,7 @@ fn description(scene: &Scene) -> String {
             run.alpha
         ),
     ];
-    for plane in &scene.planes {
-        let applicability = Applicability::new(scene, plane);
+    for (plane, applicability) in scene.planes.iter().zip(theories) {
         let [k, rho, nu] = plane.grid.full_shape();
         lines.push(format!(
             "\n{}: {} m along the central ray, prediction: {}",

@@ -7,6 +7,7 @@ use crate::stored::Stored;
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
 use crate::{predictions, progress, say};
+use etendue_compare::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use serde_json::json;
@@ -59,9 +60,11 @@ fn read(args: &CompareArgs) -> Result<(Case, Vec<PathBuf>), Failure> {
         .flat_map(Stored::paths)
         .chain(predicted.paths());
     let inputs = inputs.collect();
+    let theories = Applicability::of_planes(&scene);
     let case = Case {
         method,
-        predictions: predictions::read(&predicted, &scene, method)?,
+        predictions: predictions::read(&predicted, &scene, &theories, method)?,
+        theories,
         measurement,
         scene,
     };

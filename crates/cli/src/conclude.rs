@@ -4,7 +4,7 @@ use crate::method::Method;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
 use crate::{field, files, photons, pictures, progress, say, table};
-use etendue_compare::{PlaneComparison, Prediction, Verdict, compare, sidak};
+use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict, compare, sidak};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -14,6 +14,8 @@ use std::path::PathBuf;
 #[derive(Debug)]
 pub(crate) struct Case {
     pub(crate) scene: Scene,
+    /// What theory says of each plane.
+    pub(crate) theories: Vec<Applicability>,
     pub(crate) method: Method,
     pub(crate) measurement: Measurement,
     /// One for each plane, in their order.
@@ -115,7 +117,7 @@ fn written(
         files::write(&mut results, summary, plane)?;
         pictures::plane(&mut results, summary, prediction, at, plane)?;
     }
-    pictures::path(&mut results, summary, &case.scene, planes)?;
+    pictures::path(&mut results, summary, case, planes)?;
     if ending.save.contains(&Save::Photons) {
         photons::save(&mut results, case)?;
     }

@@ -9,7 +9,7 @@ use etendue_scene::Scene;
 /// `etendue converge`: returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |_| ())?;
-    limits::check_work(&scene)?;
+    limits::check_work(&scene, &Applicability::of_planes(&scene))?;
     let planes = on_threads(&args.threads, || Ok(shrunk(&scene)))?;
     if planes.is_empty() {
         return Err(Failure::bad_input(

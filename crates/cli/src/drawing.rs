@@ -1,7 +1,7 @@
 //! The scene in the plane of the central ray and X: what the plane y = 0 cuts.
 
 use crate::pictures::spaced;
-use etendue_field::{Light, Mask, Patch, Shape, VirtualPlane};
+use etendue_field::{Mask, Patch, Shape, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
 use etendue_scene::{BlockerLayer, Leg, MeshObject, Object, Scene};
 use glam::DVec3;
@@ -133,13 +133,10 @@ fn profile(patch: &Patch, leg: &Leg) -> Vec<[f64; 2]> {
 }
 
 fn light(scene: &Scene) -> Segment {
-    let [low, high] = match scene.light {
-        Light::Area { shape, .. } => shape.bounds().extent(0),
-        // A dot.
-        Light::Beam { image, .. } => [-0.5, 0.5].map(|half| half * image.width[0]),
-        Light::Point { .. } | Light::Projector { .. } | Light::Environment { .. } => {
-            [-0.005, 0.005].map(|x| x * scene.path.first_hit())
-        }
+    let dot = 0.005 * scene.path.first_hit();
+    let [low, high] = match scene.light.extent(0) {
+        [low, high] if low < high && low.is_finite() => [low, high],
+        _ => [-dot, dot],
     };
     Segment {
         kind: SegmentKind::Light,

@@ -81,7 +81,7 @@ pub(crate) fn save(results: &mut Results, case: &Case, quiet: bool) -> Result<()
         let measured = measured.map_err(Failure::cannot_run)?;
         let slices = etendue_spectrum::estimate::slices(&case.measurement, index);
         let slices = slices.map_err(Failure::cannot_run)?.mean;
-        let predicted = predicted(&case.scene, plane, &measured.grid);
+        let predicted = predicted(&case.theories[index], plane, &measured.grid);
         write(results, plane, &measured, &slices, predicted)?;
     }
     Ok(())
@@ -89,14 +89,18 @@ pub(crate) fn save(results: &mut Results, case: &Case, quiet: bool) -> Result<()
 
 /// The full radial spectrum that theory predicts, where it can tell all four dimensions at once: on the way to
 /// the receiver, and not behind a mesh.
-fn predicted(scene: &Scene, plane: &VirtualPlane, grid: &FieldGrid) -> Option<Array2<f64>> {
-    let Theory::Parallel(chain) = Applicability::new(scene, plane).theory else {
+fn predicted(
+    applicability: &Applicability,
+    plane: &VirtualPlane,
+    grid: &FieldGrid,
+) -> Option<Array2<f64>> {
+    let Theory::Parallel(chain) = &applicability.theory else {
         return None;
     };
     let axes = [0, 1, 2, 3];
     let spacing = axes.map(|axis| grid.spacing(axis));
     let half = axes.map(|axis| grid.cells[axis] / 2);
-    let harmonics = Harmonics::new(&chain, &plane.window, spacing, half)?;
+    let harmonics = Harmonics::new(chain, &plane.window, spacing, half)?;
     #[expect(
         clippy::cast_possible_truncation,
         reason = "a multiple below the number of cells"

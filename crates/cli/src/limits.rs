@@ -2,26 +2,36 @@
 
 use crate::failure::Failure;
 use crate::machine;
-use etendue_compare::{Memory, too_much_work};
+use etendue_compare::{Applicability, Memory, too_much_work};
 use etendue_scene::Scene;
 
 /// Fails where a run of the scene on so many threads would not end, or not fit into this machine.
-pub(crate) fn check(scene: &Scene, threads: usize) -> Result<(), Failure> {
-    check_work(scene)?;
-    check_memory(scene, threads)
+/// `theories` are those of its planes.
+pub(crate) fn check(
+    scene: &Scene,
+    theories: &[Applicability],
+    threads: usize,
+) -> Result<(), Failure> {
+    check_work(scene, theories)?;
+    check_memory(scene, theories, threads)
 }
 
 /// Fails where a prediction of the scene would not end.
-pub(crate) fn check_work(scene: &Scene) -> Result<(), Failure> {
-    match too_much_work(scene) {
+pub(crate) fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
+    match too_much_work(scene, theories) {
         Some(too_much) => Err(Failure::cannot_run(format!("{}: {too_much}", scene.name))),
         None => Ok(()),
     }
 }
 
 /// Fails where a run of the scene on so many threads would not fit into this machine.
-pub(crate) fn check_memory(scene: &Scene, threads: usize) -> Result<(), Failure> {
-    let (needed, available) = (Memory::new(scene, threads), machine::available_memory());
+pub(crate) fn check_memory(
+    scene: &Scene,
+    theories: &[Applicability],
+    threads: usize,
+) -> Result<(), Failure> {
+    let needed = Memory::new(scene, theories, threads);
+    let available = machine::available_memory();
     if needed.total() <= available as f64 {
         return Ok(());
     }

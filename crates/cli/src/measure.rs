@@ -7,6 +7,7 @@ use crate::stored::Index;
 use crate::table::grouped;
 use crate::threads::on_threads;
 use crate::{limits, load, method, progress, say, warnings};
+use etendue_compare::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use std::ops::Range;
@@ -14,7 +15,8 @@ use std::ops::Range;
 /// `etendue measure`: returns the exit code.
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
-    method::check(&scene, args.photons.method)?;
+    let theories = Applicability::of_planes(&scene);
+    method::check(&scene, &theories, args.photons.method)?;
     let all = 0..scene.run.batches;
     let batches = args.batches.clone().unwrap_or(all.clone());
     if batches.end > all.end {
@@ -26,7 +28,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     let method = args.photons.method;
     let (results, held) = on_threads(&args.threads, || {
         warnings::tell(&scene, args.quiet);
-        limits::check_memory(&scene, rayon::current_num_threads())?;
+        limits::check_memory(&scene, &theories, rayon::current_num_threads())?;
         let files = batches::names(&scene.planes);
         let mut results = load::stage(
             &args.out,

@@ -1,7 +1,7 @@
 use crate::failure::Failure;
 use clap::ValueEnum;
 use etendue_compare::Applicability;
-use etendue_field::{Light, PhotonSource};
+use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_trace::{Backward, PointLight, Tracer};
 use serde::{Deserialize, Serialize};
@@ -26,18 +26,18 @@ pub(crate) fn source(scene: &Scene, method: Method) -> Result<Box<dyn PhotonSour
 
 /// Fails, before anything is written, when a scene cannot be measured by `method`, or needs the other one as a
 /// reference that it cannot have.
-pub(crate) fn check(scene: &Scene, method: Method) -> Result<(), Failure> {
-    if !matches!(
-        scene.light,
-        Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. }
-    ) {
+pub(crate) fn check(
+    scene: &Scene,
+    theories: &[Applicability],
+    method: Method,
+) -> Result<(), Failure> {
+    if scene.light.has_extent() {
         return Ok(());
     }
     if method == Method::Backward {
         return Err(Failure::bad_input(PointLight));
     }
-    for plane in &scene.planes {
-        let reasons = Applicability::new(scene, plane).reasons;
+    for (plane, Applicability { reasons, .. }) in scene.planes.iter().zip(theories) {
         if !reasons.is_empty() {
             return Err(Failure::bad_input(format!(
                 "{} has no prediction ({}), and nothing to compare with: {PointLight}",

@@ -1,5 +1,6 @@
 //! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
 
+use crate::conclude::Case;
 use crate::drawing;
 use crate::failure::Failure;
 use crate::files::{radial_z, z};
@@ -7,9 +8,7 @@ use crate::results::Results;
 use crate::summary::Summary;
 use crate::table::word;
 use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Theory, stands_before};
-use etendue_field::{
-    FrequencyAxis, Light, Orientation, ProjectionGrid, Side, SliceGrid, VirtualPlane,
-};
+use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, Side, SliceGrid, VirtualPlane};
 use etendue_figures::{
     Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
     strip,
@@ -103,18 +102,19 @@ pub(crate) fn plane(
 pub(crate) fn path(
     results: &mut Results,
     summary: &Summary,
-    scene: &Scene,
+    case: &Case,
     planes: &[PlaneComparison],
 ) -> Result<(), Failure> {
-    let mut along: Vec<(&VirtualPlane, &PlaneComparison)> =
-        scene.planes.iter().zip(planes).collect();
+    let scene = &case.scene;
+    let of_planes = planes.iter().zip(&case.theories);
+    let mut along: Vec<_> = scene.planes.iter().zip(of_planes).collect();
     along.sort_by(|(a, _), (b, _)| {
         let place = |plane: &VirtualPlane| (plane.distance, plane.side == Side::After);
         place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal)
     });
     let columns = along
         .iter()
-        .map(|(plane, compared)| column(scene, plane, compared));
+        .map(|(plane, (compared, theory))| column(scene, plane, theory, compared));
     let columns: Vec<Column<'_>> = columns.collect();
     let most = columns.iter().map(|column| column.guides.len()).max();
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
@@ -146,7 +146,12 @@ pub(crate) fn path(
 }
 
 /// What is shown under a plane.
-fn column<'a>(scene: &Scene, plane: &VirtualPlane, compared: &'a PlaneComparison) -> Column<'a> {
+fn column<'a>(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    applicability: &Applicability,
+    compared: &'a PlaneComparison,
+) -> Column<'a> {
     let projection = &compared.projection.mean;
     let words = Words::of(plane);
     let [x, u] = words.projection_axes(&projection.grid);
@@ -163,13 +168,10 @@ fn column<'a>(scene: &Scene, plane: &VirtualPlane, compared: &'a PlaneComparison
             values: compared.radial.power.view(),
         },
         verdict: verdict_line(compared),
-        guides: match (
-            Applicability::new(scene, plane).theory,
-            &compared.report.first_order,
-        ) {
+        guides: match (&applicability.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
             // A lobe leaves no line of light where a mirror would.
-            (Theory::Specular(..), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
+            (Theory::Specular(_), Some(first_order)) => ridges(scene, &first_order.chain.matrix),
             _ => Vec::new(),
         },
     }
@@ -213,10 +215,8 @@ fn guides(scene: &Scene, plane: &VirtualPlane) -> Vec<Guide> {
 fn ridges(scene: &Scene, matrix: &[[f64; 4]; 4]) -> Vec<Guide> {
     let slope = |i: usize| {
         let [position, slope] = [matrix[i], matrix[i + 2]];
-        match scene.light {
-            Light::Beam { .. } | Light::Environment { .. } => -position[i] / slope[i],
-            _ => -position[i + 2] / slope[i + 2],
-        }
+        let free = if scene.light.is_distant() { i } else { i + 2 };
+        -position[free] / slope[free]
     };
     let through = [0.0, 0.0];
     let slopes = [0, 1].map(slope).into_iter();

@@ -7,16 +7,16 @@ use crate::stored::Index;
 use crate::threads::on_threads;
 use crate::{limits, load, method, predictions, progress, say, warnings};
 use etendue_compare::{Applicability, Class, Prediction};
-use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 
 /// `etendue predict`: returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
-    method::check(&scene, args.photons.method)?;
+    let theories = Applicability::of_planes(&scene);
+    method::check(&scene, &theories, args.photons.method)?;
     let (results, content) = on_threads(&args.threads, || {
         warnings::tell(&scene, args.quiet);
-        limits::check(&scene, rayon::current_num_threads())?;
+        limits::check(&scene, &theories, rayon::current_num_threads())?;
         let files = predictions::names(&scene.planes);
         let mut results = load::stage(
             &args.out,
@@ -27,7 +27,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
             args.force.force,
         )?;
         let method = args.photons.method;
-        let predictions = predicted(&scene, method, args.quiet)?;
+        let predictions = predicted(&scene, &theories, method, args.quiet)?;
         let content = predictions::write(&mut results, &scene, method, &predictions)?;
         Ok((results, content))
     })?;
@@ -45,14 +45,15 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
 /// measurement takes its place.
 pub(crate) fn predicted(
     scene: &Scene,
+    theories: &[Applicability],
     method: Method,
     quiet: bool,
 ) -> Result<Vec<Prediction>, Failure> {
-    let class = |plane: &VirtualPlane| Applicability::new(scene, plane).class();
     let mut referred = scene.clone();
+    let mut classes = theories.iter().map(Applicability::class);
     referred
         .planes
-        .retain(|plane| class(plane) == Class::Reference);
+        .retain(|_| classes.next() == Some(Class::Reference));
     let reference = if referred.planes.is_empty() {
         None
     } else {
@@ -61,15 +62,15 @@ pub(crate) fn predicted(
     };
     let bar = progress::steps("predicting", scene.planes.len(), "planes", quiet);
     let mut at = 0..;
-    let planes = scene.planes.iter().enumerate();
-    let predictions = planes.map(|(i, plane)| {
+    let planes = scene.planes.iter().zip(theories).enumerate();
+    let predictions = planes.map(|(i, (plane, theory))| {
         bar.set_message(plane.name.clone());
-        let prediction = match (class(plane), &reference) {
+        let prediction = match (theory.class(), &reference) {
             (Class::Reference, Some(reference)) => {
                 let at = at.next().unwrap_or_default();
-                Prediction::reference(scene, i, reference, at).map_err(Failure::cannot_run)
+                Prediction::reference(scene, i, theory, reference, at).map_err(Failure::cannot_run)
             }
-            _ => Ok(Prediction::new(scene, plane)),
+            _ => Ok(Prediction::new(scene, plane, theory)),
         };
         bar.inc(1);
         prediction

@@ -130,6 +130,7 @@ fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
 pub(crate) fn read(
     stored: &Stored<Predicted>,
     scene: &Scene,
+    theories: &[Applicability],
     method: Method,
 ) -> Result<Vec<Prediction>, Failure> {
     let Predicted {
@@ -151,10 +152,10 @@ pub(crate) fn read(
         let [predicted, wanted] = [predicted, wanted].map(|planes| planes.join(", "));
         return Err(stored.fault(format!("planes [{predicted}]; must be [{wanted}]")));
     }
-    let pairs = scene.planes.iter().zip(planes);
-    pairs
-        .map(|(plane, words)| {
-            let class = Applicability::new(scene, plane).class();
+    let planes = scene.planes.iter().zip(theories).zip(planes);
+    planes
+        .map(|((plane, theory), words)| {
+            let class = theory.class();
             if words.class != class {
                 let (name, is) = (&plane.name, words.class);
                 return Err(stored.fault(format!("class of {name} is {is:?}; must be {class:?}")));

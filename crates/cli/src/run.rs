@@ -7,13 +7,15 @@ use crate::results::Results;
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
 use crate::{field, limits, load, method, photons, say, warnings};
+use etendue_compare::Applicability;
 use etendue_scene::Scene;
 use std::path::Path;
 
 /// `etendue run`: returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
-    method::check(&scene, args.photons.method)?;
+    let theories = Applicability::of_planes(&scene);
+    method::check(&scene, &theories, args.photons.method)?;
     let folder = args
         .out
         .clone()
@@ -22,16 +24,21 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     let plan = plan(&scene, &args.save, inputs, args.force.force);
     on_threads(&args.threads, || {
         warnings::tell(&scene, args.quiet);
-        limits::check(&scene, rayon::current_num_threads())?;
+        limits::check(&scene, &theories, rayon::current_num_threads())?;
         if args.save.contains(&Save::Field) {
             field::check_memory(&scene)?;
         }
         let results = Results::claim(&folder, plan)?;
-        stages(args, scene, results)
+        stages(args, scene, theories, results)
     })
 }
 
-fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure> {
+fn stages(
+    args: &RunArgs,
+    scene: Scene,
+    theories: Vec<Applicability>,
+    results: Results,
+) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     if args.save.contains(&Save::Photons) && !args.quiet {
         say(&photons::announcement(&scene));
@@ -39,10 +46,11 @@ fn stages(args: &RunArgs, scene: Scene, results: Results) -> Result<u8, Failure>
     let method = args.photons.method;
     let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;
     watch.lap("trace");
-    let predictions = predicted(&scene, method, args.quiet)?;
+    let predictions = predicted(&scene, &theories, method, args.quiet)?;
     watch.lap("predict");
     let case = Case {
         scene,
+        theories,
         method,
         measurement,
         predictions,

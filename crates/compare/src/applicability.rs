@@ -8,7 +8,7 @@ use crate::system::{print, scattered, system};
 use crate::ways::{unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Chain, rays, scattering};
+use etendue_theory::{Budget, Chain, Model, Over, Parameter, View, Work, rays, scattering};
 
 /// What theory says of a plane: which one applies, or why none does.
 #[derive(Clone, Debug)]
@@ -27,9 +27,9 @@ pub enum Theory {
     /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
     Parallel(Chain),
     /// Rays followed through smooth specular surfaces, or through pictures.
-    Specular(rays::System, rays::Plane),
+    Specular(Box<View<rays::System>>),
     /// Light that one smooth surface reflects by a BRDF.
-    Scattering(Box<scattering::System>, rays::Plane),
+    Scattering(Box<View<scattering::System>>),
     /// None: another measurement takes its place.
     None,
 }
@@ -48,22 +48,49 @@ impl Theory {
                 "all that light meets lies in planes across the path",
                 "the receiver has no edge in view",
             ],
-            Self::Specular(..) | Self::Scattering(..) => FOLLOWED,
+            Self::Specular(_) | Self::Scattering(_) => FOLLOWED,
             Self::None => &[],
+        }
+    }
+
+    /// The numbers of its model that a measurement may be asked for.
+    pub(crate) fn parameters(&self) -> Vec<Parameter> {
+        match self {
+            Self::Parallel(chain) => chain.parameters(),
+            Self::Specular(view) => view.parameters(),
+            Self::Scattering(view) => view.parameters(),
+            Self::None => Vec::new(),
+        }
+    }
+
+    /// What a prediction of its model takes.
+    pub(crate) fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+        match self {
+            Self::Parallel(chain) => chain.work(over, budget),
+            Self::Specular(view) => view.work(over, budget),
+            Self::Scattering(view) => view.work(over, budget),
+            Self::None => Work::none(),
         }
     }
 }
 
 impl Applicability {
+    /// Decides for all planes of a scene.
+    #[must_use]
+    pub fn of_planes(scene: &Scene) -> Vec<Self> {
+        let planes = scene.planes.iter();
+        planes.map(|plane| Self::new(scene, plane)).collect()
+    }
+
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let (theory, reasons) = if let Some((system, at)) = Self::followed(scene, plane) {
-            let reasons = unforeseen_by_rays(scene, plane, &system, &at);
-            (Theory::Specular(system, at), reasons)
-        } else if let Some((system, at)) = scattered(scene, plane) {
-            let reasons = unforeseen_by_scattering(scene, plane, &system, &at);
-            (Theory::Scattering(Box::new(system), at), reasons)
+        let (theory, reasons) = if let Some(view) = Self::followed(scene, plane) {
+            let reasons = unforeseen_by_rays(scene, plane, &view);
+            (Theory::Specular(Box::new(view)), reasons)
+        } else if let Some(view) = scattered(scene, plane) {
+            let reasons = unforeseen_by_scattering(scene, plane, &view);
+            (Theory::Scattering(Box::new(view)), reasons)
         } else {
             let reasons = obstacles_to_theory(scene, plane);
             (Theory::Parallel(chain(scene, plane)), reasons)
@@ -86,7 +113,7 @@ impl Applicability {
 
     /// The system of specular surfaces that leads to a plane behind one or on one, or of light that
     /// goes through pictures.
-    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<(rays::System, rays::Plane)> {
+    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<View<rays::System>> {
         let across = plane.orientation == Orientation::Orthogonal;
         if !scene.light.is_picture() && plane.leg == 0 && across {
             return None;
@@ -99,7 +126,7 @@ impl Applicability {
     pub fn class(&self) -> Class {
         match self.theory {
             Theory::Parallel(_) => Class::Exact,
-            Theory::Specular(..) | Theory::Scattering(..) => Class::FirstOrder,
+            Theory::Specular(_) | Theory::Scattering(_) => Class::FirstOrder,
             Theory::None => Class::Reference,
         }
     }
@@ -109,8 +136,8 @@ impl Applicability {
     #[must_use]
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::FirstOrder> {
         match &self.theory {
-            Theory::Specular(system, at) => rays::chain(system, at, print(scene)),
-            Theory::Parallel(_) | Theory::Scattering(..) | Theory::None => None,
+            Theory::Specular(view) => rays::chain(view, print(scene)),
+            Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,
         }
     }
 
@@ -121,9 +148,9 @@ impl Applicability {
         let Window { x, y, u, v } = &plane.window;
         let mut steps = chain(scene, plane).describe();
         let maps = match &self.theory {
-            Theory::Specular(..) => self.affine_chain(scene).map(|chain| chain.steps),
-            Theory::Scattering(system, at) => {
-                let chain = scattering::chain(system, at);
+            Theory::Specular(_) => self.affine_chain(scene).map(|chain| chain.steps),
+            Theory::Scattering(view) => {
+                let chain = scattering::chain(view);
                 Some(chain.map(|chain| chain.steps).unwrap_or_default())
             }
             Theory::Parallel(_) | Theory::None => None,

@@ -4,13 +4,13 @@
 use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
 use crate::residuals::crossed_power;
-use etendue_field::{Light, Lobe, Orientation, ProjectionGrid, VirtualPlane};
+use etendue_field::{Lobe, Orientation, ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu};
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
-use etendue_theory::scattering;
 use etendue_theory::shading::{self, Criterion};
+use etendue_theory::{Model, scattering};
 
 /// The criterion of a plane across the ray that leaves a surface with a BRDF. The cutoff of the
 /// lobe holds [`BANDWIDTH_FRACTION`] of its energy. `None` for any other plane.
@@ -19,13 +19,14 @@ use etendue_theory::shading::{self, Criterion};
 /// own, unless the light is far away.
 #[must_use]
 pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
-    let Theory::Scattering(system, at) = Applicability::new(scene, plane).theory else {
+    let Theory::Scattering(view) = Applicability::new(scene, plane).theory else {
         return None;
     };
+    let system = &view.system;
     if plane.orientation != Orientation::Orthogonal {
         return None;
     }
-    let chain = scattering::chain(&system, &at)?;
+    let chain = scattering::chain(&view)?;
     let lobe_cutoff = match system.reflectance.brdf.lobe {
         Lobe::Lambertian => 0.0,
         Lobe::Phong { exponent } => cutoff(shading::Lobe::Phong { exponent }),
@@ -33,9 +34,10 @@ pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
         Lobe::Ggx { roughness } => cutoff(shading::Lobe::Ggx { roughness }),
     };
     let last = system.layers.last().map(|(distance, _)| *distance);
-    let edge = match &system.light {
-        Light::Beam { .. } | Light::Environment { .. } => last,
-        _ => Some(last.unwrap_or(0.0)),
+    let edge = if system.light.is_distant() {
+        last
+    } else {
+        Some(last.unwrap_or(0.0))
     };
     Some(Criterion {
         curvature: chain.curvature[0][0],
@@ -56,14 +58,13 @@ fn cutoff(lobe: shading::Lobe) -> f64 {
 /// photons.
 #[must_use]
 pub fn exact_bandwidth(scene: &Scene, plane: &VirtualPlane) -> Option<f64> {
-    let Theory::Scattering(system, at) = Applicability::new(scene, plane).theory else {
+    let Theory::Scattering(view) = Applicability::new(scene, plane).theory else {
         return None;
     };
     let (window, grid) = (&plane.window, &plane.grid);
-    let chain = scattering::chain(&system, &at);
     let picture = ProjectionGrid::new(window, 1);
     let over = (window, grid, &picture);
-    let exact = scattering::predict(&system, &at, chain.as_ref(), over, budget(scene));
+    let exact = view.predict(&[], over, budget(scene));
     let power = crossed_power(&exact.replicates);
     bandwidth_nu(power.view(), grid, BANDWIDTH_FRACTION)
 }

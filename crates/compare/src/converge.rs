@@ -5,7 +5,7 @@ use crate::first_order::distance;
 use crate::system::print;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Budget, rays};
+use etendue_theory::{Budget, Model, Prediction, View, rays};
 use serde::Serialize;
 
 /// The error of a plane's first-order chain in smaller and smaller neighbourhoods of the central
@@ -35,13 +35,16 @@ const CLEAR: f64 = 5.0;
 /// `None` for any other plane. No photons are traced.
 #[must_use]
 pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
-    let Theory::Specular(whole, at) = Applicability::new(scene, plane).theory else {
+    let Theory::Specular(whole) = Applicability::new(scene, plane).theory else {
         return None;
     };
     let mut steps = Vec::new();
     let mut clear = true;
     for e in SHARES {
-        let system = whole.shrunk(e);
+        let view = View {
+            system: whole.system.shrunk(e),
+            plane: whole.plane,
+        };
         let Window { x, y, u, v } = plane.window;
         let [x, y, u, v] = [x, y, u, v].map(|profile| profile.scaled(e));
         let window = Window { x, y, u, v };
@@ -54,13 +57,14 @@ pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
             nu: wider(plane.grid.nu),
             ..plane.grid
         };
-        let chain = rays::chain(&system, &at, print(scene))?;
+        let chain = rays::chain(&view, print(scene))?;
         let picture = ProjectionGrid::new(&window, 1);
         let over = (&window, &grid, &picture);
-        let exact = rays::exact(&system, &at, over, BUDGET);
-        let linear = rays::linear(&system, &at, over, &chain.map, BUDGET);
+        let exact = view.predict(&[], over, BUDGET);
+        let linear = rays::linear(&view, over, &chain.map, BUDGET);
         let error = distance(&linear.slices, &exact.slices);
-        clear &= error > CLEAR * exact.error.max(linear.error);
+        let own = |prediction: &Prediction| prediction.error.unwrap_or(0.0);
+        clear &= error > CLEAR * own(&exact).max(own(&linear));
         steps.push([e, error]);
     }
     Some(Convergence {

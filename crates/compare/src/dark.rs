@@ -1,14 +1,12 @@
 //! Planes that no light reaches, by what stands on the first leg.
 
 use crate::chain::stands_before;
-use etendue_field::{Light, Mask, Profile, Shape, VirtualPlane};
+use etendue_field::{Mask, Profile, Shape, VirtualPlane};
 use etendue_scene::{BlockerLayer, Object, Scene};
 
 /// Lowest and highest coordinate along two axes.
 type Extent = [[f64; 2]; 2];
 
-/// Widths at which a Gaussian picture is below 10⁻¹² of its peak, and where photons end.
-const PICTURE: f64 = 3.0;
 /// Slopes, and metres, that no light exceeds.
 const FAR: f64 = 1e3;
 /// Share of the rays of a section that rounding may leave.
@@ -59,16 +57,9 @@ struct Section(Vec<[f64; 2]>);
 
 impl Section {
     fn new(scene: &Scene, plane: &VirtualPlane, axis: usize) -> Self {
-        let far = [-FAR, FAR];
-        let within = |half: f64| [-half, half];
-        let ([low, high], [least, most]) = match &scene.light {
-            Light::Area { shape, .. } => (shape.bounds().extent(axis), far),
-            Light::Point { .. } => ([0.0; 2], far),
-            Light::Projector { image, .. } => ([0.0; 2], within(PICTURE * image.width[axis])),
-            Light::Beam { image, .. } => (within(PICTURE * image.width[axis]), [0.0; 2]),
-            Light::Environment { .. } => (far, far),
-        };
-        let corners = [[low, least], [high, least], [high, most], [low, most]];
+        let [low, high] = scene.light.extent(axis).map(|x| x.clamp(-FAR, FAR));
+        let most = scene.light.steepest(axis).min(FAR);
+        let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
         if plane.leg == 0 {
             let window = &plane.window;

@@ -8,7 +8,8 @@ use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{Map, Matrix, Print};
-use etendue_theory::rays::{self, Over, Plane, RaySlices, System};
+use etendue_theory::rays::{self, System};
+use etendue_theory::{Over, Prediction, View, scattering};
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -88,14 +89,13 @@ impl FirstOrderReport {
 impl FirstOrder {
     pub(crate) fn new(
         scene: &Scene,
-        system: &System,
-        at: &Plane,
+        view: &View<System>,
         over: Over<'_>,
-        exact: &RaySlices,
+        exact: &Prediction,
     ) -> Option<Self> {
         let by = |print| {
-            let chain = rays::chain(system, at, print)?;
-            let linear = rays::linear(system, at, over, &chain.map, budget(scene));
+            let chain = rays::chain(view, print)?;
+            let linear = rays::linear(view, over, &chain.map, budget(scene));
             Some((chain, linear))
         };
         let (corrected, mut linear) = by(Print::Corrected)?;
@@ -103,7 +103,7 @@ impl FirstOrder {
         let chain = FirstOrderChain {
             error: distance(&linear.slices, &exact.slices),
             matrix,
-            covariance: [exact.covariance, propagated(system, &matrix, over.0)],
+            covariance: [exact.covariance, propagated(&view.system, &matrix, over.0)],
             foci: corrected.foci,
             as_printed: scene.file.as_printed,
         };
@@ -114,6 +114,32 @@ impl FirstOrder {
             slices: linear.slices,
             replicates: linear.replicates,
             chain,
+        })
+    }
+
+    /// The chain of a surface with a BRDF. Its noise is that of the exact prediction: the
+    /// difference of the two has little of its own.
+    pub(crate) fn of_reflection(
+        view: &View<scattering::System>,
+        exact: &Prediction,
+    ) -> Option<Self> {
+        let chain = scattering::chain(view)?;
+        let difference = exact.to_first_order.as_ref()?;
+        let near = |slices: &Slices| Slices {
+            half: &slices.half + &difference.half,
+            ..*slices
+        };
+        let slices = near(&exact.slices);
+        Some(Self {
+            chain: FirstOrderChain {
+                error: distance(&slices, &exact.slices),
+                matrix: chain.rays().matrix,
+                covariance: [exact.covariance, None],
+                foci: Vec::new(),
+                as_printed: false,
+            },
+            slices,
+            replicates: exact.replicates.iter().map(near).collect(),
         })
     }
 
@@ -171,8 +197,6 @@ fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Mat
             [x, y, narrow[2], narrow[3]]
         }
         Light::Point { .. } => [narrow[0], narrow[1], 0.0, 0.0],
-        // No system holds it.
-        Light::Environment { .. } => return None,
         Light::Area { shape, .. } => {
             let [x, y] = match shape {
                 Shape::Rectangle(r) => r.size.map(|side| 12.0 / (side * side)),
@@ -180,6 +204,7 @@ fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Mat
             };
             [x, y, 0.0, 0.0]
         }
+        _ => return None,
     };
     let mut inverse = Map::linear(*chain).spectral_covariance(&diagonal(inverse))?;
     for (row, v) in window.iter().enumerate() {

@@ -23,7 +23,6 @@ mod plane;
 mod prediction;
 mod report;
 mod residuals;
-mod scattering;
 mod score;
 mod system;
 mod verdict;

@@ -1,9 +1,8 @@
 //! What a run holds in memory, before it begins.
 
 use crate::applicability::{Applicability, Theory};
-use crate::budget::is_sampled;
 use crate::work;
-use etendue_field::{SliceGrid, VirtualPlane};
+use etendue_field::{ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::{PROJECTION_BINS, SliceTransform};
 
@@ -37,15 +36,14 @@ const TRIANGLE_OF_REFERENCE: f64 = 300.0;
 const TRIANGLE_OF_LEG: f64 = 150.0;
 
 impl Memory {
-    /// The memory of a run of a scene on so many threads.
+    /// The memory of a run of a scene on so many threads. `theories` are those of its planes.
     #[must_use]
-    pub fn new(scene: &Scene, threads: usize) -> Self {
+    pub fn new(scene: &Scene, theories: &[Applicability], threads: usize) -> Self {
         let batches = f64::from(scene.run.batches);
         // A batch is the work of one thread.
         let busy = (threads as f64).min(batches);
-        let planes = scene.planes.iter();
-        let planes = planes.map(|plane| (plane, Applicability::new(scene, plane)));
-        let planes: Vec<(&VirtualPlane, Applicability)> = planes.collect();
+        let planes = scene.planes.iter().zip(theories);
+        let planes: Vec<(&VirtualPlane, &Applicability)> = planes.collect();
         let each = |of: &dyn Fn(&VirtualPlane, &Applicability) -> f64| -> Vec<f64> {
             planes
                 .iter()
@@ -66,7 +64,8 @@ impl Memory {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
             threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
             predictions: sum(&|plane, of| {
-                let held = 3.0 + parameters(&of.theory) + replicates(plane, &of.theory);
+                let held =
+                    3.0 + of.theory.parameters().len() as f64 + replicates(plane, &of.theory);
                 held * spectra(plane)
             }) + largest(&|plane, of| {
                 let work = work::of(scene, plane, of);
@@ -113,24 +112,13 @@ fn cells(grid: &SliceGrid) -> f64 {
     grid.half_shape().iter().map(|n| *n as f64).product()
 }
 
-/// Derivatives that a prediction holds.
-fn parameters(theory: &Theory) -> f64 {
-    let count = match theory {
-        Theory::None => 0,
-        Theory::Parallel(chain) => chain.parameters().len(),
-        Theory::Specular(system, at) => system.parameters(at).len(),
-        Theory::Scattering(system, _) => system.parameters().len(),
-    };
-    count as f64
-}
-
 /// Replicates that a prediction by nets holds, of itself and of the first-order chain.
 fn replicates(plane: &VirtualPlane, theory: &Theory) -> f64 {
     let each = etendue_theory::REPLICATES as f64;
+    let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
     match theory {
-        Theory::Parallel(chain) if !is_sampled(plane, chain) => 0.0,
-        Theory::None => 0.0,
-        Theory::Parallel(_) => each,
-        Theory::Specular(..) | Theory::Scattering(..) => 2.0 * each,
+        Theory::Parallel(chain) if chain.is_sampled((&plane.window, &plane.grid, &picture)) => each,
+        Theory::Parallel(_) | Theory::None => 0.0,
+        Theory::Specular(_) | Theory::Scattering(_) => 2.0 * each,
     }
 }

@@ -76,9 +76,6 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// A Gaussian picture is dark beyond this many widths.
-const PICTURE: f64 = 3.0;
-
 /// Whether light for a plane may pass through a box around points, given in the frame at the light.
 fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bool) -> bool {
     let legs = &scene.path.legs;
@@ -86,15 +83,10 @@ fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bo
     let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);
     let along = scene.path.along(plane);
     let seen = [0, 1].map(|axis| window[axis] + along * slope[axis]);
-    let light = match scene.light {
-        Light::Area { shape, .. } => [0, 1].map(|axis| {
-            let [low, high] = shape.bounds().extent(axis);
-            low.abs().max(high.abs())
-        }),
-        Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
-        Light::Beam { image, .. } => image.width.map(|w| PICTURE * w),
-        Light::Environment { .. } => [f64::MAX; 2],
-    };
+    let light = [0, 1].map(|axis| {
+        let [low, high] = scene.light.extent(axis);
+        low.abs().max(high.abs()).min(f64::MAX)
+    });
     let crosses = |leg: usize| {
         let (from, to, end) = if leg < plane.leg {
             (light, seen, legs[leg].length)

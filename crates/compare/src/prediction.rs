@@ -1,16 +1,15 @@
 //! Everything a measurement of a plane is held against.
 
 use crate::applicability::{Applicability, Theory};
-use crate::budget::{budget, is_sampled};
+use crate::budget::budget;
 use crate::chain::chain;
 use crate::class::Class;
 use crate::first_order::FirstOrder;
-use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
+use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
-use etendue_theory::rays::{self, Plane, System};
-use etendue_theory::{Chain, Operator};
+use etendue_theory::{Budget, Model, Over};
 use ndarray::Array2;
 
 /// Everything a measurement of a plane is held against.
@@ -57,9 +56,6 @@ pub struct PredictedParameter {
     pub derivative: Slices,
 }
 
-/// Metres, and whatever else parameters are in, that rounding leaves of zero.
-const NOTHING: f64 = 1e-9;
-
 impl Prediction {
     /// Whether the slices have a statistical error, which their replicates show.
     pub(crate) fn is_statistical(&self) -> bool {
@@ -85,35 +81,65 @@ impl Prediction {
     /// What theory predicts for a plane of a scene. Where no theory applies it is that of its chain
     /// as far as the chain goes: see [`Self::reference`].
     #[must_use]
-    pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let applicability = Applicability::new(scene, plane);
-        let steps = applicability.steps(scene, plane);
+    pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
+        let empty = Self::darkness(scene, plane, applicability);
         if applicability.dark.is_some() {
-            return Self::darkness(scene, plane, applicability.class(), steps);
+            return empty;
         }
-        match applicability.theory {
-            Theory::Parallel(chain) if is_sampled(plane, &chain) => {
-                Self::by_nets(scene, plane, &chain, steps)
-            }
-            Theory::Parallel(chain) => Self::by_chain(scene, plane, &chain, steps),
-            Theory::Specular(system, at) => Self::by_rays(scene, plane, &system, &at, steps),
-            Theory::Scattering(system, at) => {
-                Self::by_scattering(scene, plane, &system, &at, steps)
-            }
-            Theory::None => Self {
-                class: Class::Reference,
-                ..Self::by_chain(scene, plane, &chain(scene, plane), steps)
-            },
+        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+        let over = (&plane.window, &plane.grid, &cells);
+        match &applicability.theory {
+            Theory::Parallel(chain) => empty.by(chain, over, budget(scene), |_| None),
+            Theory::None => empty.by(&chain(scene, plane), over, budget(scene), |_| None),
+            Theory::Specular(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
+                FirstOrder::new(scene, view, over, exact)
+            }),
+            Theory::Scattering(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
+                FirstOrder::of_reflection(view, exact)
+            }),
+        }
+    }
+
+    /// What a model says, and the first-order chain beside it.
+    fn by<M: Model>(
+        self,
+        model: &M,
+        over: Over<'_>,
+        budget: Budget,
+        first_order: impl FnOnce(&etendue_theory::Prediction) -> Option<FirstOrder>,
+    ) -> Self {
+        let parameters = model.parameters();
+        let found = model.predict(&parameters, over, budget);
+        let first_order = first_order(&found);
+        let parameters = parameters.into_iter().zip(found.derivatives);
+        let parameters = parameters.filter_map(|(parameter, derivative)| {
+            Some(PredictedParameter {
+                name: model.name(parameter),
+                unit: model.unit(parameter).to_owned(),
+                value: model.value(parameter)?,
+                derivative,
+            })
+        });
+        Self {
+            slices: found.slices,
+            quadrature_error: found.error,
+            first_order,
+            replicates: found.replicates,
+            unblocked: found.unblocked,
+            projection: found.projection,
+            parameters: parameters.collect(),
+            ..self
         }
     }
 
     /// No light at all.
-    fn darkness(scene: &Scene, plane: &VirtualPlane, class: Class, steps: Vec<String>) -> Self {
+    fn darkness(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         let values = Array2::zeros((grid.bins, grid.bins));
+        let class = applicability.class();
         Self {
             class,
-            steps,
+            steps: applicability.steps(scene, plane),
             slices: Slices::zeros(plane.grid),
             quadrature_error: None,
             first_order: None,
@@ -121,106 +147,11 @@ impl Prediction {
             unblocked: 0.0,
             projection: Projection { grid, values },
             parameters: Vec::new(),
-            cuts: cuts(scene, plane),
-        }
-    }
-
-    /// What the closed forms of light between parallel planes say.
-    fn by_chain(scene: &Scene, plane: &VirtualPlane, chain: &Chain, steps: Vec<String>) -> Self {
-        let (window, grid) = (&plane.window, &plane.grid);
-        let slices = etendue_theory::slices(chain, window, grid);
-        let cells = ProjectionGrid::new(window, PROJECTION_BINS);
-        let parameters = chain.parameters().into_iter();
-        let parameters = parameters.map(|parameter| PredictedParameter {
-            name: chain.name(parameter),
-            unit: chain.unit(parameter).to_owned(),
-            value: chain.value(parameter),
-            derivative: etendue_theory::derivative(chain, parameter, window, grid, &slices),
-        });
-        Self {
-            class: Class::Exact,
-            steps,
-            quadrature_error: etendue_theory::quadrature_error(chain, window, grid, &slices),
-            first_order: None,
-            replicates: Vec::new(),
-            unblocked: unblocked(chain.clone(), window),
-            projection: etendue_theory::projection(chain, window, &cells),
-            parameters: parameters.collect(),
-            slices,
-            cuts: cuts(scene, plane),
-        }
-    }
-
-    /// The same by nets of rays, where closed forms take too long or do not resolve the scene.
-    fn by_nets(scene: &Scene, plane: &VirtualPlane, chain: &Chain, steps: Vec<String>) -> Self {
-        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
-        let over = (&plane.window, &plane.grid, &cells);
-        let all = chain.parameters();
-        let found = chain.sampled(&all, over, budget(scene));
-        let parameters = all.into_iter().zip(found.derivatives);
-        let parameters = parameters.map(|(parameter, derivative)| PredictedParameter {
-            name: chain.name(parameter),
-            unit: chain.unit(parameter).to_owned(),
-            value: chain.value(parameter),
-            derivative,
-        });
-        Self {
-            class: Class::Exact,
-            steps,
-            quadrature_error: Some(found.error),
-            first_order: None,
-            parameters: parameters.collect(),
-            slices: found.slices,
-            replicates: found.replicates,
-            unblocked: 0.0,
-            projection: found.projection,
-            cuts: cuts(scene, plane),
-        }
-    }
-
-    /// What rays followed through the real geometry say, and the first-order chain.
-    fn by_rays(
-        scene: &Scene,
-        plane: &VirtualPlane,
-        system: &System,
-        at: &Plane,
-        steps: Vec<String>,
-    ) -> Self {
-        let cells = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
-        let over = (&plane.window, &plane.grid, &cells);
-        let exact = rays::exact(system, at, over, budget(scene));
-        let first_order = FirstOrder::new(scene, system, at, over, &exact);
-        // A plane at its surface has no travel to it.
-        let value = |parameter| {
-            let value = system.value(at, parameter);
-            value.filter(|value| value.abs() > NOTHING)
-        };
-        let all = system.parameters(at).into_iter();
-        let (all, moved): (Vec<_>, Vec<_>) = all
-            .filter(|parameter| value(*parameter).is_some())
-            .filter_map(|parameter| Some((parameter, system.moved(at, parameter)?)))
-            .unzip();
-        let derivatives = rays::derivatives(&moved, over, &exact);
-        let parameters = all.into_iter().zip(derivatives);
-        let parameters = parameters.filter_map(|(parameter, derivative)| {
-            Some(PredictedParameter {
-                name: system.name(parameter),
-                unit: system.unit(parameter).to_owned(),
-                value: value(parameter)?,
-                derivative,
-            })
-        });
-        Self {
-            class: Class::FirstOrder,
-            steps,
-            quadrature_error: Some(exact.error),
-            first_order,
-            parameters: parameters.collect(),
-            slices: exact.slices,
-            replicates: exact.replicates,
-            unblocked: 0.0,
-            projection: exact.projection,
-            cuts: Vec::new(),
+            cuts: match class {
+                // What a mirror or a lobe leaves has no such border.
+                Class::FirstOrder => Vec::new(),
+                Class::Exact | Class::Reference => cuts(scene, plane),
+            },
         }
     }
 
@@ -231,24 +162,19 @@ impl Prediction {
     pub fn reference(
         scene: &Scene,
         index: usize,
+        applicability: &Applicability,
         measurement: &Measurement,
         at: usize,
     ) -> Result<Self, TooFewBatches> {
-        let plane = &scene.planes[index];
         Ok(Self {
             class: Class::Reference,
-            steps: Applicability::new(scene, plane).steps(scene, plane),
             slices: estimate::slices(measurement, at)?.mean,
-            quadrature_error: None,
-            first_order: None,
             replicates: measurement
                 .at_plane(at)
                 .map(|batch| batch.slices.clone())
                 .collect(),
-            unblocked: 0.0,
             projection: estimate::projection(measurement, at)?.mean,
-            parameters: Vec::new(),
-            cuts: cuts(scene, plane),
+            ..Self::darkness(scene, &scene.planes[index], applicability)
         })
     }
 }
@@ -261,12 +187,4 @@ fn cuts(scene: &Scene, plane: &VirtualPlane) -> Vec<f64> {
     }
     let cut = 2.0 / plane.window.x.half_width();
     vec![cut, 1.5 * cut]
-}
-
-/// ∫ L W without what stands in the way.
-fn unblocked(mut chain: Chain, window: &Window) -> f64 {
-    chain
-        .operators
-        .retain(|o| !matches!(o, Operator::Visibility { .. }));
-    etendue_theory::at(&chain, window, [0.0; 4]).re
 }

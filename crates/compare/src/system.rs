@@ -5,13 +5,13 @@ use etendue_field::{Light, Mask, Orientation, Side, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, Scene};
 use etendue_theory::geometry::Print;
 use etendue_theory::rays::{Element, Plane, System};
-use etendue_theory::scattering;
+use etendue_theory::{View, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
 /// where light comes from an environment, where a surface is not specular, and where the scene
 /// holds an object off the path.
 #[must_use]
-pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
+pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<View<System>> {
     if matches!(scene.light, Light::Environment { .. }) {
         return None;
     }
@@ -43,14 +43,17 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<(System, Plane)> {
         layers: layers_before(scene, plane),
         elements: elements?,
     };
-    is_free(scene).then(|| (system, in_frame(scene, plane)))
+    is_free(scene).then(|| View {
+        system,
+        plane: in_frame(scene, plane),
+    })
 }
 
 /// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
 /// plane is not on the second leg, where the first surface has no BRDF, and where the scene holds
 /// an object off the path.
 #[must_use]
-pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<(scattering::System, Plane)> {
+pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<View<scattering::System>> {
     if plane.leg != 1 || !is_free(scene) {
         return None;
     }
@@ -68,7 +71,10 @@ pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<(scattering::Sys
         patch: object.patch,
         reflectance: reflectance.clone(),
     };
-    Some((system, in_frame(scene, plane)))
+    Some(View {
+        system,
+        plane: in_frame(scene, plane),
+    })
 }
 
 /// The masks that light meets before a plane, with their distances.

@@ -1,7 +1,7 @@
 //! What the predictions of a scene take, before anything is traced.
 
-use crate::applicability::{Applicability, Theory};
-use crate::budget::{budget, is_sampled};
+use crate::applicability::Applicability;
+use crate::budget::budget;
 use etendue_field::{ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
@@ -49,15 +49,16 @@ impl fmt::Display for TooMuchWork {
 }
 
 /// The plane that takes most of the work, if the predictions of a scene would take more than about
-/// ten minutes, or the first plane whose prediction would not fit into a gigabyte.
+/// ten minutes, or the first plane whose prediction would not fit into a gigabyte. `theories` are
+/// those of its planes.
 #[must_use]
-pub fn too_much_work(scene: &Scene) -> Option<TooMuchWork> {
+pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuchWork> {
     let mut total = 0.0;
     let mut most: Option<TooMuchWork> = None;
-    for plane in &scene.planes {
+    for (plane, theory) in scene.planes.iter().zip(theories) {
         let this = TooMuchWork {
             plane: plane.name.clone(),
-            work: of(scene, plane, &Applicability::new(scene, plane)),
+            work: of(scene, plane, theory),
             total: 0.0,
         };
         if this.work.bytes + this.work.bytes_each > MOST_BYTES {
@@ -79,15 +80,7 @@ pub(crate) fn of(scene: &Scene, plane: &VirtualPlane, applicability: &Applicabil
     if applicability.dark.is_some() {
         return Work::none();
     }
-    let (window, grid) = (&plane.window, &plane.grid);
-    let picture = ProjectionGrid::new(window, PROJECTION_BINS);
-    match &applicability.theory {
-        Theory::None => Work::none(),
-        Theory::Parallel(chain) if !is_sampled(plane, chain) => {
-            etendue_theory::work(chain, window, grid, &picture)
-        }
-        Theory::Parallel(_) | Theory::Specular(..) | Theory::Scattering(..) => {
-            etendue_theory::work_of_nets(grid, budget(scene))
-        }
-    }
+    let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+    let over = (&plane.window, &plane.grid, &picture);
+    applicability.theory.work(over, budget(scene))
 }

@@ -164,7 +164,7 @@ fn darkness_has_a_reason() {
                 }
                 assert_eq!(found.class(), *class);
                 assert_eq!(found.dark.as_deref(), Some(reason), "{surface} {light}");
-                let prediction = Prediction::new(&scene, &scene.planes[0]);
+                let prediction = Prediction::new(&scene, &scene.planes[0], &found);
                 assert_eq!(prediction.class, *class);
                 assert!(prediction.steps.contains(&format!("dark  {reason}")));
                 assert!(prediction.slices.half.iter().all(|f| f.norm_sqr() <= 0.0));

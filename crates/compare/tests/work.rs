@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Memory, too_much_work};
+use etendue_compare::{Applicability, Memory, TooMuchWork, too_much_work};
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -44,9 +44,13 @@ fn below(layers: &str) -> Scene {
     scene_of(&text, &folder())
 }
 
+fn too_much(scene: &Scene) -> Option<TooMuchWork> {
+    too_much_work(scene, &Applicability::of_planes(scene))
+}
+
 /// What is said of a scene whose predictions take too much.
 fn refusal(scene: &Scene) -> String {
-    too_much_work(scene).expect("too much work").to_string()
+    too_much(scene).expect("too much work").to_string()
 }
 
 /// Opaque layers in the place of others.
@@ -73,7 +77,7 @@ fn scenes_of_the_repository_end() {
             let path = entry.unwrap().path();
             if path.extension().is_some_and(|e| e == "ron") {
                 let scene = scene_of(&fs::read_to_string(&path).unwrap(), &folder);
-                assert_eq!(too_much_work(&scene), None, "{}", path.display());
+                assert_eq!(too_much(&scene), None, "{}", path.display());
                 found += 1;
             }
         }
@@ -93,11 +97,7 @@ fn wide_lights_and_fine_gratings_before_a_receiver() {
             "light: Disc(center: (0, 0, 0), radius: 1e6",
         )],
     ] {
-        assert_eq!(
-            too_much_work(&edited("grating.ron", &edits)),
-            None,
-            "{edits:?}"
-        );
+        assert_eq!(too_much(&edited("grating.ron", &edits)), None, "{edits:?}");
     }
 }
 
@@ -111,7 +111,7 @@ fn many_layers() {
         )
     };
     let many = layers(30, one);
-    assert_eq!(too_much_work(&below(&many)), None);
+    assert_eq!(too_much(&below(&many)), None);
     let mirror = [
         ("surfaces:", many.as_str()),
         ("Distance(1.7)", "Distance(1.2)"),
@@ -121,13 +121,13 @@ fn many_layers() {
         ),
     ];
     let mirror = edited("table1/convex_normal.ron", &mirror);
-    assert_eq!(too_much_work(&mirror), None);
+    assert_eq!(too_much(&mirror), None);
     let glossy = [
         ("surfaces:", many.as_str()),
         ("Distance(1.7)", "Distance(1.2)"),
     ];
     let glossy = edited("table1/ggx_sphere.ron", &glossy);
-    assert_eq!(too_much_work(&glossy), None);
+    assert_eq!(too_much(&glossy), None);
 }
 
 #[test]
@@ -136,7 +136,7 @@ fn many_gratings() {
         let at = 0.2 + 0.1 * i as f64;
         format!(r#"Grating(name: "g{i}", center: (0, 0, {at}), axis: X, frequency: 5)"#)
     };
-    assert_eq!(too_much_work(&below(&layers(10, grating))), None);
+    assert_eq!(too_much(&below(&layers(10, grating))), None);
 }
 
 #[test]
@@ -149,10 +149,7 @@ fn many_squares() {
         ),
         ("Distance(1.7)", "Distance(1.2)"),
     ];
-    assert_eq!(
-        too_much_work(&edited("table1/convex_normal.ron", &mirror)),
-        None
-    );
+    assert_eq!(too_much(&edited("table1/convex_normal.ron", &mirror)), None);
     let glossy = [
         ("surfaces:", &*squares(300, 0.002)),
         (
@@ -161,10 +158,10 @@ fn many_squares() {
         ),
     ];
     assert_eq!(
-        too_much_work(&edited("table1/textured_glossy.ron", &glossy)),
+        too_much(&edited("table1/textured_glossy.ron", &glossy)),
         None
     );
-    assert_eq!(too_much_work(&below(&squares(300, 0.002))), None);
+    assert_eq!(too_much(&below(&squares(300, 0.002))), None);
 }
 
 #[test]
@@ -172,7 +169,7 @@ fn a_thousand_lobes() {
     let lobe = "(from: (0.25, 0.1, -1), width: 0.15, radiance: 3),";
     let lobes = lobe.repeat(1000);
     let scene = edited("table1/environment.ron", &[(lobe, &lobes)]);
-    assert_eq!(too_much_work(&scene), None);
+    assert_eq!(too_much(&scene), None);
 }
 
 /// Each is within the limit, all are not; the one that takes most is named.
@@ -216,7 +213,7 @@ fn fine_frequencies() {
 #[test]
 fn memory_grows_with_threads_up_to_batches() {
     let scene = edited("travel.ron", &[]);
-    let of = |threads| Memory::new(&scene, threads);
+    let of = |threads| Memory::new(&scene, &Applicability::of_planes(&scene), threads);
     let [one, many, more] = [1, 64, 256].map(of);
     assert!((many.threads / one.threads - 64.0).abs() < 1e-9); // rounding
     assert_eq!(more.threads.to_bits(), many.threads.to_bits());

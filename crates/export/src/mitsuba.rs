@@ -33,9 +33,9 @@ pub enum NotInMitsuba {
         /// Name of its layer.
         name: String,
     },
-    /// A projector or a beam.
-    #[error("Mitsuba has no such light as {0}: it cannot be exported")]
-    Picture(&'static str),
+    /// Another light.
+    #[error("Mitsuba has no light that shines like this one: it cannot be exported")]
+    Light,
     /// An environment.
     #[error(
         "an environment cannot be exported: here light begins in the plane of `center`, in Mitsuba it comes from all around"
@@ -145,9 +145,8 @@ impl Writer {
                 self.xml.comment("the light");
                 self.xml.point_light(intensity);
             }
-            Light::Projector { .. } => return Err(NotInMitsuba::Picture("a projector")),
-            Light::Beam { .. } => return Err(NotInMitsuba::Picture("a beam")),
             Light::Environment { .. } => return Err(NotInMitsuba::Environment),
+            _ => return Err(NotInMitsuba::Light),
         }
         Ok(())
     }
@@ -223,13 +222,11 @@ fn cut_off(half_plane: &HalfPlane, beyond: f64) -> Rectangle {
 /// The largest coordinate across the central ray at which light that reaches a window or a surface can be: it runs
 /// straight from the light to there.
 fn reach(scene: &Scene) -> f64 {
-    let light = match scene.light {
-        Light::Area { shape, .. } => shape.bounds().reach(),
-        Light::Point { .. }
-        | Light::Projector { .. }
-        | Light::Beam { .. }
-        | Light::Environment { .. } => 0.0,
-    };
+    let ends = [0, 1].map(|axis| scene.light.extent(axis));
+    let light = ends
+        .as_flattened()
+        .iter()
+        .fold(0.0, |most: f64, end| most.max(end.abs()));
     let windows = scene.planes.iter().filter(|plane| plane.leg == 0);
     let windows = windows.map(|p| p.window.x.half_width().max(p.window.y.half_width()));
     let surfaces = scene.surfaces.iter().flat_map(Surface::corners);

@@ -16,6 +16,7 @@ mod field_grid;
 mod frame;
 mod frequency;
 mod image;
+mod light;
 mod number;
 mod patch;
 mod plane;
@@ -36,6 +37,7 @@ pub use field_grid::{Assignment, FieldGrid};
 pub use frame::{Frame, TwoPlane, box_corners};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use image::Image;
+pub use light::Light;
 pub use number::tidy;
 pub use patch::{Patch, Specular};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
@@ -44,9 +46,7 @@ pub use quadrature::gauss_legendre;
 pub use raster::Raster;
 pub use rectangle::Rectangle;
 pub use reflectance::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance};
-pub use shape::{
-    Disc, Grating, HalfPlane, Light, Mask, Shape, interpolated_normal, triangle_distance,
-};
+pub use shape::{Disc, Grating, HalfPlane, Mask, Shape, interpolated_normal, triangle_distance};
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};
 

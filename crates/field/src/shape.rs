@@ -1,4 +1,4 @@
-use crate::{Environment, Image, Rectangle, TwoPlane};
+use crate::{Rectangle, TwoPlane};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -153,48 +153,20 @@ pub enum Mask {
     Grating(Grating),
 }
 
-/// A light in a plane across the central ray, shining along it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub enum Light {
-    /// A flat shape.
-    Area {
-        /// The shape.
-        shape: Shape,
-        /// Radiance L₀ along the central ray, W m⁻² sr⁻¹.
-        radiance: f64,
-        /// n in the radiance L₀ cosⁿθ; 0 is Lambertian, more is a spot.
-        exponent: f64,
-    },
-    /// A point on the central ray, the same intensity in all directions.
-    Point {
-        /// Intensity, W sr⁻¹.
-        intensity: f64,
-    },
-    /// A slide projector: a point on the central ray whose intensity is a picture over slopes (u, v).
-    Projector {
-        /// Intensity where the picture is 1, W sr⁻¹.
-        intensity: f64,
-        /// The picture.
-        image: Image,
-    },
-    /// A collimated beam along the central ray whose irradiance is a picture over (x, y).
-    Beam {
-        /// Irradiance where the picture is 1, W m⁻².
-        irradiance: f64,
-        /// The picture.
-        image: Image,
-    },
-    /// Light from far away.
-    Environment {
-        /// From where how much.
-        environment: Environment,
-    },
-}
-
-impl Light {
-    /// Whether it shines through a picture.
+impl Mask {
+    /// The share of radiance that passes at (x, y).
     #[must_use]
-    pub fn is_picture(&self) -> bool {
-        matches!(self, Self::Projector { .. } | Self::Beam { .. })
+    pub fn transmittance(&self, x: f64, y: f64) -> f64 {
+        match self {
+            Self::Opaque {
+                shapes,
+                half_planes,
+            } => {
+                let stopped = shapes.iter().any(|shape| shape.contains(x, y))
+                    || half_planes.iter().any(|half| half.contains(x, y));
+                f64::from(u8::from(!stopped))
+            }
+            Self::Grating(grating) => grating.transmittance(x, y),
+        }
     }
 }

@@ -49,9 +49,11 @@
 
 pub mod geometry;
 mod mask;
+mod model;
 mod nets;
 mod numerics;
 mod parallel;
+mod parameter;
 pub mod rays;
 #[cfg(test)]
 mod reference;
@@ -61,9 +63,11 @@ pub mod shading;
 mod testing;
 mod words;
 
-pub use nets::{Budget, Moved, REPLICATES, work_of_nets};
+pub use model::{Model, Over, Prediction, View};
+pub use nets::{Budget, REPLICATES};
 pub use parallel::{
-    Chain, Harmonics, Operator, Parameter, Sampled, Source, Work, at, derivative, projection,
-    quadrature_error, slices, work,
+    Chain, Harmonics, Operator, Source, Work, at, derivative, projection, quadrature_error, slices,
+    work,
 };
+pub use parameter::Parameter;
 pub use shading::{g_hat, g_hat_3d};

@@ -106,9 +106,7 @@ impl Backward {
                 shape: *shape,
             },
             Light::Environment { environment } => Source::Sky(Sky::new(environment)),
-            Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => {
-                return Err(PointLight);
-            }
+            _ => return Err(PointLight),
         };
         let planes = scene.planes.iter().enumerate();
         let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &light));

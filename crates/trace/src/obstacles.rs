@@ -1,7 +1,5 @@
 use crate::bvh::{Form, Target, Targets};
-use etendue_field::{
-    Frame, Grating, HalfPlane, Light, Mask, Rectangle, Shape, Side, Specular, TwoPlane,
-};
+use etendue_field::{Frame, Grating, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -139,12 +137,10 @@ impl Obstacles {
             let tag = material.map_or(Meeting::Blocker, surface);
             targets.extend(around.mesh(mesh).map(|form| Target { form, tag }));
         }
-        let origins = match scene.light {
-            Light::Area { shape, .. } => shape.bounds().reach(),
-            // What starts far to the side is looked for from nearer.
-            Light::Point { .. } | Light::Projector { .. } | Light::Environment { .. } => 0.0,
-            Light::Beam { image, .. } => FARTHEST * image.width[0].max(image.width[1]),
-        };
+        let ends = [0, 1].map(|axis| scene.light.extent(axis));
+        let ends = ends.as_flattened().iter().map(|end| end.abs());
+        // What starts far to the side is looked for from nearer.
+        let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
             targets: Targets::new(&targets, origins),
             half_planes,
@@ -230,9 +226,6 @@ impl Obstacles {
 
 /// Share of a distance on which two ways to it may differ.
 const ROUNDING: f64 = 1e-9;
-
-/// Widths of a Gaussian picture beyond which no random number falls.
-const FARTHEST: f64 = 3.0;
 
 /// What a ray meets in a half-plane.
 static HALF_PLANE: Target<Meeting> = Target {

@@ -5,7 +5,7 @@ use etendue_compare::{Applicability, Theory};
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_field::{ProjectionGrid, Window};
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_theory::{Budget, REPLICATES, rays, scattering};
+use etendue_theory::{Budget, Model, REPLICATES};
 
 /// What is known of the light field of a scene.
 pub(super) struct Outcome {
@@ -160,36 +160,17 @@ fn theory(scene: &Scene, plane: &VirtualPlane) -> Option<Theory> {
 fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<Found> {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);
-    match theory {
-        Theory::Parallel(chain) => {
-            // The derivative by one parameter is not looked at; without any there is no prediction.
-            let parameters = chain.parameters();
-            let found = chain.sampled(&parameters[..1], over, budget);
-            Some(Found {
-                slices: found.slices,
-                replicates: found.replicates,
-                error: found.error,
-            })
-        }
-        Theory::Specular(system, at) => {
-            let found = rays::exact(system, at, over, budget);
-            Some(Found {
-                slices: found.slices,
-                replicates: found.replicates,
-                error: found.error,
-            })
-        }
-        Theory::Scattering(system, at) => {
-            let chain = scattering::chain(system, at);
-            let found = scattering::predict(system, at, chain.as_ref(), over, budget);
-            Some(Found {
-                slices: found.slices,
-                replicates: found.replicates,
-                error: found.error,
-            })
-        }
-        Theory::None => None,
-    }
+    let found = match theory {
+        Theory::Parallel(chain) => chain.sampled(&[], over, budget),
+        Theory::Specular(view) => view.predict(&[], over, budget),
+        Theory::Scattering(view) => view.predict(&[], over, budget),
+        Theory::None => return None,
+    };
+    Some(Found {
+        error: found.error?,
+        slices: found.slices,
+        replicates: found.replicates,
+    })
 }
 
 /// The truth and its error: a closed form, or as many more rays as make the error small.

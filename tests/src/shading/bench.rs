@@ -6,7 +6,7 @@ use etendue_compare::{Residuals, scattered};
 use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Slices, VirtualPlane};
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate, measure};
-use etendue_theory::rays::Plane;
+use etendue_theory::View;
 use etendue_theory::scattering::{System, chain};
 use etendue_trace::Tracer;
 use glam::DVec3;
@@ -22,8 +22,8 @@ impl Bench {
     /// # Panics
     /// When the plane does not look at light that a BRDF has scattered.
     pub(super) fn new(scene: Scene) -> Self {
-        let (system, at) = seen(&scene);
-        let sound = said(&system, &at, &scene.planes[0]);
+        let view = seen(&scene);
+        let sound = said(&view, &scene.planes[0]);
         Self::of(scene, sound)
     }
 
@@ -39,9 +39,9 @@ impl Bench {
 
     /// The prediction of a system that was changed.
     pub(super) fn predicted(&self, change: impl Fn(&mut System)) -> Slices {
-        let (mut system, at) = seen(&self.scene);
-        change(&mut system);
-        said(&system, &at, &self.scene.planes[0])
+        let mut view = seen(&self.scene);
+        change(&mut view.system);
+        said(&view, &self.scene.planes[0])
     }
 
     /// The photons of a scene that was changed, their crossings tampered with.
@@ -87,16 +87,14 @@ pub(super) fn mean(photons: &Measurement) -> Slices {
     estimate.expect("a scene has 64 batches").mean
 }
 
-fn seen(scene: &Scene) -> (System, Plane) {
+fn seen(scene: &Scene) -> View<System> {
     scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF")
 }
 
-fn said(system: &System, at: &Plane, plane: &VirtualPlane) -> Slices {
-    {
-        let chain = chain(system, at).expect("a central ray");
-        let [exact, _] = predicted::scattered(system, at, plane, &chain);
-        exact
-    }
+fn said(view: &View<System>, plane: &VirtualPlane) -> Slices {
+    let chain = chain(view).expect("a central ray");
+    let [exact, _] = predicted::scattered(view, plane, &chain);
+    exact
 }
 
 /// The surface of a scene that reflects by a BRDF, for changes.

@@ -4,7 +4,9 @@ use super::scenes::{alone, changed};
 use crate::predicted;
 use crate::report::Section;
 use crate::scenes::{compared, traced};
-use etendue_compare::{FirstOrder, FirstOrderReport, Prediction, Verdict, scattered};
+use etendue_compare::{
+    Applicability, FirstOrder, FirstOrderReport, Prediction, Verdict, scattered,
+};
 use etendue_field::Slices;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -60,16 +62,16 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
         let scene = alone(changed(SCENE, Some(photons), &[]), plane);
         let measurement = traced(&scene);
         let place = &scene.planes[0];
-        let sound = Prediction::new(&scene, place);
-        let (system, at) = scattered(&scene, place).expect("a plane behind a BRDF");
+        let sound = Prediction::new(&scene, place, &Applicability::new(&scene, place));
+        let view = scattered(&scene, place).expect("a plane behind a BRDF");
         for (name, fault) in faults() {
             // On the surface nothing has come off it yet.
             if plane == "texture" && name.starts_with("off") {
                 continue;
             }
-            let mut tampered = chain(&system, &at).expect("a central ray");
+            let mut tampered = chain(&view).expect("a central ray");
             fault(&mut tampered);
-            let [_, said] = predicted::scattered(&system, &at, place, &tampered);
+            let [_, said] = predicted::scattered(&view, place, &tampered);
             let report = judged(&scene, &measurement, &sound, said);
             let due = if name == "none" {
                 Verdict::Pass

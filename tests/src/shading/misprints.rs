@@ -8,7 +8,6 @@ use crate::report::Section;
 use etendue_compare::{sidak, system};
 use etendue_field::{Complex, Light, Quantity, Slices};
 use etendue_scene::Scene;
-use etendue_theory::rays;
 use std::f64::consts::PI;
 
 /// Share of true sections that may be rejected, over all misprints.
@@ -103,10 +102,11 @@ fn diffuse(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
 fn mirror(photons: Option<u64>) -> (Bench, Vec<Misprint>) {
     let scene = alone(changed("concave_oblique", photons, &[]), "reflection");
     let place = &scene.planes[0];
-    let (mirror, at) = system(&scene, place).expect("a mirror alone");
+    let mirror = system(&scene, place).expect("a mirror alone");
     let of = |quantity| {
-        let at = rays::Plane { quantity, ..at };
-        traced(&mirror, &at, &place.window, &place.grid).slices
+        let mut seen = mirror.clone();
+        seen.plane.quantity = quantity;
+        traced(&seen, &place.window, &place.grid).slices
     };
     let said = of(Quantity::DifferentialIrradiance);
     let sound = of(Quantity::Radiance);

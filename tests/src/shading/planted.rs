@@ -9,7 +9,7 @@ use crate::report::Section;
 use etendue_compare::sidak;
 use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Slices};
 use etendue_scene::Scene;
-use etendue_theory::scattering::{Parameter, System};
+use etendue_theory::scattering::System;
 use glam::DQuat;
 use std::f64::consts::TAU;
 
@@ -215,10 +215,11 @@ fn stands() -> Vec<Stand> {
 }
 
 fn lobe(system: &mut System, factor: f64) {
-    if let Some(value) = system.value(Parameter::Lobe)
-        && let Some(changed) = system.with(Parameter::Lobe, factor * value)
+    if let Lobe::Phong { exponent: number }
+    | Lobe::Beckmann { roughness: number }
+    | Lobe::Ggx { roughness: number } = &mut system.reflectance.brdf.lobe
     {
-        *system = changed;
+        *number *= factor;
     }
 }
 

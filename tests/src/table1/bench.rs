@@ -6,7 +6,7 @@ use crate::predicted;
 use crate::scenes::compared;
 use etendue_compare::{FirstOrder, FirstOrderReport, Prediction};
 use etendue_theory::geometry::{Matrix, Print, SpectrumMap};
-use etendue_theory::rays::{self, Parameter};
+use etendue_theory::{Model, Parameter, rays};
 
 /// Of the exact prediction, which is not asked here.
 const LEVEL: f64 = 0.01;
@@ -23,8 +23,8 @@ impl<'a> Bench<'a> {
     /// # Panics
     /// When the scene is not one sphere or plane.
     pub(super) fn new(outcome: &'a Outcome) -> Self {
-        let (system, plane) = outcome.system(outcome.planes.len() - 1);
-        let value = |p: Parameter| system.value(&plane, p).expect("one mirror");
+        let view = outcome.system(outcome.planes.len() - 1);
+        let value = |p: Parameter| view.value(p).expect("one mirror");
         let k = value(Parameter::Curvature(0, 0));
         Self {
             outcome,
@@ -40,8 +40,7 @@ impl<'a> Bench<'a> {
 
     /// How far the steps are from the chain that theory reads off the scene.
     pub(super) fn apart(&self, plane: usize) -> f64 {
-        let (system, at) = self.outcome.system(plane);
-        let Some(read) = rays::chain(&system, &at, Print::Corrected) else {
+        let Some(read) = rays::chain(&self.outcome.system(plane), Print::Corrected) else {
             return f64::NAN;
         };
         let put = self.sound().chain(&self.outcome.scene.planes[plane]);
@@ -63,14 +62,14 @@ impl<'a> Bench<'a> {
             predictions,
             ..
         } = self.outcome;
-        let (system, at) = self.outcome.system(plane);
+        let view = self.outcome.system(plane);
         let place = &scene.planes[plane];
         let map = steps.chain(place);
         let prediction = &predictions[plane];
         let sound = prediction.first_order.as_ref().expect("a chain");
         let tried = Prediction {
             first_order: Some(FirstOrder {
-                slices: predicted::linear(&system, &at, &place.window, &place.grid, &map),
+                slices: predicted::linear(&view, &place.window, &place.grid, &map),
                 replicates: Vec::new(),
                 chain: sound.chain.clone(),
             }),

@@ -147,8 +147,8 @@ fn predicted(scene: &Scene, distances: &[f64]) -> [f64; 2] {
         v: all,
     };
     let variance = |plane: &VirtualPlane| {
-        let (system, at) = system(scene, plane).expect("a free mirror");
-        let found = predicted::traced(&system, &at, &window, &plane.grid);
+        let view = system(scene, plane).expect("a free mirror");
+        let found = predicted::traced(&view, &window, &plane.grid);
         let moments = found.covariance.expect("light arrives");
         [moments[0][0], moments[1][1]]
     };

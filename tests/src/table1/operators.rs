@@ -7,7 +7,8 @@ use crate::report::Section;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
 use etendue_theory::geometry::Media;
-use etendue_theory::rays::{Parameter, Plane, System};
+use etendue_theory::rays::System;
+use etendue_theory::{Model, Parameter, View};
 
 /// How far a fitted order may be from what is known beforehand.
 const ORDER: f64 = 0.15;
@@ -66,8 +67,8 @@ pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Sec
 
 fn row(outcome: &Outcome, index: usize, level: f64) -> (Vec<String>, bool) {
     let report = &outcome.planes[index].report;
-    let (system, plane) = outcome.system(index);
-    let known = Order::expected(&system, &plane);
+    let view = outcome.system(index);
+    let known = Order::expected(&view);
     let fall = fall(outcome, index);
     let first = report.first_order.as_ref();
     let error = first.map_or(f64::NAN, |f| f.chain.error);
@@ -86,7 +87,7 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> (Vec<String>, bool) {
     if resolvable.is_some_and(|r| error > 2.0 * r) {
         require("not told apart", p_first.is_some_and(|p| p < level));
     }
-    let planar = section(&system, &plane).map(|(path, stage)| path.check(stage));
+    let planar = section(&view).map(|(path, stage)| path.check(stage));
     require("2D", planar.is_none_or(|c| c.holds()));
     let [.., before, last] = fall.errors;
     let exponent = known.exponent();
@@ -98,7 +99,7 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> (Vec<String>, bool) {
     let cells = vec![
         outcome.scene.name.clone(),
         report.name.clone(),
-        operator(&system, &plane).to_owned(),
+        operator(&view).to_owned(),
         planar.map_or("–".to_owned(), |c| format!("{:.0e}", c.map)),
         planar.map_or("–".to_owned(), |c| format!("{:.2}", c.order)),
         report.in_window.to_string(),
@@ -129,7 +130,8 @@ fn follows(fall: &Fall, known: Order) -> bool {
 }
 
 /// The last step on the way to a plane.
-fn operator(system: &System, plane: &Plane) -> &'static str {
+fn operator(view: &View<System>) -> &'static str {
+    let View { system, plane } = view;
     let last = system.elements.last();
     if plane.arriving {
         return match plane.orientation {
@@ -158,8 +160,9 @@ fn operator(system: &System, plane: &Plane) -> &'static str {
 }
 
 /// What the plane of incidence cuts out of a scene with one surface, whose principal axes lie along it.
-fn section(system: &System, plane: &Plane) -> Option<(Path, Stage)> {
-    let value = |p: Parameter| system.value(plane, p);
+fn section(view: &View<System>) -> Option<(Path, Stage)> {
+    let View { system, plane } = view;
+    let value = |p: Parameter| view.value(p);
     let arriving = plane.arriving || system.elements.is_empty();
     let before = value(Parameter::Travel(0))?;
     if arriving && plane.orientation == Orientation::Orthogonal {

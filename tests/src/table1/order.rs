@@ -4,7 +4,8 @@ use super::Outcome;
 use crate::predicted;
 use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
 use etendue_theory::geometry::Print;
-use etendue_theory::rays::{self, Parameter, Plane, System};
+use etendue_theory::rays::{self, System};
+use etendue_theory::{Model, Parameter, View};
 
 /// Sizes of the neighbourhood, in that of the scene.
 const SIZES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
@@ -25,7 +26,8 @@ pub(super) enum Order {
 
 impl Order {
     /// That of a plane, before anything is computed.
-    pub(super) fn expected(system: &System, plane: &Plane) -> Self {
+    pub(super) fn expected(view: &View<System>) -> Self {
+        let View { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
         let flat = |e: &rays::Element| {
             let flat = e.patch.curvature.iter().all(|k| k.abs() <= 0.0);
@@ -34,7 +36,7 @@ impl Order {
         if across && system.elements.iter().all(flat) {
             return Self::Exact;
         }
-        let angle = |i: usize| system.value(plane, Parameter::Incidence(i)).unwrap_or(0.0);
+        let angle = |i: usize| view.value(Parameter::Incidence(i)).unwrap_or(0.0);
         let mut angles = (0..system.elements.len()).map(angle);
         let here = if across { 0.0 } else { plane.longitude };
         if here.abs() > NORMAL || angles.any(|a| a.abs() > NORMAL) {
@@ -66,14 +68,17 @@ pub(super) struct Fall {
 /// # Panics
 /// When the chain does not arrive.
 pub(super) fn fall(outcome: &Outcome, index: usize) -> Fall {
-    let (system, plane) = outcome.system(index);
+    let view = outcome.system(index);
     let at = &outcome.scene.planes[index];
-    let map = rays::chain(&system, &plane, Print::Corrected).expect("light arrives");
+    let map = rays::chain(&view, Print::Corrected).expect("light arrives");
     let errors = SIZES.map(|size| {
-        let system = system.shrunk(size);
+        let view = View {
+            system: view.system.shrunk(size),
+            plane: view.plane,
+        };
         let (window, grid) = (narrowed(&at.window, size), widened(&at.grid, size));
-        let exact = predicted::traced(&system, &plane, &window, &grid).slices;
-        let linear = predicted::linear(&system, &plane, &window, &grid, &map.map);
+        let exact = predicted::traced(&view, &window, &grid).slices;
+        let linear = predicted::linear(&view, &window, &grid, &map.map);
         distance(&linear, &exact)
     });
     let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), errors[i].ln()]);

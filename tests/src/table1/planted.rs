@@ -9,7 +9,8 @@ use crate::report::Section;
 use etendue_compare::{Residuals, Verdict};
 use etendue_field::Specular;
 use etendue_theory::geometry::{Map, SpectrumMap};
-use etendue_theory::rays::{Parameter, Plane, System};
+use etendue_theory::rays::System;
+use etendue_theory::{Model, Parameter, View};
 
 type Change = fn(&mut Steps, &Bench<'_>);
 
@@ -152,37 +153,31 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
     }
 }
 
-type Tamper = fn(&System, &Plane) -> Option<(System, Plane)>;
+type Tamper = fn(&View<System>) -> Option<View<System>>;
 
 fn numbers() -> Vec<(&'static str, Tamper)> {
-    fn scaled(system: &System, plane: &Plane, p: Parameter, by: f64) -> Option<(System, Plane)> {
-        system.with(plane, p, by * system.value(plane, p)?)
+    fn scaled(view: &View<System>, p: Parameter, by: f64) -> Option<View<System>> {
+        view.with(p, by * view.value(p)?)
     }
-    fn turned(system: &System, plane: &Plane, degrees: f64) -> Option<(System, Plane)> {
+    fn turned(view: &View<System>, degrees: f64) -> Option<View<System>> {
         let p = Parameter::Incidence(0);
-        system.with(plane, p, system.value(plane, p)? + degrees.to_radians())
+        view.with(p, view.value(p)? + degrees.to_radians())
     }
     vec![
-        ("none", |s, p| Some((s.clone(), *p))),
-        ("k + 2 %", |s, p| {
-            scaled(s, p, Parameter::Curvature(0, 0), 1.02)
-        }),
-        ("k − 2 %", |s, p| {
-            scaled(s, p, Parameter::Curvature(0, 0), 0.98)
-        }),
-        ("θ₀ + 1°", |s, p| turned(s, p, 1.0)),
-        ("θ₀ − 1°", |s, p| turned(s, p, -1.0)),
-        ("indices of the wrong sides", |s, p| {
-            let mut system = s.clone();
-            let Specular::Refraction { front, back } = &mut system.elements[0].event else {
+        ("none", |v| Some(v.clone())),
+        ("k + 2 %", |v| scaled(v, Parameter::Curvature(0, 0), 1.02)),
+        ("k − 2 %", |v| scaled(v, Parameter::Curvature(0, 0), 0.98)),
+        ("θ₀ + 1°", |v| turned(v, 1.0)),
+        ("θ₀ − 1°", |v| turned(v, -1.0)),
+        ("indices of the wrong sides", |v| {
+            let mut view = v.clone();
+            let Specular::Refraction { front, back } = &mut view.system.elements[0].event else {
                 return None;
             };
             std::mem::swap(front, back);
-            Some((system, *p))
+            Some(view)
         }),
-        ("index + 2 %", |s, p| {
-            scaled(s, p, Parameter::Index(0), 1.02)
-        }),
+        ("index + 2 %", |v| scaled(v, Parameter::Index(0), 1.02)),
     ]
 }
 
@@ -193,13 +188,13 @@ pub(super) fn exact(outcomes: &[&Outcome], level: f64) -> Section {
     for outcome in outcomes {
         for (name, tamper) in numbers() {
             let p_value = |i: usize| {
-                let (system, plane) = outcome.system(i);
-                if plane.arriving {
+                let view = outcome.system(i);
+                if view.plane.arriving {
                     return None;
                 }
-                let (system, plane) = tamper(&system, &plane)?;
+                let view = tamper(&view)?;
                 let place = &outcome.scene.planes[i];
-                let said = predicted::traced(&system, &plane, &place.window, &place.grid).slices;
+                let said = predicted::traced(&view, &place.window, &place.grid).slices;
                 let residuals = Residuals::new(&outcome.measurement, i, &said);
                 Some((residuals.p_value(outcome.scene.run.seed)?, i))
             };

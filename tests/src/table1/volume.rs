@@ -3,6 +3,7 @@
 use super::Outcome;
 use crate::report::Section;
 use etendue_field::{Frame, Orientation};
+use etendue_theory::View;
 use etendue_theory::geometry::Print;
 use etendue_theory::rays::{self, Element, System};
 use glam::DVec3;
@@ -31,13 +32,14 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
         let Some((index, _)) = last.next_back() else {
             continue;
         };
-        let (system, plane) = outcome.system(index);
-        let ratio = index_ratio(&system);
-        let chain = rays::chain(&system, &plane, Print::Corrected);
+        let view = outcome.system(index);
+        let View { system, plane } = &view;
+        let ratio = index_ratio(system);
+        let chain = rays::chain(&view, Print::Corrected);
         let linear = chain.map_or(f64::NAN, |c| c.rays().symplectic_defect(ratio));
         let mut most = [0.0_f64; 3];
         for at in bundle() {
-            let defects = defects(&system, &plane.frame, at, ratio);
+            let defects = defects(system, &plane.frame, at, ratio);
             let defects = defects.unwrap_or([f64::NAN; 3]);
             for (most, d) in most.iter_mut().zip(defects) {
                 *most = if d <= *most { *most } else { d };

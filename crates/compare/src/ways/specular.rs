@@ -5,6 +5,7 @@ use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
+use etendue_theory::View;
 use etendue_theory::rays::{Plane, System};
 use glam::DVec3;
 
@@ -13,14 +14,13 @@ use glam::DVec3;
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
-    system: &System,
-    at: &Plane,
+    view: &View<System>,
 ) -> Vec<String> {
     let follower = Follower {
         scene,
         plane,
-        system,
-        at,
+        system: &view.system,
+        at: &view.plane,
         around: Surroundings::new(scene, plane),
     };
     let rays = (0..RAYS).filter_map(|index| follower.check(index));

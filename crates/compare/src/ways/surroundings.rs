@@ -1,7 +1,7 @@
 //! What stands around the path, and what a ray of a leg meets of it.
 
 use super::rays::Ray;
-use etendue_field::{Mask, Patch, VirtualPlane};
+use etendue_field::{Patch, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 
 /// What a ray meets that theory does not know of.
@@ -160,9 +160,8 @@ impl<'a> Surroundings<'a> {
 
     fn transmittance(&self, ray: &Ray, index: usize) -> f64 {
         let at = self.crossing(ray, index).map(|t| ray.at(t));
-        at.map_or(1.0, |at| {
-            transmittance(&self.scene.blockers[index].mask, at.x, at.y)
-        })
+        let mask = &self.scene.blockers[index].mask;
+        at.map_or(1.0, |at| mask.transmittance(at.x, at.y))
     }
 }
 
@@ -183,20 +182,5 @@ impl Form<'_> {
                 [if inside { t } else { f64::NAN }, f64::NAN]
             }
         }
-    }
-}
-
-/// The share of light that a mask lets pass at a point.
-fn transmittance(mask: &Mask, x: f64, y: f64) -> f64 {
-    match mask {
-        Mask::Opaque {
-            shapes,
-            half_planes,
-        } => {
-            let stopped = shapes.iter().any(|shape| shape.contains(x, y))
-                || half_planes.iter().any(|half| half.contains(x, y));
-            f64::from(u8::from(!stopped))
-        }
-        Mask::Grating(grating) => grating.transmittance(x, y),
     }
 }

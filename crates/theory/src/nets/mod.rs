@@ -14,6 +14,7 @@ pub(crate) use sobol::{DIMENSIONS, Net};
 
 use crate::Work;
 use crate::geometry::Matrix;
+use crate::model::Prediction;
 use etendue_field::transform::SliceTransform;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
 use ndarray::{Array2, Array3};
@@ -41,15 +42,6 @@ pub struct Budget {
     pub error: f64,
 }
 
-/// What a prediction is of, with a little more and a little less of a parameter.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Moved<S> {
-    /// How far apart the values are, in the parameter's unit.
-    pub apart: f64,
-    /// With more, and with less.
-    pub sides: [S; 2],
-}
-
 /// A ray at a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Node {
@@ -75,19 +67,23 @@ pub(crate) trait Integrand: Sync {
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]);
 }
 
-/// What came out of the nets.
-#[derive(Clone, Debug)]
-pub(crate) struct Sums {
-    /// The slices of each net, for each field: [field][net].
-    pub(crate) slices: Vec<Vec<Slices>>,
-    /// ‖error‖/‖F‖ of the mean of the first field. Infinite where no ray arrived.
-    pub(crate) error: f64,
-    /// Nodes in all.
-    pub(crate) nodes: f64,
-    /// The first field, integrated over y and v.
-    pub(crate) projection: Projection,
-    /// Second central moments of the first field; `None` where no ray arrived.
-    pub(crate) covariance: Option<Matrix<4>>,
+impl Prediction {
+    /// Of light of which no ray was found.
+    pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid) -> Self {
+        Self {
+            slices: Slices::zeros(*grid),
+            replicates: Vec::new(),
+            error: Some(f64::INFINITY),
+            unblocked: 0.0,
+            projection: Projection {
+                grid: *picture,
+                values: Array2::zeros((picture.bins, picture.bins)),
+            },
+            covariance: None,
+            derivatives: Vec::new(),
+            to_first_order: None,
+        }
+    }
 }
 
 /// One net on its way.
@@ -97,18 +93,21 @@ struct Running {
     slices: Vec<Slices>,
     projection: Array2<f64>,
     moments: Moments,
+    /// Nodes so far.
+    count: f64,
 }
 
-/// Sums over the nodes of independent nets, doubled until the budget says to stop. The same bytes
+/// The first field, summed over the nodes of independent nets, which are doubled until the budget says to stop. The same bytes
 /// on any number of threads.
 pub(crate) fn sums(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
     bins: usize,
     budget: Budget,
-) -> Sums {
+) -> Prediction {
     let nets = begin(integrand, grid, bins, 0, REPLICATES);
-    doubled(integrand, (window, grid), nets, budget)
+    let (nets, error) = doubled(integrand, (window, grid), nets, budget);
+    finished(nets, ProjectionGrid::new(window, bins), error)
 }
 
 /// ‖error‖/‖F‖ of a few rays, by which ways of drawing rays are told apart. With fewer, those that
@@ -123,15 +122,16 @@ pub(crate) fn trial(
         error: f64::INFINITY,
     };
     let nets = begin(integrand, grid, 1, REPLICATES, REPLICATES);
-    doubled(integrand, (window, grid), nets, TRIED).error
+    doubled(integrand, (window, grid), nets, TRIED).1
 }
 
+/// Nets with the error of their mean.
 fn doubled(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),
     mut running: Vec<Running>,
     budget: Budget,
-) -> Sums {
+) -> (Vec<Running>, f64) {
     let bins = running[0].projection.nrows();
     let picture = ProjectionGrid::new(window, bins);
     let transform = SliceTransform::new(grid);
@@ -146,7 +146,7 @@ fn doubled(
         let error = relative_error(running.iter().map(|net| &net.slices[0]));
         let is_enough = error <= budget.error && each >= least;
         if is_enough || 2.0 * nodes > budget.nodes || each > 1 << 29 {
-            return finished(running, picture, f64::from(each), error);
+            return (running, error);
         }
         more = each;
     }
@@ -164,11 +164,10 @@ pub(crate) fn means(
     running
         .par_iter_mut()
         .for_each(|net| net.add(integrand, &transform, &picture, NODES_OF_DERIVATIVES));
-    let scale = 1.0 / f64::from(NODES_OF_DERIVATIVES);
     let of = |field: usize| {
         let replicates = running.iter().map(|net| &net.slices[field]);
         let mut mean = mean(replicates);
-        mean.half *= Complex::from(scale);
+        mean.half /= Complex::from(f64::from(NODES_OF_DERIVATIVES));
         mean
     };
     (0..integrand.fields()).map(of).collect()
@@ -184,7 +183,7 @@ const TRANSFORM: f64 = 300.0;
 
 /// What a prediction by nets takes that ends with its budget: rays, and the transforms of all nets.
 #[must_use]
-pub fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
+pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
     let azimuths = grid.azimuths as f64;
     let replicates = REPLICATES as f64;
@@ -220,6 +219,7 @@ fn begin(
         slices: vec![Slices::zeros(*grid); integrand.fields()],
         projection: Array2::zeros((bins, bins)),
         moments: Moments::default(),
+        count: 0.0,
     };
     (0..).skip(first).take(replicates).map(running).collect()
 }
@@ -232,6 +232,7 @@ impl Running {
         picture: &ProjectionGrid,
         count: u32,
     ) {
+        self.count += f64::from(count);
         let mut sums: Vec<_> = self
             .slices
             .iter()
@@ -260,30 +261,28 @@ impl Running {
     }
 }
 
-fn finished(running: Vec<Running>, picture: ProjectionGrid, each: f64, error: f64) -> Sums {
-    let all = each * running.len() as f64;
-    let mut projection = Array2::zeros((picture.bins, picture.bins));
+fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Prediction {
+    let each = running[0].count;
+    let mut values = Array2::zeros((grid.bins, grid.bins));
     let mut moments = Moments::default();
-    let fields = running[0].slices.len();
-    let mut slices: Vec<Vec<Slices>> = vec![Vec::new(); fields];
-    for net in running {
-        projection += &net.projection;
+    let mut replicates = Vec::with_capacity(running.len());
+    for mut net in running {
+        values += &net.projection;
         moments.join(&net.moments);
-        for (to, mut field) in slices.iter_mut().zip(net.slices) {
-            field.half /= Complex::from(each);
-            to.push(field);
-        }
+        let mut slices = net.slices.swap_remove(0);
+        slices.half /= Complex::from(each);
+        replicates.push(slices);
     }
-    projection /= picture.cell_area() * all;
-    Sums {
-        slices,
-        error,
-        nodes: all,
-        projection: Projection {
-            grid: picture,
-            values: projection,
-        },
+    values /= grid.cell_area() * each * replicates.len() as f64;
+    Prediction {
+        slices: mean(replicates.iter()),
+        replicates,
+        error: Some(error),
+        unblocked: 0.0,
+        projection: Projection { grid, values },
         covariance: moments.central(),
+        derivatives: Vec::new(),
+        to_first_order: None,
     }
 }
 
@@ -393,17 +392,16 @@ mod tests {
             error: 0.0,
         };
         let found = sums(&Waves, (&window, &grid), 4, budget);
-        assert!((found.nodes - f64::from(FIRST) * REPLICATES as f64).abs() < 0.5);
-        let (replicate, field) = (5, 1);
+        let replicate = 5;
         let mut net = Net::new(replicate);
         let mut nodes = [Node::DARK; 2];
         let rays: Vec<Node> = (0..FIRST)
             .map(|_| {
                 Waves.nodes(&net.point(), &mut nodes);
-                nodes[field]
+                nodes[0]
             })
             .collect();
-        let slices = &found.slices[field][replicate as usize];
+        let slices = &found.replicates[replicate as usize];
         for ((k, m, n), value) in slices.half.indexed_iter() {
             let omega = grid.frequency(k, m as f64 * grid.rho.spacing, grid.nu.value(n));
             let term = |node: &Node| {
@@ -427,7 +425,7 @@ mod tests {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads);
             let run = || sums(&Waves, (&window, &grid), 4, budget);
             let found = pool.build().unwrap().install(run);
-            (found.slices, found.projection, found.covariance)
+            (found.replicates, found.projection, found.covariance)
         };
         assert_eq!(on(1), on(3));
     }

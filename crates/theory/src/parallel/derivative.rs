@@ -1,3 +1,4 @@
+use crate::model::Model;
 use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::{Chain, Parameter};
 use etendue_field::{SliceGrid, Slices, Window};
@@ -24,12 +25,11 @@ pub fn derivative(
     grid: &SliceGrid,
     prediction: &Slices,
 ) -> Slices {
-    let value = chain.value(parameter);
-    let size = if value == 0.0 { 1.0 } else { value.abs() };
-    let moved = value + RELATIVE_STEP * size;
+    let value = chain.value(parameter).expect("a parameter of the chain");
+    let moved = value + RELATIVE_STEP * parameter.scale(value);
     // The fineness of `prediction`: the errors of the quadrature cancel.
     let fineness = fineness(&chain.path(), window, grid);
-    let moved_chain = chain.with(parameter, moved);
+    let moved_chain = chain.with(parameter, moved).expect("the same");
     let path = moved_chain.path();
     let mut difference = match (path.receiver(), chain.path().receiver()) {
         (Some(moved), Some(receiver)) => {
@@ -78,9 +78,9 @@ mod tests {
             let prediction = slices(&chain, &window, &grid);
             for parameter in chain.parameters() {
                 let forward = derivative(&chain, parameter, &window, &grid, &prediction);
-                let value = chain.value(parameter);
+                let value = chain.value(parameter).unwrap();
                 let step = 1e-3 * value;
-                let moved = |v| slices(&chain.with(parameter, v), &window, &grid);
+                let moved = |v| slices(&chain.with(parameter, v).unwrap(), &window, &grid);
                 let [up, down] = [value + step, value - step].map(moved);
                 let (mut worst, mut largest) = (0.0, 0.0);
                 for (index, derivative) in forward.half.indexed_iter() {

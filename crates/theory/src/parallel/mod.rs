@@ -7,7 +7,7 @@
 //!
 //! | what | where |
 //! |---|---|
-//! | the chain, and what may change in it | `chain`, `parameter`, `describe` |
+//! | the chain as a model, and in words | `chain`, `model`, `describe` |
 //! | its spectra: slices, one frequency, derivatives, pictures, harmonics on a 4D grid | `slices`, `at`, `derivative`, `projection`, `harmonics` |
 //! | terms of the product over masks, as polygons | `expansion`, `patch`, `disc`, `polygon`, `corners` |
 //! | windows, gratings and factors of slope, as waves | `wave`, `slope`, `row` |
@@ -25,7 +25,7 @@ pub(crate) mod expansion;
 mod harmonics;
 #[cfg(test)]
 mod laws;
-mod parameter;
+mod model;
 mod patch;
 mod polygon;
 mod projection;
@@ -42,8 +42,6 @@ pub use chain::{Chain, Operator, Source};
 pub use derivative::derivative;
 pub use error::quadrature_error;
 pub use harmonics::Harmonics;
-pub use parameter::Parameter;
 pub use projection::projection;
-pub use sampled::Sampled;
 pub use slices::slices;
 pub use work::{Work, work};

@@ -5,6 +5,7 @@
 //! counts its own, this file the closed form.
 
 use crate::Chain;
+use crate::Model;
 use crate::parallel::chain::Path;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::patch::Fineness;

@@ -3,6 +3,7 @@
 use super::central::{Hit, Incidence};
 use super::{Element, Plane, System};
 use crate::geometry::{Map, Matrix, Print, SpectrumMap};
+use crate::model::View;
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
@@ -39,7 +40,8 @@ impl FirstOrder {
 /// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and
 /// no lens.
 #[must_use]
-pub fn chain(system: &System, plane: &Plane, print: Print) -> Option<FirstOrder> {
+pub fn chain(view: &View<System>, print: Print) -> Option<FirstOrder> {
+    let View { system, plane } = view;
     let hits = system.hits()?;
     let mut walk = Walk {
         print,

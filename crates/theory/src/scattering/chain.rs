@@ -2,6 +2,7 @@
 
 use super::System;
 use crate::geometry::{Map, Matrix};
+use crate::model::View;
 use crate::rays::{Incidence, Plane, Ray};
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity};
@@ -43,7 +44,8 @@ const STEP: f64 = 1e-5;
 /// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), which its tests hold them
 /// against.
 #[must_use]
-pub fn chain(system: &System, plane: &Plane) -> Option<Chain> {
+pub fn chain(view: &View<System>) -> Option<Chain> {
+    let View { system, plane } = view;
     let central = Ray {
         point: DVec3::ZERO,
         direction: DVec3::Z,

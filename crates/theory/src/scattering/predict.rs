@@ -4,51 +4,32 @@ use super::draw::{Lights, Rays, Strategy};
 use super::exact::Leaving;
 use super::incoming::Part;
 use super::linear::Linear;
-use super::parameter::Parameter;
 use super::{Chain, System};
-use crate::geometry::Matrix;
 use crate::mask::Masks;
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Moved, Node};
-use crate::rays::Plane;
-use etendue_field::{
-    EnvironmentMap, Light, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
-};
+use crate::model::{Moved, Over, Prediction, View};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use etendue_field::{EnvironmentMap, Light, TwoPlane, Window};
 use glam::DVec3;
 
-/// A prediction of a scattered light field.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Prediction {
-    /// The slices of the windowed spectrum: the mean of the replicates.
-    pub slices: Slices,
-    /// Independent predictions, none of which is biased.
-    pub replicates: Vec<Slices>,
-    /// ‖error‖/‖F‖: the standard error of the mean of the replicates. Infinite if no light arrives.
-    pub error: f64,
-    /// Rays that were summed.
-    pub nodes: f64,
-    strategy: Strategy,
-    /// Second central moments of the windowed light field, in the plane's coordinates; `None` if no
-    /// light arrives.
-    pub covariance: Option<Matrix<4>>,
-    /// The windowed light field integrated over y and v, as means over cells of (x, u).
-    pub projection: Projection,
-}
-
-/// The windowed spectrum of what a surface scatters.
+/// The windowed spectrum of what a surface scatters, with the derivatives by what was moved.
 ///
 /// Rays are drawn at the plane, and for each four parts of the light that shines on the point it
 /// leaves (docs/theory.md, Eq. 40). `chain` is that of [`chain`](super::chain()); it tells where
-/// rays are worth drawing. Unit: W m⁻² sr⁻¹ · m², on a surface W m⁻² sr⁻¹ · m² rad². The same bytes
-/// on any number of threads.
-#[must_use]
-pub fn predict(
-    system: &System,
-    plane: &Plane,
+/// rays are worth drawing. The same bytes on any number of threads.
+///
+/// What the chain predicts, and the derivatives, are differences of the radiance of the same rays:
+/// good to about a per cent of what they are. Parts of the light move with the light, so that its
+/// edges are no edges of a difference. Shadows do not move with masks: what is lit on one side
+/// alone adds noise, the less the farther the sides are apart.
+pub(crate) fn predict(
+    view: &View<System>,
     chain: Option<&Chain>,
-    (window, grid, picture): (&Window, &SliceGrid, &ProjectionGrid),
+    moved: &[Moved<View<System>>],
+    (window, grid, picture): Over<'_>,
     budget: Budget,
 ) -> Prediction {
-    let field = |strategy| Field::new(system, plane, window, chain, strategy);
+    let system = &view.system;
+    let field = |strategy| Field::new(view, window, chain, strategy);
     let strategy = best(system, |strategy| {
         nets::trial(&field(strategy), (window, grid)).powi(2) * strategy.time()
     });
@@ -57,17 +38,20 @@ pub fn predict(
         nodes: budget.nodes / cost(system),
         ..budget
     };
-    let mut sums = nets::sums(&field, (window, grid), picture.bins, budget);
-    let replicates = sums.slices.swap_remove(0);
+    let around = Around::new(&field, chain, moved, strategy);
+    let mut means = nets::means(&around, window, grid).into_iter();
     Prediction {
-        slices: nets::mean(replicates.iter()),
-        replicates,
-        error: sums.error,
-        nodes: sums.nodes,
-        strategy,
-        covariance: sums.covariance,
-        projection: sums.projection,
+        to_first_order: around.linear.as_ref().and_then(|_| means.next()),
+        derivatives: means.collect(),
+        ..nets::sums(&field, (window, grid), picture.bins, budget)
     }
+}
+
+/// What a chain that may be another than that of [`chain`](super::chain()) predicts: the surface as
+/// it is, and its difference to the chain.
+#[must_use]
+pub fn beside(view: &View<System>, chain: &Chain, over: Over<'_>, budget: Budget) -> Prediction {
+    predict(view, Some(chain), &[], over, budget)
 }
 
 /// How many times as long a ray takes as one of few lobes of light.
@@ -99,75 +83,9 @@ fn best(system: &System, cost: impl Fn(Strategy) -> f64) -> Strategy {
     best
 }
 
-/// What differs a little from a prediction, over the same rays.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Differences {
-    /// The slices that the first-order chain predicts less those of the prediction; `None` where
-    /// the central ray does not arrive.
-    pub linear: Option<Slices>,
-    /// The derivatives of the slices, per unit of each parameter.
-    pub derivatives: Vec<Slices>,
-}
-
-/// The first-order chain's slices and the derivatives by some parameters, all as differences of the
-/// radiance of the same rays: good to about a per cent of what they are.
-///
-/// Parts of the light move with the light, so that its edges are no edges of a difference. Shadows
-/// do not move with masks: what is lit on one side alone adds noise, the less the farther the sides
-/// are apart.
-#[must_use]
-pub fn differences(
-    system: &System,
-    plane: &Plane,
-    chain: Option<&Chain>,
-    moved: &[Moved<(System, Plane)>],
-    (window, grid): (&Window, &SliceGrid),
-    prediction: &Prediction,
-) -> Differences {
-    let strategy = prediction.strategy;
-    let field = Field::new(system, plane, window, chain, strategy);
-    let around = Around {
-        linear: chain.and_then(|chain| Linear::new(system, chain)),
-        moved: moved
-            .iter()
-            .map(|moved| {
-                (
-                    moved.apart,
-                    moved
-                        .sides
-                        .each_ref()
-                        .map(|side| Side::new(side, &field, strategy)),
-                )
-            })
-            .collect(),
-        field: &field,
-    };
-    let mut means = nets::means(&around, window, grid).into_iter();
-    Differences {
-        linear: around.linear.as_ref().and_then(|_| means.next()),
-        derivatives: means.collect(),
-    }
-}
-
-impl System {
-    /// It with a little more and a little less of a parameter; `None` if it does not have that.
-    #[must_use]
-    pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<(Self, Plane)>> {
-        const STEP: f64 = 1e-3;
-        let value = self.value(parameter)?;
-        let step = STEP * value.abs().max(0.1);
-        let at = |value| Some((self.with(parameter, value)?, *plane));
-        Some(Moved {
-            apart: 2.0 * step,
-            sides: [at(value + step)?, at(value - step)?],
-        })
-    }
-}
-
 /// A light field as it is.
 struct Field<'a> {
-    system: &'a System,
-    plane: &'a Plane,
+    view: &'a View<System>,
     window: &'a Window,
     masks: Masks<'a>,
     rays: Rays,
@@ -176,16 +94,15 @@ struct Field<'a> {
 
 impl<'a> Field<'a> {
     fn new(
-        system: &'a System,
-        plane: &'a Plane,
+        view: &'a View<System>,
         window: &'a Window,
         chain: Option<&Chain>,
         strategy: Strategy,
     ) -> Self {
+        let system = &view.system;
         let normal = chain.map_or(DVec3::NEG_Z, |chain| chain.frame.d);
         Self {
-            system,
-            plane,
+            view,
             window,
             masks: Masks::new(&system.layers),
             rays: Rays::new(system, window, chain, strategy),
@@ -197,17 +114,17 @@ impl<'a> Field<'a> {
     fn draw(&self, [a, b, c, d, ..]: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64, Leaving)> {
         let (z, density) = self.rays.draw([*a, *b, *c, *d]);
         let [x, y, u, v] = z;
-        let seen = self.window.value(&TwoPlane { x, y, u, v }) * self.plane.factor(z);
+        let seen = self.window.value(&TwoPlane { x, y, u, v }) * self.view.plane.factor(z);
         let factor = seen / density;
         if seen <= 0.0 || !factor.is_finite() {
             return None;
         }
-        Some((z, factor, self.system.leaving(self.plane, z)?))
+        Some((z, factor, self.view.system.leaving(&self.view.plane, z)?))
     }
 
     /// The radiance of a ray, of what a part of the light shines.
     fn radiance(&self, leaving: &Leaving, part: Part) -> f64 {
-        radiance(self.system, self.plane, &self.masks, leaving, part)
+        radiance(self.view, &self.masks, leaving, part)
     }
 }
 
@@ -221,13 +138,8 @@ fn over(radiance: f64, density: f64) -> f64 {
 }
 
 /// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
-fn radiance(
-    system: &System,
-    plane: &Plane,
-    masks: &Masks<'_>,
-    leaving: &Leaving,
-    part: Part,
-) -> f64 {
+fn radiance(view: &View<System>, masks: &Masks<'_>, leaving: &Leaving, part: Part) -> f64 {
+    let View { system, plane } = view;
     let radiance = system.radiance(masks, leaving, part);
     if plane.orientation.is_local() {
         // On the surface itself the integral is over its area, larger than the tangent plane's.
@@ -257,17 +169,16 @@ impl Integrand for Field<'_> {
 
 /// A light field with a parameter changed.
 struct Side<'a> {
-    system: &'a System,
-    plane: &'a Plane,
+    view: &'a View<System>,
     masks: Masks<'a>,
     lights: Lights<'a>,
 }
 
 impl<'a> Side<'a> {
-    fn new((system, plane): &'a (System, Plane), field: &'a Field<'a>, strategy: Strategy) -> Self {
+    fn new(view: &'a View<System>, field: &'a Field<'a>, strategy: Strategy) -> Self {
+        let system = &view.system;
         Self {
-            system,
-            plane,
+            view,
             masks: Masks::new(&system.layers),
             lights: field.lights.of(system, strategy),
         }
@@ -275,9 +186,10 @@ impl<'a> Side<'a> {
 
     /// The radiance of a ray, over the density with which a part of the light was drawn.
     fn radiance(&self, z: [f64; 4], at: [f64; 2]) -> Option<f64> {
-        let leaving = self.system.leaving(self.plane, z)?;
+        let View { system, plane } = self.view;
+        let leaving = system.leaving(plane, z)?;
         let (part, density) = self.lights.draw(&leaving, at)?;
-        let radiance = radiance(self.system, self.plane, &self.masks, &leaving, part);
+        let radiance = radiance(self.view, &self.masks, &leaving, part);
         Some(over(radiance, density))
     }
 }
@@ -287,6 +199,25 @@ struct Around<'a> {
     field: &'a Field<'a>,
     linear: Option<Linear<'a>>,
     moved: Vec<(f64, [Side<'a>; 2])>,
+}
+
+impl<'a> Around<'a> {
+    fn new(
+        field: &'a Field<'a>,
+        chain: Option<&'a Chain>,
+        moved: &'a [Moved<View<System>>],
+        strategy: Strategy,
+    ) -> Self {
+        let side = |view| Side::new(view, field, strategy);
+        let moved = moved.iter();
+        Self {
+            field,
+            linear: chain.and_then(|chain| Linear::new(&field.view.system, chain)),
+            moved: moved
+                .map(|moved| (moved.apart, moved.sides.each_ref().map(side)))
+                .collect(),
+        }
+    }
 }
 
 impl Integrand for Around<'_> {

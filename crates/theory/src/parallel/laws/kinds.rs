@@ -6,7 +6,7 @@ use crate::parallel::patch::Fineness;
 use crate::parallel::slope::Slope;
 use crate::reference::gaussian::{Gaussian, disc_light, point_light};
 use crate::testing::*;
-use crate::{Chain, Operator, Parameter, at};
+use crate::{Chain, Model, Operator, Parameter, at};
 use etendue_field::{Complex, Light, Mask, Profile, Shape, Window};
 
 const POINT: Light = Light::Point { intensity: 1.3 };
@@ -138,9 +138,9 @@ fn planted_faults_are_seen() {
         assert_seen(name, &chain, |k| at_power(&chain, &hann(), power, k));
     }
     let chain = bench(light(), Some(grating(0, 3.0, 0.4)));
-    let wrong = chain.with(Parameter::GratingPhase(1), 0.6);
+    let wrong = chain.with(Parameter::GratingPhase(1), 0.6).unwrap();
     assert_seen("phase off by 0.2", &chain, |k| at(&wrong, &hann(), k));
-    let wrong = chain.with(Parameter::GratingPhase(1), -0.4);
+    let wrong = chain.with(Parameter::GratingPhase(1), -0.4).unwrap();
     assert_seen("phase with another sign", &chain, |k| {
         at(&wrong, &hann(), k)
     });

@@ -2,7 +2,7 @@
 
 use super::{FREQUENCIES, hann, zero};
 use crate::testing::*;
-use crate::{Chain, Parameter, at};
+use crate::{Chain, Model, Parameter, at};
 use etendue_field::{HalfPlane, Light, Mask};
 
 fn open() -> Chain {
@@ -142,7 +142,9 @@ fn a_phase_is_a_place() {
     };
     let full_turn = behind(0.3 + std::f64::consts::TAU, 0.0);
     let none = behind(0.3, 0.0);
-    let half_turn = behind(0.3, 0.0).with(Parameter::GratingPhase(1), 0.3 + std::f64::consts::PI);
+    let half_turn = behind(0.3, 0.0)
+        .with(Parameter::GratingPhase(1), 0.3 + std::f64::consts::PI)
+        .unwrap();
     for k in FREQUENCIES {
         let value = |chain: &Chain| at(chain, &hann(), k);
         let scale = zero(&chain(0.3, &[(1.0, vec![])]));

@@ -66,7 +66,7 @@ fn projector_over_a_distance() {
         let got = exact(&system, &after(&system, d), &window, &grid);
         let expected = at_distance(d, 0.3, &window, &grid, true);
         let off = distance(&got.slices, &expected);
-        assert!(off < GOOD && got.error < GOOD, "{off:e}");
+        assert!(off < GOOD && got.error.unwrap() < GOOD, "{off:e}");
         // The test sees that factor.
         let without = at_distance(d, 0.3, &window, &grid, false);
         let told = distance(&got.slices, &without);
@@ -119,7 +119,7 @@ fn area_lights_agree_with_polygons() {
         system.layers = vec![(0.6, Mask::Grating(grating))];
         let got = exact(&system, &after(&system, 1.5), &window, &grid);
         let off = distance(&got.slices, &expected);
-        let said = got.error;
+        let said = got.error.unwrap();
         assert!(off < OF_NETS && off < 2.0 * said, "{off:e}, said {said:e}");
         // A grating a centimetre farther is told apart.
         system.layers = vec![(0.61, Mask::Grating(grating))];
@@ -154,7 +154,7 @@ fn shadow(light: Light, mask: Mask) -> (f64, f64) {
     let mut system = system(light, vec![]);
     system.layers = vec![(0.6, mask)];
     let got = exact(&system, &after(&system, 1.5), &window, &grid);
-    (distance(&got.slices, &expected), got.error)
+    (distance(&got.slices, &expected), got.error.unwrap())
 }
 
 #[test]

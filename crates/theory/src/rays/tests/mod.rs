@@ -1,7 +1,7 @@
 use super::*;
-use crate::Budget;
 use crate::geometry::{Print, SpectrumMap};
 use crate::numerics::distance;
+use crate::{Budget, Model, Prediction, View};
 use etendue_field::{
     Complex, FrequencyAxis, Image, Profile, ProjectionGrid, SliceGrid, Slices, Window,
 };
@@ -13,9 +13,16 @@ const BUDGET: Budget = Budget {
     error: 1e-5,
 };
 
-fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> RaySlices {
+fn view(system: &System, plane: &Plane) -> View<System> {
+    View {
+        system: system.clone(),
+        plane: *plane,
+    }
+}
+
+fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Prediction {
     let picture = ProjectionGrid::new(window, 32);
-    super::exact(system, plane, (window, grid, &picture), BUDGET)
+    view(system, plane).predict(&[], (window, grid, &picture), BUDGET)
 }
 
 fn linear(
@@ -24,9 +31,9 @@ fn linear(
     window: &Window,
     grid: &SliceGrid,
     map: &SpectrumMap<4>,
-) -> RaySlices {
+) -> Prediction {
     let picture = ProjectionGrid::new(window, 32);
-    super::linear(system, plane, (window, grid, &picture), map, BUDGET)
+    super::linear(&view(system, plane), (window, grid, &picture), map, BUDGET)
 }
 
 mod kernel;

@@ -28,7 +28,7 @@ fn traced(system: &System, plane: &Plane) -> [[f64; 4]; 4] {
 
 /// Largest difference between the chain's rays and the traced ones, the offset included.
 fn off(system: &System, plane: &Plane, print: Print) -> f64 {
-    let first = chain(system, plane, print).unwrap();
+    let first = chain(&view(system, plane), print).unwrap();
     let center = lands(system, plane, [0.0; 4]).unwrap();
     let rays = first.rays();
     let offsets = rays.offset.iter().zip(center).map(|(a, b)| (a - b).abs());
@@ -208,7 +208,7 @@ fn surface_planes_are_read_off() {
 fn foci_of_a_hollow_sphere() {
     let (theta0, radius) = (0.7_f64, 2.0);
     let system = mirror(beam([0.1, 0.1]), theta0, [0.0; 2], [-1.0 / radius; 3]);
-    let first = chain(&system, &after(&system, 0.5), Print::Corrected).unwrap();
+    let first = chain(&view(&system, &after(&system, 0.5)), Print::Corrected).unwrap();
     // Coddington's equations: R/2 · cos θ₀ and R/(2 cos θ₀).
     let expected = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()];
     assert!((expected[0] - 0.764_842).abs() < 1e-6 && (expected[1] - 1.307_459).abs() < 1e-6);
@@ -249,7 +249,7 @@ fn focus_of_a_ball_lens() {
             element("back", half(1.0 + 2.0 * radius, -1.0 / radius), out),
         ],
     );
-    let first = chain(&ball, &after(&ball, 0.1), Print::Corrected).unwrap();
+    let first = chain(&view(&ball, &after(&ball, 0.1)), Print::Corrected).unwrap();
     // The focal length n R/(2(n − 1)) counts from the centre (Hecht, Optics).
     let expected = n * radius / (2.0 * (n - 1.0)) - radius;
     for focus in &first.foci {
@@ -264,7 +264,7 @@ fn focus_of_a_ball_lens() {
 #[test]
 fn steps_read_like_a_figure() {
     let system = mirror(projector([0.1, 0.1]), 0.6, [0.0; 2], [-0.5; 3]);
-    let first = chain(&system, &after(&system, 0.7), Print::Corrected).unwrap();
+    let first = chain(&view(&system, &after(&system, 0.7)), Print::Corrected).unwrap();
     assert_eq!(
         first.steps,
         [

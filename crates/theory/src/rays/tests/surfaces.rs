@@ -11,7 +11,9 @@ fn covariance_of_a_gaussian_beam() {
     let wide = window(Profile::Box(2.0), Profile::Box(1.0));
     let got = exact(&oblique, &plane, &wide, &grid(1, [0.2, 0.2]));
     let got = got.covariance.unwrap();
-    let map = chain(&oblique, &plane, Print::Corrected).unwrap().rays();
+    let map = chain(&view(&oblique, &plane), Print::Corrected)
+        .unwrap()
+        .rays();
     let variance = w * w / std::f64::consts::TAU;
     let mut before = [[0.0; 4]; 4];
     before[0][0] = variance;
@@ -75,27 +77,23 @@ fn derivatives_by_every_parameter() {
     let plane = after(&system, 0.2);
     let window = window(Profile::Hann(0.1), Profile::Hann(0.1));
     let grid = grid(2, [0.1, 0.1]);
-    let prediction = exact(&system, &plane, &window, &grid);
-    let parameters = system.parameters(&plane);
+    let view = view(&system, &plane);
+    let parameters = view.parameters();
     assert_eq!(parameters.len(), 12);
     let picture = ProjectionGrid::new(&window, 1);
-    let moved: Vec<_> = parameters
-        .iter()
-        .map(|parameter| system.moved(&plane, *parameter).unwrap())
-        .collect();
-    let slopes = derivatives(&moved, (&window, &grid, &picture), &prediction);
-    for (parameter, slope) in parameters.into_iter().zip(slopes) {
-        let value = system.value(&plane, parameter).unwrap();
-        let name = system.name(parameter);
-        let other = system.with(&plane, parameter, value + 1e-4).unwrap();
-        let read = other.0.value(&other.1, parameter).unwrap();
+    let prediction = view.predict(&parameters, (&window, &grid, &picture), BUDGET);
+    for (parameter, slope) in parameters.into_iter().zip(&prediction.derivatives) {
+        let value = view.value(parameter).unwrap();
+        let name = view.name(parameter);
+        let other = view.with(parameter, value + 1e-4).unwrap();
+        let read = other.value(parameter).unwrap();
         assert!((read - value - 1e-4).abs() < 1e-12, "{name}"); // rounding
         // A forward difference with another step, of converged predictions.
-        let moved = exact(&other.0, &other.1, &window, &grid);
+        let moved = exact(&other.system, &other.plane, &window, &grid);
         let mut forward = moved.slices.clone();
         forward.half -= &prediction.slices.half;
         forward.half /= Complex::from(1e-4);
-        let off = distance(&forward, &slope);
+        let off = distance(&forward, slope);
         // Half the second derivative times 10⁻⁴; what quadratures leave does not cancel.
         assert!(off < 0.02, "{name}: {off}");
         assert!(

@@ -1,0 +1,117 @@
+//! What every theory answers.
+
+use crate::Work;
+use crate::geometry::Matrix;
+use crate::nets::Budget;
+use crate::parameter::{New, Parameter};
+use crate::rays::Plane;
+use etendue_field::{Light, Projection, ProjectionGrid, SliceGrid, Slices, Window};
+
+/// What a prediction is over: a window, frequencies and the cells of a picture.
+pub type Over<'a> = (&'a Window, &'a SliceGrid, &'a ProjectionGrid);
+
+/// Whatever predicts the light field at a plane.
+pub trait Model: Clone {
+    /// What shines.
+    fn light(&self) -> &Light;
+
+    /// The numbers that a measurement may be asked for, in the order light meets them.
+    fn parameters(&self) -> Vec<Parameter>;
+
+    /// One of them in words, e.g. "travel light to blockers".
+    fn name(&self, parameter: Parameter) -> String;
+
+    /// Puts `new(value)` in the place of the value of a parameter. `None` if the model does not
+    /// have it, or its central ray does not arrive.
+    fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()>;
+
+    /// The slices with their error, a picture, and the derivatives by some of its parameters.
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction;
+
+    /// What that takes.
+    fn work(&self, over: Over<'_>, budget: Budget) -> Work;
+
+    /// The unit of a parameter; empty if it is a pure number.
+    fn unit(&self, parameter: Parameter) -> &'static str {
+        parameter.unit(self.light())
+    }
+
+    /// Its value, in its unit. `None` as for [`change`](Self::change).
+    fn value(&self, parameter: Parameter) -> Option<f64> {
+        let mut value = None;
+        self.clone().change(parameter, &mut |current| {
+            value = Some(current);
+            current
+        })?;
+        value
+    }
+
+    /// The same with another value of a parameter, in its unit. `None` as for
+    /// [`change`](Self::change).
+    fn with(&self, parameter: Parameter, value: f64) -> Option<Self> {
+        let mut other = self.clone();
+        other.change(parameter, &mut |_| value)?;
+        Some(other)
+    }
+}
+
+/// What theory says of a light field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Prediction {
+    /// The slices of the windowed spectrum. Unit: W m⁻² sr⁻¹ · m², on a surface
+    /// W m⁻² sr⁻¹ · m² rad².
+    pub slices: Slices,
+    /// Independent predictions of which they are the mean, none of them biased; empty for closed
+    /// forms and rules.
+    pub replicates: Vec<Slices>,
+    /// ‖error‖/‖F‖: the standard error of the mean of the replicates, or what finer rules change.
+    /// `None` for a closed form; infinite if no ray arrives.
+    pub error: Option<f64>,
+    /// ∫ L W if nothing stood in the way, what slices of a closed form are small or large against;
+    /// zero for nets.
+    pub unblocked: f64,
+    /// The windowed light field integrated over y and v, as means over cells of (x, u).
+    pub projection: Projection,
+    /// Second central moments of the windowed light field, in the plane's coordinates; `None` for
+    /// closed forms, and if no light arrives.
+    pub covariance: Option<Matrix<4>>,
+    /// The derivative of the slices by each of the parameters asked for, per unit of it.
+    pub derivatives: Vec<Slices>,
+    /// What the first-order chain of a reflection predicts, less the slices, over the same rays.
+    pub to_first_order: Option<Slices>,
+}
+
+/// A system of surfaces, and the plane at which its light is looked at.
+#[derive(Clone, Debug, PartialEq)]
+pub struct View<S> {
+    /// The light, and what it meets.
+    pub system: S,
+    /// Where it is looked at.
+    pub plane: Plane,
+}
+
+/// A model with a little more and a little less of a parameter.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Moved<M> {
+    /// How far apart the values are, in the parameter's unit.
+    pub(crate) apart: f64,
+    /// With more, and with less.
+    pub(crate) sides: [M; 2],
+}
+
+impl<M> Moved<M> {
+    /// A model moved by a step to both sides, each made into another.
+    pub(crate) fn new<A: Model>(
+        model: &A,
+        parameter: Parameter,
+        step: f64,
+        into: impl Fn(A) -> M,
+    ) -> Option<Self> {
+        let value = model.value(parameter)?;
+        let at = |value| Some(into(model.with(parameter, value)?));
+        Some(Self {
+            apart: 2.0 * step,
+            sides: [at(value + step)?, at(value - step)?],
+        })
+    }
+}

@@ -1,0 +1,288 @@
+//! A chain as a model: its parameters and its prediction.
+
+use crate::model::{Model, Over, Prediction};
+use crate::nets::{Budget, work_of_nets};
+use crate::parallel::{at, derivative, projection, quadrature_error, slices, work};
+use crate::parameter::{New, Parameter, resize, size_word};
+use crate::{Chain, Operator, Source, Work};
+use etendue_field::{Light, Mask, Window};
+
+impl Model for Chain {
+    fn light(&self) -> &Light {
+        &self.source.light
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let mut all = Parameter::of_light(&self.source.light);
+        // Closed forms have no pictures.
+        all.retain(|parameter| *parameter != Parameter::ImageWidth);
+        for (i, operator) in self.operators.iter().enumerate() {
+            match operator {
+                Operator::Travel { .. } => all.push(Parameter::Travel(i)),
+                Operator::Visibility { mask, .. } => all.extend(of_mask(mask, i)),
+                Operator::Cosine { .. } | Operator::Diffuse { .. } => {}
+            }
+        }
+        all
+    }
+
+    /// # Panics
+    /// When the parameter is of another chain.
+    fn name(&self, parameter: Parameter) -> String {
+        let Source { name, light } = &self.source;
+        let operator = parameter.operator().and_then(|i| self.operators.get(i));
+        let name = match (parameter, operator) {
+            (_, None) => parameter.name_of_light(light, name),
+            (_, Some(Operator::Travel { from, to, .. })) => Some(format!("travel {from} to {to}")),
+            (_, Some(Operator::Visibility { name, mask })) => match (parameter, mask) {
+                (Parameter::BlockerSide(_), Mask::Opaque { shapes, .. }) => {
+                    let shape = shapes.first();
+                    shape.map(|shape| format!("{} of {name}", size_word(shape)))
+                }
+                (Parameter::HalfPlaneEdge(_), _) => Some(format!("edge of {name}")),
+                (Parameter::GratingFrequency(_), _) => Some(format!("frequency of {name}")),
+                (Parameter::GratingPhase(_), _) => Some(format!("phase of {name}")),
+                _ => None,
+            },
+            _ => None,
+        };
+        name.unwrap_or_else(|| panic!("this chain has no parameter {parameter:?}"))
+    }
+
+    fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
+        let Some(i) = parameter.operator() else {
+            return parameter.change_light(&mut self.source.light, new);
+        };
+        match (parameter, self.operators.get_mut(i)?) {
+            (Parameter::Travel(_), Operator::Travel { distance, .. }) => *distance = new(*distance),
+            (_, Operator::Visibility { mask, .. }) => match (parameter, mask) {
+                (Parameter::BlockerSide(_), Mask::Opaque { shapes, .. }) if !shapes.is_empty() => {
+                    resize(shapes, new);
+                }
+                (Parameter::HalfPlaneEdge(_), Mask::Opaque { half_planes, .. }) => {
+                    let first = half_planes.first_mut()?;
+                    first.edge = new(first.edge);
+                }
+                (Parameter::GratingFrequency(_), Mask::Grating(grating)) => {
+                    grating.frequency = new(grating.frequency);
+                }
+                (Parameter::GratingPhase(_), Mask::Grating(grating)) => {
+                    grating.phase = new(grating.phase);
+                }
+                _ => return None,
+            },
+            _ => return None,
+        }
+        Some(())
+    }
+
+    /// By closed forms, or by nets of rays where these take too long or do not resolve the scene.
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+        if self.is_sampled(over) {
+            return self.sampled(parameters, over, budget);
+        }
+        let (window, grid, picture) = over;
+        let slices = slices(self, window, grid);
+        let derivatives = parameters.iter();
+        Prediction {
+            derivatives: derivatives
+                .map(|parameter| derivative(self, *parameter, window, grid, &slices))
+                .collect(),
+            replicates: Vec::new(),
+            error: quadrature_error(self, window, grid, &slices),
+            unblocked: self.unblocked(window),
+            projection: projection(self, window, picture),
+            covariance: None,
+            to_first_order: None,
+            slices,
+        }
+    }
+
+    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+        if self.is_sampled(over) {
+            work_of_nets(over.1, budget)
+        } else {
+            work(self, over.0, over.1, over.2)
+        }
+    }
+}
+
+/// Steps of a quadrature over a receiver that are accepted, some five seconds of two cores.
+const OF_QUADRATURES: f64 = 1e10;
+/// Steps of a closed form that are accepted: nets need as many rays as photons to come near it.
+const OF_CLOSED_FORMS: f64 = 1e11;
+/// Bytes of a closed form on one core that are accepted.
+const BYTES: f64 = 1e9;
+
+impl Chain {
+    /// Whether nets of rays take the place of its closed form or quadrature: where that takes very
+    /// long, or does not resolve a pattern.
+    #[must_use]
+    pub fn is_sampled(&self, (window, grid, picture): Over<'_>) -> bool {
+        let path = self.path();
+        let work = work(self, window, grid, picture);
+        let accepted = if path.reflection.is_some() {
+            OF_QUADRATURES
+        } else {
+            OF_CLOSED_FORMS
+        };
+        let is_resolved = path.receiver().is_none_or(|r| r.is_resolved(window));
+        !is_resolved || work.steps > accepted || work.bytes + work.bytes_each > BYTES
+    }
+
+    /// ∫ L W without what stands in the way.
+    fn unblocked(&self, window: &Window) -> f64 {
+        let mut open = self.clone();
+        let is_mask = |operator: &Operator| matches!(operator, Operator::Visibility { .. });
+        open.operators.retain(|operator| !is_mask(operator));
+        at(&open, window, [0.0; 4]).re
+    }
+}
+
+impl Parameter {
+    /// Index of its operator; `None` for those of the source.
+    fn operator(self) -> Option<usize> {
+        match self {
+            Self::Travel(i)
+            | Self::BlockerSide(i)
+            | Self::HalfPlaneEdge(i)
+            | Self::GratingFrequency(i)
+            | Self::GratingPhase(i) => Some(i),
+            _ => None,
+        }
+    }
+}
+
+fn of_mask(mask: &Mask, index: usize) -> Vec<Parameter> {
+    match mask {
+        Mask::Opaque {
+            shapes,
+            half_planes,
+        } => {
+            let side = (!shapes.is_empty()).then_some(Parameter::BlockerSide(index));
+            let edge = (!half_planes.is_empty()).then_some(Parameter::HalfPlaneEdge(index));
+            side.into_iter().chain(edge).collect()
+        }
+        Mask::Grating(_) => vec![
+            Parameter::GratingFrequency(index),
+            Parameter::GratingPhase(index),
+        ],
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::*;
+    use etendue_field::{HalfPlane, Rectangle};
+
+    #[test]
+    fn parameters_follow_the_light() {
+        let chain = chain(0.2, &[(1.0, blockers(2, 0.3, 0.1)), (0.5, vec![])]);
+        let names: Vec<_> = chain.parameters().iter().map(|&p| chain.name(p)).collect();
+        assert_eq!(
+            names,
+            [
+                "side of light",
+                "travel a to b",
+                "side of b",
+                "travel b to c"
+            ]
+        );
+    }
+
+    #[test]
+    fn with_sets_one_value() {
+        let chain = chain(0.2, &[(1.0, blockers(2, 0.3, 0.1)), (0.5, vec![])]);
+        for p in chain.parameters() {
+            let other = chain.with(p, 0.5).unwrap();
+            assert_eq!(other.value(p), Some(0.5));
+            for q in chain.parameters().into_iter().filter(|&q| q != p) {
+                assert_eq!(other.value(q), chain.value(q));
+            }
+        }
+    }
+
+    #[test]
+    fn sides_keep_their_proportion_and_centers_stay() {
+        let mut chain = chain(0.2, &[(1.0, blockers(2, 0.3, 0.1))]);
+        let sized = |size| {
+            lambertian(Rectangle {
+                center: [0.0, 0.1],
+                size,
+            })
+        };
+        chain.source.light = sized([0.2, 0.5]);
+        let wider = chain.with(Parameter::SourceSize, 0.4).unwrap();
+        assert_eq!(wider.source.light, sized([0.4, 1.0]));
+        let wider = chain.with(Parameter::BlockerSide(1), 0.2).unwrap();
+        let expected: Vec<_> = blockers(2, 0.3, 0.1)
+            .into_iter()
+            .map(|b| Rectangle {
+                size: [0.2, 0.2],
+                ..b
+            })
+            .collect();
+        let name = "b".into();
+        let mask = rectangles(&expected);
+        assert_eq!(wider.operators[1], Operator::Visibility { name, mask });
+    }
+
+    /// Every kind of parameter.
+    fn rich() -> Chain {
+        let mixed = Mask::Opaque {
+            shapes: vec![disc([0.0, 0.1], 0.2)],
+            half_planes: vec![HalfPlane {
+                axis: 1,
+                edge: 0.4,
+                above: true,
+            }],
+        };
+        let mut chain = chain_of(
+            spot(disc([0.0, 0.0], 0.1), 20.0),
+            [(1.0, Some(mixed)), (0.5, Some(grating(0, 5.0, 0.3)))],
+        );
+        chain.operators.push(cosine());
+        chain
+    }
+
+    #[test]
+    fn parameters_of_every_kind() {
+        let chain = rich();
+        let said = |p| format!("{} [{}]", chain.name(p), chain.unit(p));
+        let all: Vec<_> = chain.parameters().into_iter().map(said).collect();
+        assert_eq!(
+            all,
+            [
+                "radius of light [m]",
+                "exponent of light []",
+                "travel a to b [m]",
+                "radius of b [m]",
+                "edge of b [m]",
+                "travel b to c [m]",
+                "frequency of c [1/m]",
+                "phase of c [rad]",
+            ]
+        );
+        for p in chain.parameters() {
+            let value = |chain: &Chain, p| chain.value(p).unwrap();
+            let moved = chain.with(p, value(&chain, p) * 2.0).unwrap();
+            let changed = |q: &Parameter| (value(&moved, *q) - value(&chain, *q)).abs() > 1e-3;
+            let others: Vec<_> = chain.parameters().into_iter().filter(changed).collect();
+            assert_eq!(others, [p]);
+        }
+        let point = chain_of(Light::Point { intensity: 1.0 }, [(1.0, None)]);
+        assert_eq!(point.parameters(), [Parameter::Travel(0)]);
+    }
+
+    #[test]
+    fn foreign_parameters_have_no_value() {
+        for foreign in [
+            Parameter::GratingPhase(0),
+            Parameter::Albedo,
+            Parameter::ImageWidth,
+        ] {
+            assert_eq!(rich().value(foreign), None);
+        }
+    }
+}

@@ -1,0 +1,137 @@
+//! Numbers of a model that a measurement may be asked for.
+
+use etendue_field::{Light, Shape};
+
+/// A number of a [`Model`](crate::Model). Indices are those of the operators of a chain, or of the
+/// elements of a system.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// The side of a rectangular light along X, its other side keeping the proportion, or the
+    /// radius of a disc.
+    SourceSize,
+    /// The exponent n of a spot's cosⁿθ.
+    SpotExponent,
+    /// The first width of a picture, the second keeping the proportion.
+    ImageWidth,
+    /// The distance of a travel. In a system: the way of the central ray from an element, or the
+    /// light (0), to the next, or the plane. Whatever comes later moves along D.
+    Travel(usize),
+    /// The side along X, or the radius, of the first shape of an opaque mask; all its shapes keep
+    /// the proportion, all centres stay.
+    BlockerSide(usize),
+    /// The edge of the first half-plane of an opaque mask; nothing else moves.
+    HalfPlaneEdge(usize),
+    /// The frequency of a grating.
+    GratingFrequency(usize),
+    /// The phase of a grating.
+    GratingPhase(usize),
+    /// The angle of incidence θ₀ of the central ray: the patch turns about B, and nothing else
+    /// does.
+    Incidence(usize),
+    /// A curvature of a patch, k₁ (0) or k₂ (1). Those that equal it go with it, and so does k₃.
+    /// The vertex stays.
+    Curvature(usize, usize),
+    /// Index of refraction of the denser side of a surface.
+    Index(usize),
+    /// The focal length of a lens.
+    FocalLength(usize),
+    /// The albedo, or factor, of a BRDF.
+    Albedo,
+    /// The exponent or the roughness of its lobe.
+    Lobe,
+}
+
+impl Parameter {
+    /// Those of a light.
+    pub(crate) fn of_light(light: &Light) -> Vec<Self> {
+        match light {
+            Light::Area { exponent, .. } if *exponent > 0.0 => {
+                vec![Self::SourceSize, Self::SpotExponent]
+            }
+            Light::Area { .. } => vec![Self::SourceSize],
+            Light::Projector { .. } | Light::Beam { .. } => vec![Self::ImageWidth],
+            _ => Vec::new(),
+        }
+    }
+
+    /// Its unit; empty if it is a pure number.
+    pub(crate) fn unit(self, light: &Light) -> &'static str {
+        match self {
+            Self::ImageWidth if matches!(light, Light::Projector { .. }) => "",
+            Self::SpotExponent | Self::Index(_) | Self::Albedo | Self::Lobe => "",
+            Self::GratingPhase(_) | Self::Incidence(_) => "rad",
+            Self::GratingFrequency(_) | Self::Curvature(..) => "1/m",
+            Self::SourceSize
+            | Self::ImageWidth
+            | Self::Travel(_)
+            | Self::BlockerSide(_)
+            | Self::HalfPlaneEdge(_)
+            | Self::FocalLength(_) => "m",
+        }
+    }
+
+    /// What a small change of it is small against.
+    pub(crate) fn scale(self, value: f64) -> f64 {
+        match self {
+            Self::Incidence(_) | Self::Curvature(..) | Self::Albedo | Self::Lobe => {
+                value.abs().max(0.1)
+            }
+            _ if value == 0.0 => 1.0,
+            _ => value.abs(),
+        }
+    }
+
+    /// In words, of a light with a name.
+    pub(crate) fn name_of_light(self, light: &Light, name: &str) -> Option<String> {
+        match (self, light) {
+            (Self::SourceSize, Light::Area { shape, .. }) => {
+                Some(format!("{} of {name}", size_word(shape)))
+            }
+            (Self::SpotExponent, _) => Some(format!("exponent of {name}")),
+            (Self::ImageWidth, _) => Some("width of image".to_owned()),
+            _ => None,
+        }
+    }
+
+    /// Puts `new(value)` in its place in a light. `None` if the light does not have it.
+    pub(crate) fn change_light(self, light: &mut Light, new: New<'_>) -> Option<()> {
+        match (self, light) {
+            (Self::SourceSize, Light::Area { shape, .. }) => {
+                resize(std::slice::from_mut(shape), new);
+            }
+            (Self::SpotExponent, Light::Area { exponent, .. }) => *exponent = new(*exponent),
+            (Self::ImageWidth, Light::Projector { image, .. } | Light::Beam { image, .. }) => {
+                let factor = new(image.width[0]) / image.width[0];
+                image.width = image.width.map(|w| w * factor);
+            }
+            _ => return None,
+        }
+        Some(())
+    }
+}
+
+/// The new value of a parameter as a function of the old one.
+pub(crate) type New<'a> = &'a mut dyn FnMut(f64) -> f64;
+
+/// What the size of a shape is called.
+pub(crate) fn size_word(shape: &Shape) -> &'static str {
+    match shape {
+        Shape::Rectangle(_) => "side",
+        Shape::Disc(_) => "radius",
+    }
+}
+
+/// Gives the first shape a new side along X or radius, and all of them the same factor.
+pub(crate) fn resize(shapes: &mut [Shape], new: New<'_>) {
+    let size = match &shapes[0] {
+        Shape::Rectangle(rectangle) => rectangle.size[0],
+        Shape::Disc(disc) => disc.radius,
+    };
+    let factor = new(size) / size;
+    for shape in shapes {
+        match shape {
+            Shape::Rectangle(rectangle) => rectangle.size = rectangle.size.map(|s| s * factor),
+            Shape::Disc(disc) => disc.radius *= factor,
+        }
+    }
+}

@@ -1,0 +1,211 @@
+//! A system of specular surfaces and a plane behind it as a model: its parameters and its
+//! prediction.
+
+use super::central::Hit;
+use super::{System, predict};
+use crate::Work;
+use crate::model::{Model, Moved, Over, Prediction, View};
+use crate::nets::{Budget, work_of_nets};
+use crate::parameter::{New, Parameter, resize};
+use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
+use glam::{DQuat, DVec3};
+
+/// Metres, and whatever else parameters are in, that rounding leaves of zero.
+const NOTHING: f64 = 1e-9;
+/// Step of a derivative, as a share of the parameter's scale.
+const STEP: f64 = 1e-3;
+
+impl Model for View<System> {
+    fn light(&self) -> &Light {
+        &self.system.light
+    }
+
+    /// Those that are not zero: a plane at its surface has no travel to it.
+    fn parameters(&self) -> Vec<Parameter> {
+        let Self { system, plane } = self;
+        let mut all = Parameter::of_light(&system.light);
+        for (i, element) in system.elements.iter().enumerate() {
+            all.push(Parameter::Travel(i));
+            match element.event {
+                Specular::ThinLens { .. } => {
+                    all.push(Parameter::FocalLength(i));
+                    continue;
+                }
+                Specular::Mirror => {}
+                Specular::Refraction { .. } => all.push(Parameter::Index(i)),
+            }
+            all.push(Parameter::Incidence(i));
+            all.push(Parameter::Curvature(i, 0));
+            let [k1, k2, k3] = element.patch.curvature;
+            if !(same(k1, k2) && same(k1, k3) && k1 != 0.0) {
+                all.push(Parameter::Curvature(i, 1));
+            }
+        }
+        if plane.orientation == Orientation::Orthogonal || plane.arriving {
+            all.push(Parameter::Travel(system.elements.len()));
+        }
+        let is_there = |parameter: &Parameter| {
+            let value = self.value(*parameter);
+            value.is_some_and(|value| value.abs() > NOTHING) && self.moved(*parameter).is_some()
+        };
+        all.retain(is_there);
+        all
+    }
+
+    fn name(&self, parameter: Parameter) -> String {
+        let elements = &self.system.elements;
+        let name = |i: usize| elements.get(i).map_or("plane", |e| e.name.as_str());
+        match parameter {
+            Parameter::Travel(0) => format!("travel light to {}", name(0)),
+            Parameter::Travel(i) => format!("travel {} to {}", name(i - 1), name(i)),
+            Parameter::Incidence(i) => format!("incidence on {}", name(i)),
+            Parameter::Curvature(i, axis) => format!("curvature {} of {}", axis + 1, name(i)),
+            Parameter::Index(i) => format!("index of {}", name(i)),
+            Parameter::FocalLength(i) => format!("focal length of {}", name(i)),
+            _ => {
+                let of_light = parameter.name_of_light(self.light(), "light");
+                of_light.unwrap_or_else(|| panic!("this system has no parameter {parameter:?}"))
+            }
+        }
+    }
+
+    fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
+        match parameter {
+            Parameter::Travel(leg) => self.travel(leg, new)?,
+            Parameter::Incidence(i) => {
+                let hit = *self.system.hits()?.get(i)?;
+                let by = new(hit.incidence.theta0) - hit.incidence.theta0;
+                let frame = &mut self.system.elements.get_mut(i)?.patch.frame;
+                *frame = tilted(frame, &hit, by);
+            }
+            Parameter::Curvature(i, axis) => self.curve(i, axis, new)?,
+            Parameter::Index(i) => match &mut self.system.elements.get_mut(i)?.event {
+                Specular::Refraction { front, back } => {
+                    let denser = if *front > *back { front } else { back };
+                    *denser = new(*denser);
+                }
+                _ => return None,
+            },
+            Parameter::FocalLength(i) => match &mut self.system.elements.get_mut(i)?.event {
+                Specular::ThinLens { focal_length } => *focal_length = new(*focal_length),
+                _ => return None,
+            },
+            _ => parameter.change_light(&mut self.system.light, new)?,
+        }
+        Some(())
+    }
+
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+        let moved = parameters.iter().map(|parameter| self.moved(*parameter));
+        let moved: Option<Vec<_>> = moved.collect();
+        predict(
+            self,
+            &moved.expect("parameters of the system"),
+            over,
+            budget,
+        )
+    }
+
+    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+        work_of_nets(over.1, budget)
+    }
+}
+
+impl View<System> {
+    fn moved(&self, parameter: Parameter) -> Option<Moved<Self>> {
+        let step = STEP * parameter.scale(self.value(parameter)?);
+        Moved::new(self, parameter, step, |moved| moved)
+    }
+
+    /// Gives a leg a new length: all that comes later moves.
+    fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
+        let (from, along) = self.system.leg(leg)?;
+        let to = match self.system.hits()?.get(leg) {
+            Some(hit) => hit.arriving.origin,
+            None => self.plane.frame.origin,
+        };
+        let distance = (to - from).dot(along);
+        let by = along * (new(distance) - distance);
+        for element in self.system.elements.iter_mut().skip(leg) {
+            element.patch.frame.origin += by;
+        }
+        self.plane.frame.origin += by;
+        if let Some(patch) = &mut self.plane.patch {
+            patch.frame.origin += by;
+        }
+        Some(())
+    }
+
+    /// Gives a patch a new curvature.
+    fn curve(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
+        let is_last = i + 1 == self.system.elements.len();
+        let patch = &mut self.system.elements.get_mut(i)?.patch;
+        let current = *patch.curvature.get(axis)?;
+        let value = new(current);
+        let sphere_or_cylinder = patch.curvature[2] != 0.0;
+        for (k, other) in patch.curvature.iter_mut().enumerate() {
+            let goes_along = sphere_or_cylinder && current != 0.0 && same(*other, current);
+            if k == axis || goes_along {
+                *other = value;
+            }
+        }
+        // A leaving plane with local normals is on the surface itself.
+        if is_last && !self.plane.arriving && self.plane.patch.is_some() {
+            self.plane.patch = Some(*patch);
+        }
+        Some(())
+    }
+}
+
+impl System {
+    /// The same system with a light `factor` times as large: the picture's widths over slopes or
+    /// positions, or the shape about the central ray.
+    ///
+    /// With windows as much narrower and frequencies as much higher, what first-order maps leave
+    /// out falls with the factor (docs/theory.md, section 7).
+    #[must_use]
+    pub fn shrunk(&self, factor: f64) -> Self {
+        let mut system = self.clone();
+        match &mut system.light {
+            Light::Projector { image, .. } | Light::Beam { image, .. } => {
+                image.width = image.width.map(|w| w * factor);
+                if let Some(grating) = &mut image.grating {
+                    grating.frequency /= factor;
+                }
+            }
+            Light::Area { shape, .. } => {
+                resize(std::slice::from_mut(shape), &mut |size| size * factor);
+                let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) =
+                    shape;
+                *center = center.map(|c| c * factor);
+            }
+            Light::Point { .. } | Light::Environment { .. } => {}
+        }
+        system
+    }
+
+    /// Where a leg starts, and along what.
+    fn leg(&self, leg: usize) -> Option<(DVec3, DVec3)> {
+        if leg == 0 {
+            return Some((DVec3::ZERO, DVec3::Z));
+        }
+        let hit = *self.hits()?.get(leg - 1)?;
+        Some((hit.leaving.origin, hit.leaving.d))
+    }
+}
+
+/// A patch's frame turned about B at the central hit until θ₀ has grown by an angle.
+fn tilted(frame: &Frame, hit: &Hit, by: f64) -> Frame {
+    let turn = DQuat::from_axis_angle(hit.incidence.b, -by);
+    let center = hit.arriving.origin;
+    Frame {
+        origin: center + turn * (frame.origin - center),
+        x: turn * frame.x,
+        y: turn * frame.y,
+        d: turn * frame.d,
+    }
+}
+
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
+}

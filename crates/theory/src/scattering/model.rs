@@ -1,0 +1,100 @@
+//! A surface with a BRDF and a plane behind it as a model: its parameters and its prediction.
+
+use super::{System, chain, predict};
+use crate::Work;
+use crate::model::{Model, Moved, Over, Prediction, View};
+use crate::nets::{Budget, work_of_nets};
+use crate::parameter::{New, Parameter};
+use etendue_field::{Light, Lobe};
+
+/// Step of a derivative, as a share of the parameter's scale.
+const STEP: f64 = 1e-3;
+
+impl Model for View<System> {
+    fn light(&self) -> &Light {
+        &self.system.light
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let System {
+            light,
+            patch,
+            reflectance,
+            ..
+        } = &self.system;
+        let mut all = Parameter::of_light(light);
+        let [k1, k2, _] = patch.curvature;
+        if k1 != 0.0 {
+            all.push(Parameter::Curvature(0, 0));
+        }
+        if k2 != 0.0 && (k2 - k1).abs() > 1e-12 * k1.abs() {
+            all.push(Parameter::Curvature(0, 1));
+        }
+        all.push(Parameter::Albedo);
+        if reflectance.brdf.lobe != Lobe::Lambertian {
+            all.push(Parameter::Lobe);
+        }
+        all
+    }
+
+    fn name(&self, parameter: Parameter) -> String {
+        let name = &self.system.name;
+        match parameter {
+            Parameter::Albedo => format!("albedo of {name}"),
+            Parameter::Lobe => match self.system.reflectance.brdf.lobe {
+                Lobe::Phong { .. } => format!("exponent of {name}"),
+                _ => format!("roughness of {name}"),
+            },
+            Parameter::Curvature(_, axis) => format!("curvature {} of {name}", axis + 1),
+            _ => {
+                let of_light = parameter.name_of_light(self.light(), "light");
+                of_light.unwrap_or_else(|| panic!("this surface has no parameter {parameter:?}"))
+            }
+        }
+    }
+
+    /// Where BRDFs are blended, of the first alone.
+    fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
+        let System {
+            light,
+            patch,
+            reflectance,
+            ..
+        } = &mut self.system;
+        match parameter {
+            Parameter::Albedo => reflectance.brdf.albedo = new(reflectance.brdf.albedo),
+            Parameter::Lobe => match &mut reflectance.brdf.lobe {
+                Lobe::Lambertian => return None,
+                Lobe::Phong { exponent: number }
+                | Lobe::Beckmann { roughness: number }
+                | Lobe::Ggx { roughness: number } => *number = new(*number),
+            },
+            Parameter::Curvature(0, axis) => {
+                let old = *patch.curvature.get(axis)?;
+                let value = new(old);
+                for k in &mut patch.curvature {
+                    if (*k - old).abs() <= 1e-12 * old.abs() {
+                        *k = value;
+                    }
+                }
+            }
+            _ => parameter.change_light(light, new)?,
+        }
+        Some(())
+    }
+
+    /// With the difference to the first-order chain.
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+        let moved = |parameter: &Parameter| {
+            let step = STEP * parameter.scale(self.value(*parameter)?);
+            Moved::new(self, *parameter, step, |moved| moved)
+        };
+        let moved: Option<Vec<_>> = parameters.iter().map(moved).collect();
+        let moved = moved.expect("parameters of the surface");
+        predict(self, chain(self).as_ref(), &moved, over, budget)
+    }
+
+    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+        work_of_nets(over.1, budget)
+    }
+}
