@@ -3,7 +3,7 @@
 use crate::report::Section;
 use crate::scenes::{fig9b, predicted, traced};
 use crate::statistics::{mean, uniformity};
-use etendue_compare::{PlaneReport, Prediction, compare, sidak};
+use etendue_compare::{PlaneReport, Prediction, Test, compare};
 use rayon::prelude::*;
 
 /// What the seeds gave, plane by plane.
@@ -60,9 +60,9 @@ fn sample(seeds: u64, photons: u64) -> Vec<Plane> {
 fn reports(photons: u64, seed: u64, predictions: &[Prediction]) -> Vec<PlaneReport> {
     let scene = fig9b(photons, seed);
     let measurement = traced(&scene);
-    let level = sidak(scene.run.alpha, scene.planes.len());
+    let test = Test::of(&scene);
     let report = |(i, prediction)| {
-        compare(&measurement, i, prediction, level, seed)
+        compare(&measurement, i, prediction, &test)
             .expect("a resolved scene has enough batches")
             .report
     };

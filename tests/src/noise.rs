@@ -2,7 +2,7 @@
 
 use crate::report::Section;
 use crate::scenes::{fig9b, predicted, receiver, traced};
-use etendue_compare::{PlaneReport, Verdict, compare, sidak};
+use etendue_compare::{PlaneReport, Test, Verdict, compare};
 use etendue_scene::Scene;
 
 /// Every plane at one number of photons.
@@ -126,12 +126,12 @@ fn passes(report: &PlaneReport) -> bool {
 /// When the scene has too few batches, which resolving excludes.
 fn reports(scene: &Scene) -> Vec<PlaneReport> {
     let measurement = traced(scene);
-    let level = sidak(scene.run.alpha, scene.planes.len());
+    let test = Test::of(scene);
     predicted(scene, None)
         .iter()
         .enumerate()
         .map(|(i, prediction)| {
-            compare(&measurement, i, prediction, level, scene.run.seed)
+            compare(&measurement, i, prediction, &test)
                 .expect("a resolved scene has enough batches")
                 .report
         })

@@ -1,6 +1,6 @@
 //! The scenes validation is made on, and the measurement of them.
 
-use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, compare};
+use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Test, compare};
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
@@ -112,5 +112,9 @@ pub(crate) fn compared(
     prediction: &Prediction,
     level: f64,
 ) -> PlaneComparison {
-    compare(measurement, index, prediction, level, scene.run.seed).expect("a scene has 32 batches")
+    let test = Test {
+        level,
+        ..Test::of(scene)
+    };
+    compare(measurement, index, prediction, &test).expect("a scene has 32 batches")
 }

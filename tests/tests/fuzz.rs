@@ -1,6 +1,6 @@
 //! Mutated scene files: whatever is in the file, the answer is a scene or a fault, never a panic.
 
-use etendue_compare::{Applicability, Prediction, compare, sidak};
+use etendue_compare::{Applicability, Prediction, Test, compare};
 use etendue_field::Mask;
 use etendue_field::random::{self, Stream};
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -151,7 +151,7 @@ fn whole_run(scene: &Scene) {
     let tracer = Tracer::new(scene);
     let batches = 0..scene.run.batches;
     let measurement = measure(&tracer, &scene.planes, batches, &|_| ());
-    let level = sidak(scene.run.alpha, scene.planes.len());
+    let test = Test::of(scene);
     for (i, plane) in scene.planes.iter().enumerate() {
         let prediction = Prediction::new(scene, plane, &Applicability::new(scene, plane));
         assert!(
@@ -159,7 +159,7 @@ fn whole_run(scene: &Scene) {
             "{plane:?}"
         );
         // Batches without a photon leave too few for errors: an error, not a panic.
-        if let Ok(comparison) = compare(&measurement, i, &prediction, level, 1) {
+        if let Ok(comparison) = compare(&measurement, i, &prediction, &test) {
             assert!(
                 comparison.radial.power.iter().all(|p| p.is_finite()),
                 "{plane:?}"

@@ -1,6 +1,6 @@
 //! Scenes that must pass and scenes that must not, end to end: from scene text to verdict.
 
-use etendue_compare::{Applicability, Class, Prediction, Verdict, compare, sidak};
+use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
@@ -30,7 +30,7 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         0..traced.run.batches,
         &|_| (),
     );
-    let level = sidak(traced.run.alpha, traced.planes.len());
+    let test = Test::of(traced);
     predicted
         .planes
         .iter()
@@ -38,7 +38,7 @@ fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
         .map(|(i, plane)| {
             let prediction =
                 Prediction::new(predicted, plane, &Applicability::new(predicted, plane));
-            compare(&measurement, i, &prediction, level, 1)
+            compare(&measurement, i, &prediction, &test)
                 .expect("a resolved scene has enough batches")
                 .report
                 .verdict

@@ -7,7 +7,7 @@
 )]
 
 use etendue_compare::{
-    Applicability, Class, PlaneReport, Prediction, Theory, Verdict, compare, scattered, sidak,
+    Applicability, Class, PlaneReport, Prediction, Test, Theory, Verdict, compare, scattered,
     system,
 };
 use etendue_field::{
@@ -59,8 +59,7 @@ fn report(
     plane: usize,
     prediction: &Prediction,
 ) -> PlaneReport {
-    let level = sidak(scene.run.alpha, scene.planes.len());
-    let compared = compare(measurement, plane, prediction, level, scene.run.seed);
+    let compared = compare(measurement, plane, prediction, &Test::of(scene));
     compared.unwrap().report
 }
 

@@ -16,7 +16,7 @@ use std::path::PathBuf;
   etendue check scenes/fig9b.ron                        what the scene says, nothing traced
   etendue measure | predict | compare                   the stages of run, over files
 
-Exit codes: 0 pass, 1 disagreement or undecided, 2 bad input, 3 cannot run (directory, memory, interrupted)"
+Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted), 4 undecided"
 )]
 pub(crate) struct Cli {
     #[command(subcommand)]
@@ -369,7 +369,7 @@ pub(crate) enum Save {
 /// What `--expect` may expect.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Expect {
-    /// At least one plane must be rejected.
+    /// Photons must agree with the exact predictions, and a first-order chain must have a wrong map.
     Disagreement,
 }
 

@@ -4,7 +4,9 @@ use crate::method::Method;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
 use crate::{field, files, photons, pictures, progress, say, table};
-use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict, compare, sidak};
+use etendue_compare::{
+    Applicability, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare,
+};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
@@ -84,21 +86,44 @@ pub(crate) fn conclude(
             ));
         }
     }
-    let wanted = match ending.expect {
-        Some(Expect::Disagreement) => Verdict::Fail,
-        None => Verdict::Pass,
+    Ok(exit_code(ending.expect, &summary))
+}
+
+/// What is expected is that photons agree with every exact prediction, and that a first-order chain
+/// has a wrong map.
+fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
+    let of_exact = |plane: &PlaneReport| match &plane.first_order {
+        Some(first_order) => first_order.exact,
+        None => plane.verdict,
     };
-    Ok(u8::from(summary.verdict != wanted))
+    let is_wrong = |plane: &PlaneReport| {
+        let chain = plane.first_order.as_ref();
+        chain.is_some_and(|chain| chain.verdict == Verdict::Fail)
+    };
+    let verdict = match expect {
+        None => summary.verdict,
+        Some(Expect::Disagreement) => {
+            let exact = summary.planes.iter().map(of_exact);
+            match exact.fold(Verdict::Pass, Verdict::and) {
+                Verdict::Pass if !summary.planes.iter().any(is_wrong) => Verdict::Fail,
+                verdict => verdict,
+            }
+        }
+    };
+    match verdict {
+        Verdict::Pass => 0,
+        Verdict::Fail => 1,
+        Verdict::Undecided => 4,
+    }
 }
 
 fn compared(case: &Case) -> Result<Vec<PlaneComparison>, Failure> {
-    let run = &case.scene.run;
-    let level = sidak(run.alpha, case.scene.planes.len());
+    let test = Test::of(&case.scene);
     case.predictions
         .iter()
         .enumerate()
         .map(|(i, prediction)| {
-            compare(&case.measurement, i, prediction, level, run.seed).map_err(Failure::cannot_run)
+            compare(&case.measurement, i, prediction, &test).map_err(Failure::cannot_run)
         })
         .collect()
 }

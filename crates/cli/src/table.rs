@@ -2,7 +2,7 @@
 
 use crate::say;
 use crate::summary::Summary;
-use etendue_compare::{ParameterReport, PlaneReport, Verdict};
+use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, Verdict};
 use etendue_field::tidy;
 use std::path::Path;
 
@@ -38,22 +38,31 @@ fn text(summary: &Summary) -> String {
                 .map(|w| format!("warning: {}: {w}", plane.name)),
         );
     }
-    let chains = summary
-        .planes
-        .iter()
-        .filter_map(|plane| Some((plane, plane.first_order.as_ref()?)));
-    for (plane, first_order) in chains.filter(|(_, f)| f.verdict != Verdict::Pass) {
-        lines.push(format!(
-            "{}: beyond noise the first-order chain is off by {}, at most {} with 95 %; its computed error is {}{}",
-            plane.name,
-            percent(first_order.excess),
-            percent(first_order.excess_bound),
-            percent(Some(first_order.chain.error)),
-            if first_order.chain.as_printed { ", as corrected" } else { "" }
-        ));
-    }
+    lines.extend(summary.planes.iter().filter_map(on_chain));
     lines.push(format!("verdict: {}", verdict_text(summary)));
     lines.join("\n")
+}
+
+/// What is to be said of a first-order chain that does not pass.
+fn on_chain(plane: &PlaneReport) -> Option<String> {
+    let FirstOrderReport { chain, verdict, .. } = plane.first_order.as_ref()?;
+    let name = &plane.name;
+    match verdict {
+        Verdict::Pass => None,
+        Verdict::Fail => Some(format!(
+            "{name}: the first-order chain{} has a wrong map: its error does not fall below {} as the neighbourhood shrinks",
+            if chain.as_printed {
+                ", as printed,"
+            } else {
+                ""
+            },
+            percent(Some(chain.defect)),
+        )),
+        Verdict::Undecided => Some(format!(
+            "{name}: the first-order chain is off by {} here and says nothing of this light field",
+            percent(Some(chain.error)),
+        )),
+    }
 }
 
 /// How far measured and predicted are apart, plane by plane.
@@ -205,33 +214,14 @@ fn verdict_text(summary: &Summary) -> String {
             names(&with(Verdict::Fail))
         ),
         Verdict::Undecided => {
-            let undecided = with(Verdict::Undecided).into_iter();
-            let (noisy, blurred): (Vec<_>, Vec<_>) =
-                undecided.partition(|p| p.photons_needed.is_some());
-            let mut reasons = Vec::new();
-            if !noisy.is_empty() {
-                let needed = noisy.iter().filter_map(|p| p.photons_needed);
-                reasons.push(format!(
-                    "too much noise at {}; needs {:.0e} photons",
-                    names(&noisy),
-                    rounded_up(needed.fold(0.0, f64::max))
-                ));
-            }
-            if !blurred.is_empty() {
-                reasons.push(format!(
-                    "the error of the prediction's quadrature is not below the noise at {}; more photons do not help",
-                    names(&blurred)
-                ));
-            }
-            format!("undecided: {}", reasons.join(", and "))
+            let undecided = with(Verdict::Undecided);
+            let reasons = undecided.iter().filter_map(|plane| {
+                let reason = plane.undecided.as_ref()?;
+                Some(format!("\n  {}: {reason}", plane.name))
+            });
+            format!("undecided:{}", reasons.collect::<String>())
         }
     }
-}
-
-/// The next number of one digit.
-fn rounded_up(x: f64) -> f64 {
-    let unit = 10f64.powf(x.max(1.0).log10().floor());
-    (x / unit).ceil() * unit
 }
 
 /// The predicted slope to as many digits as the measured one has.

@@ -2,12 +2,9 @@
 
 use crate::prediction::Prediction;
 use crate::residuals::Residuals;
-use crate::verdict::Verdict;
-use etendue_field::{PlaneTally, Slices};
+use crate::verdict::Test;
+use etendue_field::Slices;
 use ndarray::Array3;
-
-/// The largest noise, as a share of the spectrum, with which agreement means something.
-const RESOLVED: f64 = 0.5;
 
 /// The largest error of a quadrature, as a share of the noise, with which agreement means
 /// something. It is an upper estimate, and adds a quarter to χ² at the most.
@@ -25,6 +22,8 @@ pub(crate) struct Agreement {
     noise: f64,
     /// Σ|F|².
     predicted: f64,
+    /// Σ|S|² less its noise.
+    measured: f64,
     /// The standard error of the square of the excess if the prediction is true.
     pub(crate) excess_squared_error: Option<f64>,
     /// 10 log₁₀ of the mean σ² over the largest |F|².
@@ -34,15 +33,17 @@ pub(crate) struct Agreement {
 impl Agreement {
     pub(crate) fn new(residuals: &Residuals, variance: &Array3<f64>, prediction: &Slices) -> Self {
         let half = &prediction.half;
+        let mean = residuals.mean();
         let predicted = residuals.sum(half, variance, |f, _| f.norm_sqr());
         let noise = residuals.sum(half, variance, |_, v| *v);
-        let difference = residuals.sum(&residuals.mean(), variance, |m, _| m.norm_sqr());
+        let difference = residuals.sum(&mean, variance, |m, _| m.norm_sqr());
         let peak = half.iter().map(|f| f.norm_sqr()).fold(0.0, f64::max);
         let mean_noise = noise / residuals.frequencies() as f64;
         Self {
             difference,
             noise,
             predicted,
+            measured: residuals.sum(&mean, half, |m, f| (m + f).norm_sqr()) - noise,
             excess_squared_error: (predicted > 0.0).then(|| residuals.squared_error() / predicted),
             noise_floor_db: (peak > 0.0 && noise > 0.0).then(|| 10.0 * (mean_noise / peak).log10()),
         }
@@ -65,16 +66,9 @@ impl Agreement {
         self.relative(self.difference - self.noise)
     }
 
-    /// What p comes to. With noise above half of the spectrum batches hold a handful of photons,
-    /// and their residuals are not symmetric: nothing is decided then.
-    pub(crate) fn verdict(&self, agrees: bool) -> Verdict {
-        if self.noise_limit().is_some_and(|noise| noise > RESOLVED) {
-            Verdict::Undecided
-        } else if agrees {
-            Verdict::Pass
-        } else {
-            Verdict::Fail
-        }
+    /// Noise as a share of the spectrum, of the larger of the two.
+    pub(crate) fn resolution(&self) -> f64 {
+        (self.noise / self.predicted.max(self.measured)).sqrt()
     }
 
     /// Whether the error of a prediction without replicates leaves nothing to be decided:
@@ -93,28 +87,18 @@ impl Agreement {
         }
     }
 
-    /// Photons that bring the noise to where agreement means something; `None` where the
-    /// statistical error of the prediction alone is above that.
-    pub(crate) fn photons_needed(&self, emitted: u64, prediction: &Prediction) -> Option<f64> {
-        let noise = self.noise_limit().unwrap_or_default().powi(2);
+    /// Photons that bring the noise to the resolution; `None` where the error of the prediction alone
+    /// is above that, or noise is not what keeps the test from a verdict.
+    pub(crate) fn photons_needed(
+        &self,
+        emitted: u64,
+        prediction: &Prediction,
+        test: &Test,
+    ) -> Option<f64> {
+        let noise = self.resolution().powi(2);
         let stays = prediction.statistical_error().unwrap_or(0.0).powi(2);
-        let allowed = RESOLVED * RESOLVED - stays;
+        let allowed = test.resolution.powi(2) - stays;
         let falls = (noise - stays).max(0.0);
-        (allowed > 0.0).then(|| (emitted as f64 * falls / allowed).ceil())
-    }
-}
-
-/// Whether p reaches the level; of a dark prediction, whether not a single photon came.
-pub(crate) fn agrees(
-    predicted: &Slices,
-    tally: &PlaneTally,
-    p_value: Option<f64>,
-    level: f64,
-) -> bool {
-    let dark = predicted.half.iter().all(|f| f.norm_sqr() <= 0.0);
-    if dark {
-        tally.inside == 0
-    } else {
-        p_value.is_some_and(|p| p >= level)
+        (allowed > 0.0 && falls > allowed).then(|| (emitted as f64 * falls / allowed).ceil())
     }
 }

@@ -42,5 +42,5 @@ pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport, s
 pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::{scattered, system};
-pub use verdict::Verdict;
+pub use verdict::{Test, Verdict};
 pub use work::{TooMuchWork, too_much_work};

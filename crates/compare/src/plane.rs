@@ -1,12 +1,12 @@
 //! A plane of a measurement held against its prediction.
 
-use crate::agreement::{Agreement, UNSEEN, agrees};
+use crate::agreement::{Agreement, UNSEEN};
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
 use crate::residuals::{Residuals, crossed_power};
 use crate::score::{ParameterReport, score};
-use crate::verdict::Verdict;
+use crate::verdict::{Test, Verdict};
 use etendue_field::{SliceGrid, Slices, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
@@ -42,9 +42,10 @@ pub struct PlaneComparison {
 /// closed form is a difference of transforms of that size, and accurate to 10⁻¹⁵ of it.
 const DARK: f64 = 1e-12;
 
-/// Compares plane `index` of a measurement with its prediction; it passes when p ≥ `level`.
-///
-/// `seed` keys the random signs of the p-value.
+/// Photons of a batch with which one in 3,000 batches is empty.
+const EACH: f64 = 8.0;
+
+/// Compares plane `index` of a measurement with its prediction.
 ///
 /// # Errors
 /// When the measurement has too few batches for errors.
@@ -52,8 +53,7 @@ pub fn compare(
     measurement: &Measurement,
     index: usize,
     prediction: &Prediction,
-    level: f64,
-    seed: u64,
+    test: &Test,
 ) -> Result<PlaneComparison, TooFewBatches> {
     let estimate = estimate::slices(measurement, index)?;
     let predicted = without_rounding(prediction);
@@ -74,7 +74,7 @@ pub fn compare(
         power: &power,
         predicted_radial: &predicted_radial,
     };
-    let report = sides.report(&sides.judged(level, seed))?;
+    let report = sides.report(&sides.judged(test))?;
     Ok(PlaneComparison {
         report,
         measured: estimate.mean,
@@ -107,40 +107,115 @@ struct Judged {
     first_order: Option<FirstOrderReport>,
     verdict: Verdict,
     photons_needed: Option<f64>,
+    open: Option<String>,
 }
 
 impl Sides<'_> {
-    fn judged(&self, level: f64, seed: u64) -> Judged {
+    fn judged(&self, test: &Test) -> Judged {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
-        let p_value = self.residuals.p_value(seed);
-        let first_order = self.prediction.first_order.as_ref();
-        let exact = (self.predicted, self.residuals);
-        let first_order = first_order.map(|f| f.report(self.measurement, self.index, exact, seed));
-        let tally = self.measurement.tally(self.index);
-        let agrees = agrees(self.predicted, &tally, p_value, level);
-        let is_blurred = agreement.is_blurred(self.prediction, agrees)
-            || self.prediction.found_nothing() && !agrees;
-        let verdict = if is_blurred {
-            Verdict::Undecided
+        let p_value = self.residuals.p_value(test.seed);
+        let agrees = if self.is_dark() {
+            self.inside() == 0
         } else {
-            agreement.verdict(agrees)
+            p_value.is_some_and(|p| p >= test.level)
         };
-        // The worse of the two: what rays do, and what the first-order chain makes of it.
-        let chain = first_order.as_ref();
-        let verdict = chain.map_or(verdict, |chain| verdict.and(chain.verdict));
-        let emitted = self.measurement.emitted();
-        let more = chain.map_or(1.0, FirstOrderReport::more) * emitted as f64;
-        let photons_needed = (verdict == Verdict::Undecided && !is_blurred)
-            .then(|| agreement.photons_needed(emitted, self.prediction))
-            .flatten()
-            .map(|needed| needed.max(more));
+        let photons_needed = self.photons_needed(&agreement, test);
+        let open = self.open_question(&agreement, agrees, photons_needed, test);
+        let verdict = match (&open, agrees) {
+            (Some(_), _) => Verdict::Undecided,
+            (None, true) => Verdict::Pass,
+            (None, false) => Verdict::Fail,
+        };
+        let first_order = self.prediction.first_order.as_ref();
+        let exact = (self.predicted, self.residuals, verdict);
+        let first_order =
+            first_order.map(|f| f.report(self.measurement, self.index, exact, test.seed));
+        let has_wrong_map = first_order.as_ref().map(|f| f.verdict) == Some(Verdict::Fail);
         Judged {
             agreement,
             p_value,
             first_order,
-            verdict,
-            photons_needed,
+            photons_needed: photons_needed.filter(|_| open.is_some()),
+            open,
+            verdict: if has_wrong_map {
+                Verdict::Fail
+            } else {
+                verdict
+            },
         }
+    }
+
+    /// Why nothing is decided, in words; `None` where it is.
+    fn open_question(
+        &self,
+        agreement: &Agreement,
+        agrees: bool,
+        photons_needed: Option<f64>,
+        test: &Test,
+    ) -> Option<String> {
+        let (inside, emitted) = (self.inside(), self.measurement.emitted());
+        let needs = photons_needed.map(|needed| format!("; needs {needed:.0e} photons"));
+        let needs = needs.unwrap_or_default();
+        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        let noise = agreement.resolution();
+        if self.is_dark() {
+            // Theory shows why no light comes. That no ray was found is no proof.
+            self.prediction.is_statistical().then(|| {
+                format!(
+                    "no ray of the prediction found a way to the window, and {inside} of {emitted} \
+                     photons did; with none, fewer than 3 in {emitted} do (95 %)"
+                )
+            })
+        } else if inside == 0 {
+            Some(format!("none of {emitted} photons came into the window"))
+        } else if self.is_sparse() {
+            Some(format!("too few photons in the window, {inside}{needs}"))
+        } else if agreement.is_blurred(self.prediction, agrees) {
+            let error = percent(self.prediction.systematic_error().unwrap_or_default());
+            Some(format!(
+                "the quadrature of the prediction may be off by {error}, noise is {}; more photons \
+                 do not help",
+                percent(noise)
+            ))
+        } else if agrees && noise > test.resolution {
+            let resolution = percent(test.resolution);
+            Some(format!(
+                "noise is {} of the spectrum, above the resolution of {resolution}{needs}",
+                percent(noise)
+            ))
+        } else {
+            None
+        }
+    }
+
+    /// Photons that would decide; `None` where that is not known, or more of them do not help.
+    fn photons_needed(&self, agreement: &Agreement, test: &Test) -> Option<f64> {
+        let (inside, emitted) = (self.inside(), self.measurement.emitted());
+        if self.is_dark() || inside == 0 {
+            None
+        } else if self.is_sparse() {
+            let batches = self.measurement.batches().len() as f64;
+            Some((emitted as f64 * EACH * batches / inside as f64).ceil())
+        } else {
+            agreement.photons_needed(emitted, self.prediction, test)
+        }
+    }
+
+    fn inside(&self) -> u64 {
+        self.measurement.tally(self.index).inside
+    }
+
+    fn is_dark(&self) -> bool {
+        self.predicted.half.iter().all(|f| f.norm_sqr() <= 0.0)
+    }
+
+    /// Whether a batch of photons, or a replicate of the prediction, found no light: so few say
+    /// nothing, because their errors are not symmetric.
+    fn is_sparse(&self) -> bool {
+        let mut batches = self.measurement.at_plane(self.index);
+        let mut replicates = self.prediction.replicates.iter();
+        let is_dark = |slices: &Slices| slices.half.iter().all(|f| f.norm_sqr() <= 0.0);
+        batches.any(|batch| batch.tally.inside == 0) || replicates.any(is_dark)
     }
 
     fn report(&self, judged: &Judged) -> Result<PlaneReport, TooFewBatches> {
@@ -178,6 +253,7 @@ impl Sides<'_> {
             covariance: covariance(self.measurement, self.index, prediction)?,
             high_frequency_share: self.high_frequency_shares(grid),
             photons_needed: judged.photons_needed,
+            undecided: judged.open.clone(),
             verdict: judged.verdict,
             first_order: judged.first_order.clone(),
             warnings: warnings(

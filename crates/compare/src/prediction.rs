@@ -57,15 +57,10 @@ pub struct PredictedParameter {
 }
 
 impl Prediction {
-    /// Whether the slices have a statistical error, which their replicates show.
+    /// Whether the slices have a statistical error, which their replicates show; also where no ray
+    /// was found that could show one.
     pub(crate) fn is_statistical(&self) -> bool {
-        !self.replicates.is_empty()
-    }
-
-    /// Whether theory's rays found no way to the plane. That is no proof that there is none.
-    pub(crate) fn found_nothing(&self) -> bool {
-        let is_dark = || self.slices.half.iter().all(|f| f.norm_sqr() <= 0.0);
-        self.class != Class::Reference && self.is_statistical() && is_dark()
+        !self.replicates.is_empty() || self.quadrature_error == Some(f64::INFINITY)
     }
 
     /// ‖error‖/‖slices‖ that no replicates show.

@@ -110,8 +110,10 @@ pub struct PlaneReport {
     pub first_order: Option<FirstOrderReport>,
     /// The verdict.
     pub verdict: Verdict,
-    /// Photons that would decide an undecided plane. `None` where the prediction is not accurate
-    /// enough for any number of photons.
+    /// Why an undecided plane is undecided, in words.
+    pub undecided: Option<String>,
+    /// Photons that would decide an undecided plane. `None` where that is not known, or more of
+    /// them do not help.
     pub photons_needed: Option<f64>,
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,

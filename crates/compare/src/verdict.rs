@@ -1,6 +1,32 @@
 //! What a comparison comes to.
 
+use crate::report::sidak;
+use etendue_scene::Scene;
 use serde::Serialize;
+
+/// What the planes of a run are tested by.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Test {
+    /// A plane agrees with its prediction when p is not below this.
+    pub level: f64,
+    /// A plane passes when its noise is not above this share of the spectrum.
+    pub resolution: f64,
+    /// Keys the random signs of the p-value.
+    pub seed: u64,
+}
+
+impl Test {
+    /// That of a scene: α over all its planes.
+    #[must_use]
+    pub fn of(scene: &Scene) -> Self {
+        let run = &scene.run;
+        Self {
+            level: sidak(run.alpha, scene.planes.len()),
+            resolution: run.resolution,
+            seed: run.seed,
+        }
+    }
+}
 
 /// The verdict on a plane or a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]

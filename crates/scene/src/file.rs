@@ -281,6 +281,8 @@ pub struct RunFile {
     pub batches: u32,
     /// Share of true scenes the verdict may reject, over all planes.
     pub alpha: f64,
+    /// Noise, as a share of the spectrum, above which a plane does not pass.
+    pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
 }
@@ -292,6 +294,7 @@ impl Default for RunFile {
             seed: 1,
             batches: 64,
             alpha: 0.01,
+            resolution: 0.1,
             emission: Emission::Aimed,
         }
     }

@@ -112,6 +112,7 @@ impl Resolver<'_> {
                 seed: file.run.seed,
                 batches: file.run.batches,
                 alpha: file.run.alpha,
+                resolution: file.run.resolution,
                 emission: file.run.emission,
             },
             file,
@@ -181,6 +182,8 @@ impl Resolver<'_> {
             self.faults.add("run.photons", show(run.photons), allowed);
         }
         self.faults.within("run.alpha", run.alpha, 1e-6..=0.5);
+        self.faults
+            .within("run.resolution", run.resolution, 1e-4..=1.0);
     }
 
     /// The level of each plane must be one that a p-value can fall below.

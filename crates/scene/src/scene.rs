@@ -282,6 +282,8 @@ pub struct Run {
     pub batches: u32,
     /// Share of true scenes the verdict may reject, over all planes.
     pub alpha: f64,
+    /// Noise, as a share of the spectrum, above which a plane does not pass.
+    pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
 }

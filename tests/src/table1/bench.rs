@@ -4,7 +4,7 @@ use super::Outcome;
 use super::steps::Steps;
 use crate::predicted;
 use crate::scenes::compared;
-use etendue_compare::{FirstOrder, FirstOrderReport, Prediction};
+use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction};
 use etendue_theory::geometry::{Matrix, Print, SpectrumMap};
 use etendue_theory::{Model, Parameter, rays};
 
@@ -71,7 +71,10 @@ impl<'a> Bench<'a> {
             first_order: Some(FirstOrder {
                 slices: predicted::linear(&view, &place.window, &place.grid, &map),
                 replicates: Vec::new(),
-                chain: sound.chain.clone(),
+                chain: FirstOrderChain {
+                    defect: rays::defect(&view, &map, &place.window).expect("light arrives"),
+                    ..sound.chain.clone()
+                },
             }),
             parameters: Vec::new(),
             ..prediction.clone()

@@ -113,15 +113,17 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
             let decisive = judged
                 .iter()
                 .max_by(|a, b| {
-                    let size = |r: &etendue_compare::FirstOrderReport| {
-                        r.excess
-                            .map_or(f64::INFINITY, |e| e / r.chain.error.max(0.01))
-                    };
+                    let size = |r: &etendue_compare::FirstOrderReport| r.chain.defect;
                     size(&a.1).total_cmp(&size(&b.1))
                 })
-                .map_or(("–", "–".to_owned(), "–"), |(plane, r)| {
-                    (*plane, percent_or_dark(r), word(r.verdict))
-                });
+                .map_or(
+                    ("–", ["–"; 2].map(str::to_owned), "–"),
+                    |(plane, r)| {
+                        let stays = format!("{:.1e}", r.chain.defect);
+                        (*plane, [percent_or_dark(r), stays], word(r.verdict))
+                    },
+                );
+            let [excess, stays] = decisive.1;
             let count = judged
                 .iter()
                 .filter(|(_, r)| r.verdict == Verdict::Fail)
@@ -130,7 +132,8 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                 outcome.scene.name.clone(),
                 name.to_owned(),
                 decisive.0.to_owned(),
-                decisive.1,
+                excess,
+                stays,
                 format!("{count} of {}", judged.len()),
                 match name {
                     "none" if accepted => "accepted",
@@ -143,11 +146,11 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
     }
     Section {
         title: "Faults planted in the affine maps".to_owned(),
-        text: "Judged by the rule for first-order chains at the photons of the file: rejected when the excess is above 1.1 times the sound chain's computed error \
-               beyond its 95 % error. The plane that decides, its excess, and how many of the planes that the fault touches reject it. Required: rejected every \
+        text: "Judged as a run judges: rejected when a part of the error above 10⁻⁵ stays as the neighbourhood of the central ray shrinks. The plane of which most \
+               stays, its excess over the photons of the file, what stays, and how many of the planes that the fault touches reject it. Required: rejected every \
                fault, accepted without."
             .to_owned(),
-        header: vec!["scene", "fault", "plane", "excess", "planes", "run"],
+        header: vec!["scene", "fault", "plane", "excess", "stays", "planes", "run"],
         rows,
         passed,
     }

@@ -14,7 +14,50 @@ pub struct Map<const N: usize> {
     pub offset: [f64; N],
 }
 
+/// Step of the differences that a map is read off with, metres and radians.
+const STEP: f64 = 1e-5;
+
 impl<const N: usize> Map<N> {
+    /// The affine map that touches another map of rays at zero, by differences of fourth order:
+    /// good to some 10⁻¹⁰ per metre and radian. `None` where a ray near zero does not arrive.
+    pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
+        let offset = map([0.0; N])?;
+        let mut matrix: Matrix<N> = [[0.0; N]; N];
+        for column in 0..N {
+            let at = |steps: f64| {
+                let mut z = [0.0; N];
+                z[column] = steps * STEP;
+                map(z)
+            };
+            let [a, b, c, d] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
+            for row in 0..N {
+                let sum = a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row];
+                matrix[row][column] = sum / (12.0 * STEP);
+            }
+        }
+        Some(Self { matrix, offset })
+    }
+
+    /// How far this map is from another, in the half-widths of a window: the largest difference of
+    /// where rays go that either keeps within the window.
+    pub(crate) fn apart(&self, other: &Self, half: &[f64; N]) -> f64 {
+        let mut most = 0.0_f64;
+        for (row, half) in half.iter().enumerate() {
+            most = most.max((self.offset[row] - other.offset[row]).abs() / half);
+        }
+        for column in 0..N {
+            let [a, b] = [self, other].map(|map| {
+                let rows = map.matrix.iter().zip(half);
+                rows.map(|(row, half)| row[column] / half)
+                    .collect::<Vec<_>>()
+            });
+            let both = a.iter().chain(&b).map(|entry| entry.abs());
+            let largest = both.fold(f64::MIN_POSITIVE, f64::max);
+            let off = a.iter().zip(&b).map(|(a, b)| (a - b).abs() / largest);
+            most = off.fold(most, f64::max);
+        }
+        most
+    }
     /// The map z' = A z.
     #[must_use]
     pub const fn linear(matrix: Matrix<N>) -> Self {

@@ -135,7 +135,12 @@ impl Walk {
             let name = &element.name;
             let f = number(focal_length);
             let words = format!("map  lens {name}, focal length {f} m: ℓ̂(Ωx − Ωu/f, Ωu)");
-            self.step(&map.spectrum_map(), words);
+            // Flux is kept. Aslant an ideal thin lens changes radiance: its map has no unit area.
+            let map = SpectrumMap {
+                factor: 1.0,
+                ..map.spectrum_map()
+            };
+            self.step(&map, words);
             self.frame = hit.leaving;
             return Some(self);
         }

@@ -72,6 +72,7 @@
 mod central;
 mod chain;
 mod coordinates;
+mod defect;
 mod draw;
 mod emission;
 mod model;
@@ -84,6 +85,7 @@ mod tests;
 mod trace;
 
 pub use chain::{FirstOrder, chain};
+pub use defect::defect;
 pub use predict::linear;
 
 pub(crate) use central::Incidence;

@@ -34,9 +34,6 @@ pub struct Chain {
     pub steps: Vec<String>,
 }
 
-/// Step of the differences that maps are read off with, metres and radians.
-const STEP: f64 = 1e-5;
-
 /// The chain of a system up to a plane on its surface or beyond; `None` where the central ray does
 /// not get there.
 ///
@@ -74,8 +71,8 @@ pub fn chain(view: &View<System>) -> Option<Chain> {
             leaving.direction,
         ))
     };
-    let onto = derivative(arrives)?;
-    let off = derivative(leaves)?.inverse()?;
+    let onto = Map::touching(arrives)?;
+    let off = Map::touching(leaves)?.inverse()?;
     let [.., longitude, latitude] = leaves([0.0; 4])?;
     let outgoing = [longitude, latitude];
     let curvature = incidence.shape(&system.patch, arriving.origin);
@@ -99,6 +96,15 @@ pub fn chain(view: &View<System>) -> Option<Chain> {
     })
 }
 
+/// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
+/// them: zero for that of [`chain`].
+#[must_use]
+pub fn defect(view: &View<System>, tried: &Chain) -> Option<f64> {
+    let traced = chain(view)?;
+    let onto = tried.onto.apart(&traced.onto, &[1.0; 4]);
+    Some(onto.max(tried.off.apart(&traced.off, &[1.0; 4])))
+}
+
 impl Chain {
     /// A of the rays from the light to the plane by way of the mirror direction, z' = A z.
     #[must_use]
@@ -117,25 +123,6 @@ fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
         away.x.atan2(away.z),
         away.y.clamp(-1.0, 1.0).asin(),
     ]
-}
-
-/// The affine map that touches another one at zero.
-fn derivative(map: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> Option<Map<4>> {
-    let offset = map([0.0; 4])?;
-    let mut matrix: Matrix<4> = [[0.0; 4]; 4];
-    for column in 0..4 {
-        let at = |share: f64| {
-            let mut z = [0.0; 4];
-            z[column] = share * STEP;
-            map(z)
-        };
-        let [a, b, c, d] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
-        for row in 0..4 {
-            // Of fourth order in the step.
-            matrix[row][column] = (a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row]) / (12.0 * STEP);
-        }
-    }
-    Some(Map { matrix, offset })
 }
 
 fn steps(

@@ -26,7 +26,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{Chain, chain};
+pub use chain::{Chain, chain, defect};
 pub use predict::beside;
 
 pub(crate) use predict::predict;

@@ -1,0 +1,32 @@
+//! Whether the maps of a first-order chain are those of the real geometry.
+
+use super::System;
+use crate::geometry::{Map, SpectrumMap, transpose};
+use crate::model::View;
+use etendue_field::Window;
+
+/// What stays of the error of a chain of affine maps, such as that of [`chain`](super::chain()), as
+/// the neighbourhood of the central ray shrinks.
+///
+/// The maps of a chain must be the derivatives of where rays go through the real geometry. Then its
+/// error falls with the size of the neighbourhood, or with its square, and this is zero but for
+/// 10⁻⁹ of differences and rounding. With a wrong sign, cosine or factor in any map the error falls
+/// to this number instead: rays that are wrong, in half-widths of the window, or a wrong share of
+/// radiance.
+///
+/// `None` where the central ray does not arrive.
+#[must_use]
+pub fn defect(view: &View<System>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
+    let View { system, plane } = view;
+    let lands = |ray| plane.coordinates(&system.follow(ray)?);
+    let traced = Map::touching(|ray| Some(lands(ray)?.0))?;
+    let chain = Map {
+        matrix: transpose(&map.matrix),
+        offset: map.phase,
+    };
+    let half = [window.x, window.y, window.u, window.v].map(|profile| profile.half_width());
+    // What becomes of flux along the central ray; at the light it stands for radiance.
+    let (center, per_flux) = lands([0.0; 4])?;
+    let radiance = map.factor * plane.factor(center) / per_flux;
+    Some(chain.apart(&traced, &half).max((radiance - 1.0).abs()))
+}
