@@ -44,4 +44,4 @@ pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::{scattered, system};
 pub use verdict::Verdict;
-pub use work::{TooMuchWork, too_much_work};
+pub use work::{TooMuchWork, seconds, too_much_work};
