@@ -150,7 +150,7 @@ const MISTAKES: &[[&str; 3]] = &[
     [
         "pitch: 0.2",
         "pitch: 20cm",
-        "line 6, column 22: blockers[0]: `cm` stands here; allowed: a number in metres, without a unit",
+        "line 6, column 22: blockers[0]: `cm` stands here; allowed: a number without a unit",
     ],
     // A number in quotes.
     [

@@ -147,7 +147,7 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
             return "the file ends here; allowed: what is missing, and a bracket that closes it"
                 .into();
         }
-        Error::ExpectedComma if before.ends_with(is_digit) => "a number in metres, without a unit",
+        Error::ExpectedComma if before.ends_with(is_digit) => "a number without a unit",
         Error::ExpectedComma => "a comma before it, or a closing bracket",
         Error::ExpectedIdentifier | Error::SuggestRawIdentifier(_)
             if rest.starts_with(is_digit) =>
