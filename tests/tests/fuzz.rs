@@ -109,11 +109,18 @@ fn no_mutated_scene_file_panics() {
     let (mut sound, mut run) = (0, 0);
     for index in 0..20_000 {
         let text = mutated(index);
-        let Ok(file) = SceneFile::parse(&text) else {
-            continue;
-        };
-        let Ok(mut scene) = resolve("fuzz", file, ".".as_ref(), 1_000_000_000) else {
-            continue;
+        let resolved = SceneFile::parse(&text)
+            .and_then(|file| resolve("fuzz", file, ".".as_ref(), 1_000_000_000));
+        let mut scene = match resolved {
+            Ok(scene) => scene,
+            Err(error) => {
+                let told = error.in_text(&text, &[]);
+                assert!(
+                    told.lines().any(|line| line.starts_with("line 1, column ")),
+                    "{told}: {text}"
+                );
+                continue;
+            }
         };
         sound += 1;
         if sound % 16 == 0 {

@@ -2,7 +2,7 @@ use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::output::OutputFile;
 use crate::{deliver, limits, load, pictures, say, warnings};
-use etendue_compare::Applicability;
+use etendue_compare::{Applicability, Memory, seconds};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
 use etendue_theory::rays::FirstOrder;
@@ -24,15 +24,25 @@ pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
     let picture = picture.transpose()?;
     let theories = Applicability::of_planes(&scene);
     deliver(&description(&scene, &theories))?;
-    warnings::describe(&scene);
     if let Some((path, bytes, file)) = picture {
         file.write(&bytes)?;
         say(&format!("\ndrawn in {}", path.display()));
     }
+    warnings::tell(&scene, false);
     // As many threads as `run` takes unless told otherwise.
     let threads = available_parallelism().map_or(1, NonZero::get);
     limits::check(&scene, &theories, threads)?;
+    say(&expected(&scene, &theories, threads));
     Ok(0)
+}
+
+/// What a run takes, about.
+fn expected(scene: &Scene, theories: &[Applicability], threads: usize) -> String {
+    let [photons, predictions] = seconds(scene, theories).map(|seconds| seconds / threads as f64);
+    let gigabytes = Memory::new(scene, theories, threads).total() / 1e9;
+    format!(
+        "\nexpected on {threads} threads: about {photons:.1} s for photons, at most {predictions:.1} s for predictions, at most {gigabytes:.2} GB"
+    )
 }
 
 /// The lengths of the legs, with what they end on.

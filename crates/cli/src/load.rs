@@ -22,10 +22,23 @@ pub(crate) fn scene(
     let text = str::from_utf8(&bytes).map_err(|e| unreadable(&e))?;
     let mut file =
         SceneFile::parse(text).map_err(|e| Failure::bad_input(format!("{shown}: {e}")))?;
-    file = file.with_all(&args.set).map_err(Failure::bad_input)?;
+    let refused = |e| Failure::bad_input(format!("{shown}: --set {e}"));
+    file = file.with_all(&args.set).map_err(refused)?;
+    let photons = file.run.photons;
     options(&mut file.run);
+    let set = args.set.iter();
+    let set = set.map(|(path, value)| (path.clone(), format!("--set {path}={value}")));
+    let mut set: Vec<(String, String)> = set.collect();
+    if file.run.photons != photons {
+        let option = format!("--photons {}", file.run.photons);
+        set.push(("run.photons".to_owned(), option));
+    }
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    resolved(&name, file, folder(args), &shown.to_string())
+    resolve(&name, file, folder(args), machine::available_memory()).map_err(|error| {
+        let lines = error.in_text(text, &set);
+        let lines = lines.lines().map(|line| format!("{shown}: {line}"));
+        refusal(&error, lines.collect::<Vec<_>>().join("\n"))
+    })
 }
 
 /// The folder of the scene file, in which its meshes and pictures are.
@@ -80,12 +93,16 @@ pub(crate) fn resolved(
 ) -> Result<Scene, Failure> {
     resolve(name, file, folder, machine::available_memory()).map_err(|error| {
         let message = format!("{shown}:\n{error}");
-        match &error {
-            // The scene is sound; it is this machine that is too small.
-            SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {
-                Failure::cannot_run(message)
-            }
-            _ => Failure::bad_input(message),
-        }
+        refusal(&error, message)
     })
+}
+
+fn refusal(error: &SceneError, message: String) -> Failure {
+    match error {
+        // The scene is sound; it is this machine that is too small.
+        SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {
+            Failure::cannot_run(message)
+        }
+        _ => Failure::bad_input(message),
+    }
 }

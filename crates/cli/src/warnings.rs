@@ -1,15 +1,7 @@
 //! The warnings of a scene, each on a line of its own.
 
-use crate::say;
 use etendue_scene::Scene;
 use std::io::Write;
-
-/// To standard output, after the description of a scene.
-pub(crate) fn describe(scene: &Scene) {
-    for warning in scene.warnings() {
-        say(&format!("\nwarning: {warning}"));
-    }
-}
 
 /// To standard error, unless the user asked for quiet: standard output is that of the result.
 pub(crate) fn tell(scene: &Scene, quiet: bool) {

@@ -43,4 +43,4 @@ pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::{scattered, system};
 pub use verdict::{Test, Verdict};
-pub use work::{TooMuchWork, too_much_work};
+pub use work::{TooMuchWork, seconds, too_much_work};

@@ -75,6 +75,26 @@ pub fn too_much_work(scene: &Scene, theories: &[Applicability]) -> Option<TooMuc
     None
 }
 
+/// Seconds of one core for each photon, plane and azimuth: 37e-9 for `fig9b`, 33e-9 for
+/// `ggx_sphere` (docs/performance.md).
+const SECONDS: f64 = 4e-8;
+
+/// Seconds of one core, about: to trace the photons of a scene, and for its predictions at most.
+#[must_use]
+pub fn seconds(scene: &Scene, theories: &[Applicability]) -> [f64; 2] {
+    let planes = scene.planes.iter();
+    let azimuths: usize = planes.clone().map(|plane| plane.grid.azimuths).sum();
+    let works = planes
+        .zip(theories)
+        .map(|(plane, theory)| of(scene, plane, theory));
+    let steps: f64 = works.map(|work| work.steps).sum();
+    // A core does a step in about a nanosecond.
+    [
+        scene.run.photons as f64 * azimuths as f64 * SECONDS,
+        1e-9 * steps,
+    ]
+}
+
 /// What the prediction of a plane takes.
 pub(crate) fn of(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Work {
     if applicability.dark.is_some() {

@@ -1,4 +1,5 @@
 use crate::limits;
+use crate::place::{find, steps};
 use std::fmt;
 
 /// A value that cannot be used: which, what it is, and what is allowed there.
@@ -16,11 +17,16 @@ pub struct Fault {
 
 impl fmt::Display for Fault {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(
-            f,
-            "{} is {}; allowed: {}",
-            self.field, self.value, self.allowed
-        )
+        let Self {
+            field,
+            value,
+            allowed,
+            ..
+        } = self;
+        let two = field.split_once(" and ");
+        let is_two = two.is_some_and(|(a, b)| !a.contains(' ') && !b.contains(' '));
+        let is = if is_two { "are" } else { "is" };
+        write!(f, "{field} {is} {value}; allowed: {allowed}")
     }
 }
 
@@ -50,12 +56,41 @@ pub enum SceneError {
     Values(Vec<Fault>),
 }
 
+impl SceneError {
+    /// The error in words, a line for each fault with its place: in the text of the scene file, or
+    /// what has set the field instead, such as `--set run.photons=3`, by the path it was set at.
+    #[must_use]
+    pub fn in_text(&self, text: &str, set: &[(String, String)]) -> String {
+        match self {
+            Self::Values(faults) => lines(faults, |fault| {
+                let field = steps(&fault.field);
+                let mut set = set.iter().rev();
+                let by = set.find(|(path, _)| field.starts_with(&steps(path)));
+                match (by, find(text, &fault.field)) {
+                    (Some((_, by)), _) => format!("{by}: {fault}"),
+                    (None, Some(at)) => {
+                        format!("line {}, column {}: {fault}", at.line, at.column)
+                    }
+                    _ => fault.to_string(),
+                }
+            })
+            .join("\n"),
+            _ => self.to_string(),
+        }
+    }
+}
+
 fn list(faults: &[Fault]) -> String {
-    let told = faults.iter().take(limits::FAULTS);
-    let mut lines: Vec<String> = told.map(ToString::to_string).collect();
+    lines(faults, Fault::to_string).join("\n")
+}
+
+/// The first faults in words, and how many more there are.
+fn lines(faults: &[Fault], told: impl Fn(&Fault) -> String) -> Vec<String> {
+    let first = faults.iter().take(limits::FAULTS);
+    let mut lines: Vec<String> = first.map(told).collect();
     let more = faults.len() - lines.len();
     if more > 0 {
         lines.push(format!("and {more} more: {} faults in all", faults.len()));
     }
-    lines.join("\n")
+    lines
 }

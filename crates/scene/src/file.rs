@@ -10,7 +10,9 @@ pub use surface::{
 
 use crate::overrides::whole;
 use etendue_field::{Orientation, Profile, Quantity};
-use serde::{Deserialize, Serialize};
+use serde::de::{Error, Unexpected, Visitor};
+use serde::{Deserialize, Deserializer, Serialize};
+use std::fmt;
 
 /// A scene file as written, in RON. Lengths in metres; slopes are tangents of angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -54,6 +56,7 @@ pub enum BlockersFile {
         /// Centre of the grid, world coordinates.
         center: [f64; 3],
         /// Squares along X and along Y.
+        #[serde(deserialize_with = "counts")]
         count: [u32; 2],
         /// Distance between grid points.
         pitch: f64,
@@ -249,7 +252,7 @@ pub struct WindowFile {
 #[serde(rename = "Frequencies", deny_unknown_fields)]
 pub struct FrequenciesFile {
     /// Number K of azimuths πk/K.
-    #[serde(default = "eight")]
+    #[serde(default = "eight", deserialize_with = "count")]
     pub azimuths: u32,
     /// Spatial frequency ρ, cycles per metre.
     pub rho: AxisFile,
@@ -278,6 +281,7 @@ pub struct RunFile {
     /// Seed of the photons.
     pub seed: u64,
     /// Independent batches the errors come from.
+    #[serde(deserialize_with = "count")]
     pub batches: u32,
     /// Share of true scenes the verdict may reject, over all planes.
     pub alpha: f64,
@@ -301,25 +305,40 @@ impl Default for RunFile {
 }
 
 /// A whole number, in whatever way it is written.
-fn count<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<u64, D::Error> {
-    struct Count;
-    impl serde::de::Visitor<'_> for Count {
-        type Value = u64;
+struct Whole<T>(T);
 
-        fn expecting(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-            f.write_str("a whole number, such as 10_000_000 or 1e7")
-        }
+fn count<'de, T: TryFrom<u64>, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
+    Whole::deserialize(deserializer).map(|Whole(count)| count)
+}
 
-        fn visit_u64<E>(self, value: u64) -> Result<u64, E> {
-            Ok(value)
-        }
+fn counts<'de, D: Deserializer<'de>>(deserializer: D) -> Result<[u32; 2], D::Error> {
+    <[Whole<u32>; 2]>::deserialize(deserializer).map(|counts| counts.map(|Whole(count)| count))
+}
 
-        fn visit_f64<E: serde::de::Error>(self, value: f64) -> Result<u64, E> {
-            let refused = || E::invalid_value(serde::de::Unexpected::Float(value), &self);
-            whole(value).ok_or_else(refused)
-        }
+impl<'de, T: TryFrom<u64>> Deserialize<'de> for Whole<T> {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        let count = deserializer.deserialize_any(Count)?;
+        let refused = || D::Error::invalid_value(Unexpected::Unsigned(count), &Count);
+        T::try_from(count).map(Self).map_err(|_| refused())
     }
-    deserializer.deserialize_any(Count)
+}
+
+struct Count;
+
+impl Visitor<'_> for Count {
+    type Value = u64;
+
+    fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str("a whole number, such as 10_000_000 or 1e7")
+    }
+
+    fn visit_u64<E>(self, value: u64) -> Result<u64, E> {
+        Ok(value)
+    }
+
+    fn visit_f64<E: Error>(self, value: f64) -> Result<u64, E> {
+        whole(value).ok_or_else(|| E::invalid_value(Unexpected::Float(value), &self))
+    }
 }
 
 /// How photons leave the light.

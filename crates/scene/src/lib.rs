@@ -18,13 +18,17 @@
 //! ```
 
 mod curvature;
+mod examples;
 mod fault;
 mod file;
+mod likely;
 pub mod limits;
 mod mesh;
+mod nearest;
 mod overrides;
 mod parse;
 mod picture;
+mod place;
 mod read;
 mod resolve;
 mod scene;

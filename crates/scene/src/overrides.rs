@@ -1,5 +1,8 @@
 //! Fields set on the command line.
 
+use crate::examples::wanted;
+use crate::nearest::did_you_mean;
+use crate::parse::path_of;
 use crate::shown::shown;
 use crate::{SceneError, SceneFile, limits};
 use serde_json::Value;
@@ -18,7 +21,7 @@ impl SceneFile {
         };
         let mut tree = serde_json::to_value(&self).map_err(|e| fault(e.to_string()))?;
         set(&mut tree, path, value).map_err(fault)?;
-        serde_json::from_value(tree).map_err(|e| fault(e.to_string()))
+        serde_path_to_error::deserialize(tree).map_err(|error| fault(unfit(&error)))
     }
 
     /// The scene file with several fields set, one after the other, each as by [`Self::with`].
@@ -48,6 +51,19 @@ impl SceneFile {
         }
         serde_json::from_value(tree).ok()
     }
+}
+
+/// Why a value does not fit the field at which it is, or below.
+fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
+    let field = path_of(error.path());
+    let told = error.inner().to_string();
+    // Of an unknown name: itself, and those that are known.
+    let mut names = told.split('`').skip(1).step_by(2);
+    let meant = match names.next() {
+        Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),
+        _ => String::new(),
+    };
+    format!("{field}: {told}{meant}; allowed: {}", wanted(&field))
 }
 
 /// Sets what is at `path` below a node.
@@ -87,7 +103,11 @@ fn is_name_of_variant(name: &str) -> bool {
 /// Why `name` cannot stand below a node.
 fn refusal(node: &Value, name: &str) -> String {
     let allowed = match node {
-        Value::Array(items) => format!("0 to {}", items.len().saturating_sub(1)),
+        Value::Array(items) => match items.len() {
+            0 => "nothing: the list is empty".to_owned(),
+            1 => "0".to_owned(),
+            n => format!("0 to {}", n - 1),
+        },
         Value::Object(fields) if is_variant(fields) && !is_name_of_variant(name) => {
             return fields.values().map(|below| refusal(below, name)).collect();
         }
@@ -100,7 +120,12 @@ fn refusal(node: &Value, name: &str) -> String {
     } else {
         ""
     };
-    format!("no field `{name}` here; allowed: {allowed}{another}")
+    let known = node
+        .as_object()
+        .into_iter()
+        .flat_map(|fields| fields.keys());
+    let meant = did_you_mean(name, known.map(String::as_str));
+    format!("no field `{name}` here{meant}; allowed: {allowed}{another}")
 }
 
 /// A value as it is written in a scene file or in JSON; whole numbers such as 1e6 are integers, and

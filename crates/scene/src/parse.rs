@@ -1,7 +1,13 @@
-//! Reads scene files.
+//! Reads scene files, and says of one that cannot be read which field is at fault.
 
+use crate::examples::{example, has_fields, wanted};
+use crate::nearest::did_you_mean;
+use crate::place::{Place, find, word};
 use crate::shown::shown;
 use crate::{SceneError, SceneFile, limits};
+use ron::error::{Error, SpannedError};
+use serde::Deserialize;
+use serde_path_to_error::{Path, Segment, Track};
 
 impl SceneFile {
     /// Reads a scene file.
@@ -11,13 +17,158 @@ impl SceneFile {
     pub fn parse(text: &str) -> Result<Self, SceneError> {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        ron::Options::default()
-            .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
-            .from_str(text)
-            .map_err(|error| SceneError::Syntax {
-                line: error.span.start.line,
-                column: error.span.start.col,
-                message: shown(error.code, limits::ALLOWED),
-            })
+        let options = ron::Options::default()
+            .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
+        options.from_str(text).map_err(|error| {
+            // Read again, to learn where: only a file at fault is read twice.
+            let mut track = Track::new();
+            if let Ok(mut ron) = ron::Deserializer::from_str_with_options(text, &options) {
+                let tracked = serde_path_to_error::Deserializer::new(&mut ron, &mut track);
+                let _ = Self::deserialize(tracked);
+            }
+            syntax(text, &path_of(&track.path()), &error)
+        })
     }
 }
+
+/// A path as messages have it, without names of variants.
+pub(crate) fn path_of(path: &Path) -> String {
+    let mut written = String::new();
+    for segment in path.iter() {
+        match segment {
+            Segment::Seq { index } => written.push_str(&format!("[{index}]")),
+            Segment::Map { key } if written.is_empty() => written.push_str(key),
+            Segment::Map { key } => written.extend([".", key]),
+            Segment::Enum { .. } | Segment::Unknown => {}
+        }
+    }
+    written
+}
+
+/// A field of what is at a path.
+fn below(path: &str, field: &str) -> String {
+    let dot = if path.is_empty() { "" } else { "." };
+    format!("{path}{dot}{}", shown(field, limits::NAME))
+}
+
+/// The error of a file in which something is wrong at a path, in words.
+fn syntax(text: &str, path: &str, error: &SpannedError) -> SceneError {
+    let [start, end] = [error.span.start, error.span.end].map(|at| [at.line, at.col]);
+    let value = find(text, path);
+    let whole = value.map_or(start, |value| [value.line, value.column]);
+    let name = if path.is_empty() { "the scene" } else { path };
+    let code = &error.code;
+    let is_whole = |_: &Place<'_>| [start, end].contains(&whole) || is_shape(code, path);
+    let (at, message) = if let Some((is_whole, message)) = of_names(code, name, path) {
+        (if is_whole { whole } else { start }, message)
+    } else if let Some(Place { value, .. }) = value.filter(is_whole) {
+        let message = format!("{name} is {}; allowed: {}", excerpt(value), wanted(path));
+        (whole, message)
+    } else {
+        let at = if *code == Error::Eof { end } else { start };
+        (at, format!("{name}: {}", unexpected(code, text, at)))
+    };
+    let [line, column] = at;
+    let message = shown(message, limits::ALLOWED);
+    SceneError::Syntax {
+        line,
+        column,
+        message,
+    }
+}
+
+/// What is wrong with the names of variants and fields, and whether it is with all of the value.
+fn of_names(code: &Error, name: &str, path: &str) -> Option<(bool, String)> {
+    Some(match code {
+        Error::NoSuchEnumVariant {
+            expected, found, ..
+        } => {
+            let meant = did_you_mean(found, expected.iter().copied());
+            let found = shown(found, limits::NAME);
+            let known = expected.join(", ");
+            let such_as = match example(path) {
+                word if expected.contains(&word) => String::new(),
+                example => format!(", such as {example}"),
+            };
+            (
+                true,
+                format!("{name} is {found}{meant}; allowed: {known}{such_as}"),
+            )
+        }
+        Error::NoSuchStructField {
+            expected, found, ..
+        } => {
+            let meant = did_you_mean(found, expected.iter().copied());
+            let known = expected.join(", ");
+            // The path leads to the field already.
+            let of = path.strip_suffix(found.as_str()).unwrap_or(path);
+            let field = below(of.trim_end_matches('.'), found);
+            (
+                false,
+                format!("{field} is no field{meant}; allowed: {known}"),
+            )
+        }
+        Error::MissingStructField { field, .. } => {
+            let field = below(path, field);
+            (
+                true,
+                format!("{field} is missing; allowed: {}", wanted(&field)),
+            )
+        }
+        Error::DuplicateStructField { field, .. } => {
+            let field = below(path, field);
+            (false, format!("{field} is stated twice; allowed: once"))
+        }
+        _ => return None,
+    })
+}
+
+/// Whether an error inside of a value is about all of it: a number, a name or a vector.
+fn is_shape(code: &Error, path: &str) -> bool {
+    let is_cut = matches!(
+        code,
+        Error::Eof
+            | Error::ExpectedStringEnd
+            | Error::UnclosedBlockComment
+            | Error::TrailingCharacters
+    );
+    !is_cut && !has_fields(path)
+}
+
+/// What stands at a place between fields, and what could.
+fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
+    let rest = text.lines().nth(line - 1).unwrap_or_default();
+    let at = rest.char_indices().nth(column - 1);
+    let (before, rest) = rest.split_at(at.map_or(rest.len(), |(at, _)| at));
+    let is_digit = |c: char| c.is_ascii_digit();
+    let found = shown(&rest[..word(rest)], EXCERPT);
+    let allowed = match code {
+        Error::Eof => {
+            return "the file ends here; allowed: what is missing, and a bracket that closes it"
+                .into();
+        }
+        Error::ExpectedComma if before.ends_with(is_digit) => "a number without a unit",
+        Error::ExpectedComma => "a comma before it, or a closing bracket",
+        Error::ExpectedIdentifier | Error::SuggestRawIdentifier(_)
+            if rest.starts_with(is_digit) =>
+        {
+            "the name of a field; decimals have a point, such as 0.1"
+        }
+        Error::ExpectedIdentifier => "the name of a field, or `)`",
+        Error::ExpectedMapColon => "a colon after the name of a field",
+        Error::TrailingCharacters => "nothing after the last bracket",
+        code => return format!("`{found}` stands here: {}", shown(code, limits::VALUE)),
+    };
+    format!("`{found}` stands here; allowed: {allowed}")
+}
+
+/// The beginning of a value, in one line.
+fn excerpt(value: &str) -> String {
+    // A word may be as long as the file.
+    let start: String = value.chars().take(4 * EXCERPT).collect();
+    let words: Vec<&str> = start.split_whitespace().collect();
+    shown(words.join(" "), EXCERPT)
+}
+
+/// Characters of a value that is shown as it is written.
+const EXCERPT: usize = 60;

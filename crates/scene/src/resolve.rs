@@ -21,7 +21,7 @@ use crate::limits::INPUT_BYTES;
 use crate::read::read_below;
 use crate::scene::{CentralRay, Object, Run, Scene};
 use etendue_field::{Frame, tidy};
-use faults::{Faults, show};
+use faults::{Faults, number, show, vector};
 use glam::DVec3;
 use path::Things;
 use std::collections::BTreeMap;
@@ -47,7 +47,7 @@ pub fn resolve(
     }
     .scene(name, file, memory);
     match scene {
-        Some(scene) if faults.0.is_empty() => Ok(scene),
+        Some(scene) if faults.all.is_empty() => Ok(scene),
         _ => Err(SceneError::Values(faults.once())),
     }
 }
@@ -91,7 +91,7 @@ impl Resolver<'_> {
         self.ends(&file, &blockers, path.first_hit());
         let stops = stops(&path, things);
         self.names(&file, &stops);
-        self.distinct(&stops);
+        self.distinct(&file, &stops);
         let planes = self.planes(&file, &path, &stops);
         self.memory(&planes, file.run.batches, memory);
 
@@ -147,7 +147,7 @@ impl Resolver<'_> {
             let allowed = "two directions that are not parallel, neither of length 0";
             self.faults.add(
                 "path.direction and path.x_axis",
-                format!("{d} and {x}"),
+                format!("{} and {}", vector(&path.direction), vector(&path.x_axis)),
                 allowed,
             );
         }
@@ -155,14 +155,16 @@ impl Resolver<'_> {
     }
 
     /// Two flat things in one plane: which one light meets first would be left to rounding.
-    fn distinct(&mut self, stops: &[Stop<'_>]) {
+    fn distinct(&mut self, file: &SceneFile, stops: &[Stop<'_>]) {
         let mut flat: Vec<&Stop<'_>> = stops.iter().filter(|s| s.is_flat()).collect();
         flat.sort_by(|a, b| a.extent[0].total_cmp(&b.extent[0]));
         for pair in flat.windows(2) {
             let distance = pair[1].extent[0];
             if (distance - pair[0].extent[0]).abs() <= SAME_PLANE * distance.abs() {
-                self.faults.add(
-                    format!("{} and {}", pair[0].name, pair[1].name),
+                let [a, b] = [0, 1].map(|i| names::fields(file, pair[i].name).next());
+                let [a, b] = [a, b].map(Option::unwrap_or_default);
+                self.faults.add_on_path(
+                    format!("{a}.center and {b}.center"),
                     format!("both at distance {} m", tidy(distance)),
                     "planes at different distances",
                 );
@@ -193,7 +195,7 @@ impl Resolver<'_> {
             let least = 1.0 - (1.0 - LEAST_LEVEL).powf(planes as f64);
             let allowed =
                 format!("at least {least:.4} with {planes} planes: p is known to 1/20000");
-            self.faults.add("run.alpha", show(alpha), allowed);
+            self.faults.add("run.alpha", number(alpha), allowed);
         }
     }
 }

@@ -1,5 +1,7 @@
-//! What a sound scene should still be told of: smooth meshes too coarse for their normals.
+//! What a sound scene should still be told of: likely mistakes, and smooth meshes too coarse for their
+//! normals.
 
+use crate::likely::mistakes;
 use crate::scene::{Leg, MeshObject, Object, Scene, SmoothMesh};
 use etendue_field::{Frame, TwoPlane, VirtualPlane, interpolated_normal};
 use glam::DVec3;
@@ -19,7 +21,7 @@ const WAVES: usize = 8;
 const SLOPES: [f64; 3] = [-0.5, 0.0, 0.5];
 
 impl Scene {
-    /// Warnings in words, one for each smooth mesh on the path that is too coarse.
+    /// Warnings in words: of likely mistakes, and one for each smooth mesh on the path that is too coarse.
     ///
     /// A mesh turns light by its interpolated normal n and catches it by the normal t of the
     /// triangle. Photons that come along d and leave along e then have (d·t / d·n) / (e·t / e·n)
@@ -29,7 +31,7 @@ impl Scene {
     /// are measured: finer facets than those average out.
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
-        let mut warnings = Vec::new();
+        let mut warnings = mistakes(self);
         for (i, leg) in self.path.legs.iter().enumerate().skip(1) {
             let Some(Object::Mesh(mesh)) = leg.leaves.map(|hit| hit.object) else {
                 continue;

@@ -141,7 +141,7 @@ fn each_bad_value_is_named() {
         ("rho: (max: 16)", "rho: (max: 1e300)", "frequencies.rho.max"),
         ("azimuths: 8", "azimuths: 0", "frequencies.azimuths"),
         ("name: \"light\"", "name: \"../light\"", "planes[0].name"),
-        ("name: \"light\"", "name: \"receiver\"", "planes: name"),
+        ("name: \"light\"", "name: \"receiver\"", "planes[3].name"),
         ("alpha: 0.01", "alpha: 0", "run.alpha"),
         ("alpha: 0.01", "alpha: 1e-4", "run.alpha"),
         ("batches: 64", "batches: 8", "run.batches"),

@@ -131,9 +131,9 @@ const BAD: &[(&str, &str, &str)] = &[
     (
         "center: (0.5, 0, 1)",
         "center: (0.5, 0, 1.2)",
-        "shapes and grating",
+        "blockers[0].center and blockers[1].center",
     ),
-    ("name: \"grating\"", "name: \"shapes\"", "name"),
+    ("name: \"grating\"", "name: \"shapes\"", "blockers[1].name"),
     ("frequency: 2", "frequency: 0", "blockers[1].frequency"),
     (
         "modulation: 0.5",
@@ -270,13 +270,26 @@ fn counts_are_written_as_people_write_them() {
             }
         }
     }
+    let counts = "run: (batches: 1.28e2), window:";
+    let text = text().replacen("window:", counts, 1);
+    let rings = text.replacen("rings: 10", "rings: 1e1", 1);
+    assert_ne!(text, rings);
+    let file = SceneFile::parse(&rings).unwrap();
+    assert_eq!(file, SceneFile::parse(&text).unwrap());
+    assert_eq!(file.run.batches, 128);
+    let message = SceneFile::parse(&text.replacen("rings: 10", "rings: 5e9", 1));
+    let message = message.unwrap_err().to_string();
+    assert!(
+        message.contains("rings is 5e9; allowed: a whole number"),
+        "{message}"
+    );
 }
 
 #[test]
 fn unknown_words_are_named_with_the_known_ones() {
     for (from, to, part) in [
         ("exponent: 8", "exponnt: 8", "exponent"),
-        ("axis: X", "axis: Z", "`X`"),
+        ("axis: X", "axis: Z", "allowed: X, Y"),
         ("opaque: Below", "opaque: Left", "Above"),
         (
             "quantity: DifferentialIrradiance",

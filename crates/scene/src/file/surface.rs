@@ -1,6 +1,6 @@
 //! Surfaces and what they do to light, as written.
 
-use super::{AxisName, half, one};
+use super::{AxisName, count, half, one};
 use serde::{Deserialize, Serialize};
 
 /// Where a mesh comes from.
@@ -17,6 +17,7 @@ pub enum MeshSource {
         /// It reaches to ± this along x and along y.
         half: f64,
         /// Cells along a side, of two triangles each.
+        #[serde(deserialize_with = "count")]
         cells: u32,
     },
     /// A generated closed surface around the origin: see [`Mesh::star`](crate::Mesh::star).
@@ -26,8 +27,10 @@ pub enum MeshSource {
         /// Height of the lobes as a share of the radius.
         relief: f64,
         /// Number of lobes around the axis.
+        #[serde(deserialize_with = "count")]
         lobes: u32,
         /// Rings from pole to pole.
+        #[serde(deserialize_with = "count")]
         rings: u32,
     },
 }

@@ -2,7 +2,7 @@
 
 use super::Resolver;
 use super::apart::{Thing, overlap};
-use super::faults::show;
+use super::faults::number;
 use super::jitter::jittered_squares;
 use crate::file::{BlockersFile, HalfName, LightFile, SceneFile, ShapeFile};
 use crate::limits;
@@ -27,7 +27,7 @@ impl Resolver<'_> {
         for (i, blockers) in file.blockers.iter().enumerate() {
             let layer = layers.iter().find(|layer| layer.name == blockers.name());
             if let Some(layer) = layer.filter(|layer| layer.distance >= length) {
-                self.faults.add(
+                self.faults.add_on_path(
                     format!("blockers[{i}].center"),
                     format!("at distance {} m from the light", tidy(layer.distance)),
                     format!(
@@ -118,18 +118,17 @@ impl Resolver<'_> {
             );
         }
         self.faults.positive(format!("{of}.pitch"), pitch);
-        self.faults
-            .within(format!("{of}.fill"), fill, f64::MIN_POSITIVE..=1.0);
-        // Squares that may overlap would be counted twice by the prediction. Rounding must not refuse a
-        // fill of 0.7 with a jitter of 0.3.
-        if !(jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
-            self.faults.add(
-                format!("{of}.jitter"),
-                show(jitter),
-                format!("0 to 1 − fill, which is {:.6}", 1.0 - fill),
-            );
+        if !(fill > 0.0 && fill <= 1.0) {
+            let allowed = "above 0, at most 1: a share of the pitch";
+            self.faults.add(format!("{of}.fill"), number(fill), allowed);
+        // Squares that may overlap would be counted twice by the prediction. Rounding must not
+        // refuse a fill of 0.7 with a jitter of 0.3.
+        } else if !(jitter >= 0.0 && fill + jitter <= 1.0 + 1e-12) {
+            let allowed = format!("0 to 1 − fill, which is {}", tidy(1.0 - fill));
+            self.faults
+                .add(format!("{of}.jitter"), number(jitter), allowed);
         }
-        if !self.faults.0.is_empty() {
+        if !self.faults.all.is_empty() {
             return Vec::new();
         }
         let squares = jittered_squares(center, count, pitch, fill, jitter, seed);
@@ -179,7 +178,7 @@ impl Resolver<'_> {
                 }
             }
         }
-        if self.faults.0.is_empty() {
+        if self.faults.all.is_empty() {
             self.apart(of, &shapes, &half_planes, [&of_shapes, &of_half_planes]);
         }
         opaque(shapes, half_planes)
@@ -235,8 +234,7 @@ impl Resolver<'_> {
             let allowed = format!(
                 "at most {most:.0e} in all when the shapes of light and layers are multiplied"
             );
-            self.faults
-                .add("blockers: count", format!("{product:.1e}"), allowed);
+            self.faults.add("blockers: count", number(product), allowed);
         }
     }
 }

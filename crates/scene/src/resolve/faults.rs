@@ -9,7 +9,13 @@ use std::ops::RangeInclusive;
 
 /// Faults found so far.
 #[derive(Default)]
-pub(super) struct Faults(pub(super) Vec<Fault>);
+pub(super) struct Faults {
+    pub(super) all: Vec<Fault>,
+    /// Where the central ray begins and goes is at fault.
+    pub(super) astray: bool,
+    /// That, or where something stands.
+    displaced: bool,
+}
 
 impl Faults {
     pub(super) fn add(
@@ -18,39 +24,57 @@ impl Faults {
         value: impl Into<String>,
         allowed: impl Into<String>,
     ) {
-        self.0.push(Fault {
-            field: shown(field.into(), limits::VALUE),
+        let field = field.into();
+        self.astray |= field.starts_with("path.") || field.starts_with("light.center");
+        self.displaced |= self.astray || is_of_place(&field);
+        self.all.push(Fault {
+            field: shown(field, limits::VALUE),
             value: shown(value.into(), limits::VALUE),
             allowed: shown(allowed.into(), limits::ALLOWED),
             memory: false,
         });
     }
 
+    /// A fault of where things are on the path: nothing is known of it when their own places, or
+    /// those of others, are at fault.
+    pub(super) fn add_on_path(
+        &mut self,
+        field: impl Into<String>,
+        value: impl Into<String>,
+        allowed: impl Into<String>,
+    ) {
+        if !self.displaced {
+            self.add(field, value, allowed);
+        }
+    }
+
     /// Each fault once: planes share the scene's window and frequencies.
     pub(super) fn once(self) -> Vec<Fault> {
         let mut seen = HashSet::new();
-        let is_new: Vec<bool> = self.0.iter().map(|fault| seen.insert(fault)).collect();
-        let each = self.0.into_iter().zip(is_new);
+        let is_new: Vec<bool> = self.all.iter().map(|fault| seen.insert(fault)).collect();
+        let each = self.all.into_iter().zip(is_new);
         each.filter_map(|(fault, is_new)| is_new.then_some(fault))
             .collect()
     }
 
-    /// Requires a number in a closed range.
+    /// Requires a number in a closed range, and tells whether it is there.
     pub(super) fn within(
         &mut self,
         field: impl Into<String>,
         value: f64,
         range: RangeInclusive<f64>,
-    ) {
-        if !range.contains(&value) {
-            let (low, high) = range.into_inner();
-            self.add(field, show(value), format!("{low:?} to {high:?}"));
+    ) -> bool {
+        let is_within = range.contains(&value);
+        if !is_within {
+            let [low, high] = [range.start(), range.end()].map(|end| number(*end));
+            self.add(field, number(value), format!("{low} to {high}"));
         }
+        is_within
     }
 
-    /// Requires a size, a width or a frequency.
-    pub(super) fn positive(&mut self, field: impl Into<String>, value: f64) {
-        self.within(field, value, 1.0 / LARGEST..=LARGEST);
+    /// Requires a size, a width or a frequency, and tells whether it is one.
+    pub(super) fn positive(&mut self, field: impl Into<String>, value: f64) -> bool {
+        self.within(field, value, 1.0 / LARGEST..=LARGEST)
     }
 
     /// Requires coordinates.
@@ -64,6 +88,42 @@ impl Faults {
 /// The largest number a scene may hold, and the inverse of the smallest size: their products to the sixth
 /// power, which a power spectrum has, stay far inside what f64 holds.
 const LARGEST: f64 = 1e9;
+
+/// Whether a field says where a surface or blockers are, and so what the central ray meets.
+fn is_of_place(field: &str) -> bool {
+    let of_things = |list: &str| {
+        field
+            .strip_prefix(list)?
+            .split_once("].")
+            .map(|(_, field)| field)
+    };
+    let starts = |field: Option<&str>, names: &[&str]| {
+        field.is_some_and(|field| names.iter().any(|name| field.starts_with(name)))
+    };
+    let of_surface = [
+        "center", "size", "facing", "form", "along", "aperture", "mesh", "scale",
+    ];
+    starts(of_things("surfaces["), &of_surface)
+        || starts(of_things("surfaces["), &["event.front", "event.back"])
+        || field.ends_with("].event")
+        || starts(of_things("blockers["), &["center", "mesh", "scale"])
+}
+
+/// A number as people write it.
+pub(super) fn number(x: f64) -> String {
+    let is_plain = x == 0.0 || !x.is_finite() || (1e-4..1e7).contains(&x.abs());
+    if is_plain {
+        x.to_string()
+    } else {
+        format!("{x:e}")
+    }
+}
+
+/// A vector as it is written.
+pub(super) fn vector(values: &[f64]) -> String {
+    let values: Vec<String> = values.iter().map(|value| number(*value)).collect();
+    format!("({})", values.join(", "))
+}
 
 /// A value as it is written, as far as a message shows it.
 pub(super) fn show(value: impl Debug) -> String {

@@ -36,7 +36,7 @@ impl Resolver<'_> {
         let triangles = meshes(file).map(triangles).sum();
         let field = "triangles of all Star and Paraboloid meshes";
         self.at_most(field, triangles, "triangles", limits::MADE_TRIANGLES);
-        self.faults.0.is_empty()
+        self.faults.all.is_empty()
     }
 
     fn at_most(&mut self, field: &str, count: u64, what: &str, most: u64) {

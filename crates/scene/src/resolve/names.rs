@@ -27,11 +27,10 @@ impl Resolver<'_> {
             }
         }
         for repeated in repeated(stops.iter().map(|stop| stop.name)) {
-            self.faults.add(
-                "name",
-                show(repeated),
-                "a name no other blockers or surface has",
-            );
+            let field = fields(file, repeated).nth(1).unwrap_or_default();
+            let allowed = "a name no other blockers or surface has";
+            self.faults
+                .add(format!("{field}.name"), show(repeated), allowed);
         }
         self.names_of_planes(file);
     }
@@ -40,8 +39,10 @@ impl Resolver<'_> {
         // Some disks hold `Light` and `light` for one folder.
         let folders: Vec<String> = file.planes.iter().map(|p| p.name.to_lowercase()).collect();
         for repeated in repeated(folders.iter().map(String::as_str)) {
+            let mut named = (0..folders.len()).filter(|i| folders[*i] == repeated);
+            let field = format!("planes[{}].name", named.nth(1).unwrap_or_default());
             self.faults
-                .add("planes: name", show(repeated), "a name no other plane has");
+                .add(field, show(repeated), "a name no other plane has");
         }
         let usable = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
         for (i, plane) in file.planes.iter().enumerate() {
@@ -53,6 +54,18 @@ impl Resolver<'_> {
             }
         }
     }
+}
+
+/// What has a name: `blockers[0]`, `surfaces[0]`.
+pub(super) fn fields<'a>(file: &'a SceneFile, name: &'a str) -> impl Iterator<Item = String> + 'a {
+    let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
+    let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();
+    let blockers = blockers.map(|(i, name)| (format!("blockers[{i}]"), name));
+    let surfaces = surfaces.map(|(i, name)| (format!("surfaces[{i}]"), name));
+    let named = blockers
+        .chain(surfaces)
+        .filter(move |(_, its)| *its == name);
+    named.map(|(field, _)| field)
 }
 
 /// Whether a name can stand in messages, files and pictures.

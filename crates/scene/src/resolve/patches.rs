@@ -1,8 +1,8 @@
 use super::Resolver;
-use super::faults::show;
+use super::faults::{number, show, vector};
 use crate::file::{EventFile, FormFile, SceneFile, SurfaceFile};
 use crate::scene::{Event, PatchObject};
-use etendue_field::{Frame, Patch, Specular};
+use etendue_field::{Frame, Patch, Specular, tidy};
 use glam::DVec3;
 
 /// Largest curvature, per metre.
@@ -47,17 +47,17 @@ impl Resolver<'_> {
             .iter()
             .any(|k| !(-SHARPEST..=SHARPEST).contains(k))
         {
-            let allowed = format!("curvatures of -{SHARPEST:?} to {SHARPEST:?}");
+            let allowed = format!("curvatures of -{SHARPEST:e} to {SHARPEST:e}");
             self.faults.add(format!("{of}.form"), show(form), allowed);
         }
         // Beyond the half that holds the vertex there is nothing of a sphere or a cylinder.
         if curvature[2] != 0.0 && *aperture > 1.0 / curvature[2].abs() {
             let allowed = format!(
                 "at most the radius of curvature, {} m",
-                1.0 / curvature[2].abs()
+                tidy(1.0 / curvature[2].abs())
             );
             self.faults
-                .add(format!("{of}.aperture"), show(aperture), allowed);
+                .add(format!("{of}.aperture"), number(*aperture), allowed);
         }
         let of_event = format!("{of}.event");
         let event = match event {
@@ -85,12 +85,13 @@ impl Resolver<'_> {
             match along {
                 Some(along) if DVec3::from(*along) == DVec3::ZERO => {
                     let allowed = "a direction";
-                    self.faults.add(format!("{of}.along"), show(along), allowed);
+                    self.faults
+                        .add(format!("{of}.along"), vector(along), allowed);
                 }
                 _ => {
                     let allowed = "a direction, with `along` not parallel to it";
                     let field = format!("{of}.facing");
-                    self.faults.add(field, show(facing), allowed);
+                    self.faults.add(field, vector(facing), allowed);
                 }
             }
         }

@@ -1,8 +1,9 @@
 //! The central ray: straight legs from surface to surface.
 
 use super::Resolver;
-use super::faults::{names, show};
-use crate::file::SceneFile;
+use super::faults::{names, show, vector};
+use crate::file::{SceneFile, SurfaceFile};
+use crate::nearest::did_you_mean;
 use crate::scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Surface,
 };
@@ -84,10 +85,11 @@ impl Resolver<'_> {
         let known = things.objects();
         let Some(&(object, _)) = known.iter().find(|(_, name)| name == visit) else {
             // What is at fault itself has been named already.
-            if !file.surfaces.iter().any(|s| s.name() == visit) {
-                let known = names(known.iter().map(|(_, name)| *name));
-                let allowed = format!("one of the surfaces: {known}");
-                self.faults.add(of, show(visit), allowed);
+            let mut written = file.surfaces.iter().map(SurfaceFile::name);
+            if !written.clone().any(|name| name == visit) {
+                let value = show(visit) + &did_you_mean(visit, written.clone());
+                let allowed = format!("one of the surfaces: {}", names(&mut written));
+                self.faults.add(of, value, allowed);
             }
             return None;
         };
@@ -99,7 +101,7 @@ impl Resolver<'_> {
         else {
             if things.is_finite(object) {
                 let allowed = "a surface that the central ray hits";
-                self.faults.add(of, show(visit), allowed);
+                self.faults.add_on_path(of, show(visit), allowed);
             }
             return None;
         };
@@ -108,14 +110,14 @@ impl Resolver<'_> {
             .filter(|((distance, ..), ..)| *distance < length);
         for (.., name) in before {
             let allowed = format!("{}, which the central ray hits first", show(name));
-            self.faults.add(&of, show(visit), allowed);
+            self.faults.add_on_path(&of, show(visit), allowed);
         }
         if let Object::Patch(i) = object {
             let PatchObject { patch, event, .. } = &things.patches[i];
             let behind = patch.normal(point).dot(normal) < 0.0;
             if behind && matches!(event, Event::Reflects(_)) {
                 let allowed = "a surface met on the side it faces: behind it is black";
-                self.faults.add(of, show(visit), allowed);
+                self.faults.add_on_path(of, show(visit), allowed);
             }
         }
         let hit = Hit {
@@ -143,12 +145,12 @@ impl Resolver<'_> {
                 let allowed =
                     "a surface that the central ray meets at less than 89.9° to its normal";
                 self.faults
-                    .add(format!("path.visits[{i}]"), show(name), allowed);
+                    .add_on_path(format!("path.visits[{i}]"), show(name), allowed);
                 return None;
             }
             if let Some(leaves) = path.leaves.filter(|_| i + 1 == path.visits.len()) {
                 let allowed = format!("nothing: {} sends light on by itself", show(name));
-                self.faults.add("path.leaves", show(leaves), allowed);
+                self.faults.add("path.leaves", vector(&leaves), allowed);
             }
             let d = event
                 .turned(&lens, facing, hit.point, leg.d)
@@ -156,7 +158,7 @@ impl Resolver<'_> {
             if d.is_none() {
                 let allowed = format!("an angle at which {} does not reflect it all", show(name));
                 self.faults
-                    .add(format!("path.visits[{i}]"), show(name), allowed);
+                    .add_on_path(format!("path.visits[{i}]"), show(name), allowed);
             }
             return d;
         }
@@ -171,7 +173,7 @@ impl Resolver<'_> {
         } else if let Some(leaves) = path.leaves {
             self.faults.coordinates("path.leaves", &leaves);
             let d = world.vector_to_local(DVec3::from(leaves));
-            ("path.leaves".to_owned(), show(leaves), d)
+            ("path.leaves".to_owned(), vector(&leaves), d)
         } else if things.mirrors(hit.object) {
             return Some(leg.d - 2.0 * leg.d.dot(hit.normal) * hit.normal);
         } else {
@@ -181,7 +183,7 @@ impl Resolver<'_> {
         if d.is_none() {
             let name = show(&path.visits[i]);
             let allowed = format!("in front of {name}, on the side that light comes from");
-            self.faults.add(of, value, allowed);
+            self.faults.add_on_path(of, value, allowed);
         }
         d
     }

@@ -1,7 +1,7 @@
 //! Environments, and pictures on surfaces.
 
 use super::Resolver;
-use super::faults::show;
+use super::faults::{number, show, vector};
 use crate::file::EnvironmentFile;
 use crate::picture;
 use etendue_field::{
@@ -34,7 +34,7 @@ impl Resolver<'_> {
         let across = y.try_normalize().map_or(DVec3::NAN, |y| d - y * d.dot(y));
         let frame = Frame::new(DVec3::ZERO, d, y).and(Frame::new(DVec3::ZERO, across, y.cross(d)));
         if frame.is_none() && y.is_finite() && d.is_finite() {
-            let shown = format!("{} and {}", show(up), show(front));
+            let shown = format!("{} and {}", vector(up), vector(front));
             let allowed = "two directions that are not parallel, neither of length 0";
             self.faults.add("light.up and light.front", shown, allowed);
         }
@@ -95,7 +95,7 @@ impl Resolver<'_> {
                 let allowed = "a direction before the central ray: an environment shines forward, along path.direction";
                 let DVec3 { x, y, z } = lobe.from;
                 self.faults
-                    .add(format!("light.map[{i}].from"), show((x, y, z)), allowed);
+                    .add(format!("light.map[{i}].from"), vector(&[x, y, z]), allowed);
             }
         }
     }
@@ -106,7 +106,7 @@ impl Resolver<'_> {
         direction.try_normalize().unwrap_or_else(|| {
             if direction.is_finite() {
                 let DVec3 { x, y, z } = direction;
-                self.faults.add(of, show((x, y, z)), "a direction");
+                self.faults.add(of, vector(&[x, y, z]), "a direction");
             }
             DVec3::Z
         })
@@ -135,9 +135,9 @@ impl Resolver<'_> {
         if let Some(pixel) = values.position(|value| !(0.0..=most).contains(value)) {
             let [column, row] = [pixel % raster.width(), pixel / raster.width()];
             let field = format!("{of}, {path:?}: pixel {column} of row {row}");
-            let allowed = format!("0 to {most:?}");
+            let allowed = format!("0 to {}", number(most));
             self.faults
-                .add(field, show(raster.values()[pixel]), allowed);
+                .add(field, number(raster.values()[pixel]), allowed);
             return None;
         }
         Some(raster)

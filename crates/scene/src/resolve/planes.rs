@@ -1,12 +1,13 @@
 //! Virtual planes: their place on the path, their window and their frequencies.
 
-use super::faults::{names, show};
+use super::faults::{names, number, show};
 use super::{Resolver, SAME_PLANE, Stop};
 use crate::fault::Fault;
 use crate::file::{
     AxisFile, BlockersFile, FrequenciesFile, Place, PlaneFile, SceneFile, SurfaceFile, WindowFile,
 };
 use crate::limits;
+use crate::nearest::did_you_mean;
 use crate::scene::{CentralRay, Object};
 use crate::shown::shown;
 use etendue_field::{
@@ -100,7 +101,8 @@ impl Resolver<'_> {
         let Some((hit, arriving)) = hit.filter(|_| at_hit) else {
             let allowed =
                 "Orthogonal, or a place Before(…) or After(…) a surface that the path visits";
-            self.faults.add(&of, show(plane.orientation), allowed);
+            self.faults
+                .add_on_path(&of, show(plane.orientation), allowed);
             return across;
         };
         let on_mesh = matches!(hit.object, Object::Mesh(_));
@@ -160,7 +162,7 @@ impl Resolver<'_> {
                 let visited = stop.ends.is_some() || file.path.visits.contains(name);
                 if stop.surface && !visited {
                     let allowed = "After(…) of a surface that the path visits";
-                    self.faults.add(of, show(place), allowed);
+                    self.faults.add_on_path(of, show(place), allowed);
                 }
                 let leg = stop.ends.map_or(0, |leg| leg + 1);
                 Some(OnPath {
@@ -189,11 +191,12 @@ impl Resolver<'_> {
     ) -> Option<&'a Stop<'a>> {
         let Some(stop) = stops.iter().find(|s| s.name == name) else {
             let surfaces = file.surfaces.iter().map(SurfaceFile::name);
-            let mut written = surfaces.chain(file.blockers.iter().map(BlockersFile::name));
+            let mut written = file.blockers.iter().map(BlockersFile::name).chain(surfaces);
             // What is at fault itself has been named already.
-            if !written.any(|written| written == name) {
-                let allowed = format!("one of {}", names(stops.iter().map(|s| s.name)));
-                self.faults.add(of, show(place), allowed);
+            if !written.clone().any(|written| written == name) {
+                let value = show(place) + &did_you_mean(name, written.clone());
+                let allowed = format!("one of {}", names(&mut written));
+                self.faults.add(of, value, allowed);
             }
             return None;
         };
@@ -203,7 +206,7 @@ impl Resolver<'_> {
                 "a place on the path, whose first surface is at {} m",
                 tidy(length)
             );
-            self.faults.add(of, show(place), allowed);
+            self.faults.add_on_path(of, show(place), allowed);
         }
         Some(stop)
     }
@@ -216,7 +219,7 @@ impl Resolver<'_> {
         path: &CentralRay,
         stops: &[Stop<'_>],
     ) -> OnPath {
-        let value = || format!("Distance({distance:?})");
+        let value = || format!("Distance({})", number(distance));
         let leg = path.legs.iter().rposition(|leg| leg.start <= distance);
         let leg = leg.unwrap_or(0);
         let last = &path.legs[path.legs.len() - 1];
@@ -227,7 +230,7 @@ impl Resolver<'_> {
                 tidy(last.start),
                 tidy(end)
             );
-            self.faults.add(of, value(), allowed);
+            self.faults.add_on_path(of, value(), allowed);
         }
         let beside = |s: &&Stop<'_>| s.extent.iter().any(|end| near(*end, distance));
         let ends = |leg: &usize| near(path.legs[leg + 1].start, distance);
@@ -237,7 +240,7 @@ impl Resolver<'_> {
         if let Some(stop) = hit.or_else(on_first) {
             let name = shown(stop.name, limits::NAME);
             let allowed = format!("Before(\"{name}\") or After(\"{name}\") at that distance");
-            self.faults.add(of, value(), allowed);
+            self.faults.add_on_path(of, value(), allowed);
         }
         OnPath {
             distance,
@@ -270,14 +273,16 @@ impl Resolver<'_> {
 
     fn profile(&mut self, of: &str, profile: &Profile) {
         match *profile {
-            Profile::Hann(h) | Profile::Box(h) => self.faults.positive(of, h),
+            Profile::Hann(h) | Profile::Box(h) => {
+                self.faults.positive(of, h);
+            }
             Profile::Gaussian { width, cut } => {
                 self.faults.positive(format!("{of}.width"), width);
                 self.faults.positive(format!("{of}.cut"), cut);
                 // A series of copies needs as many terms as the cut is wide.
                 if width.is_finite() && cut.is_finite() && cut > 10.0 * width {
                     let allowed = "at most 10 widths: beyond 3.5 the Gaussian is below 1e-16";
-                    self.faults.add(format!("{of}.cut"), show(cut), allowed);
+                    self.faults.add(format!("{of}.cut"), number(cut), allowed);
                 }
             }
         }
@@ -307,14 +312,19 @@ impl Resolver<'_> {
     fn axis(&mut self, of: &str, axis: &AxisFile, half_width: f64) -> Option<FrequencyAxis> {
         let natural = 0.5 / half_width;
         let spacing = axis.spacing.unwrap_or(natural);
-        self.faults.positive(format!("{of}.max"), axis.max);
+        let mut is_sound = self.faults.positive(format!("{of}.max"), axis.max);
         if axis.spacing.is_some() {
-            self.faults.positive(format!("{of}.spacing"), spacing);
-            if spacing > natural * (1.0 + SAME_PLANE) {
+            is_sound &= self.faults.positive(format!("{of}.spacing"), spacing);
+            // A window of no width has been named already.
+            if natural > 0.0 && spacing > natural * (1.0 + SAME_PLANE) {
+                let natural = tidy(natural);
                 let allowed = format!("at most 1/(2 · half-width of the window) = {natural}");
                 self.faults
-                    .add(format!("{of}.spacing"), show(spacing), allowed);
+                    .add(format!("{of}.spacing"), number(spacing), allowed);
             }
+        }
+        if !is_sound {
+            return None;
         }
         // Rounding must not add a frequency to a max that is a multiple of the spacing.
         let half = (axis.max / spacing - 1e-9).ceil();
@@ -324,7 +334,7 @@ impl Resolver<'_> {
         if half > f64::from(u32::MAX) {
             self.faults.add(
                 format!("{of}.max"),
-                format!("{} spacings of {spacing}", show(half)),
+                format!("{} spacings of {}", number(half), number(spacing)),
                 "fewer than 2^32 frequencies",
             );
             return None;
@@ -350,7 +360,7 @@ impl Resolver<'_> {
             .map(|p| cells(&p.grid) * COMPLEX * copies)
             .sum();
         if bytes > memory as f64 {
-            self.faults.0.push(Fault {
+            self.faults.all.push(Fault {
                 field: "frequencies of all planes".to_owned(),
                 value: format!("{} of spectra over {batches} batches", gigabytes(bytes)),
                 allowed: format!("what memory holds here, {}", gigabytes(memory as f64)),

@@ -1,5 +1,5 @@
 use super::Resolver;
-use super::faults::show;
+use super::faults::vector;
 use crate::file::{SceneFile, SurfaceFile};
 use crate::scene::Surface;
 use etendue_field::{Frame, tidy};
@@ -63,7 +63,7 @@ impl Resolver<'_> {
         let d = light.vector_to_local(DVec3::from(facing));
         let frame = Frame::new(origin, d, DVec3::X).or_else(|| Frame::new(origin, d, DVec3::Y));
         if frame.is_none() && d.is_finite() {
-            self.faults.add(of, show(facing), "a direction");
+            self.faults.add(of, vector(&facing), "a direction");
         }
         frame
     }
@@ -75,8 +75,9 @@ impl Resolver<'_> {
     }
 
     /// A finite distance must be in front of the light; an infinite one is a fault of its center.
+    /// Without a sound path nothing is known of it.
     pub(super) fn ahead(&mut self, of: &str, distance: f64) {
-        if distance <= 0.0 {
+        if distance <= 0.0 && !self.faults.astray {
             let allowed = "a place in front of the light, along path.direction";
             self.faults.add(
                 format!("{of}.center"),

@@ -1,0 +1,189 @@
+//! Likely mistakes of a sound scene: of units, of grids, and arrays that are too small.
+
+use crate::file::{FrequenciesFile, PlaneFile};
+use crate::scene::{BlockerLayer, Scene};
+use etendue_field::{Light, Mask, Shape, VirtualPlane, Window, tidy};
+use serde_json::Value;
+use std::collections::BTreeSet;
+
+/// Metres that are many among others of a metre.
+const FAR: f64 = 100.0;
+/// What a length of a metre is less than.
+const NEAR: f64 = 10.0;
+
+/// Each likely mistake in words.
+pub(crate) fn mistakes(scene: &Scene) -> Vec<String> {
+    let planes = scene.file.planes.iter().zip(&scene.planes).enumerate();
+    let mut told = BTreeSet::new();
+    for (i, (file, plane)) in planes {
+        told.extend(coarse(i, file, plane, &scene.file.frequencies));
+        told.extend(past_edges(scene, plane));
+    }
+    long(scene).into_iter().chain(told).collect()
+}
+
+/// Lengths that seem to be in millimetres.
+fn long(scene: &Scene) -> Option<String> {
+    let file = serde_json::to_value(&scene.file).ok()?;
+    let mut lengths = Vec::new();
+    collect(&file, "", false, &mut lengths);
+    let origin = scene.path.frame.origin.to_array();
+    for (path, length) in &mut lengths {
+        // Places count from the light.
+        let of_world = path
+            .strip_suffix(']')
+            .filter(|path| !path.contains(".shapes["));
+        let axis = of_world.and_then(|path| path.split_once(".center[")?.1.parse::<usize>().ok());
+        *length = (*length - axis.map_or(0.0, |axis| origin[axis])).abs();
+    }
+    lengths.retain(|(_, length)| *length > 0.0);
+    lengths.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+    let (_, median) = lengths.get(lengths.len() / 2)?;
+    let (path, longest) = lengths.last()?;
+    (*longest >= FAR && *median < NEAR).then(|| {
+        format!(
+            "{path} is {} m, among lengths of about {} m: are those millimetres?",
+            tidy(*longest),
+            tidy(*median)
+        )
+    })
+}
+
+/// All lengths below a node, each with the path of its field.
+fn collect(node: &Value, path: &str, is_length: bool, lengths: &mut Vec<(String, f64)>) {
+    const LENGTHS: [&str; 9] = [
+        "center", "size", "radius", "pitch", "edge", "aperture", "half", "Distance", "x",
+    ];
+    match node {
+        Value::Number(number) if is_length => {
+            lengths.extend(number.as_f64().map(|length| (path.to_owned(), length)));
+        }
+        Value::Array(items) => {
+            for (i, item) in items.iter().enumerate() {
+                collect(item, &format!("{path}[{i}]"), is_length, lengths);
+            }
+        }
+        Value::Object(fields) => {
+            for (name, field) in fields {
+                let is_variant = name.starts_with(char::is_uppercase);
+                let is_length = LENGTHS.contains(&name.as_str()) || (is_variant && is_length);
+                let dot = if path.is_empty() { "" } else { "." };
+                let below = if is_variant {
+                    path.to_owned()
+                } else {
+                    format!("{path}{dot}{name}")
+                };
+                collect(field, &below, is_length, lengths);
+            }
+        }
+        _ => {}
+    }
+}
+
+/// Frequencies that end before the first step that the window resolves.
+fn coarse(
+    i: usize,
+    file: &PlaneFile,
+    plane: &VirtualPlane,
+    shared: &FrequenciesFile,
+) -> Vec<String> {
+    let (of, frequencies) = match &file.frequencies {
+        Some(own) => (format!("planes[{i}].frequencies"), own),
+        None => ("frequencies".to_owned(), shared),
+    };
+    let Window { x, y, u, v } = &plane.window;
+    let axes = [
+        ("rho", &frequencies.rho, [x, y]),
+        ("nu", &frequencies.nu, [u, v]),
+    ];
+    let told = axes.into_iter().filter_map(|(name, axis, profiles)| {
+        let [a, b] = profiles.map(|profile| profile.half_width());
+        let step = 0.5 / a.max(b);
+        (axis.max < step).then(|| {
+            format!(
+                "{of}.{name}.max is {}, less than one step of the grid, 1/(2 · half-width of the window) = {}",
+                tidy(axis.max),
+                tidy(step)
+            )
+        })
+    });
+    told.collect()
+}
+
+/// Arrays beyond whose edges a plane sees light.
+fn past_edges(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+    let arrays = scene.blockers.iter().filter(|layer| layer.pitch.is_some());
+    let told = arrays.filter_map(|layer| {
+        let edges = edges(layer)?;
+        let reach = reach(scene, plane, layer.distance)?;
+        let beyond = (0..2).any(|axis| reach[axis] > edges[axis]);
+        beyond.then(|| {
+            format!(
+                "{}: light it sees passes {} up to {} m from the central ray, beyond its edge at {} m: nothing stops it there",
+                plane.name,
+                layer.name,
+                pair(reach),
+                pair(edges)
+            )
+        })
+    });
+    told.collect()
+}
+
+fn pair([x, y]: [f64; 2]) -> String {
+    format!("({}, {})", tidy(x), tidy(y))
+}
+
+/// How far an array reaches from the central ray, along X and along Y: to half a pitch beyond the
+/// centres of its last squares.
+fn edges(layer: &BlockerLayer) -> Option<[f64; 2]> {
+    let Mask::Opaque { shapes, .. } = &layer.mask else {
+        return None;
+    };
+    let half = 0.5 * layer.pitch?;
+    Some([0, 1].map(|axis| {
+        let centers = shapes.iter().map(|shape| shape.bounds().center[axis]);
+        let [low, high] = centers.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], at| {
+            [low.min(at), high.max(at)]
+        });
+        high.min(-low) + half
+    }))
+}
+
+/// How far from the central ray light passes a place on the first leg before a plane sees it.
+fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
+    let w = &plane.window;
+    let windows = [(&w.x, &w.u), (&w.y, &w.v)].map(|(x, u)| [x.half_width(), u.half_width()]);
+    // Where the light that the plane sees goes from the first leg, or the plane itself.
+    let end = match plane.leg {
+        0 => plane.distance,
+        1 if scene.path.legs[1].frame.d.z < -0.999 => scene.path.first_hit(),
+        _ => return None,
+    };
+    if at >= end {
+        return None;
+    }
+    let light = match &scene.light {
+        Light::Area { shape, .. } => half_size(shape),
+        Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
+        Light::Beam { .. } | Light::Environment { .. } => [f64::INFINITY; 2],
+    };
+    let along = |axis: usize| {
+        let [x, u] = windows[axis];
+        let hit = x + (plane.distance - end) * u;
+        let from_light = light[axis] + (hit - light[axis]) * at / end;
+        let from_plane = x + (end - at) * u;
+        match (plane.leg, &scene.light) {
+            (_, Light::Beam { .. }) => hit,
+            // Of light from far away nothing is known, which leaves the other.
+            (0, _) => from_plane.min(from_light),
+            _ => from_light,
+        }
+    };
+    let reach = [0, 1].map(along);
+    reach.iter().all(|reach| reach.is_finite()).then_some(reach)
+}
+
+fn half_size(shape: &Shape) -> [f64; 2] {
+    shape.bounds().size.map(|size| 0.5 * size)
+}

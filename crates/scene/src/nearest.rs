@@ -1,0 +1,26 @@
+//! What was meant by a name that is not known.
+
+use crate::limits;
+use strsim::osa_distance;
+
+/// ` (did you mean …?)` with the known name that is most like this one, or nothing where none is.
+pub(crate) fn did_you_mean<'a>(name: &str, known: impl IntoIterator<Item = &'a str>) -> String {
+    let lower = |name: &str| -> String {
+        // Longer names are refused anyway.
+        let start = name.chars().take(limits::NAME);
+        start.flat_map(char::to_lowercase).collect()
+    };
+    let name = lower(name);
+    // A letter in three may be wrong, or one.
+    let most = (name.chars().count() / 3).max(1);
+    let known = known.into_iter();
+    let known = known.map(|other| (osa_distance(&name, &lower(other)), other));
+    // Two characters may be anything.
+    let near = known.filter(|(distance, other)| {
+        *distance <= most && *distance < other.chars().take(limits::NAME).count()
+    });
+    match near.min_by_key(|(distance, _)| *distance) {
+        Some((_, other)) => format!(" (did you mean {}?)", crate::shown(other, limits::NAME)),
+        None => String::new(),
+    }
+}
