@@ -7,6 +7,8 @@ use etendue_scene::{AxisName, BlockersFile, HalfName, LightFile, MeshSource, Sha
 use glam::DVec3;
 use std::io;
 
+/// The least size a scene file may state, metres.
+const LEAST: f64 = 1e-9;
 /// Products of shapes that a prediction may have to go through, and still end soon.
 const MOST: f64 = 3e4;
 /// Rectangles that a disc counts as.
@@ -113,7 +115,7 @@ fn board(draw: &mut Draw) -> Vec<ShapeFile> {
     let shape = |draw: &mut Draw, i: usize| {
         let [column, row] = [i % 3, i / 3].map(|k| (k as f64 - 0.5) * pitch);
         let center = [column, row];
-        let size = [(); 2].map(|()| pitch * draw.value([0.2, 0.95], [1e-6, 1.0]));
+        let size = [(); 2].map(|()| (pitch * draw.value([0.2, 0.95], [1e-6, 1.0])).max(LEAST));
         if draw.one_in(3) {
             let radius = 0.5 * size[0];
             ShapeFile::Disc { center, radius }

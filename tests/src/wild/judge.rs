@@ -3,7 +3,7 @@
 use super::run::{Ending, PlaneSummary, Runner};
 use etendue_compare::{Prediction, Verdict, compare, sidak};
 use etendue_field::PhotonSource;
-use etendue_scene::{LightFile, Scene, SceneFile, resolve};
+use etendue_scene::{LightFile, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_trace::{Backward, Tracer};
 use std::io;
@@ -19,7 +19,32 @@ pub(super) enum Trouble {
     Wrong {
         plane: String,
         backward: bool,
+        culprit: Culprit,
     },
+}
+
+/// Who is wrong where a plane fails.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Culprit {
+    /// Both tracers agree, the prediction does not.
+    Theory,
+    /// The tracers do not agree.
+    Tracer,
+    /// The verdict, given by a handful of rays.
+    Handful,
+    /// One of these.
+    Unknown,
+}
+
+impl Culprit {
+    pub(super) fn says(self) -> &'static str {
+        match self {
+            Self::Theory => "the tracers agree, theory does not",
+            Self::Tracer => "the tracers do not agree",
+            Self::Handful => "a handful of rays decides",
+            Self::Unknown => "left open who is wrong",
+        }
+    }
 }
 
 /// A scene looked into.
@@ -36,6 +61,9 @@ pub(super) struct Judged {
     /// What is wrong, in words.
     pub(super) troubles: Vec<(Trouble, String)>,
 }
+
+/// Fewer rays than this in the window are too few for the spread of 64 batches: about ten in each.
+const HANDFUL: u64 = 640;
 
 /// The seed of the first run, and others.
 const FIRST: u64 = 1;
@@ -109,16 +137,16 @@ impl Judged {
                 again.extend(failing.map(|plane| plane.name));
             }
         }
-        let wrong = planes.iter().enumerate();
+        let wrong = planes.iter();
         let wrong: Vec<_> = wrong
-            .filter(|(_, plane)| plane.fails() && again.contains(&plane.name))
+            .filter(|plane| plane.fails() && again.contains(&plane.name))
             .collect();
         if wrong.is_empty() {
             self.chance += 1;
         }
-        for (i, plane) in wrong {
+        for plane in wrong {
             let times = 1 + again.iter().filter(|name| **name == plane.name).count();
-            let who = who(runner, file, i, plane, backward)?;
+            let (culprit, who) = who(runner, file, plane, backward)?;
             let by = if backward { "backward rays" } else { "photons" };
             let [p, chain] = plane.p.map(shown);
             let [off, noise, stated] = plane.errors.map(shown);
@@ -126,11 +154,14 @@ impl Judged {
                 Trouble::Wrong {
                     plane: plane.name.clone(),
                     backward,
+                    culprit,
                 },
                 format!(
                     "{} ({}) fails by {by} with {times} of 3 seeds, p {p}, of the chain {chain}, \
-                     off {off}, noise {noise}, stated {stated}: {who}",
-                    plane.name, plane.class
+                     off {off}, noise {noise}, stated {stated}; {}: {who}",
+                    plane.name,
+                    plane.class,
+                    culprit.says()
                 ),
             ));
         }
@@ -142,64 +173,87 @@ fn shown(x: Option<f64>) -> String {
     x.map_or("–".into(), |x| format!("{x:.3e}"))
 }
 
-/// Which two of photons, backward rays and prediction agree.
+/// Who of photons, backward rays and prediction is wrong.
 fn who(
     runner: &Runner,
     file: &SceneFile,
-    i: usize,
     plane: &PlaneSummary,
     backward: bool,
-) -> io::Result<String> {
-    if plane.is_reference() {
-        return Ok("the two tracers do not agree".into());
-    }
+) -> io::Result<(Culprit, String)> {
     if !has_backward(file) {
-        return Ok("no backward rays in this light".into());
+        let culprit = if plane.in_window < HANDFUL {
+            Culprit::Handful
+        } else {
+            Culprit::Unknown
+        };
+        return Ok((culprit, "no backward rays in this light".into()));
     }
-    let ending = runner.run(file, FIRST, !backward)?;
-    let other = match &ending {
-        Ending::Done(planes) => planes.get(i).map_or("", |plane| &plane.verdict),
-        _ => "no end",
+    let (folder, copy, name) = (runner.folder.clone(), file.clone(), plane.name.clone());
+    let tracers = std::thread::spawn(move || of_tracers(&copy, &folder, &name));
+    let Some(tracers) = tracers.join().unwrap_or(None) else {
+        return Ok((Culprit::Unknown, "the tracers cannot be compared".into()));
     };
-    let by = if backward { "photons" } else { "backward rays" };
-    let (folder, file) = (runner.folder.clone(), file.clone());
-    let tracers = std::thread::spawn(move || of_tracers(&file, &folder, i));
-    let tracers = tracers.join().unwrap_or(None);
-    let Some((verdict, p)) = tracers else {
-        return Ok("the tracers cannot be compared".into());
+    let [photons, rays] = tracers.inside;
+    let looked = match (plane.is_reference(), backward) {
+        (true, _) => photons.min(rays),
+        (false, false) => photons,
+        (false, true) => rays,
     };
-    let finding = match verdict {
-        Verdict::Fail => "the tracers do not agree",
-        Verdict::Pass => "the tracers agree, theory does not",
-        Verdict::Undecided => "the tracers leave it open",
+    let culprit = match tracers.verdict {
+        _ if looked < HANDFUL => Culprit::Handful,
+        Verdict::Fail => Culprit::Tracer,
+        _ if plane.is_reference() => Culprit::Unknown,
+        Verdict::Pass => Culprit::Theory,
+        Verdict::Undecided => Culprit::Unknown,
     };
-    let p = shown(p);
-    Ok(format!(
-        "{finding} (photons to backward rays: {verdict:?}, p {p}; {by} to the prediction: {other})"
+    let other = if plane.is_reference() {
+        String::new()
+    } else {
+        let by = if backward { "photons" } else { "backward rays" };
+        let ending = runner.run(file, FIRST, !backward)?;
+        let found = match &ending {
+            Ending::Done(planes) => planes.iter().find(|p| p.name == plane.name),
+            _ => None,
+        };
+        let found = found.map_or("no end", |plane| &plane.verdict);
+        format!("; {by} to the prediction: {found}")
+    };
+    let (verdict, p) = (tracers.verdict, shown(tracers.p));
+    Ok((
+        culprit,
+        format!(
+            "{photons} photons and {rays} backward rays in the window; one to the other: \
+             {verdict:?}, p {p}{other}"
+        ),
     ))
 }
 
+/// Photons and backward rays of one plane.
+struct Tracers {
+    verdict: Verdict,
+    p: Option<f64>,
+    /// How many were in the window.
+    inside: [u64; 2],
+}
+
 /// Photons compared with backward rays.
-fn of_tracers(file: &SceneFile, folder: &Path, i: usize) -> Option<(Verdict, Option<f64>)> {
+fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     let scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
+    let i = scene.planes.iter().position(|plane| plane.name == name)?;
     let measured = |source: &dyn PhotonSource| -> Measurement {
         measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
     };
     let photons = measured(&Tracer::new(&scene));
     let rays = measured(&Backward::new(&scene).ok()?);
+    let inside = [&photons, &rays].map(|measured| measured.tally(i).inside);
     let reference = Prediction::reference(&scene, i, &rays, i).ok()?;
-    verdict(&scene, &photons, i, &reference)
-}
-
-fn verdict(
-    scene: &Scene,
-    photons: &Measurement,
-    i: usize,
-    reference: &Prediction,
-) -> Option<(Verdict, Option<f64>)> {
     let level = sidak(scene.run.alpha, scene.planes.len());
-    let compared = compare(photons, i, reference, level, scene.run.seed).ok()?;
-    Some((compared.report.verdict, compared.report.p_value))
+    let compared = compare(&photons, i, &reference, level, scene.run.seed).ok()?;
+    Some(Tracers {
+        verdict: compared.report.verdict,
+        p: compared.report.p_value,
+        inside,
+    })
 }
 
 /// Whether a scene is still in the same trouble, chance left out.
@@ -208,7 +262,9 @@ pub(super) fn persists(runner: &Runner, file: &SceneFile, trouble: &Trouble) -> 
         Trouble::Panic => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Panic(_))),
         Trouble::Hang => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Hang)),
         Trouble::Killed => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Killed(_))),
-        Trouble::Wrong { plane, backward } => {
+        Trouble::Wrong {
+            plane, backward, ..
+        } => {
             for seed in [FIRST, OTHERS[0]] {
                 let Ending::Done(planes) = runner.run(file, seed, *backward)? else {
                     return Ok(false);

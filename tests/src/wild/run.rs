@@ -51,6 +51,8 @@ pub(super) struct PlaneSummary {
     pub(super) verdict: String,
     /// Of the prediction as it is, and of the chain of affine maps where there is one.
     pub(super) p: [Option<f64>; 2],
+    /// Rays in its window.
+    pub(super) in_window: u64,
     /// Relative error, noise limit, error of the prediction.
     pub(super) errors: [Option<f64>; 3],
 }
@@ -64,6 +66,7 @@ impl PlaneSummary {
             class: text("class"),
             verdict: text("verdict"),
             p: [number("p_value"), plane["first_order"]["p_value"].as_f64()],
+            in_window: plane["in_window"].as_u64().unwrap_or(0),
             errors: ["relative_error", "noise_limit", "quadrature_error"].map(number),
         }
     }
@@ -161,21 +164,21 @@ fn reason(stderr: &str) -> String {
     });
     let words: Vec<&str> = lines.take(3).map(str::trim).collect();
     let text = words.join(" ");
-    let (mut plain, mut quoted) = (String::new(), false);
+    let (mut plain, mut quoted, mut depth) = (String::new(), false, 0_usize);
     for c in text.chars() {
         match c {
-            '"' => {
-                quoted = !quoted;
-                plain.push(c);
-            }
+            '"' => quoted = !quoted,
             _ if quoted => {}
+            // What is in brackets gives details.
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ if depth > 0 => {}
             '0'..='9' => {
                 if !plain.ends_with('N') {
                     plain.push('N');
                 }
             }
-            '.' | '-' | '+' if plain.ends_with('N') => {}
-            'e' if plain.ends_with('N') => {}
+            '.' | '-' | '+' | 'e' if plain.ends_with('N') => {}
             _ => plain.push(c),
         }
     }

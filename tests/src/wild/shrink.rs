@@ -12,7 +12,9 @@ use std::io;
 use std::time::{Duration, Instant};
 
 /// Lists of which elements can be left out.
-const LISTS: [&str; 5] = ["planes", "blockers", "surfaces", "shapes", "Lobes"];
+const LISTS: [&str; 6] = [
+    "planes", "blockers", "visits", "surfaces", "shapes", "Lobes",
+];
 /// Fields that can be left out, or as if they were.
 const OPTIONAL: [&str; 11] = [
     "y",
@@ -134,7 +136,10 @@ fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
     };
     let mut found: Vec<Value> = [2, 1].map(all).into_iter().filter(|t| t != tree).collect();
     for (place, x) in &numbers {
-        for y in [0.0, 1.0, short(*x, 0), short(*x, 1)] {
+        // What is put at 0 is put into the light.
+        let moved = place.contains("/center/");
+        let round = [0.0, 1.0].into_iter().filter(|_| !moved);
+        for y in round.chain([short(*x, 0), short(*x, 1)]) {
             // Each step must be one towards fewer digits, or there would be no end.
             if digits(y) < digits(*x) {
                 found.push(with(tree, place, json!(y)));

@@ -1,6 +1,6 @@
 //! What all scenes come to, as a table.
 
-use super::judge::{Judged, Trouble};
+use super::judge::{Culprit, Judged, Trouble};
 use crate::report::Section;
 use std::collections::BTreeMap;
 
@@ -19,7 +19,7 @@ pub(super) struct Tally {
     panics: Vec<u64>,
     hangs: Vec<u64>,
     killed: Vec<u64>,
-    wrong: Vec<u64>,
+    wrong: BTreeMap<Culprit, Vec<u64>>,
 }
 
 /// Share of true scenes that a run rejects.
@@ -49,7 +49,7 @@ impl Tally {
                 Trouble::Panic => &mut self.panics,
                 Trouble::Hang => &mut self.hangs,
                 Trouble::Killed => &mut self.killed,
-                Trouble::Wrong { .. } => &mut self.wrong,
+                Trouble::Wrong { culprit, .. } => self.wrong.entry(*culprit).or_default(),
             };
             if list.last() != Some(&number) {
                 list.push(number);
@@ -79,16 +79,18 @@ impl Tally {
         let fails = format!("of these, fail ({expected:.1} expected by chance)");
         row(fails, self.fails, none);
         row("of these, not again".into(), self.chance, none);
-        let passed = [&self.panics, &self.hangs, &self.killed, &self.wrong]
-            .iter()
-            .all(|list| list.is_empty());
+        let broken = [&self.panics, &self.hangs, &self.killed];
+        let passed = broken.iter().all(|list| list.is_empty()) && self.wrong.is_empty();
         for (what, which) in [
             ("**panics**", &mut self.panics),
             ("**hangs**", &mut self.hangs),
             ("**killed**", &mut self.killed),
-            ("**wrong**: fail again", &mut self.wrong),
         ] {
             row(what.into(), which.len(), which);
+        }
+        for (culprit, which) in &mut self.wrong {
+            let what = format!("**wrong**, fail again: {}", culprit.says());
+            row(what, which.len(), which);
         }
         Section {
             title: format!("Wild scenes, seed {seed}"),
