@@ -99,9 +99,13 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     };
     let all = outline(scene, hit.object);
     let i = match hit.object {
-        Object::Surface(_) if arriving => return corners(scene, plane),
+        Object::Patch(i) if arriving && plane.orientation.is_local() => {
+            return seen_of_patch(scene, plane, hit, &scene.patches[i].patch).unwrap_or(all);
+        }
+        // Where a tangent plane goes on beyond the surface, it sees what passes beside.
+        _ if arriving => return corners(scene, plane),
         Object::Surface(i) => i,
-        Object::Patch(i) if arriving || reflects(scene, hit.object) => {
+        Object::Patch(i) if reflects(scene, hit.object) => {
             return seen_of_patch(scene, plane, hit, &scene.patches[i].patch).unwrap_or(all);
         }
         Object::Patch(_) | Object::Mesh(_) => return all,

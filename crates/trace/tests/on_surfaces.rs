@@ -71,7 +71,16 @@ fn arriving() {
     agree(&wall, &[tangent]);
 }
 
-/// So is light that leaves a wall, about its normal and not about the central ray.
+/// A tangent plane that goes on beyond its surface sees what passes beside.
+#[test]
+fn arriving_beside() {
+    for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian))"] {
+        let small = smooth(event).replace("aperture: 0.5", "aperture: 0.05");
+        agree(&small, &[r#"at: Before("s"), orientation: Tangent"#]);
+    }
+}
+
+/// Light that leaves a wall is seen about its normal, and not about the central ray.
 #[test]
 fn leaving() {
     let wall =
