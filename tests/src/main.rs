@@ -3,7 +3,7 @@
 //! `short` is a few minutes, for every change; `suite` goes through all scenes without smooth surfaces and writes `docs/suite.md`; `table1` through the
 //! operators of the paper, `shading` through what surfaces do to light, and `main` is the full account of the main scene: each writes its part of
 //! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
-//! `hostile` and `kills` attack the program `etendue` from outside.
+//! `hostile` and `kills` attack the program `etendue` from outside; `wild` hunts for scenes on which it is wrong.
 
 mod bandwidth;
 mod calibration;
@@ -20,6 +20,7 @@ mod shading;
 mod statistics;
 mod suite;
 mod table1;
+mod wild;
 
 use clap::{Parser, Subcommand};
 use report::Section;
@@ -37,6 +38,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- nets         three minutes; writes docs/nets.md
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
+  cargo run --release -p etendue-validation -- wild         100 random scenes, for etendue beside it
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -98,6 +100,8 @@ enum Command {
     Hostile(hostile::Options),
     /// The program killed, started twice at once and on full disks; exit code 1 if it leaves a broken result or loses a file.
     Kills(kills::Options),
+    /// Random scenes of the whole vocabulary; exit code 1 after a panic, a hang or a wrong verdict.
+    Wild(wild::Options),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
     /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
@@ -125,6 +129,9 @@ fn main() -> ExitCode {
     }
     if let Command::Kills(options) = &command {
         return attacked(kills::kills(options));
+    }
+    if let Command::Wild(options) = &command {
+        return attacked(wild::wild(options));
     }
     let parts = match command {
         Command::All => &[
@@ -262,7 +269,7 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Shading { photons } => shading::shading(photons),
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
         // These have reports of their own.
-        Command::Nets | Command::Hostile(_) | Command::Kills(_) => Vec::new(),
+        Command::Nets | Command::Hostile(_) | Command::Kills(_) | Command::Wild(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);

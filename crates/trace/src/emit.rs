@@ -1,6 +1,6 @@
 use crate::aim::FromSky;
 use crate::proposal::{Follower, Proposal};
-use crate::reach::{looks_at_patch, reach};
+use crate::reach::{looks_at_surface, reach};
 use crate::sky;
 use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
@@ -37,7 +37,7 @@ impl Emitter {
         let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
         let proposal = |plane: &VirtualPlane| {
             let w = &plane.window;
-            let is_window = plane.leg == 0 && !looks_at_patch(scene, plane);
+            let is_window = plane.leg == 0 && !looks_at_surface(plane);
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();

@@ -18,7 +18,9 @@ pub(crate) fn reach(
     origins: &[DVec3],
 ) -> Option<[f64; 2]> {
     let this = &scene.path.legs[leg];
-    let points = if leg + 1 == plane.leg || leg == plane.leg {
+    // A plane that looks at a surface from before it sees nothing of what the light has left.
+    let before = leg + 1 == plane.leg && !looks_at_surface(plane);
+    let points = if before || leg == plane.leg {
         seen(scene, plane)
     } else {
         // Diffuse light that leaves the next surface anywhere can go on to the window.
@@ -60,12 +62,7 @@ pub(crate) fn footprint(
     let is_on_it = plane.leg == usize::from(plane.side == Side::After);
     let points = match (across, plane.leg) {
         (true, 1) => seen(scene, plane),
-        (false, _) if is_on_it => {
-            let half = [&plane.window.x, &plane.window.y].map(Profile::half_width);
-            let half = DVec3::new(half[0], half[1], 0.0);
-            let to_light = |p: DVec3| scene.path.frame.to_local(plane.frame.to_world(p));
-            box_corners(-half, half).map(to_light).to_vec()
-        }
+        (false, _) if is_on_it => corners(scene, plane),
         _ => surface.corners().to_vec(),
     };
     let points: Vec<DVec2> = points
@@ -80,10 +77,19 @@ pub(crate) fn footprint(
     low.cmplt(high).all().then_some([low, high])
 }
 
+/// The corners of a plane's window, in the frame at the light.
+fn corners(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
+    let half = [&plane.window.x, &plane.window.y].map(Profile::half_width);
+    let half = DVec3::new(half[0], half[1], 0.0);
+    let to_light = |p: DVec3| scene.path.frame.to_local(plane.frame.to_world(p));
+    box_corners(-half, half).map(to_light).to_vec()
+}
+
 /// The corners of the part of its surface that a plane's window sees, or of more than that.
 fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     let leg = &scene.path.legs[plane.leg];
-    let met = if looks_at_patch(scene, plane) {
+    let arriving = looks_at_surface(plane);
+    let met = if arriving {
         scene.path.ends_at(plane.leg)
     } else {
         leg.leaves.as_ref()
@@ -93,6 +99,11 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
     };
     let all = outline(scene, hit.object);
     let i = match hit.object {
+        Object::Patch(i) if arriving && plane.orientation.is_local() => {
+            return seen_of_patch(scene, plane, hit, &scene.patches[i].patch).unwrap_or(all);
+        }
+        // Where a tangent plane goes on beyond the surface, it sees what passes beside.
+        _ if arriving => return corners(scene, plane),
         Object::Surface(i) => i,
         Object::Patch(i) if reflects(scene, hit.object) => {
             return seen_of_patch(scene, plane, hit, &scene.patches[i].patch).unwrap_or(all);
@@ -131,12 +142,9 @@ pub(crate) fn reflects(scene: &Scene, object: Object) -> bool {
     matches!(object, Object::Patch(i) if matches!(scene.patches[i].event, Event::Reflects(_)))
 }
 
-/// Whether a plane looks at the light that arrives on a patch with a BRDF, in coordinates of the patch.
-pub(crate) fn looks_at_patch(scene: &Scene, plane: &VirtualPlane) -> bool {
-    let ends = scene.path.ends_at(plane.leg);
-    plane.orientation != Orientation::Orthogonal
-        && plane.side == Side::Before
-        && ends.is_some_and(|hit| reflects(scene, hit.object))
+/// Whether a plane looks at the light that arrives on a surface, in coordinates of the surface.
+pub(crate) fn looks_at_surface(plane: &VirtualPlane) -> bool {
+    plane.orientation != Orientation::Orthogonal && plane.side == Side::Before
 }
 
 /// The corners of a box around the part of a patch that a plane's window sees, in the frame at the light; `None` when it may see all of it.

@@ -2,7 +2,7 @@ use crate::brdf;
 use crate::emit::LAMBERTIAN;
 use crate::obstacles::direction;
 use crate::proposal::{Aim, Follower};
-use crate::reach::{looks_at_patch, outline, reach, reflects};
+use crate::reach::{looks_at_surface, outline, reach, reflects};
 use crate::station::{Station, View};
 use etendue_field::{Brdf, Frame, Profile, TwoPlane, random};
 use etendue_scene::{Emission, Scene};
@@ -134,11 +134,11 @@ impl Scatterer {
                 return None;
             }
             let station = Station::new(scene, index, plane);
-            let view = station.view().filter(|_| by_brdf);
+            let view = station.view();
             if let Some(view) = view.filter(|view| plane.leg == leg && !view.is_arriving()) {
                 let across = [Follower::new(&w.u), Follower::new(&w.v)];
                 Some(Way::Angles(Box::new(Angles { view, across })))
-            } else if plane.leg == leg && !looks_at_patch(scene, plane) {
+            } else if plane.leg == leg && !looks_at_surface(plane) {
                 let d = scene.path.along(plane);
                 Some(Way::Window([
                     Aim::new(d, &w.x, Follower::new(&w.u)),

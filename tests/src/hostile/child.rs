@@ -16,6 +16,15 @@ pub(crate) const LARGEST: u64 = 1 << 30;
 /// Beyond this a child is ended, for the sake of the machine.
 const DANGEROUS: u64 = 4 << 30;
 
+/// After how long a child has hung.
+#[derive(Clone, Copy)]
+pub(crate) struct Limit {
+    /// By the clock.
+    pub(crate) clock: Duration,
+    /// By the work of processors, which does not depend on what else there is to do.
+    pub(crate) work: Duration,
+}
+
 /// How a child ended.
 #[derive(Debug)]
 pub(crate) struct Ended {
@@ -54,6 +63,21 @@ pub(crate) fn call(
     arguments: &[String],
     scratch: &Path,
 ) -> io::Result<Ended> {
+    let limit = Limit {
+        clock: LONGEST,
+        work: LONGEST,
+    };
+    call_within(limit, program, folder, arguments, scratch)
+}
+
+/// The same with another limit of time.
+pub(crate) fn call_within(
+    limit: Limit,
+    program: &Path,
+    folder: &Path,
+    arguments: &[String],
+    scratch: &Path,
+) -> io::Result<Ended> {
     let [out, err] = ["stdout", "stderr"].map(|name| scratch.join(name));
     let start = Instant::now();
     let mut child = Command::new(program)
@@ -64,7 +88,7 @@ pub(crate) fn call(
         .stdout(File::create(&out)?)
         .stderr(File::create(&err)?)
         .spawn()?;
-    let (peak, hung) = watch(&mut child, start)?;
+    let (peak, hung) = watch(&mut child, start, limit)?;
     let status = child.wait()?;
     Ok(Ended {
         code: status.code(),
@@ -78,8 +102,9 @@ pub(crate) fn call(
 }
 
 /// Waits for the end, or brings it about; returns the peak of memory, and whether it took too long.
-fn watch(child: &mut Child, start: Instant) -> io::Result<(u64, bool)> {
+fn watch(child: &mut Child, start: Instant, limit: Limit) -> io::Result<(u64, bool)> {
     let status = format!("/proc/{}/status", child.id());
+    let stat = format!("/proc/{}/stat", child.id());
     let mut peak = 0;
     loop {
         // One that has ended and was not waited for says nothing of its memory any more.
@@ -89,7 +114,8 @@ fn watch(child: &mut Child, start: Instant) -> io::Result<(u64, bool)> {
         if child.try_wait()?.is_some() {
             return Ok((peak, false));
         }
-        let hung = start.elapsed() > LONGEST;
+        let worked = fs::read_to_string(&stat).ok().and_then(|s| work_of(&s));
+        let hung = start.elapsed() > limit.clock || worked > Some(limit.work);
         if hung || peak > DANGEROUS {
             child.kill()?;
             return Ok((peak, hung));
@@ -104,4 +130,14 @@ fn peak_of(status: &str) -> Option<u64> {
     let line = status.lines().find(|line| line.starts_with("VmHWM:"))?;
     let kilobytes: u64 = line.split_whitespace().nth(1)?.parse().ok()?;
     Some(kilobytes * 1024)
+}
+
+/// The time that processors have worked for it, in the user's programs and in the system's.
+fn work_of(stat: &str) -> Option<Duration> {
+    // The name of the program, in brackets, may hold spaces.
+    let (_, fields) = stat.rsplit_once(')')?;
+    let ticks = fields.split_whitespace().skip(11).take(2);
+    let ticks: u64 = ticks.filter_map(|field| field.parse::<u64>().ok()).sum();
+    // Linux counts hundredths of a second here, on any machine.
+    Some(Duration::from_millis(10 * ticks))
 }

@@ -1,0 +1,103 @@
+//! Planes in the coordinates of surfaces met obliquely, by photons and by backward rays.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::estimates;
+use etendue_scene::{SceneFile, resolve};
+use etendue_trace::{Backward, Tracer};
+
+/// Towards where light comes from, turned out of the plane of X and the central ray.
+const FACING: &str = "(0.3, -0.5, -0.8)";
+
+fn smooth(event: &str) -> String {
+    format!(
+        r#"Smooth(name: "s", center: (0, 0, 1), facing: {FACING}, form: Sphere(0.2), aperture: 0.5, event: {event})"#
+    )
+}
+
+/// Both tracers see the same light at every plane that is called for.
+fn agree(surface: &str, planes: &[&str]) {
+    agree_along("\"s\"", surface, planes);
+}
+
+fn agree_along(visits: &str, surface: &str, planes: &[&str]) {
+    let planes: Vec<String> = planes.iter().enumerate().map(named).collect();
+    let text = format!(
+        r#"(
+            light: Rectangle(center: (0, 0, 0), size: (0.9, 0.7)),
+            surfaces: [{surface}],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
+            planes: [{}],
+            window: (x: Hann(0.15), y: Box(0.1), u: Hann(0.3), v: Hann(0.2)),
+            frequencies: (rho: (max: 4), nu: (max: 4)),
+            run: (photons: 1_000_000),
+        )"#,
+        planes.join(", ")
+    );
+    let file = SceneFile::parse(&text).unwrap();
+    let scene = resolve("test", file, ".".as_ref(), u64::MAX).unwrap();
+    let (photons, _) = estimates(&Tracer::new(&scene), &scene);
+    let (rays, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
+    for (plane, (a, b)) in planes.iter().zip(photons.iter().zip(&rays)) {
+        // Noise must not hide light that is missing.
+        assert!(a[0][1] < 0.02 * b[0][0], "{surface}, {plane}: {a:?}");
+        for (a, b) in a.iter().zip(b) {
+            let z = (a[0] - b[0]) / a[1].hypot(b[1]);
+            // Some 40 tests: 4.5 standard errors are passed in one run of 4,000.
+            assert!(z.abs() < 4.5, "{surface}, {plane}: {a:?} and {b:?}");
+        }
+    }
+}
+
+fn named((i, plane): (usize, &&str)) -> String {
+    format!("(name: \"p{i}\", {plane})")
+}
+
+/// Light that arrives is seen in full, whatever the surface does to it.
+#[test]
+fn arriving() {
+    let tangent = r#"at: Before("s"), orientation: Tangent"#;
+    let local = r#"at: Before("s"), orientation: LocalNormals"#;
+    let mirrored = r#"at: Before("s"), orientation: Mirrored"#;
+    for event in ["Mirror", "Refraction(front: 1, back: 1.5)"] {
+        agree(&smooth(event), &[tangent]);
+        agree(&smooth(event), &[local]);
+        agree(&smooth(event), &[mirrored]);
+    }
+    let wall =
+        format!(r#"Rectangle(name: "s", center: (0, 0, 1), size: (3, 3), facing: {FACING})"#);
+    agree(&wall, &[tangent]);
+}
+
+/// A tangent plane that goes on beyond its surface sees what passes beside.
+#[test]
+fn arriving_beside() {
+    for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian))"] {
+        let small = smooth(event).replace("aperture: 0.5", "aperture: 0.05");
+        agree(&small, &[r#"at: Before("s"), orientation: Tangent"#]);
+    }
+}
+
+/// Light that leaves a wall is seen about its normal, and not about the central ray.
+#[test]
+fn leaving() {
+    let wall =
+        format!(r#"Rectangle(name: "s", center: (0, 0, 1), size: (3, 3), facing: {FACING})"#);
+    agree(&wall, &[r#"at: After("s"), orientation: Tangent"#]);
+}
+
+/// Light for a plane on the second surface comes from all of the first.
+#[test]
+fn arriving_from_a_wall() {
+    let wall =
+        r#"Rectangle(name: "wall", center: (0, 0, 1), size: (0.6, 0.8), facing: (1, 0.2, -1))"#;
+    for what in [
+        r#"Rectangle(name: "s", center: (1, 0.1, 0.9), size: (0.7, 0.7), facing: (-1, 0.4, 0.2))"#,
+        r#"Smooth(name: "s", center: (1, 0.1, 0.9), facing: (-1, 0.4, 0.2), form: Plane, aperture: 0.4, event: Mirror)"#,
+    ] {
+        let plane = r#"at: Before("s"), orientation: Tangent"#;
+        agree_along(r#""wall", "s""#, &format!("{wall}, {what}"), &[plane]);
+    }
+}

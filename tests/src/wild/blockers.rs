@@ -1,0 +1,177 @@
+//! Blockers drawn at random, across the first leg of the path.
+
+use super::draw::Draw;
+use super::light::{axis, modulation};
+use super::pictures::sheet;
+use etendue_scene::{AxisName, BlockersFile, HalfName, LightFile, MeshSource, ShapeFile};
+use glam::DVec3;
+use std::io;
+
+/// The least size a scene file may state, metres.
+const LEAST: f64 = 1e-9;
+/// Products of shapes that a prediction may have to go through, and still end soon.
+const MOST: f64 = 3e4;
+/// Rectangles that a disc counts as.
+const STRIPS: f64 = 64.0;
+
+/// None to three layers before the first surface, which is at this distance.
+pub(super) fn blockers(
+    draw: &mut Draw,
+    light: &LightFile,
+    first: f64,
+) -> io::Result<Vec<BlockersFile>> {
+    let count = *draw.pick(&[0, 1, 1, 1, 2, 2, 3]);
+    let mut layers = Vec::new();
+    let mut products = match light {
+        LightFile::Disc { .. } => STRIPS,
+        _ => 1.0,
+    };
+    for i in 0..count {
+        let share = (0.15 + 0.7 * (i as f64 + draw.between(0.0, 0.9)) / count as f64).min(0.95);
+        let share = if draw.is_extreme() {
+            *draw.pick(&[1e-4, 0.9999, share])
+        } else {
+            share
+        };
+        // Layers must not lie in one plane.
+        let share = share * (1.0 + 1e-4 * i as f64 - 2e-4);
+        let layer = layer(draw, format!("mask {i}"), share * first)?;
+        products *= terms(&layer);
+        if products < MOST {
+            layers.push(layer);
+        }
+    }
+    Ok(layers)
+}
+
+fn terms(layer: &BlockersFile) -> f64 {
+    match layer {
+        BlockersFile::JitteredSquares { count, .. } => count.map(f64::from).iter().product(),
+        BlockersFile::Shapes { shapes, .. } => {
+            let strips = |s: &ShapeFile| match s {
+                ShapeFile::Disc { .. } => STRIPS,
+                _ => 1.0,
+            };
+            shapes.iter().map(strips).sum()
+        }
+        BlockersFile::Grating { .. } => 3.0,
+        BlockersFile::Mesh { .. } => 1.0,
+    }
+}
+
+fn layer(draw: &mut Draw, name: String, distance: f64) -> io::Result<BlockersFile> {
+    let aside = if draw.one_in(3) {
+        [(); 2].map(|()| draw.unit * draw.between(-0.2, 0.2))
+    } else {
+        [0.0; 2]
+    };
+    let center = draw.place(DVec3::new(aside[0], aside[1], distance));
+    Ok(match draw.below(12) {
+        0..=2 => squares(draw, name, center),
+        3 | 4 => BlockersFile::Shapes {
+            name,
+            center,
+            shapes: board(draw),
+        },
+        5..=7 => BlockersFile::Shapes {
+            name,
+            center,
+            shapes: half_planes(draw),
+        },
+        8..=10 => BlockersFile::Grating {
+            name,
+            center,
+            axis: axis(draw),
+            frequency: draw.value([1.0, 8.0], [1e-3, 500.0]) / draw.unit,
+            modulation: modulation(draw),
+            phase: draw.between(-3.0, 3.0),
+        },
+        _ => mesh(draw, name, center, distance)?,
+    })
+}
+
+fn squares(draw: &mut Draw, name: String, center: [f64; 3]) -> BlockersFile {
+    let (fill, jitter) = if draw.is_extreme() {
+        *draw.pick(&[(1.0, 0.0), (1e-3, 0.999), (0.999, 0.001)])
+    } else {
+        let fill = draw.between(0.2, 0.8);
+        (fill, draw.between(0.0, 1.0 - fill))
+    };
+    BlockersFile::JitteredSquares {
+        name,
+        center,
+        count: [(); 2].map(|()| draw.whole(1, 9)),
+        pitch: draw.length([0.05, 0.4], [1e-5, 50.0]),
+        fill,
+        jitter,
+        seed: u64::from(draw.whole(0, 9)),
+    }
+}
+
+/// Shapes in the cells of a board.
+fn board(draw: &mut Draw) -> Vec<ShapeFile> {
+    let pitch = draw.length([0.1, 0.5], [1e-4, 20.0]);
+    let count = 1 + draw.below(5);
+    let shape = |draw: &mut Draw, i: usize| {
+        let [column, row] = [i % 3, i / 3].map(|k| (k as f64 - 0.5) * pitch);
+        let center = [column, row];
+        let size = [(); 2].map(|()| (pitch * draw.value([0.2, 0.95], [1e-6, 1.0])).max(LEAST));
+        if draw.one_in(3) {
+            let radius = 0.5 * size[0];
+            ShapeFile::Disc { center, radius }
+        } else {
+            ShapeFile::Rectangle { center, size }
+        }
+    };
+    (0..count).map(|i| shape(draw, i)).collect()
+}
+
+/// One edge, or a slit: now and then a very narrow one, or none at all.
+fn half_planes(draw: &mut Draw) -> Vec<ShapeFile> {
+    let axis: AxisName = axis(draw);
+    let edge = draw.unit * draw.between(-0.15, 0.15);
+    let half = |edge: f64, opaque: HalfName| ShapeFile::HalfPlane { axis, edge, opaque };
+    if draw.one_in(2) {
+        let opaque = *draw.pick(&[HalfName::Above, HalfName::Below]);
+        return vec![half(edge, opaque)];
+    }
+    let gap = if draw.is_extreme() && draw.one_in(2) {
+        0.0
+    } else {
+        draw.length([0.02, 0.3], [1e-7, 1.0])
+    };
+    vec![
+        half(edge, HalfName::Below),
+        half(edge + gap, HalfName::Above),
+    ]
+}
+
+/// A mesh that does not reach the light, nor what comes after.
+fn mesh(
+    draw: &mut Draw,
+    name: String,
+    center: [f64; 3],
+    distance: f64,
+) -> io::Result<BlockersFile> {
+    let size = (0.1 * draw.unit).min(0.1 * distance) * draw.between(0.3, 1.0);
+    let mesh = match draw.below(3) {
+        0 => MeshSource::Star {
+            radius: size,
+            relief: draw.between(0.0, 0.5),
+            lobes: draw.whole(0, 3),
+            rings: draw.whole(6, 30),
+        },
+        1 => MeshSource::Paraboloid {
+            curvatures: [(); 2].map(|()| draw.between(-0.5, 0.5) / size),
+            half: size,
+            cells: draw.whole(1, 20),
+        },
+        _ => MeshSource::File(sheet(draw, [DVec3::X, DVec3::Y, DVec3::NEG_Z], size)?),
+    };
+    Ok(BlockersFile::Mesh {
+        name,
+        center,
+        mesh,
+        scale: 1.0,
+    })
+}

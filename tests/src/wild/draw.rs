@@ -1,0 +1,126 @@
+//! Random choices of a scene: what is drawn, how extreme, and in which frame.
+
+use crate::hostile::dice::Dice;
+use etendue_field::Frame;
+use glam::DVec3;
+use std::f64::consts::TAU;
+use std::path::{Path, PathBuf};
+
+/// The choices of one scene, in the order they are asked for.
+pub(super) struct Draw {
+    dice: Dice,
+    /// One value in so many is extreme; none where it is 0.
+    rarity: usize,
+    /// What lengths of the scene are in proportion to, metres.
+    pub(super) unit: f64,
+    /// The frame at the light. All else is drawn in its coordinates.
+    pub(super) frame: Frame,
+    /// Where pictures and meshes of the scene are written.
+    pub(super) folder: PathBuf,
+    /// How many of them there are.
+    pub(super) inputs: usize,
+}
+
+/// Units that make all lengths of a scene tiny or huge: nothing but numbers may depend on them.
+const UNITS: [f64; 4] = [1e-3, 1e-2, 1e2, 1e4];
+/// Lengths a scene file may state, metres.
+const LENGTHS: [f64; 2] = [1e-9, 1e9];
+
+impl Draw {
+    pub(super) fn new(seed: u64, index: u64, folder: &Path) -> Self {
+        let mut draw = Self {
+            dice: Dice::new(seed, index),
+            rarity: 0,
+            unit: 1.0,
+            frame: Frame::IDENTITY,
+            folder: folder.to_owned(),
+            inputs: 0,
+        };
+        // Scenes in which everything is extreme are mostly dark. So some have nothing that is.
+        draw.rarity = *draw.pick(&[0, 20, 5, 5]);
+        if draw.is_extreme() {
+            draw.unit = *draw.pick(&UNITS);
+        }
+        if draw.one_in(3) {
+            draw.frame = draw.some_frame();
+        }
+        draw
+    }
+
+    fn some_frame(&mut self) -> Frame {
+        let [d, x] = [(); 2].map(|()| self.direction());
+        let origin = 3.0 * self.unit * self.direction();
+        Frame::new(origin, d, x).unwrap_or(Frame::IDENTITY)
+    }
+
+    /// A direction, all alike.
+    pub(super) fn direction(&mut self) -> DVec3 {
+        let z = self.between(-1.0, 1.0);
+        let (sin, cos) = self.between(0.0, TAU).sin_cos();
+        let r = (1.0 - z * z).sqrt();
+        rounded_vector(DVec3::new(r * cos, r * sin, z))
+    }
+
+    pub(super) fn is_extreme(&mut self) -> bool {
+        self.rarity > 0 && self.dice.one_in(self.rarity)
+    }
+
+    pub(super) fn one_in(&mut self, n: usize) -> bool {
+        self.dice.one_in(n)
+    }
+
+    pub(super) fn below(&mut self, n: usize) -> usize {
+        self.dice.below(n)
+    }
+
+    pub(super) fn pick<'a, T>(&mut self, all: &'a [T]) -> &'a T {
+        self.dice.pick(all)
+    }
+
+    pub(super) fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.dice.unit()
+    }
+
+    /// One of `low` to `high`, both included.
+    pub(super) fn whole(&mut self, low: u32, high: u32) -> u32 {
+        let more = self.below((high - low + 1) as usize);
+        low + u32::try_from(more).unwrap_or(0)
+    }
+
+    /// A positive number, alike in all orders of magnitude: of those that are usual, or of those
+    /// that are legal.
+    pub(super) fn value(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
+        let [low, high] = if self.is_extreme() { legal } else { usual };
+        rounded(self.between(low.ln(), high.ln()).exp()).clamp(low, high)
+    }
+
+    /// The same as a length, in units of the scene.
+    pub(super) fn length(&mut self, usual: [f64; 2], legal: [f64; 2]) -> f64 {
+        let [low, high] = LENGTHS;
+        (self.unit * self.value(usual, legal)).clamp(low, high)
+    }
+
+    /// The number, or its opposite.
+    pub(super) fn signed(&mut self, x: f64) -> f64 {
+        if self.one_in(2) { -x } else { x }
+    }
+
+    /// A place of the frame at the light, in world coordinates.
+    pub(super) fn place(&self, local: DVec3) -> [f64; 3] {
+        self.frame.to_world(local).to_array()
+    }
+
+    /// A direction of the frame at the light, in world coordinates.
+    pub(super) fn along(&self, local: DVec3) -> [f64; 3] {
+        self.frame.vector_to_world(local).to_array()
+    }
+}
+
+/// Four digits: a scene is to be read.
+pub(super) fn rounded(x: f64) -> f64 {
+    format!("{x:.3e}").parse().unwrap_or(x)
+}
+
+fn rounded_vector(v: DVec3) -> DVec3 {
+    DVec3::from(v.to_array().map(rounded))
+}

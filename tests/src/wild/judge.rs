@@ -1,0 +1,279 @@
+//! What a run of a scene comes to: whether its verdict is wrong, and who of three is.
+
+use super::run::{Ending, PlaneSummary, Runner};
+use etendue_compare::{Prediction, Verdict, compare, sidak};
+use etendue_field::PhotonSource;
+use etendue_scene::{LightFile, SceneFile, resolve};
+use etendue_spectrum::{Measurement, measure};
+use etendue_trace::{Backward, Tracer};
+use std::io;
+use std::path::Path;
+
+/// What is wrong with a scene, and stays so while it is made smaller.
+#[derive(Clone)]
+pub(super) enum Trouble {
+    Panic,
+    Hang,
+    Killed,
+    /// This plane fails, by photons or by backward rays, and again with other seeds.
+    Wrong {
+        plane: String,
+        backward: bool,
+        culprit: Culprit,
+    },
+}
+
+/// Who is wrong where a plane fails.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Culprit {
+    /// Both tracers agree, the prediction does not.
+    Theory,
+    /// The tracers do not agree.
+    Tracer,
+    /// The verdict, given by a handful of rays.
+    Handful,
+    /// One of these.
+    Unknown,
+}
+
+impl Culprit {
+    pub(super) fn says(self) -> &'static str {
+        match self {
+            Self::Theory => "the tracers agree, theory does not",
+            Self::Tracer => "the tracers do not agree",
+            Self::Handful => "a handful of rays decides",
+            Self::Unknown => "left open who is wrong",
+        }
+    }
+}
+
+/// A scene looked into.
+#[derive(Default)]
+pub(super) struct Judged {
+    /// Why it was refused.
+    pub(super) refused: Option<String>,
+    /// What the scene came to.
+    pub(super) verdicts: Vec<String>,
+    /// Runs with a verdict, those with a plane that fails, and those that do not repeat.
+    pub(super) runs: usize,
+    pub(super) fails: usize,
+    pub(super) chance: usize,
+    /// What is wrong, in words.
+    pub(super) troubles: Vec<(Trouble, String)>,
+}
+
+/// Fewer rays than this in the window are too few for the spread of 64 batches: about ten in each.
+const HANDFUL: u64 = 640;
+
+/// The seed of the first run, and others.
+const FIRST: u64 = 1;
+const OTHERS: [u64; 2] = [2, 3];
+
+/// Runs a scene, and looks into what fails.
+pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<Judged> {
+    let mut judged = Judged::default();
+    let planes = match runner.run(file, FIRST, false)? {
+        Ending::Done(planes) => planes,
+        Ending::Refused(why) => {
+            judged.refused = Some(why);
+            return Ok(judged);
+        }
+        other => {
+            judged.troubles.extend(trouble(&other));
+            return Ok(judged);
+        }
+    };
+    let verdicts = planes.iter();
+    judged.verdicts = verdicts
+        .map(|p| format!("{} {}", p.class, p.verdict))
+        .collect();
+    judged.count(runner, file, &planes, false)?;
+    let open = |p: &PlaneSummary| p.is_undecided() && !p.is_reference();
+    if planes.iter().any(open) && has_backward(file) {
+        match runner.run(file, FIRST, true)? {
+            Ending::Done(planes) => judged.count(runner, file, &planes, true)?,
+            other => judged.troubles.extend(trouble(&other)),
+        }
+    }
+    Ok(judged)
+}
+
+/// What is wrong with a run that did not come to an end.
+fn trouble(ending: &Ending) -> Option<(Trouble, String)> {
+    match ending {
+        Ending::Panic(says) => Some((Trouble::Panic, says.clone())),
+        Ending::Hang => Some((Trouble::Hang, "over the limit of time".into())),
+        Ending::Killed(how) => Some((Trouble::Killed, how.clone())),
+        Ending::Done(_) | Ending::Refused(_) => None,
+    }
+}
+
+/// Whether rays can be traced back to the light.
+fn has_backward(file: &SceneFile) -> bool {
+    !matches!(
+        file.light,
+        LightFile::Point { .. } | LightFile::Projector { .. } | LightFile::Beam { .. }
+    )
+}
+
+impl Judged {
+    /// Takes the verdicts of a run; what fails is run again with other seeds.
+    fn count(
+        &mut self,
+        runner: &Runner,
+        file: &SceneFile,
+        planes: &[PlaneSummary],
+        backward: bool,
+    ) -> io::Result<()> {
+        self.runs += 1;
+        if !planes.iter().any(PlaneSummary::fails) {
+            return Ok(());
+        }
+        self.fails += 1;
+        let mut again = Vec::new();
+        for seed in OTHERS {
+            if let Ending::Done(planes) = runner.run(file, seed, backward)? {
+                let failing = planes.into_iter().filter(PlaneSummary::fails);
+                again.extend(failing.map(|plane| plane.name));
+            }
+        }
+        let wrong = planes.iter();
+        let wrong: Vec<_> = wrong
+            .filter(|plane| plane.fails() && again.contains(&plane.name))
+            .collect();
+        if wrong.is_empty() {
+            self.chance += 1;
+        }
+        for plane in wrong {
+            let times = 1 + again.iter().filter(|name| **name == plane.name).count();
+            let (culprit, who) = who(runner, file, plane, backward)?;
+            let by = if backward { "backward rays" } else { "photons" };
+            let [p, chain] = plane.p.map(shown);
+            let [off, noise, stated] = plane.errors.map(shown);
+            self.troubles.push((
+                Trouble::Wrong {
+                    plane: plane.name.clone(),
+                    backward,
+                    culprit,
+                },
+                format!(
+                    "{} ({}) fails by {by} with {times} of 3 seeds, p {p}, of the chain {chain}, \
+                     off {off}, noise {noise}, stated {stated}; {}: {who}",
+                    plane.name,
+                    plane.class,
+                    culprit.says()
+                ),
+            ));
+        }
+        Ok(())
+    }
+}
+
+fn shown(x: Option<f64>) -> String {
+    x.map_or("–".into(), |x| format!("{x:.3e}"))
+}
+
+/// Who of photons, backward rays and prediction is wrong.
+fn who(
+    runner: &Runner,
+    file: &SceneFile,
+    plane: &PlaneSummary,
+    backward: bool,
+) -> io::Result<(Culprit, String)> {
+    if !has_backward(file) {
+        let culprit = if plane.in_window < HANDFUL {
+            Culprit::Handful
+        } else {
+            Culprit::Unknown
+        };
+        return Ok((culprit, "no backward rays in this light".into()));
+    }
+    let (folder, copy, name) = (runner.folder.clone(), file.clone(), plane.name.clone());
+    let tracers = std::thread::spawn(move || of_tracers(&copy, &folder, &name));
+    let Some(tracers) = tracers.join().unwrap_or(None) else {
+        return Ok((Culprit::Unknown, "the tracers cannot be compared".into()));
+    };
+    let [photons, rays] = tracers.inside;
+    let looked = match (plane.is_reference(), backward) {
+        (true, _) => photons.min(rays),
+        (false, false) => photons,
+        (false, true) => rays,
+    };
+    let culprit = match tracers.verdict {
+        _ if looked < HANDFUL => Culprit::Handful,
+        Verdict::Fail => Culprit::Tracer,
+        _ if plane.is_reference() => Culprit::Unknown,
+        Verdict::Pass => Culprit::Theory,
+        Verdict::Undecided => Culprit::Unknown,
+    };
+    let other = if plane.is_reference() {
+        String::new()
+    } else {
+        let by = if backward { "photons" } else { "backward rays" };
+        let ending = runner.run(file, FIRST, !backward)?;
+        let found = match &ending {
+            Ending::Done(planes) => planes.iter().find(|p| p.name == plane.name),
+            _ => None,
+        };
+        let found = found.map_or("no end", |plane| &plane.verdict);
+        format!("; {by} to the prediction: {found}")
+    };
+    let (verdict, p) = (tracers.verdict, shown(tracers.p));
+    Ok((
+        culprit,
+        format!(
+            "{photons} photons and {rays} backward rays in the window; one to the other: \
+             {verdict:?}, p {p}{other}"
+        ),
+    ))
+}
+
+/// Photons and backward rays of one plane.
+struct Tracers {
+    verdict: Verdict,
+    p: Option<f64>,
+    /// How many were in the window.
+    inside: [u64; 2],
+}
+
+/// Photons compared with backward rays.
+fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
+    let scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
+    let i = scene.planes.iter().position(|plane| plane.name == name)?;
+    let measured = |source: &dyn PhotonSource| -> Measurement {
+        measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
+    };
+    let photons = measured(&Tracer::new(&scene));
+    let rays = measured(&Backward::new(&scene).ok()?);
+    let inside = [&photons, &rays].map(|measured| measured.tally(i).inside);
+    let reference = Prediction::reference(&scene, i, &rays, i).ok()?;
+    let level = sidak(scene.run.alpha, scene.planes.len());
+    let compared = compare(&photons, i, &reference, level, scene.run.seed).ok()?;
+    Some(Tracers {
+        verdict: compared.report.verdict,
+        p: compared.report.p_value,
+        inside,
+    })
+}
+
+/// Whether a scene is still in the same trouble, chance left out.
+pub(super) fn persists(runner: &Runner, file: &SceneFile, trouble: &Trouble) -> io::Result<bool> {
+    match trouble {
+        Trouble::Panic => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Panic(_))),
+        Trouble::Hang => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Hang)),
+        Trouble::Killed => Ok(matches!(runner.run(file, FIRST, false)?, Ending::Killed(_))),
+        Trouble::Wrong {
+            plane, backward, ..
+        } => {
+            for seed in [FIRST, OTHERS[0]] {
+                let Ending::Done(planes) = runner.run(file, seed, *backward)? else {
+                    return Ok(false);
+                };
+                if !planes.iter().any(|p| p.name == *plane && p.fails()) {
+                    return Ok(false);
+                }
+            }
+            Ok(true)
+        }
+    }
+}

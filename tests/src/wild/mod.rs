@@ -1,0 +1,167 @@
+//! A hunt for scenes on which Étendue is wrong.
+//!
+//! Scenes are drawn from the whole vocabulary of scene files and run as a user runs them. What
+//! panics, hangs or fails with several seeds is made as small as it goes and kept.
+
+mod blockers;
+mod draw;
+mod judge;
+mod light;
+mod pictures;
+mod planes;
+mod reflects;
+mod run;
+mod scene;
+mod shrink;
+mod straight;
+mod surfaces;
+mod tally;
+
+use crate::hostile::{child, progress};
+use crate::report::Section;
+use judge::{Judged, judge};
+use run::{Runner, text};
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Duration;
+use tally::Tally;
+
+/// What to hunt for, and where.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// Scenes.
+    #[arg(long, default_value_t = 100)]
+    scenes: u64,
+    /// Number of the first.
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Another seed gives other scenes.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Photons of each run.
+    #[arg(long, default_value_t = 200_000)]
+    photons: u64,
+    /// Seconds after which a run has hung.
+    #[arg(long, default_value_t = 60)]
+    limit: u64,
+    /// Seconds to make a scene smaller.
+    #[arg(long, default_value_t = 120)]
+    shrink: u64,
+    /// Scenes at a time [default: one for each core].
+    #[arg(long)]
+    threads: Option<usize>,
+    /// Where scenes are kept on which something is wrong.
+    #[arg(long, default_value = "target/wild")]
+    out: PathBuf,
+    /// Only draws the scenes, and keeps them all.
+    #[arg(long)]
+    draw: bool,
+    /// The program [default: the one beside this].
+    #[arg(long)]
+    etendue: Option<PathBuf>,
+}
+
+/// Runs all scenes.
+pub(crate) fn wild(options: &Options) -> io::Result<Section> {
+    let program = child::program(options.etendue.as_deref())?;
+    let place = tempfile::tempdir()?;
+    let bar = progress(options.scenes, "scenes");
+    let next = AtomicU64::new(options.first);
+    let tally = Mutex::new(Tally::default());
+    let tell = |number: u64, says: &str| bar.suspend(|| told(options.seed, number, says));
+    let worker = |thread: usize| -> io::Result<()> {
+        loop {
+            let number = next.fetch_add(1, Ordering::Relaxed);
+            if number >= options.first + options.scenes {
+                return Ok(());
+            }
+            let at = place.path().join(format!("{thread}-{number}"));
+            let judged = one(options, &program, number, &at, &tell)?;
+            if let Ok(mut tally) = tally.lock() {
+                match &judged {
+                    Some(judged) => tally.add(number, judged),
+                    None => tally.undrawn(number),
+                }
+            }
+            fs::remove_dir_all(&at)?;
+            bar.inc(1);
+        }
+    };
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let threads = options.threads.unwrap_or(cores).max(1);
+    std::thread::scope(|scope| {
+        let workers: Vec<_> = (0..threads)
+            .map(|i| scope.spawn(move || worker(i)))
+            .collect();
+        workers.into_iter().try_for_each(|worker| {
+            let joined = worker.join();
+            joined.unwrap_or_else(|_| Err(io::Error::other("a thread has panicked")))
+        })
+    })?;
+    bar.finish_and_clear();
+    let tally = tally.into_inner().unwrap_or_default();
+    Ok(tally.section(options.seed))
+}
+
+#[expect(clippy::print_stderr, reason = "findings are told as they come")]
+fn told(seed: u64, number: u64, says: &str) {
+    eprintln!("seed {seed}, scene {number}: {says}");
+}
+
+/// Draws a scene, runs and judges it; keeps it where something is wrong, and tells what. `None`
+/// where nothing could be drawn.
+fn one(
+    options: &Options,
+    program: &Path,
+    number: u64,
+    at: &Path,
+    tell: &dyn Fn(u64, &str),
+) -> io::Result<Option<Judged>> {
+    let runner = Runner {
+        program: program.to_owned(),
+        folder: at.join("scene"),
+        scratch: at.join("scratch"),
+        limit: Duration::from_secs(options.limit),
+    };
+    fs::create_dir_all(&runner.folder)?;
+    fs::create_dir_all(&runner.scratch)?;
+    let Ok(file) = scene::scene(options.seed, number, options.photons, &runner.folder) else {
+        return Ok(None);
+    };
+    if options.draw {
+        keep(options, number, "drawn", &text(&file)?, &runner.folder)?;
+        return Ok(Some(Judged::default()));
+    }
+    let judged = judge(&runner, &file)?;
+    if let Some(why) = &judged.refused {
+        tell(number, &format!("refused: {why}"));
+        keep(options, number, "refused", &text(&file)?, &runner.folder)?;
+    }
+    for (trouble, says) in &judged.troubles {
+        tell(number, says);
+        keep(options, number, "drawn", &text(&file)?, &runner.folder)?;
+        let time = Duration::from_secs(options.shrink);
+        let small = shrink::shrink(&runner, &file, trouble, time)?;
+        let small = format!("// {}\n{}", says.replace('\n', " "), text(&small)?);
+        keep(options, number, "small", &small, &runner.folder)?;
+        tell(number, &format!("the smallest found:\n{small}"));
+    }
+    Ok(Some(judged))
+}
+
+/// Keeps a scene and the files it names.
+fn keep(options: &Options, number: u64, what: &str, text: &str, from: &Path) -> io::Result<()> {
+    let folder = options.out.join(format!("{}-{number}", options.seed));
+    fs::create_dir_all(&folder)?;
+    for file in fs::read_dir(from)? {
+        let path = file?.path();
+        let input = path.file_name().filter(|name| *name != "scene.ron");
+        if let Some(name) = input {
+            fs::copy(&path, folder.join(name))?;
+        }
+    }
+    fs::write(folder.join(format!("{what}.ron")), text)
+}

@@ -1,0 +1,65 @@
+//! Pictures and meshes drawn at random, written beside the scene.
+
+use super::draw::Draw;
+use exr::prelude::write_rgb_file;
+use glam::DVec3;
+use std::fmt::Write as _;
+use std::fs;
+use std::io;
+
+/// A map of light from far away; its file.
+pub(super) fn sky(draw: &mut Draw) -> io::Result<String> {
+    let width = 1 << draw.whole(1, 6);
+    let bright = draw.one_in(2);
+    picture(draw, [width, (width / 2).max(1)], bright)
+}
+
+/// A picture on a surface, of numbers from 0 to 1; its file.
+pub(super) fn texture(draw: &mut Draw) -> io::Result<String> {
+    let size = [(); 2].map(|()| draw.whole(1, 9) as usize);
+    picture(draw, size, false)
+}
+
+/// Pixels from 0 to 1, and one of a thousand where it is `bright`.
+fn picture(draw: &mut Draw, [width, height]: [usize; 2], bright: bool) -> io::Result<String> {
+    let mut pixels: Vec<f32> = Vec::new();
+    for _ in 0..width * height {
+        pixels.push(f32::from(u8::try_from(draw.below(256)).unwrap_or(0)) / 255.0);
+    }
+    let at = draw.below(pixels.len());
+    pixels[at] = if bright { 1e3 } else { 1.0 };
+    let name = next(draw, "exr");
+    let path = draw.folder.join(&name);
+    write_rgb_file(path, width, height, |x, y| {
+        let value = pixels[y * width + x];
+        (value, value, value)
+    })
+    .map_err(io::Error::other)?;
+    Ok(name)
+}
+
+/// A wavy sheet across `d`, around the origin, as far as `half` to each side; its file.
+pub(super) fn sheet(draw: &mut Draw, [x, y, n]: [DVec3; 3], half: f64) -> io::Result<String> {
+    let cells = draw.whole(1, 8);
+    let relief = half * draw.between(0.0, 0.15);
+    let (mut text, side) = (String::new(), cells + 1);
+    for i in 0..side * side {
+        let [s, t] = [i % side, i / side].map(|k| 2.0 * f64::from(k) / f64::from(cells) - 1.0);
+        let up = relief * ((2.0 * s).cos() * (1.5 * t).cos() - 1.0);
+        let [px, py, pz] = draw.along(half * (s * x + t * y) + up * n);
+        let _ = writeln!(text, "v {px:?} {py:?} {pz:?}");
+    }
+    for i in 0..cells * cells {
+        let corner = 1 + i % cells + side * (i / cells);
+        let [a, b, c, d] = [corner, corner + 1, corner + side, corner + side + 1];
+        let _ = writeln!(text, "f {a} {b} {d}\nf {a} {d} {c}");
+    }
+    let name = next(draw, "obj");
+    fs::write(draw.folder.join(&name), text)?;
+    Ok(name)
+}
+
+fn next(draw: &mut Draw, extension: &str) -> String {
+    draw.inputs += 1;
+    format!("input{}.{extension}", draw.inputs)
+}

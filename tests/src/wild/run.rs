@@ -1,0 +1,186 @@
+//! A scene run by the program, as a user runs it, in a child process with a limit of time.
+
+use crate::hostile::child::{self, Ended, Limit};
+use etendue_scene::SceneFile;
+use ron::extensions::Extensions;
+use ron::ser::PrettyConfig;
+use serde_json::Value;
+use std::fs;
+use std::io;
+use std::path::PathBuf;
+use std::time::Duration;
+
+/// The scene file in the folder.
+const SCENE: &str = "scene.ron";
+/// How many times the limit a run may take by the clock.
+const LONGER: u32 = 10;
+/// What a panic ends with.
+const PANIC: i32 = 101;
+/// What refused input ends with, and what cannot be run.
+const REFUSED: [i32; 2] = [2, 3];
+
+/// Where scenes are run, and how.
+pub(super) struct Runner {
+    pub(super) program: PathBuf,
+    /// The folder of the scene, with the files it names.
+    pub(super) folder: PathBuf,
+    /// A folder for what comes of it.
+    pub(super) scratch: PathBuf,
+    /// Of work, whatever else the machine has to do.
+    pub(super) limit: Duration,
+}
+
+/// How a run ended.
+pub(super) enum Ending {
+    /// With a verdict on each plane.
+    Done(Vec<PlaneSummary>),
+    /// The scene was refused, for this reason.
+    Refused(String),
+    /// With a panic that says this.
+    Panic(String),
+    /// Not within the limit of time.
+    Hang,
+    /// By a signal, or otherwise than any command should.
+    Killed(String),
+}
+
+/// What a summary says of a plane.
+pub(super) struct PlaneSummary {
+    pub(super) name: String,
+    pub(super) class: String,
+    pub(super) verdict: String,
+    /// Of the prediction as it is, and of the chain of affine maps where there is one.
+    pub(super) p: [Option<f64>; 2],
+    /// Rays in its window.
+    pub(super) in_window: u64,
+    /// Relative error, noise limit, error of the prediction.
+    pub(super) errors: [Option<f64>; 3],
+}
+
+impl PlaneSummary {
+    fn new(plane: &Value) -> Self {
+        let text = |key: &str| plane[key].as_str().unwrap_or_default().to_owned();
+        let number = |key: &str| plane[key].as_f64();
+        Self {
+            name: text("name"),
+            class: text("class"),
+            verdict: text("verdict"),
+            p: [number("p_value"), plane["first_order"]["p_value"].as_f64()],
+            in_window: plane["in_window"].as_u64().unwrap_or(0),
+            errors: ["relative_error", "noise_limit", "quadrature_error"].map(number),
+        }
+    }
+
+    pub(super) fn fails(&self) -> bool {
+        self.verdict == "fail"
+    }
+
+    pub(super) fn is_undecided(&self) -> bool {
+        self.verdict == "undecided"
+    }
+
+    /// Whether the other tracer took the place of theory.
+    pub(super) fn is_reference(&self) -> bool {
+        self.class == "reference"
+    }
+}
+
+/// A scene file as its text.
+pub(super) fn text(file: &SceneFile) -> io::Result<String> {
+    let pretty = PrettyConfig::new().depth_limit(3);
+    ron::Options::default()
+        .with_default_extension(Extensions::IMPLICIT_SOME)
+        .to_string_pretty(file, pretty)
+        .map_err(io::Error::other)
+}
+
+impl Runner {
+    /// Runs a scene with this seed of photons, or of backward rays.
+    pub(super) fn run(&self, file: &SceneFile, seed: u64, backward: bool) -> io::Result<Ending> {
+        fs::write(self.folder.join(SCENE), text(file)?)?;
+        let out = self.scratch.join("out");
+        if out.exists() {
+            fs::remove_dir_all(&out)?;
+        }
+        let method = if backward { "backward" } else { "photons" };
+        let (folder, seed) = (out.display().to_string(), seed.to_string());
+        let words = [
+            "run",
+            SCENE,
+            "--quiet",
+            "--threads",
+            "1",
+            "--seed",
+            &seed,
+            "--method",
+            method,
+            "--out",
+            &folder,
+        ];
+        let words = words.map(str::to_owned);
+        let limit = Limit {
+            clock: LONGER * self.limit,
+            work: self.limit,
+        };
+        let ended = child::call_within(limit, &self.program, &self.folder, &words, &self.scratch)?;
+        if let Some(ending) = early(&ended) {
+            return Ok(ending);
+        }
+        let summary = fs::read(out.join("summary.json"))?;
+        let summary: Value = serde_json::from_slice(&summary).map_err(io::Error::other)?;
+        let planes = summary["planes"].as_array().map(Vec::as_slice);
+        let planes = planes.unwrap_or_default().iter();
+        Ok(Ending::Done(planes.map(PlaneSummary::new).collect()))
+    }
+}
+
+/// The end of a run that left no result.
+fn early(ended: &Ended) -> Option<Ending> {
+    let stderr = String::from_utf8_lossy(&ended.stderr);
+    if ended.hung {
+        return Some(Ending::Hang);
+    }
+    match ended.code {
+        Some(PANIC) => {
+            let at = stderr.find("panicked").unwrap_or(0);
+            let words = stderr[at..].lines().take(3);
+            Some(Ending::Panic(words.collect::<Vec<_>>().join(" ")))
+        }
+        Some(code) if REFUSED.contains(&code) => Some(Ending::Refused(reason(&stderr))),
+        Some(0 | 1) => None,
+        code => Some(Ending::Killed(format!(
+            "code {code:?}, signal {:?}, {} MB",
+            ended.signal,
+            ended.peak >> 20
+        ))),
+    }
+}
+
+/// Why it was refused, without numbers and names.
+fn reason(stderr: &str) -> String {
+    let lines = stderr.lines().filter(|line| {
+        let line = line.trim_start();
+        !line.is_empty() && !line.starts_with("warning") && !line.starts_with("note")
+    });
+    let words: Vec<&str> = lines.take(3).map(str::trim).collect();
+    let text = words.join(" ");
+    let (mut plain, mut quoted, mut depth) = (String::new(), false, 0_usize);
+    for c in text.chars() {
+        match c {
+            '"' => quoted = !quoted,
+            _ if quoted => {}
+            // What is in brackets gives details.
+            '(' => depth += 1,
+            ')' => depth = depth.saturating_sub(1),
+            _ if depth > 0 => {}
+            '0'..='9' => {
+                if !plain.ends_with('N') {
+                    plain.push('N');
+                }
+            }
+            '.' | '-' | '+' | 'e' if plain.ends_with('N') => {}
+            _ => plain.push(c),
+        }
+    }
+    plain.chars().take(300).collect()
+}

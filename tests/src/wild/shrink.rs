@@ -1,0 +1,216 @@
+//! Makes a scene smaller while the same is wrong with it.
+//!
+//! A scene is changed as the tree of values that it is: things are left out one at a time, and
+//! numbers made round. What is no scene any more does not fail in the same way, and is not taken.
+
+use super::judge::{Trouble, persists};
+use super::run::Runner;
+use super::straight::straightened;
+use etendue_scene::SceneFile;
+use serde_json::{Value, json};
+use std::io;
+use std::time::{Duration, Instant};
+
+/// Lists of which elements can be left out.
+const LISTS: [&str; 6] = [
+    "planes", "blockers", "visits", "surfaces", "shapes", "Lobes",
+];
+/// Fields that can be left out, or as if they were.
+const OPTIONAL: [&str; 11] = [
+    "y",
+    "v",
+    "window",
+    "frequencies",
+    "spacing",
+    "texture",
+    "leaves",
+    "facing",
+    "along",
+    "grating",
+    "description",
+];
+/// Words that are the plainest of their kind.
+const PLAIN: [(&str, &str); 6] = [
+    ("quantity", "Radiance"),
+    ("orientation", "Orthogonal"),
+    ("emission", "Aimed"),
+    ("fresnel", "White"),
+    ("lobe", "Lambertian"),
+    ("form", "Plane"),
+];
+
+/// The smallest scene found in this time.
+pub(super) fn shrink(
+    runner: &Runner,
+    file: &SceneFile,
+    trouble: &Trouble,
+    time: Duration,
+) -> io::Result<SceneFile> {
+    let begun = Instant::now();
+    let mut best = serde_json::to_value(file).map_err(io::Error::other)?;
+    let (mut taken, mut next) = (false, 0);
+    while begun.elapsed() < time {
+        let candidates = candidates(&best);
+        let Some(candidate) = candidates.get(next) else {
+            // A round without a change is the last one.
+            if !taken {
+                break;
+            }
+            (taken, next) = (false, 0);
+            continue;
+        };
+        let changed: Result<SceneFile, _> = serde_json::from_value(candidate.clone());
+        match changed {
+            Ok(changed) if persists(runner, &changed, trouble)? => {
+                best = candidate.clone();
+                taken = true;
+            }
+            _ => next += 1,
+        }
+    }
+    serde_json::from_value(best).map_err(io::Error::other)
+}
+
+/// Every smaller scene that is one step away, those that leave out most first.
+fn candidates(tree: &Value) -> Vec<Value> {
+    let mut found = Vec::new();
+    let places = places(tree, String::new());
+    for list in LISTS {
+        for (place, value) in &places {
+            let elements = value
+                .as_array()
+                .filter(|all| all.len() > usize::from(list != "blockers"));
+            let Some(elements) = elements.filter(|_| name(place) == list) else {
+                continue;
+            };
+            for i in 0..elements.len() {
+                let mut less = elements.clone();
+                less.remove(i);
+                found.push(with(tree, place, Value::Array(less)));
+            }
+        }
+    }
+    found.extend(straightened(tree));
+    found.extend(without_blends(tree, &places));
+    for (place, value) in &places {
+        let name = name(place);
+        if OPTIONAL.contains(&name) && !value.is_null() {
+            found.push(with(tree, place, Value::Null));
+        }
+        for (_, plain) in PLAIN.iter().filter(|(of, _)| *of == name) {
+            if **value != json!(plain) {
+                found.push(with(tree, place, json!(plain)));
+            }
+        }
+    }
+    found.extend(rounder(tree, &places));
+    found
+}
+
+/// Blends go with what they blend in.
+fn without_blends(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
+    let blends = places
+        .iter()
+        .filter(|(place, value)| name(place) == "blend" && !value.is_null());
+    let without = |(place, _): &(String, &Value)| {
+        let other = place.replace("/blend", "/other");
+        with(&with(tree, place, Value::Null), &other, Value::Null)
+    };
+    blends.map(without).collect()
+}
+
+/// All numbers with fewer digits, then one after the other.
+fn rounder(tree: &Value, places: &[(String, &Value)]) -> Vec<Value> {
+    let numbers = places
+        .iter()
+        .filter(|(place, value)| value.is_f64() && !place.starts_with("/run"));
+    let numbers: Vec<(&String, f64)> = numbers
+        .filter_map(|(place, value)| Some((place, value.as_f64()?)))
+        .collect();
+    let all = |digits: usize| {
+        let mut tree = tree.clone();
+        for (place, x) in &numbers {
+            tree = with(&tree, place, json!(short(*x, digits)));
+        }
+        tree
+    };
+    let mut found: Vec<Value> = [2, 1].map(all).into_iter().filter(|t| t != tree).collect();
+    for (place, x) in &numbers {
+        // What is put at 0 is put into the light.
+        let moved = place.contains("/center/");
+        let round = [0.0, 1.0].into_iter().filter(|_| !moved);
+        for y in round.chain([short(*x, 0), short(*x, 1)]) {
+            // Each step must be one towards fewer digits, or there would be no end.
+            if digits(y) < digits(*x) {
+                found.push(with(tree, place, json!(y)));
+            }
+        }
+    }
+    found
+}
+
+fn short(x: f64, digits: usize) -> f64 {
+    format!("{x:.digits$e}").parse().unwrap_or(x)
+}
+
+/// How long a number is to read; 0 is the shortest, then 1.
+fn digits(x: f64) -> usize {
+    match format!("{:e}", x.abs()).as_str() {
+        "0e0" => 0,
+        "1e0" => 1,
+        other => other.len(),
+    }
+}
+
+/// Every value of a tree, with its place.
+fn places(tree: &Value, at: String) -> Vec<(String, &Value)> {
+    let mut found = vec![(at.clone(), tree)];
+    match tree {
+        Value::Object(fields) => {
+            for (key, value) in fields {
+                found.extend(places(value, format!("{at}/{key}")));
+            }
+        }
+        Value::Array(elements) => {
+            for (i, value) in elements.iter().enumerate() {
+                found.extend(places(value, format!("{at}/{i}")));
+            }
+        }
+        _ => {}
+    }
+    found
+}
+
+fn name(place: &str) -> &str {
+    place.rsplit('/').next().unwrap_or_default()
+}
+
+fn with(tree: &Value, place: &str, value: Value) -> Value {
+    let mut tree = tree.clone();
+    if let Some(at) = tree.pointer_mut(place) {
+        *at = value;
+    }
+    tree
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{candidates, digits};
+    use serde_json::json;
+
+    #[test]
+    fn candidates_leave_out_and_round() {
+        let tree = json!({"blockers": [{"pitch": 0.123}], "planes": [{"name": "a"}]});
+        let found = candidates(&tree);
+        assert!(found.contains(&json!({"blockers": [], "planes": [{"name": "a"}]})));
+        assert!(found.contains(&json!({"blockers": [{"pitch": 0.1}], "planes": [{"name": "a"}]})));
+        // The last plane stays.
+        assert!(found.iter().all(|tree| tree["planes"][0]["name"] == "a"));
+    }
+
+    #[test]
+    fn rounding_ends() {
+        assert!(digits(0.0) < digits(1.0) && digits(1.0) < digits(0.5));
+        assert!(digits(0.5) < digits(0.52));
+    }
+}

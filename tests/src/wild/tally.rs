@@ -1,0 +1,106 @@
+//! What all scenes come to, as a table.
+
+use super::judge::{Culprit, Judged, Trouble};
+use crate::report::Section;
+use std::collections::BTreeMap;
+
+/// Counts over scenes.
+#[derive(Default)]
+pub(super) struct Tally {
+    scenes: usize,
+    judged: usize,
+    refused: BTreeMap<String, Vec<u64>>,
+    verdicts: BTreeMap<String, usize>,
+    runs: usize,
+    fails: usize,
+    chance: usize,
+    /// Scenes that the generator could not make, by their numbers.
+    undrawn: Vec<u64>,
+    panics: Vec<u64>,
+    hangs: Vec<u64>,
+    killed: Vec<u64>,
+    wrong: BTreeMap<Culprit, Vec<u64>>,
+}
+
+/// Share of true scenes that a run rejects.
+const ALPHA: f64 = 0.01;
+
+impl Tally {
+    pub(super) fn undrawn(&mut self, number: u64) {
+        self.scenes += 1;
+        self.undrawn.push(number);
+    }
+
+    pub(super) fn add(&mut self, number: u64, judged: &Judged) {
+        self.scenes += 1;
+        if let Some(why) = &judged.refused {
+            self.refused.entry(why.clone()).or_default().push(number);
+        } else {
+            self.judged += 1;
+        }
+        for verdict in &judged.verdicts {
+            *self.verdicts.entry(verdict.clone()).or_default() += 1;
+        }
+        self.runs += judged.runs;
+        self.fails += judged.fails;
+        self.chance += judged.chance;
+        for (trouble, _) in &judged.troubles {
+            let list = match trouble {
+                Trouble::Panic => &mut self.panics,
+                Trouble::Hang => &mut self.hangs,
+                Trouble::Killed => &mut self.killed,
+                Trouble::Wrong { culprit, .. } => self.wrong.entry(*culprit).or_default(),
+            };
+            if list.last() != Some(&number) {
+                list.push(number);
+            }
+        }
+    }
+
+    pub(super) fn section(mut self, seed: u64) -> Section {
+        let mut rows = Vec::new();
+        let mut row = |what: String, count: usize, which: &mut Vec<u64>| {
+            which.sort_unstable();
+            let shown: Vec<String> = which.iter().take(20).map(u64::to_string).collect();
+            rows.push(vec![what, count.to_string(), shown.join(", ")]);
+        };
+        let none = &mut Vec::new();
+        row("scenes".into(), self.scenes, none);
+        row("not drawn".into(), self.undrawn.len(), &mut self.undrawn);
+        for (why, which) in &mut self.refused {
+            row(format!("refused: {why}"), which.len(), which);
+        }
+        row("taken".into(), self.judged, none);
+        for (verdict, count) in &self.verdicts {
+            row(format!("planes, {verdict}"), *count, none);
+        }
+        row("runs with a verdict".into(), self.runs, none);
+        let expected = ALPHA * self.runs as f64;
+        let fails = format!("of these, fail ({expected:.1} expected by chance)");
+        row(fails, self.fails, none);
+        row("of these, not again".into(), self.chance, none);
+        let broken = [&self.panics, &self.hangs, &self.killed];
+        let passed = broken.iter().all(|list| list.is_empty()) && self.wrong.is_empty();
+        for (what, which) in [
+            ("**panics**", &mut self.panics),
+            ("**hangs**", &mut self.hangs),
+            ("**killed**", &mut self.killed),
+        ] {
+            row(what.into(), which.len(), which);
+        }
+        for (culprit, which) in &mut self.wrong {
+            let what = format!("**wrong**, fail again: {}", culprit.says());
+            row(what, which.len(), which);
+        }
+        Section {
+            title: format!("Wild scenes, seed {seed}"),
+            text: "Scenes drawn from the whole vocabulary of scene files. One that fails is run \
+                   with two other seeds; required are no panic, no hang and no plane that fails \
+                   again."
+                .into(),
+            header: vec!["what", "count", "scenes"],
+            rows,
+            passed,
+        }
+    }
+}
