@@ -37,6 +37,18 @@ pub(crate) struct Term {
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
+    /// The term it is a part of, and what the patches of one extent along x leave of that one's Q.
+    /// Terms alike in both have the same P.
+    column: [usize; 2],
+}
+
+/// Terms with those of one P added up along y.
+#[derive(Debug)]
+pub(crate) struct Columns {
+    /// Weighted sums of polygons of (y, v).
+    pub(crate) sums: Vec<Vec<(f64, usize)>>,
+    /// Terms whose Q are such sums.
+    pub(crate) terms: Vec<Term>,
 }
 
 /// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
@@ -56,6 +68,8 @@ pub(crate) struct Expansion {
     pub(crate) products: Vec<[Vec<Wave>; 2]>,
     /// The radiance, or the intensity of a point.
     pub(crate) brightness: f64,
+    /// Columns of terms so far.
+    columns: usize,
 }
 
 impl Section {
@@ -165,9 +179,11 @@ impl Expansion {
             terms: vec![Term {
                 weight: 1.0,
                 polygons: [0, 0],
+                column: [0, 0],
             }],
             products: Vec::new(),
             brightness: 0.0,
+            columns: 1,
         }
     }
 
@@ -233,21 +249,56 @@ impl Expansion {
     /// The terms times Σ patches in a plane, the empty ones dropped.
     fn inside(&mut self, patches: &[Patch], distance: f64) -> Vec<Term> {
         let mut parts = Vec::new();
-        for term in &self.terms {
-            for patch in patches {
+        let polygons = self.sections[1].polygons.len();
+        for (parent, term) in self.terms.iter().enumerate() {
+            let mut first = 0;
+            for (i, patch) in patches.iter().enumerate() {
+                let along_x = |patch: &Patch| patch.extent[0].map(f64::to_bits);
+                if along_x(patch) != along_x(&patches[first]) {
+                    first = i;
+                }
                 let [x, y] = [0, 1].map(|axis| {
                     let extent = patch.extent[axis];
                     self.sections[axis].strip(term.polygons[axis], distance, extent)
                 });
                 if let (Some(x), Some(y)) = (x, y) {
+                    let column = self.columns + term.polygons[1] * patches.len() + first;
                     parts.push(Term {
                         weight: term.weight * patch.weight,
                         polygons: [x, y],
+                        column: [parent, column],
                     });
                 }
             }
         }
+        self.columns += polygons * patches.len();
         parts
+    }
+
+    /// The terms with sums along y taken first: of n × n patches of a disc behind those of another
+    /// n⁴ terms become n³ and as many summands, since what n² of them sum along y is the same for
+    /// all n polygons of (x, u) that a patch's extent along x cuts.
+    pub(crate) fn columns(&self) -> Columns {
+        let (mut known, mut sums) = (HashMap::new(), Vec::new());
+        let runs = self.terms.chunk_by(|a, b| a.column == b.column);
+        let terms = runs.map(|run| {
+            let Term {
+                weight,
+                polygons: [x, _],
+                column,
+            } = run[0];
+            let sum = *known.entry(column[1]).or_insert_with(|| {
+                let along_y = run.iter().map(|t| (t.weight / weight, t.polygons[1]));
+                sums.push(along_y.collect());
+                sums.len() - 1
+            });
+            Term {
+                polygons: [x, sum],
+                ..run[0]
+            }
+        });
+        let terms = terms.collect();
+        Columns { sums, terms }
     }
 
     /// Keeps only the polygons that terms refer to, in the order of the terms.

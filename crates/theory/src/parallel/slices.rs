@@ -1,4 +1,4 @@
-use super::expansion::Expansion;
+use super::expansion::{Columns, Expansion, Term};
 use crate::Chain;
 use crate::parallel::chain::Path;
 use crate::parallel::corners::Corners;
@@ -45,6 +45,7 @@ pub(crate) fn slices_at_fineness(
         .iter()
         .map(|waves| Product::new(&expansion, waves))
         .collect();
+    let columns = path.has_discs().then(|| expansion.columns());
     let [azimuths, rows, _] = grid.half_shape();
     let values: Vec<Vec<Complex>> = (0..azimuths * rows)
         .into_par_iter()
@@ -55,7 +56,12 @@ pub(crate) fn slices_at_fineness(
             for product in &products {
                 let x = product.factors(0, rho, cos, grid);
                 let y = product.factors(1, rho, sin, grid);
-                expansion.add_terms(&x, &y, &mut row);
+                match &columns {
+                    Some(columns) => {
+                        expansion.add_terms(&columns.terms, &x, &columns.added(&y, grid), &mut row);
+                    }
+                    None => expansion.add_terms(&expansion.terms, &x, &y, &mut row),
+                }
             }
             row
         })
@@ -106,15 +112,30 @@ impl<'a> Product<'a> {
 
 impl Expansion {
     /// Adds brightness · Σ terms along a row, from the factors [polygon, n] of both sections.
-    fn add_terms(&self, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
+    fn add_terms(&self, terms: &[Term], x: &[Complex], y: &[Complex], row: &mut [Complex]) {
         let count = row.len();
-        for term in &self.terms {
+        for term in terms {
             let [p, q] = term.polygons.map(|i| i * count..(i + 1) * count);
             let scale = term.weight * self.brightness;
             for ((sum, x), y) in row.iter_mut().zip(&x[p]).zip(&y[q]) {
                 *sum += x * y * scale;
             }
         }
+    }
+}
+
+impl Columns {
+    /// The factors [sum, n] of its sums, from those of polygons.
+    fn added(&self, y: &[Complex], grid: &SliceGrid) -> Vec<Complex> {
+        let count = grid.nu.count();
+        let mut added = vec![Complex::ZERO; self.sums.len() * count];
+        for (to, sum) in added.chunks_exact_mut(count).zip(&self.sums) {
+            for &(weight, polygon) in sum {
+                let factors = &y[polygon * count..][..count];
+                to.iter_mut().zip(factors).for_each(|(to, y)| *to += y * weight);
+            }
+        }
+        added
     }
 }
 
