@@ -67,12 +67,17 @@ impl Density {
     }
 
     /// The coordinate below which a share of the density lies.
+    pub(crate) fn quantile(&self, share: f64) -> f64 {
+        self.draw(share)[0]
+    }
+
+    /// The same, and the density there.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a share, 0 to 1, of the cells"
     )]
-    pub(crate) fn quantile(&self, share: f64) -> f64 {
+    pub(crate) fn draw(&self, share: f64) -> [f64; 2] {
         let last = self.below.len() - 2;
         let mut cell = self.first[(share * (last + 1) as f64) as usize];
         while cell < last && self.below[cell + 1] <= share {
@@ -87,7 +92,10 @@ impl Density {
         } else {
             0.0
         };
-        self.low + (cell as f64 + t.clamp(0.0, 1.0)) * self.step
+        [
+            self.low + (cell as f64 + t.clamp(0.0, 1.0)) * self.step,
+            root,
+        ]
     }
 
     /// Its value; zero outside.

@@ -26,6 +26,8 @@ pub(crate) struct Section {
     /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) polygons: Vec<Polygon>,
+    /// Whether discs make so many of them that parallelograms are worth a formula of their own.
+    pub(crate) has_discs: bool,
     /// Strips already cut: (polygon, direction, bounds) to the part's index, `None` if empty.
     known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
 }
@@ -80,6 +82,7 @@ impl Section {
             unit: half[0] * half[1],
             directions: vec![[1.0, 0.0], [0.0, 1.0]],
             polygons: vec![Polygon::square([0, 1])],
+            has_discs: false,
             known: HashMap::new(),
         }
     }
@@ -190,6 +193,9 @@ impl Expansion {
     /// The light and the opaque masks; stops and says no where there are more terms or polygons
     /// than `most`.
     fn multiply_out(&mut self, path: &Path<'_>, fineness: &Fineness, most: usize) -> bool {
+        for section in &mut self.sections {
+            section.has_discs = path.has_discs();
+        }
         self.shine(path, fineness.0[0]);
         let layers = path.layers.iter();
         let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));

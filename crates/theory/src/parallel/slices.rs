@@ -132,7 +132,9 @@ impl Columns {
         for (to, sum) in added.chunks_exact_mut(count).zip(&self.sums) {
             for &(weight, polygon) in sum {
                 let factors = &y[polygon * count..][..count];
-                to.iter_mut().zip(factors).for_each(|(to, y)| *to += y * weight);
+                to.iter_mut()
+                    .zip(factors)
+                    .for_each(|(to, y)| *to += y * weight);
             }
         }
         added

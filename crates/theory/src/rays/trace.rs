@@ -42,7 +42,7 @@ impl Ray {
             let step = patch.value(here) / slope;
             t -= step;
             // Its error squares with each step, so the next would be below rounding.
-            if step.abs() <= 1e-11 * (t.abs() + point.length()) {
+            if step.abs() <= 1e-8 * (t.abs() + point.length()) {
                 let here = point + direction * t;
                 let normal = patch.gradient(here).try_normalize()?;
                 let found = t > 0.0 && patch.contains(here);

@@ -255,8 +255,15 @@ impl Integrand for Field<'_> {
     }
 }
 
+/// A part of the light, if there is one, and the density with which it was drawn.
+type Drawn = Option<(Part, f64)>;
+
 /// A light field with a parameter changed.
+///
+/// Where it leaves a ray or the light as they are, it takes them from the light field itself.
 struct Side<'a> {
+    moves_surface: bool,
+    moves_light: bool,
     system: &'a System,
     plane: &'a Plane,
     masks: Masks<'a>,
@@ -265,7 +272,11 @@ struct Side<'a> {
 
 impl<'a> Side<'a> {
     fn new((system, plane): &'a (System, Plane), field: &'a Field<'a>, strategy: Strategy) -> Self {
+        let moves_surface = system.patch != field.system.patch || plane != field.plane;
         Self {
+            moves_surface,
+            moves_light: system.light != field.system.light
+                || moves_surface && field.lights.is_by_lobe(),
             system,
             plane,
             masks: Masks::new(&system.layers),
@@ -273,10 +284,17 @@ impl<'a> Side<'a> {
         }
     }
 
-    /// The radiance of a ray, over the density with which a part of the light was drawn.
-    fn radiance(&self, z: [f64; 4], at: [f64; 2]) -> Option<f64> {
-        let leaving = self.system.leaving(self.plane, z)?;
-        let (part, density) = self.lights.draw(&leaving, at)?;
+    /// The radiance of a ray, over the density with which a part of the light was drawn. Beside it
+    /// is what the light field itself has.
+    fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, Drawn)) -> Option<f64> {
+        let (mut leaving, mut drawn) = *own;
+        if self.moves_surface {
+            leaving = self.system.leaving(self.plane, z)?;
+        }
+        if self.moves_light {
+            drawn = self.lights.draw(&leaving, at);
+        }
+        let (part, density) = drawn?;
         let radiance = radiance(self.system, self.plane, &self.masks, &leaving, part);
         Some(over(radiance, density))
     }
@@ -304,6 +322,7 @@ impl Integrand for Around<'_> {
             return;
         };
         let at = [at[4], at[5]];
+        let own = (leaving, field.lights.draw(&leaving, at));
         let mut nodes = nodes.iter_mut();
         let mut put = |difference: f64| {
             if let Some(node) = nodes.next() {
@@ -312,8 +331,7 @@ impl Integrand for Around<'_> {
             }
         };
         if let Some(linear) = linear {
-            let part = field.lights.draw(&leaving, at);
-            put(part.map_or(0.0, |(part, density)| {
+            put(own.1.map_or(0.0, |(part, density)| {
                 let exact = field.radiance(&leaving, part);
                 over(linear.radiance(&field.masks, z, part) - exact, density)
             }));
@@ -321,7 +339,7 @@ impl Integrand for Around<'_> {
         for (apart, sides) in moved {
             let [above, below] = sides
                 .each_ref()
-                .map(|side| side.radiance(z, at).unwrap_or(0.0));
+                .map(|side| side.radiance(z, at, &own).unwrap_or(0.0));
             put((above - below) / apart);
         }
     }
