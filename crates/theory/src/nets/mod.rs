@@ -23,7 +23,9 @@ use rayon::prelude::*;
 pub const REPLICATES: usize = 32;
 /// Independent nets of a derivative, of which the mean alone is needed.
 const OF_DERIVATIVES: usize = 8;
-/// Nodes of each of those: a derivative good to a per cent is good enough.
+/// Independent nets by which ways of drawing rays are told apart.
+const OF_TRIALS: usize = 16;
+/// Nodes of each net of a derivative: a derivative good to a per cent is good enough.
 const NODES_OF_DERIVATIVES: u32 = 1 << 15;
 /// Nodes of a net before its error is first looked at.
 const FIRST: u32 = 1 << 11;
@@ -122,7 +124,7 @@ pub(crate) fn trial(
         nodes: 0.0,
         error: f64::INFINITY,
     };
-    let nets = begin(integrand, grid, 1, REPLICATES, REPLICATES);
+    let nets = begin(integrand, grid, 1, REPLICATES, OF_TRIALS);
     doubled(integrand, (window, grid), nets, TRIED).error
 }
 

@@ -44,13 +44,16 @@ pub(crate) struct Term {
     column: [usize; 2],
 }
 
-/// Terms with those of one P added up along y.
+/// Weights and indices of what is added up.
+pub(crate) type Sum = Vec<(f64, usize)>;
+
+/// Terms added up along y first: Σ 1_P(x, u) · a sum of sums of polygons of (y, v).
 #[derive(Debug)]
 pub(crate) struct Columns {
-    /// Weighted sums of polygons of (y, v).
-    pub(crate) sums: Vec<Vec<(f64, usize)>>,
-    /// Terms whose Q are such sums.
-    pub(crate) terms: Vec<Term>,
+    /// Sums of polygons of (y, v).
+    pub(crate) sums: Vec<Sum>,
+    /// Sums of such sums, one for each polygon of (x, u).
+    pub(crate) beside: Vec<Sum>,
 }
 
 /// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
@@ -285,26 +288,23 @@ impl Expansion {
     /// n⁴ terms become n³ and as many summands, since what n² of them sum along y is the same for
     /// all n polygons of (x, u) that a patch's extent along x cuts.
     pub(crate) fn columns(&self) -> Columns {
-        let (mut known, mut sums) = (HashMap::new(), Vec::new());
-        let runs = self.terms.chunk_by(|a, b| a.column == b.column);
-        let terms = runs.map(|run| {
+        let mut known = HashMap::new();
+        let mut sums: Vec<Sum> = Vec::new();
+        let mut beside = vec![Sum::new(); self.sections[0].polygons.len()];
+        for run in self.terms.chunk_by(|a, b| a.column == b.column) {
             let Term {
                 weight,
                 polygons: [x, _],
-                column,
+                column: [_, column],
             } = run[0];
-            let sum = *known.entry(column[1]).or_insert_with(|| {
+            let sum = *known.entry(column).or_insert_with(|| {
                 let along_y = run.iter().map(|t| (t.weight / weight, t.polygons[1]));
                 sums.push(along_y.collect());
                 sums.len() - 1
             });
-            Term {
-                polygons: [x, sum],
-                ..run[0]
-            }
-        });
-        let terms = terms.collect();
-        Columns { sums, terms }
+            beside[x].push((weight, sum));
+        }
+        Columns { sums, beside }
     }
 
     /// Keeps only the polygons that terms refer to, in the order of the terms.

@@ -1,4 +1,4 @@
-use super::expansion::{Columns, Expansion, Term};
+use super::expansion::{Columns, Expansion, Sum};
 use crate::Chain;
 use crate::parallel::chain::Path;
 use crate::parallel::corners::Corners;
@@ -57,10 +57,8 @@ pub(crate) fn slices_at_fineness(
                 let x = product.factors(0, rho, cos, grid);
                 let y = product.factors(1, rho, sin, grid);
                 match &columns {
-                    Some(columns) => {
-                        expansion.add_terms(&columns.terms, &x, &columns.added(&y, grid), &mut row);
-                    }
-                    None => expansion.add_terms(&expansion.terms, &x, &y, &mut row),
+                    Some(columns) => columns.add(expansion.brightness, &x, &y, &mut row),
+                    None => expansion.add_terms(&x, &y, &mut row),
                 }
             }
             row
@@ -112,9 +110,9 @@ impl<'a> Product<'a> {
 
 impl Expansion {
     /// Adds brightness · Σ terms along a row, from the factors [polygon, n] of both sections.
-    fn add_terms(&self, terms: &[Term], x: &[Complex], y: &[Complex], row: &mut [Complex]) {
+    fn add_terms(&self, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
         let count = row.len();
-        for term in terms {
+        for term in &self.terms {
             let [p, q] = term.polygons.map(|i| i * count..(i + 1) * count);
             let scale = term.weight * self.brightness;
             for ((sum, x), y) in row.iter_mut().zip(&x[p]).zip(&y[q]) {
@@ -125,20 +123,31 @@ impl Expansion {
 }
 
 impl Columns {
-    /// The factors [sum, n] of its sums, from those of polygons.
-    fn added(&self, y: &[Complex], grid: &SliceGrid) -> Vec<Complex> {
-        let count = grid.nu.count();
-        let mut added = vec![Complex::ZERO; self.sums.len() * count];
-        for (to, sum) in added.chunks_exact_mut(count).zip(&self.sums) {
-            for &(weight, polygon) in sum {
-                let factors = &y[polygon * count..][..count];
-                to.iter_mut()
-                    .zip(factors)
-                    .for_each(|(to, y)| *to += y * weight);
+    /// The same for terms added up along y first.
+    fn add(&self, brightness: f64, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
+        let along_y = added(&self.sums, y, row.len());
+        let beside = added(&self.beside, &along_y, row.len());
+        let polygons = x.chunks_exact(row.len());
+        for (x, y) in polygons.zip(beside.chunks_exact(row.len())) {
+            for ((sum, x), y) in row.iter_mut().zip(x).zip(y) {
+                *sum += x * y * brightness;
             }
         }
-        added
     }
+}
+
+/// Weighted sums of factors, [sum, n], from factors [index, n] of `count` frequencies.
+fn added(sums: &[Sum], factors: &[Complex], count: usize) -> Vec<Complex> {
+    let mut added = vec![Complex::ZERO; sums.len() * count];
+    for (to, sum) in added.chunks_exact_mut(count).zip(sums) {
+        for &(weight, index) in sum {
+            let factors = &factors[index * count..][..count];
+            to.iter_mut()
+                .zip(factors)
+                .for_each(|(to, factor)| *to += factor * weight);
+        }
+    }
+    added
 }
 
 #[cfg(test)]

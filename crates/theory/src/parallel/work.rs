@@ -135,8 +135,9 @@ fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &Slice
         .each_ref()
         .map(|s| s.polygons.iter().map(|p| p.corners().len()).sum::<usize>() as f64);
     let columns = expansion.columns();
-    let summands = columns.sums.iter().map(Vec::len).sum::<usize>();
-    let terms = (columns.terms.len() + summands).min(expansion.terms.len()) as f64;
+    let sums = columns.sums.iter().chain(&columns.beside);
+    let summands = sums.map(Vec::len).sum::<usize>();
+    let terms = summands.min(expansion.terms.len()) as f64;
     let directions = expansion
         .sections
         .each_ref()

@@ -11,7 +11,7 @@ use crate::mask::Masks;
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Moved, Node};
 use crate::rays::Plane;
 use etendue_field::{
-    EnvironmentMap, Light, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
+    Complex, EnvironmentMap, Light, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window,
 };
 use glam::DVec3;
 
@@ -125,12 +125,14 @@ pub fn differences(
     prediction: &Prediction,
 ) -> Differences {
     let strategy = prediction.strategy;
+    let (albedo, moved): (Vec<_>, Vec<_>) =
+        (moved.iter().enumerate()).partition(|(_, moved)| system.is_brightened(&moved.sides[0].0));
     let field = Field::new(system, plane, window, chain, strategy);
     let around = Around {
         linear: chain.and_then(|chain| Linear::new(system, chain)),
         moved: moved
             .iter()
-            .map(|moved| {
+            .map(|(_, moved)| {
                 (
                     moved.apart,
                     moved
@@ -143,13 +145,28 @@ pub fn differences(
         field: &field,
     };
     let mut means = nets::means(&around, window, grid).into_iter();
+    let linear = around.linear.as_ref().and_then(|_| means.next());
+    let mut derivatives: Vec<Slices> = means.collect();
+    for (i, _) in albedo {
+        let mut slices = prediction.slices.clone();
+        slices.half /= Complex::from(system.reflectance.brdf.albedo);
+        derivatives.insert(i, slices);
+    }
     Differences {
-        linear: around.linear.as_ref().and_then(|_| means.next()),
-        derivatives: means.collect(),
+        linear,
+        derivatives,
     }
 }
 
 impl System {
+    /// Whether another system differs in an albedo alone that all of the light is proportional to.
+    fn is_brightened(&self, other: &Self) -> bool {
+        let albedo = self.reflectance.brdf.albedo;
+        let mut same = other.clone();
+        same.reflectance.brdf.albedo = albedo;
+        albedo > 0.0 && self.reflectance.blend.is_none() && same == *self && other != self
+    }
+
     /// It with a little more and a little less of a parameter; `None` if it does not have that.
     #[must_use]
     pub fn moved(&self, plane: &Plane, parameter: Parameter) -> Option<Moved<(Self, Plane)>> {
