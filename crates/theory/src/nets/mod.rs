@@ -137,8 +137,11 @@ fn doubled(
     let bins = running[0].projection.nrows();
     let picture = ProjectionGrid::new(window, bins);
     let transform = SliceTransform::new(grid);
-    let (mut each, mut more) = (0, FIRST);
     let least = if budget.error.is_infinite() { 0 } else { LEAST };
+    let (mut each, mut more) = (0, FIRST);
+    while more < least && 2.0 * f64::from(more) * REPLICATES as f64 <= budget.nodes {
+        more *= 2;
+    }
     loop {
         running
             .par_iter_mut()

@@ -18,8 +18,8 @@ pub(super) enum Sky<'a> {
 pub(super) struct Lobes {
     /// Their shares of the light, added up.
     shares: Vec<f64>,
-    /// σ², and axes with D to where most of each comes from.
-    each: Vec<(f64, Frame)>,
+    /// σ², exp(−2/σ²) − 1, and axes with D to where most of each comes from.
+    each: Vec<(f64, f64, Frame)>,
     /// The integral of the radiance over all directions.
     total: f64,
 }
@@ -45,7 +45,9 @@ impl<'a> Sky<'a> {
             EnvironmentMap::Lobes(lobes) => {
                 let integrals = || lobes.iter().map(SphericalGaussian::integral);
                 let axes = |lobe: &SphericalGaussian| {
-                    (lobe.width.powi(2), Frame::IDENTITY.turned_to(lobe.from))
+                    let squared = lobe.width.powi(2);
+                    let axes = Frame::IDENTITY.turned_to(lobe.from);
+                    (squared, (-2.0 / squared).exp_m1(), axes)
                 };
                 Some(Self::Lobes(Lobes {
                     shares: shares(integrals())?,
@@ -67,9 +69,9 @@ impl<'a> Sky<'a> {
         match self {
             Self::Lobes(lobes) => {
                 let (i, a) = picked(&lobes.shares, a);
-                let (squared, axes) = lobes.each[i];
+                let (squared, least, axes) = lobes.each[i];
                 // 1 − cos γ, by the quantiles of exp((cos γ − 1)/σ²).
-                let fall = -squared * (a * (-2.0 / squared).exp_m1()).ln_1p();
+                let fall = -squared * (a * least).ln_1p();
                 let fall = fall.clamp(0.0, 2.0);
                 let sin = (fall * (2.0 - fall)).sqrt();
                 let (s, c) = (TAU * b).sin_cos();
