@@ -1,7 +1,7 @@
 //! What a run of a scene comes to: whether its verdict is wrong, and who of three is.
 
 use super::run::{Ending, PlaneSummary, Runner};
-use etendue_compare::{Prediction, Verdict, compare, sidak};
+use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
 use etendue_field::PhotonSource;
 use etendue_scene::{LightFile, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
@@ -246,9 +246,9 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     let photons = measured(&Tracer::new(&scene));
     let rays = measured(&Backward::new(&scene).ok()?);
     let inside = [&photons, &rays].map(|measured| measured.tally(i).inside);
-    let reference = Prediction::reference(&scene, i, &rays, i).ok()?;
-    let level = sidak(scene.run.alpha, scene.planes.len());
-    let compared = compare(&photons, i, &reference, level, scene.run.seed).ok()?;
+    let theory = Applicability::new(&scene, &scene.planes[i]);
+    let reference = Prediction::reference(&scene, i, &theory, &rays, i).ok()?;
+    let compared = compare(&photons, i, &reference, &Test::of(&scene)).ok()?;
     Some(Tracers {
         verdict: compared.report.verdict,
         p: compared.report.p_value,

@@ -147,7 +147,7 @@ fn early(ended: &Ended) -> Option<Ending> {
             Some(Ending::Panic(words.collect::<Vec<_>>().join(" ")))
         }
         Some(code) if REFUSED.contains(&code) => Some(Ending::Refused(reason(&stderr))),
-        Some(0 | 1) => None,
+        Some(0 | 1 | 4) => None,
         code => Some(Ending::Killed(format!(
             "code {code:?}, signal {:?}, {} MB",
             ended.signal,

@@ -70,6 +70,7 @@ fn empty(draw: &mut Draw, photons: u64) -> io::Result<SceneFile> {
             seed: 1,
             batches: 64,
             alpha: 0.01,
+            resolution: 0.1,
             emission,
         },
     })

@@ -4,6 +4,8 @@ use etendue_field::Profile;
 
 /// Cells in which the density is linear.
 const CELLS: usize = 512;
+/// Shares for each of them: with more of them the cell that is looked for is mostly the first.
+const SHARES: usize = 4;
 
 /// A density on an interval: linear between values at equal steps.
 #[derive(Clone, Debug)]
@@ -43,15 +45,16 @@ impl Density {
 
     fn linear(low: f64, step: f64, values: Vec<f64>, below: Vec<f64>) -> Self {
         let cells = below.len() - 1;
+        let shares = SHARES * cells;
         let cell = |k: usize| {
-            let share = k as f64 / cells as f64;
+            let share = k as f64 / shares as f64;
             let after = below.partition_point(|below| *below <= share);
             after.clamp(1, cells) - 1
         };
         Self {
             low,
             step,
-            first: (0..=cells).map(cell).collect(),
+            first: (0..=shares).map(cell).collect(),
             values,
             below,
         }
@@ -67,14 +70,19 @@ impl Density {
     }
 
     /// The coordinate below which a share of the density lies.
+    pub(crate) fn quantile(&self, share: f64) -> f64 {
+        self.draw(share)[0]
+    }
+
+    /// The same, and the density there.
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
         reason = "a share, 0 to 1, of the cells"
     )]
-    pub(crate) fn quantile(&self, share: f64) -> f64 {
+    pub(crate) fn draw(&self, share: f64) -> [f64; 2] {
         let last = self.below.len() - 2;
-        let mut cell = self.first[(share * (last + 1) as f64) as usize];
+        let mut cell = self.first[(share * (self.first.len() - 1) as f64) as usize];
         while cell < last && self.below[cell + 1] <= share {
             cell += 1;
         }
@@ -87,7 +95,10 @@ impl Density {
         } else {
             0.0
         };
-        self.low + (cell as f64 + t.clamp(0.0, 1.0)) * self.step
+        [
+            self.low + (cell as f64 + t.clamp(0.0, 1.0)) * self.step,
+            root,
+        ]
     }
 
     /// Its value; zero outside.

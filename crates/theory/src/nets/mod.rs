@@ -24,7 +24,9 @@ use rayon::prelude::*;
 pub const REPLICATES: usize = 32;
 /// Independent nets of a derivative, of which the mean alone is needed.
 const OF_DERIVATIVES: usize = 8;
-/// Nodes of each of those: a derivative good to a per cent is good enough.
+/// Independent nets by which ways of drawing rays are told apart.
+const OF_TRIALS: usize = 16;
+/// Nodes of each net of a derivative: a derivative good to a per cent is good enough.
 const NODES_OF_DERIVATIVES: u32 = 1 << 15;
 /// Nodes of a net before its error is first looked at.
 const FIRST: u32 = 1 << 11;
@@ -121,7 +123,7 @@ pub(crate) fn trial(
         nodes: 0.0,
         error: f64::INFINITY,
     };
-    let nets = begin(integrand, grid, 1, REPLICATES, REPLICATES);
+    let nets = begin(integrand, grid, 1, REPLICATES, OF_TRIALS);
     doubled(integrand, (window, grid), nets, TRIED).1
 }
 
@@ -135,8 +137,11 @@ fn doubled(
     let bins = running[0].projection.nrows();
     let picture = ProjectionGrid::new(window, bins);
     let transform = SliceTransform::new(grid);
-    let (mut each, mut more) = (0, FIRST);
     let least = if budget.error.is_infinite() { 0 } else { LEAST };
+    let (mut each, mut more) = (0, FIRST);
+    while more < least && 2.0 * f64::from(more) * REPLICATES as f64 <= budget.nodes {
+        more *= 2;
+    }
     loop {
         running
             .par_iter_mut()

@@ -105,7 +105,12 @@ impl<'a> Corners<'a> {
             self.add(row, &quotients, chunk, &mut sums);
             for &(n, k, weight) in &quotients.left {
                 for (target, polygon) in plain[n..].iter_mut().step_by(count).zip(polygons) {
-                    *target += polygon.transform(k) * weight;
+                    let transform = if self.section.has_discs {
+                        polygon.transform_by_sides(k)
+                    } else {
+                        polygon.transform(k)
+                    };
+                    *target += transform * weight;
                 }
             }
         }

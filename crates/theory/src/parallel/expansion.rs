@@ -26,6 +26,8 @@ pub(crate) struct Section {
     /// Directions of edges, as vectors: (1, 0), (0, 1), then (shear, 1) for each distance.
     pub(crate) directions: Vec<[f64; 2]>,
     pub(crate) polygons: Vec<Polygon>,
+    /// Whether discs make so many of them that parallelograms are worth a formula of their own.
+    pub(crate) has_discs: bool,
     /// Strips already cut: (polygon, direction, bounds) to the part's index, `None` if empty.
     known: HashMap<(usize, usize, [u64; 2]), Option<usize>>,
 }
@@ -37,6 +39,21 @@ pub(crate) struct Term {
     pub(crate) weight: f64,
     /// Indices of P and Q.
     pub(crate) polygons: [usize; 2],
+    /// The term it is a part of, and what the patches of one extent along x leave of that one's Q.
+    /// Terms alike in both have the same P.
+    column: [usize; 2],
+}
+
+/// Weights and indices of what is added up.
+pub(crate) type Sum = Vec<(f64, usize)>;
+
+/// Terms added up along y first: Σ 1_P(x, u) · a sum of sums of polygons of (y, v).
+#[derive(Debug)]
+pub(crate) struct Columns {
+    /// Sums of polygons of (y, v).
+    pub(crate) sums: Vec<Sum>,
+    /// Sums of such sums, one for each polygon of (x, u).
+    pub(crate) beside: Vec<Sum>,
 }
 
 /// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
@@ -56,6 +73,8 @@ pub(crate) struct Expansion {
     pub(crate) products: Vec<[Vec<Wave>; 2]>,
     /// The radiance, or the intensity of a point.
     pub(crate) brightness: f64,
+    /// Columns of terms so far.
+    columns: usize,
 }
 
 impl Section {
@@ -66,6 +85,7 @@ impl Section {
             unit: half[0] * half[1],
             directions: vec![[1.0, 0.0], [0.0, 1.0]],
             polygons: vec![Polygon::square([0, 1])],
+            has_discs: false,
             known: HashMap::new(),
         }
     }
@@ -165,15 +185,20 @@ impl Expansion {
             terms: vec![Term {
                 weight: 1.0,
                 polygons: [0, 0],
+                column: [0, 0],
             }],
             products: Vec::new(),
             brightness: 0.0,
+            columns: 1,
         }
     }
 
     /// The light and the opaque masks; stops and says no where there are more terms or polygons
     /// than `most`.
     fn multiply_out(&mut self, path: &Path<'_>, fineness: &Fineness, most: usize) -> bool {
+        for section in &mut self.sections {
+            section.has_discs = path.has_discs();
+        }
         self.shine(path, fineness.0[0]);
         let layers = path.layers.iter();
         let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));
@@ -233,21 +258,53 @@ impl Expansion {
     /// The terms times Σ patches in a plane, the empty ones dropped.
     fn inside(&mut self, patches: &[Patch], distance: f64) -> Vec<Term> {
         let mut parts = Vec::new();
-        for term in &self.terms {
-            for patch in patches {
+        let polygons = self.sections[1].polygons.len();
+        for (parent, term) in self.terms.iter().enumerate() {
+            let mut first = 0;
+            for (i, patch) in patches.iter().enumerate() {
+                let along_x = |patch: &Patch| patch.extent[0].map(f64::to_bits);
+                if along_x(patch) != along_x(&patches[first]) {
+                    first = i;
+                }
                 let [x, y] = [0, 1].map(|axis| {
                     let extent = patch.extent[axis];
                     self.sections[axis].strip(term.polygons[axis], distance, extent)
                 });
                 if let (Some(x), Some(y)) = (x, y) {
+                    let column = self.columns + term.polygons[1] * patches.len() + first;
                     parts.push(Term {
                         weight: term.weight * patch.weight,
                         polygons: [x, y],
+                        column: [parent, column],
                     });
                 }
             }
         }
+        self.columns += polygons * patches.len();
         parts
+    }
+
+    /// The terms with sums along y taken first: of n × n patches of a disc behind those of another
+    /// n⁴ terms become n³ and as many summands, since what n² of them sum along y is the same for
+    /// all n polygons of (x, u) that a patch's extent along x cuts.
+    pub(crate) fn columns(&self) -> Columns {
+        let mut known = HashMap::new();
+        let mut sums: Vec<Sum> = Vec::new();
+        let mut beside = vec![Sum::new(); self.sections[0].polygons.len()];
+        for run in self.terms.chunk_by(|a, b| a.column == b.column) {
+            let Term {
+                weight,
+                polygons: [x, _],
+                column: [_, column],
+            } = run[0];
+            let sum = *known.entry(column).or_insert_with(|| {
+                let along_y = run.iter().map(|t| (t.weight / weight, t.polygons[1]));
+                sums.push(along_y.collect());
+                sums.len() - 1
+            });
+            beside[x].push((weight, sum));
+        }
+        Columns { sums, beside }
     }
 
     /// Keeps only the polygons that terms refer to, in the order of the terms.

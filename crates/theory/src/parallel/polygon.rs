@@ -172,6 +172,21 @@ impl Polygon {
         }
     }
 
+    /// The same from half as many exponentials where opposite sides are parallel: exp(−2πi k·c)
+    /// sinc(k·a) sinc(k·b) times the area, for sides a and b about a centre c.
+    pub(crate) fn transform_by_sides(&self, k: [f64; 2]) -> Complex {
+        let [p, q, r, s] = &self.0[..] else {
+            return self.transform(k);
+        };
+        if p.edge != r.edge || q.edge != s.edge {
+            return self.transform(k);
+        }
+        let (a, b) = (minus(q.at, p.at), minus(r.at, q.at));
+        let center = [0, 1].map(|i| 0.5 * (p.at[i] + r.at[i]));
+        let size = cross(a, b) * sinc(dot(k, a)) * sinc(dot(k, b));
+        Complex::cis(-TAU * dot(k, center)) * size
+    }
+
     /// exp(−2πi k·c) sinc(k·e) times the slopes spanned, for a segment e with midpoint c.
     fn segment_transform(&self, k: [f64; 2]) -> Complex {
         let [a, b] = [self.0[0].at, self.0[1].at];

@@ -1,4 +1,4 @@
-use super::expansion::Expansion;
+use super::expansion::{Columns, Expansion, Sum};
 use crate::Chain;
 use crate::parallel::chain::Path;
 use crate::parallel::corners::Corners;
@@ -45,6 +45,7 @@ pub(crate) fn slices_at_fineness(
         .iter()
         .map(|waves| Product::new(&expansion, waves))
         .collect();
+    let columns = path.has_discs().then(|| expansion.columns());
     let [azimuths, rows, _] = grid.half_shape();
     let values: Vec<Vec<Complex>> = (0..azimuths * rows)
         .into_par_iter()
@@ -55,7 +56,10 @@ pub(crate) fn slices_at_fineness(
             for product in &products {
                 let x = product.factors(0, rho, cos, grid);
                 let y = product.factors(1, rho, sin, grid);
-                expansion.add_terms(&x, &y, &mut row);
+                match &columns {
+                    Some(columns) => columns.add(expansion.brightness, &x, &y, &mut row),
+                    None => expansion.add_terms(&x, &y, &mut row),
+                }
             }
             row
         })
@@ -116,6 +120,34 @@ impl Expansion {
             }
         }
     }
+}
+
+impl Columns {
+    /// The same for terms added up along y first.
+    fn add(&self, brightness: f64, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
+        let along_y = added(&self.sums, y, row.len());
+        let beside = added(&self.beside, &along_y, row.len());
+        let polygons = x.chunks_exact(row.len());
+        for (x, y) in polygons.zip(beside.chunks_exact(row.len())) {
+            for ((sum, x), y) in row.iter_mut().zip(x).zip(y) {
+                *sum += x * y * brightness;
+            }
+        }
+    }
+}
+
+/// Weighted sums of factors, [sum, n], from factors [index, n] of `count` frequencies.
+fn added(sums: &[Sum], factors: &[Complex], count: usize) -> Vec<Complex> {
+    let mut added = vec![Complex::ZERO; sums.len() * count];
+    for (to, sum) in added.chunks_exact_mut(count).zip(sums) {
+        for &(weight, index) in sum {
+            let factors = &factors[index * count..][..count];
+            to.iter_mut()
+                .zip(factors)
+                .for_each(|(to, factor)| *to += factor * weight);
+        }
+    }
+    added
 }
 
 #[cfg(test)]

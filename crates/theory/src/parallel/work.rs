@@ -135,7 +135,10 @@ fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &Slice
         .sections
         .each_ref()
         .map(|s| s.polygons.iter().map(|p| p.corners().len()).sum::<usize>() as f64);
-    let terms = expansion.terms.len() as f64;
+    let columns = expansion.columns();
+    let sums = columns.sums.iter().chain(&columns.beside);
+    let summands = sums.map(Vec::len).sum::<usize>();
+    let terms = summands.min(expansion.terms.len()) as f64;
     let directions = expansion
         .sections
         .each_ref()
@@ -151,7 +154,7 @@ fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &Slice
     Work {
         steps: azimuths * rows * row,
         bytes: products * (16.0 * phases + 64.0 * (waves[0] + waves[1]))
-            + 24.0 * terms
+            + 48.0 * expansion.terms.len() as f64
             + 400.0 * (p + q),
         // Factors of all polygons, and quotients of some waves at a time.
         bytes_each: count * (64.0 * (p + q) + 16.0 * 32.0 * pairs[0].max(pairs[1])),

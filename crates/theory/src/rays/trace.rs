@@ -36,13 +36,18 @@ impl Ray {
         } else {
             -point.dot(direction)
         };
+        // Along the ray the patch's value is a s² + 2 b s + c, from a point near it.
+        let near = point + direction * t;
+        let a = (DVec3::from(patch.curvature) * direction).dot(direction);
+        let b = patch.gradient(near).dot(direction);
+        let c = patch.value(near);
+        let mut s = 0.0;
         for _ in 0..MOST_STEPS {
-            let here = point + direction * t;
-            let slope = 2.0 * patch.gradient(here).dot(direction);
-            let step = patch.value(here) / slope;
-            t -= step;
+            let step = ((a * s + 2.0 * b) * s + c) / (2.0 * (a * s + b));
+            s -= step;
             // Its error squares with each step, so the next would be below rounding.
-            if step.abs() <= 1e-11 * (t.abs() + point.length()) {
+            if step.abs() <= 1e-8 * ((t + s).abs() + point.length()) {
+                t += s;
                 let here = point + direction * t;
                 let normal = patch.gradient(here).try_normalize()?;
                 let found = t > 0.0 && patch.contains(here);

@@ -106,25 +106,20 @@ impl Rays {
     /// A ray (x, y, u, v) and its density.
     pub(super) fn draw(&self, [a, b, c, d]: [f64; 4]) -> ([f64; 4], f64) {
         let [along_x, along_y, along_u, along_v] = &self.window;
-        let [x, y] = [along_x.quantile(a), along_y.quantile(b)];
+        let [[x, of_x], [y, of_y]] = [along_x.draw(a), along_y.draw(b)];
+        let positions = of_x * of_y;
         let Some(mirrored) = &self.mirrored else {
-            let z = [x, y, along_u.quantile(c), along_v.quantile(d)];
-            return (z, self.of_window(z));
+            let [[u, of_u], [v, of_v]] = [along_u.draw(c), along_v.draw(d)];
+            return ([x, y, u, v], positions * of_u * of_v);
         };
         let [u, v] = if c < 0.5 {
             [along_u.quantile(2.0 * c), along_v.quantile(d)]
         } else {
             mirrored.draw([x, y], [2.0 * c - 1.0, d])
         };
-        let positions = along_x.value(x) * along_y.value(y);
         let slopes = along_u.value(u) * along_v.value(v);
         let density = positions * 0.5 * (slopes + mirrored.density([x, y, u, v]));
         ([x, y, u, v], density)
-    }
-
-    fn of_window(&self, z: [f64; 4]) -> f64 {
-        let each = self.window.iter().zip(z);
-        each.map(|(density, t)| density.value(t)).product()
     }
 }
 
@@ -224,6 +219,11 @@ impl<'a> Lights<'a> {
         }
     }
 
+    /// Whether parts depend on where a ray leaves the surface.
+    pub(super) fn is_by_lobe(&self) -> bool {
+        self.by_lobe
+    }
+
     /// The parts of the light that a point of the surface asks for, with their densities over their
     /// share of the mean: one, or one in each quarter of what may be drawn.
     pub(super) fn each<'b>(
@@ -247,50 +247,59 @@ impl<'a> Lights<'a> {
             return Some((Part::Whole, 1.0));
         }
         if !self.by_lobe {
-            let part = self.by_light([a, b])?;
-            return Some((part, self.density_by_light(part)));
+            return self.by_light([a, b]);
         }
         let lobe = LobeDensity::new(self.system, leaving);
-        let part = if a < 0.5 {
+        let (part, by_light) = if a < 0.5 {
             self.by_light([2.0 * a, b])?
         } else {
             self.towards(leaving, lobe.draw([2.0 * a - 1.0, b])?)?
         };
         let by_lobe = lobe.density(self.direction(leaving, part)) * self.steradians(leaving, part);
-        Some((part, 0.5 * (self.density_by_light(part) + by_lobe)))
+        Some((part, 0.5 * (by_light + by_lobe)))
     }
 
-    fn by_light(&self, at: [f64; 2]) -> Option<Part> {
+    /// A part, and its density among those drawn by the light alone.
+    fn by_light(&self, at: [f64; 2]) -> Option<(Part, f64)> {
         match &self.system.light {
-            Light::Area { shape, .. } => Some(Part::Point(crate::rays::point_of(shape, at))),
+            Light::Area { shape, .. } => {
+                let part = Part::Point(crate::rays::point_of(shape, at));
+                Some((part, 1.0 / shape.area()))
+            }
             Light::Environment { environment } => {
                 let from = self.sky.as_ref()?.draw(at);
-                forward(-environment.frame.vector_to_world(from))
+                self.of_sky(-environment.frame.vector_to_world(from), from)
             }
             _ => None,
         }
     }
 
-    fn density_by_light(&self, part: Part) -> f64 {
-        match (&self.system.light, part, &self.sky) {
-            (Light::Area { shape, .. }, ..) => 1.0 / shape.area(),
-            (Light::Environment { environment }, Part::Slopes([u, v]), Some(sky)) => {
-                sky.density(environment.origin_of(DVec3::new(u, v, 1.0)))
-            }
-            _ => 0.0,
-        }
+    /// Light of an environment along a direction, from one in the axes of its map; with its
+    /// density.
+    fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(Part, f64)> {
+        let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
+        else {
+            return None;
+        };
+        let slopes = forward(along)?;
+        let radiance = environment.map.radiance(from);
+        let density = sky.density(from, radiance);
+        Some((Part::Sky { slopes, radiance }, density))
     }
 
-    /// The part of the light in a direction, away from the surface.
-    fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<Part> {
-        let slopes = forward(-wi)?;
-        match (&self.system.light, slopes) {
-            (Light::Area { shape, .. }, Part::Slopes([u, v])) => {
+    /// The part of the light in a direction, away from the surface, and its density among those
+    /// drawn by the light alone.
+    fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(Part, f64)> {
+        match &self.system.light {
+            Light::Area { shape, .. } => {
+                let [u, v] = forward(-wi)?;
                 let DVec3 { x, y, z } = leaving.point;
                 let [a, b] = [x - z * u, y - z * v];
-                shape.contains(a, b).then_some(Part::Point([a, b]))
+                let meets = shape.contains(a, b);
+                meets.then(|| (Part::Point([a, b]), 1.0 / shape.area()))
             }
-            _ => Some(slopes),
+            Light::Environment { environment } => self.of_sky(-wi, environment.origin_of(-wi)),
+            _ => None,
         }
     }
 
@@ -298,7 +307,7 @@ impl<'a> Lights<'a> {
     fn direction(&self, leaving: &Leaving, part: Part) -> DVec3 {
         match part {
             Part::Point([a, b]) => (DVec3::new(a, b, 0.0) - leaving.point).normalize(),
-            Part::Slopes([u, v]) => -DVec3::new(u, v, 1.0).normalize(),
+            Part::Sky { slopes: [u, v], .. } => -DVec3::new(u, v, 1.0).normalize(),
             Part::Whole => DVec3::ZERO,
         }
     }
@@ -308,7 +317,7 @@ impl<'a> Lights<'a> {
         let DVec3 { x, y, z } = leaving.point;
         match part {
             Part::Point([a, b]) => 1.0 / (z * z * secant([(x - a) / z, (y - b) / z]).powi(3)),
-            Part::Slopes(_) | Part::Whole => 1.0,
+            Part::Sky { .. } | Part::Whole => 1.0,
         }
     }
 }
@@ -319,8 +328,8 @@ fn has_extent(light: &Light) -> bool {
 }
 
 /// The slopes of light along a direction, if it goes forward.
-fn forward(along: DVec3) -> Option<Part> {
-    (along.z > 0.0).then(|| Part::Slopes([along.x / along.z, along.y / along.z]))
+fn forward(along: DVec3) -> Option<[f64; 2]> {
+    (along.z > 0.0).then(|| [along.x / along.z, along.y / along.z])
 }
 
 /// Draws where light comes from by where it goes: normals of microfacets about that of the surface.

@@ -11,9 +11,14 @@ pub(super) enum Part {
     Whole,
     /// A point of an area light. Densities of such are per square metre.
     Point([f64; 2]),
-    /// A direction of an environment, as the slopes of its rays. Densities of such are per
-    /// steradian.
-    Slopes([f64; 2]),
+    /// A direction of an environment, as the slopes of its rays, and the radiance from there.
+    /// Densities of such are per steradian.
+    Sky {
+        /// Forward.
+        slopes: [f64; 2],
+        /// W m⁻² sr⁻¹.
+        radiance: f64,
+    },
 }
 
 /// Light that arrives with slopes (u, v).
@@ -41,10 +46,8 @@ impl Masks<'_> {
                 let emitted = radiance * secant(slopes).powf(-exponent);
                 (slopes, emitted / (z * z))
             }
-            (Light::Environment { environment }, Part::Slopes(slopes)) => {
-                let [u, v] = slopes;
-                let radiance = environment.radiance(DVec3::new(u, v, 1.0));
-                // du dv = dω / cos³.
+            // du dv = dω / cos³.
+            (Light::Environment { .. }, Part::Sky { slopes, radiance }) => {
                 (slopes, radiance * secant(slopes).powi(3))
             }
             (Light::Point { intensity }, _) => {

@@ -5,7 +5,7 @@ use crate::Work;
 use crate::model::{Model, Moved, Over, Prediction, View};
 use crate::nets::{Budget, work_of_nets};
 use crate::parameter::{New, Parameter};
-use etendue_field::{Light, Lobe};
+use etendue_field::{Complex, Light, Lobe, Reflectance};
 
 /// Step of a derivative, as a share of the parameter's scale.
 const STEP: f64 = 1e-3;
@@ -83,15 +83,27 @@ impl Model for View<System> {
         Some(())
     }
 
-    /// With the difference to the first-order chain.
+    /// With the difference to the first-order chain. All light is in proportion to an albedo where
+    /// no other BRDF is blended with it.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+        let Reflectance { brdf, blend, .. } = &self.system.reflectance;
+        let is_factor = |parameter: &Parameter| {
+            *parameter == Parameter::Albedo && blend.is_none() && brdf.albedo > 0.0
+        };
         let moved = |parameter: &Parameter| {
             let step = STEP * parameter.scale(self.value(*parameter)?);
             Moved::new(self, *parameter, step, |moved| moved)
         };
-        let moved: Option<Vec<_>> = parameters.iter().map(moved).collect();
+        let others = parameters.iter().filter(|parameter| !is_factor(parameter));
+        let moved: Option<Vec<_>> = others.map(moved).collect();
         let moved = moved.expect("parameters of the surface");
-        predict(self, chain(self).as_ref(), &moved, over, budget)
+        let mut found = predict(self, chain(self).as_ref(), &moved, over, budget);
+        if let Some(i) = parameters.iter().position(is_factor) {
+            let mut derivative = found.slices.clone();
+            derivative.half /= Complex::from(brdf.albedo);
+            found.derivatives.insert(i, derivative);
+        }
+        found
     }
 
     fn work(&self, over: Over<'_>, budget: Budget) -> Work {

@@ -167,28 +167,46 @@ impl Integrand for Field<'_> {
     }
 }
 
+/// A part of the light, if there is one, and the density with which it was drawn.
+type Drawn = Option<(Part, f64)>;
+
 /// A light field with a parameter changed.
+///
+/// Where it leaves a ray or the light as they are, it takes them from the light field itself.
 struct Side<'a> {
     view: &'a View<System>,
+    moves_surface: bool,
+    moves_light: bool,
     masks: Masks<'a>,
     lights: Lights<'a>,
 }
 
 impl<'a> Side<'a> {
     fn new(view: &'a View<System>, field: &'a Field<'a>, strategy: Strategy) -> Self {
-        let system = &view.system;
+        let View { system, plane } = field.view;
+        let moves_surface = view.system.patch != system.patch || view.plane != *plane;
         Self {
             view,
-            masks: Masks::new(&system.layers),
-            lights: field.lights.of(system, strategy),
+            moves_surface,
+            moves_light: view.system.light != system.light
+                || moves_surface && field.lights.is_by_lobe(),
+            masks: Masks::new(&view.system.layers),
+            lights: field.lights.of(&view.system, strategy),
         }
     }
 
-    /// The radiance of a ray, over the density with which a part of the light was drawn.
-    fn radiance(&self, z: [f64; 4], at: [f64; 2]) -> Option<f64> {
+    /// The radiance of a ray, over the density with which a part of the light was drawn. Beside it
+    /// is what the light field itself has.
+    fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, Drawn)) -> Option<f64> {
         let View { system, plane } = self.view;
-        let leaving = system.leaving(plane, z)?;
-        let (part, density) = self.lights.draw(&leaving, at)?;
+        let (mut leaving, mut drawn) = *own;
+        if self.moves_surface {
+            leaving = system.leaving(plane, z)?;
+        }
+        if self.moves_light {
+            drawn = self.lights.draw(&leaving, at);
+        }
+        let (part, density) = drawn?;
         let radiance = radiance(self.view, &self.masks, &leaving, part);
         Some(over(radiance, density))
     }
@@ -235,6 +253,7 @@ impl Integrand for Around<'_> {
             return;
         };
         let at = [at[4], at[5]];
+        let own = (leaving, field.lights.draw(&leaving, at));
         let mut nodes = nodes.iter_mut();
         let mut put = |difference: f64| {
             if let Some(node) = nodes.next() {
@@ -243,8 +262,7 @@ impl Integrand for Around<'_> {
             }
         };
         if let Some(linear) = linear {
-            let part = field.lights.draw(&leaving, at);
-            put(part.map_or(0.0, |(part, density)| {
+            put(own.1.map_or(0.0, |(part, density)| {
                 let exact = field.radiance(&leaving, part);
                 over(linear.radiance(&field.masks, z, part) - exact, density)
             }));
@@ -252,7 +270,7 @@ impl Integrand for Around<'_> {
         for (apart, sides) in moved {
             let [above, below] = sides
                 .each_ref()
-                .map(|side| side.radiance(z, at).unwrap_or(0.0));
+                .map(|side| side.radiance(z, at, &own).unwrap_or(0.0));
             put((above - below) / apart);
         }
     }

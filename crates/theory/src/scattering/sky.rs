@@ -7,10 +7,21 @@ use std::f64::consts::{PI, TAU};
 /// A density over directions in proportion to the radiance from there, or nearly.
 #[derive(Clone, Debug)]
 pub(super) enum Sky<'a> {
-    /// Of spherical Gaussians, with their shares of the light, added up.
-    Lobes(&'a [SphericalGaussian], Vec<f64>),
+    /// Of spherical Gaussians.
+    Lobes(Lobes),
     /// Of a map.
     Map(Box<Pixels<'a>>),
+}
+
+/// Spherical Gaussians ready to be drawn.
+#[derive(Clone, Debug)]
+pub(super) struct Lobes {
+    /// Their shares of the light, added up.
+    shares: Vec<f64>,
+    /// σ², exp(−2/σ²) − 1, and axes with D to where most of each comes from.
+    each: Vec<(f64, f64, Frame)>,
+    /// The integral of the radiance over all directions.
+    total: f64,
 }
 
 /// The cells of a map.
@@ -32,8 +43,17 @@ impl<'a> Sky<'a> {
     pub(super) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
         match &environment.map {
             EnvironmentMap::Lobes(lobes) => {
-                let shares = shares(lobes.iter().map(SphericalGaussian::integral))?;
-                Some(Self::Lobes(lobes, shares))
+                let integrals = || lobes.iter().map(SphericalGaussian::integral);
+                let axes = |lobe: &SphericalGaussian| {
+                    let squared = lobe.width.powi(2);
+                    let axes = Frame::IDENTITY.turned_to(lobe.from);
+                    (squared, (-2.0 / squared).exp_m1(), axes)
+                };
+                Some(Self::Lobes(Lobes {
+                    shares: shares(integrals())?,
+                    each: lobes.iter().map(axes).collect(),
+                    total: integrals().sum(),
+                }))
             }
             EnvironmentMap::LatLong(map) => {
                 let frame = &environment.frame;
@@ -47,32 +67,25 @@ impl<'a> Sky<'a> {
     /// Where light comes from, of unit length in the axes of the environment.
     pub(super) fn draw(&self, [a, b]: [f64; 2]) -> DVec3 {
         match self {
-            Self::Lobes(lobes, shares) => {
-                let (i, a) = picked(shares, a);
-                let SphericalGaussian { from, width, .. } = lobes[i];
-                let squared = width * width;
+            Self::Lobes(lobes) => {
+                let (i, a) = picked(&lobes.shares, a);
+                let (squared, least, axes) = lobes.each[i];
                 // 1 − cos γ, by the quantiles of exp((cos γ − 1)/σ²).
-                let fall = -squared * (a * (-2.0 / squared).exp_m1()).ln_1p();
+                let fall = -squared * (a * least).ln_1p();
                 let fall = fall.clamp(0.0, 2.0);
                 let sin = (fall * (2.0 - fall)).sqrt();
                 let (s, c) = (TAU * b).sin_cos();
                 let local = DVec3::new(sin * c, sin * s, 1.0 - fall);
-                Frame::IDENTITY.turned_to(from).vector_to_world(local)
+                axes.vector_to_world(local)
             }
             Self::Map(pixels) => pixels.draw([a, b]),
         }
     }
 
-    /// Its density per steradian.
-    pub(super) fn density(&self, from: DVec3) -> f64 {
+    /// Its density per steradian, where the radiance is this.
+    pub(super) fn density(&self, from: DVec3, radiance: f64) -> f64 {
         match self {
-            Self::Lobes(lobes, shares) => {
-                let each = lobes
-                    .iter()
-                    .enumerate()
-                    .map(|(i, lobe)| share(shares, i) * lobe.radiance_from(from) / lobe.integral());
-                each.sum()
-            }
+            Self::Lobes(lobes) => radiance / lobes.total,
             Self::Map(pixels) => pixels.density(from),
         }
     }
@@ -214,7 +227,7 @@ mod tests {
                 let sin = (1.0 - cos * cos).sqrt();
                 // Along directions that go forward.
                 let from = environment.origin_of(DVec3::new(sin * c, sin * s, cos));
-                assert!(sky.density(from) > 0.0, "{w} x {h}: {from}");
+                assert!(sky.density(from, 1.0) > 0.0, "{w} x {h}: {from}");
             }
         }
     }
