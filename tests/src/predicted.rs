@@ -2,8 +2,8 @@
 
 use etendue_field::{ProjectionGrid, SliceGrid, Slices, VirtualPlane, Window};
 use etendue_theory::geometry::SpectrumMap;
-use etendue_theory::scattering::{self, Chain};
-use etendue_theory::{Budget, Model, Prediction, View, rays};
+use etendue_theory::scattering::{self, ReflectionChain};
+use etendue_theory::{Budget, Model, Observed, Predicted, rays};
 
 /// Rays of a prediction: errors of a fifth of the photons' noise.
 const BUDGET: Budget = Budget {
@@ -12,14 +12,18 @@ const BUDGET: Budget = Budget {
 };
 
 /// Behind specular surfaces.
-pub(crate) fn traced(view: &View<rays::System>, window: &Window, grid: &SliceGrid) -> Prediction {
+pub(crate) fn traced(
+    view: &Observed<rays::System>,
+    window: &Window,
+    grid: &SliceGrid,
+) -> Predicted {
     let picture = ProjectionGrid::new(window, 1);
     view.predict(&[], (window, grid, &picture), BUDGET)
 }
 
 /// Behind specular surfaces, by a chain.
 pub(crate) fn linear(
-    view: &View<rays::System>,
+    view: &Observed<rays::System>,
     window: &Window,
     grid: &SliceGrid,
     map: &SpectrumMap<4>,
@@ -30,9 +34,9 @@ pub(crate) fn linear(
 
 /// Behind a surface with a BRDF: as it is, and by a chain.
 pub(crate) fn scattered(
-    view: &View<scattering::System>,
+    view: &Observed<scattering::System>,
     plane: &VirtualPlane,
-    chain: &Chain,
+    chain: &ReflectionChain,
 ) -> [Slices; 2] {
     let picture = ProjectionGrid::new(&plane.window, 1);
     let over = (&plane.window, &plane.grid, &picture);

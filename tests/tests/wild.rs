@@ -15,7 +15,7 @@ use etendue_field::{
 };
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_theory::{Budget, Model, View, scattering};
+use etendue_theory::{Budget, Model, Observed, scattering};
 use etendue_trace::{Backward, Tracer};
 use std::sync::Arc;
 use std::time::Instant;
@@ -337,7 +337,11 @@ fn by_specular(scene: &Scene, plane: usize, like: Prediction) -> Prediction {
     replaced(like, found.slices, found.replicates)
 }
 
-fn by_scattering(scene: &Scene, view: &View<scattering::System>, like: Prediction) -> Prediction {
+fn by_scattering(
+    scene: &Scene,
+    view: &Observed<scattering::System>,
+    like: Prediction,
+) -> Prediction {
     let grid = like.slices.grid;
     let window = &scene.planes[0].window;
     let picture = ProjectionGrid::new(window, 1);

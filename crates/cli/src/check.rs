@@ -5,7 +5,7 @@ use crate::{deliver, limits, load, pictures, say, warnings};
 use etendue_compare::{Applicability, Memory, seconds};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
-use etendue_theory::rays::FirstOrder;
+use etendue_theory::rays::AffineChain;
 use std::num::NonZero;
 use std::thread::available_parallelism;
 
@@ -56,7 +56,7 @@ fn length(scene: &Scene) -> String {
 }
 
 /// Where the rays of the light go, z' = A z, and where parallel ones meet.
-fn rays(chain: &FirstOrder) -> Vec<String> {
+fn rays(chain: &AffineChain) -> Vec<String> {
     let matrix = chain.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {
         let entries = row

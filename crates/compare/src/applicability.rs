@@ -8,7 +8,7 @@ use crate::system::{print, scattered, system};
 use crate::ways::{unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Budget, Chain, Model, Over, Parameter, View, Work, rays, scattering};
+use etendue_theory::{Budget, Chain, Model, Observed, Over, Parameter, Work, rays, scattering};
 
 /// What theory says of a plane: which one applies, or why none does.
 #[derive(Clone, Debug)]
@@ -27,9 +27,9 @@ pub enum Theory {
     /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
     Parallel(Chain),
     /// Rays followed through smooth specular surfaces, or through pictures.
-    Specular(Box<View<rays::System>>),
+    Specular(Box<Observed<rays::System>>),
     /// Light that one smooth surface reflects by a BRDF.
-    Scattering(Box<View<scattering::System>>),
+    Scattering(Box<Observed<scattering::System>>),
     /// None: another measurement takes its place.
     None,
 }
@@ -113,7 +113,7 @@ impl Applicability {
 
     /// The system of specular surfaces that leads to a plane behind one or on one, or of light that
     /// goes through pictures.
-    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<View<rays::System>> {
+    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::System>> {
         let across = plane.orientation == Orientation::Orthogonal;
         if !scene.light.is_picture() && plane.leg == 0 && across {
             return None;
@@ -134,7 +134,7 @@ impl Applicability {
     /// The chain of affine maps that leads to a plane behind specular surfaces, by the paper's
     /// printed formulas where the scene asks for them.
     #[must_use]
-    pub fn affine_chain(&self, scene: &Scene) -> Option<rays::FirstOrder> {
+    pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {
         match &self.theory {
             Theory::Specular(view) => rays::chain(view, print(scene)),
             Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,

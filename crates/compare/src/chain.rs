@@ -9,7 +9,7 @@ use etendue_theory::{Chain, Operator, Source};
 /// [`Applicability`](crate::Applicability) says so.
 #[must_use]
 pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
-    let mut walk = Walk {
+    let mut walk = ChainWalk {
         at: "light".to_owned(),
         distance: 0.0,
         operators: Vec::new(),
@@ -82,13 +82,13 @@ pub fn stands_before(distance: f64, scene: &Scene, plane: &VirtualPlane) -> bool
 }
 
 /// The chain of the central ray as far as it has come.
-struct Walk {
+struct ChainWalk {
     at: String,
     distance: f64,
     operators: Vec<Operator>,
 }
 
-impl Walk {
+impl ChainWalk {
     fn travel(&mut self, to: &str, distance: f64) {
         if distance > self.distance {
             self.operators.push(Operator::Travel {

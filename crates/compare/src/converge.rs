@@ -5,7 +5,7 @@ use crate::first_order::distance;
 use crate::system::print;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Budget, Model, Prediction, View, rays};
+use etendue_theory::{Budget, Model, Observed, Predicted, rays};
 use serde::Serialize;
 
 /// The error of a plane's first-order chain in smaller and smaller neighbourhoods of the central
@@ -41,7 +41,7 @@ pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
     let mut steps = Vec::new();
     let mut clear = true;
     for e in SHARES {
-        let view = View {
+        let view = Observed {
             system: whole.system.shrunk(e),
             plane: whole.plane,
         };
@@ -63,7 +63,7 @@ pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
         let exact = view.predict(&[], over, BUDGET);
         let linear = rays::linear(&view, over, &chain.map, BUDGET);
         let error = distance(&linear.slices, &exact.slices);
-        let own = |prediction: &Prediction| prediction.error.unwrap_or(0.0);
+        let own = |prediction: &Predicted| prediction.error.unwrap_or(0.0);
         clear &= error > CLEAR * own(&exact).max(own(&linear));
         steps.push([e, error]);
     }

@@ -23,7 +23,7 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane) -> Option<String> {
     let layers = scene.blockers.iter();
     let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
     let layers: Vec<&BlockerLayer> = layers.collect();
-    let mut sections = [0, 1].map(|axis| Section::new(scene, plane, axis));
+    let mut sections = [0, 1].map(|axis| RaySection::new(scene, plane, axis));
     for (axis, section) in sections.iter_mut().enumerate() {
         let whole = section.measure();
         let mut cuts: Vec<&str> = Vec::new();
@@ -53,9 +53,9 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane) -> Option<String> {
 
 /// The rays of a section along X or Y: a convex polygon of (position at the light, slope), or a
 /// segment.
-struct Section(Vec<[f64; 2]>);
+struct RaySection(Vec<[f64; 2]>);
 
-impl Section {
+impl RaySection {
     fn new(scene: &Scene, plane: &VirtualPlane, axis: usize) -> Self {
         let [low, high] = scene.light.extent(axis).map(|x| x.clamp(-FAR, FAR));
         let most = scene.light.steepest(axis).min(FAR);
@@ -119,7 +119,7 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 /// Whether a layer leaves nothing of the rays of both sections on their way to the first surface.
-fn covers(layer: &BlockerLayer, sections: &[Section; 2], scene: &Scene) -> bool {
+fn covers(layer: &BlockerLayer, sections: &[RaySection; 2], scene: &Scene) -> bool {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return false;
     };
@@ -139,7 +139,7 @@ fn covers(layer: &BlockerLayer, sections: &[Section; 2], scene: &Scene) -> bool 
 }
 
 /// Where lines from the light to the first surface cross a plane, if it is a smooth one.
-fn towards_surface(scene: &Scene, sections: &[Section; 2], distance: f64) -> Extent {
+fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
     let unlimited = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
         return unlimited;

@@ -7,9 +7,9 @@ use crate::verdict::Verdict;
 use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::geometry::{Map, Matrix, Print};
+use etendue_theory::geometry::{Edition, Map, Matrix};
 use etendue_theory::rays::{self, System};
-use etendue_theory::{Over, Prediction, View, scattering};
+use etendue_theory::{Observed, Over, Predicted, scattering};
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -78,16 +78,16 @@ const NINETY_FIVE: f64 = 1.645;
 impl FirstOrder {
     pub(crate) fn new(
         scene: &Scene,
-        view: &View<System>,
+        view: &Observed<System>,
         over: Over<'_>,
-        exact: &Prediction,
+        exact: &Predicted,
     ) -> Option<Self> {
         let by = |print| {
             let chain = rays::chain(view, print)?;
             let linear = rays::linear(view, over, &chain.map, budget(scene));
             Some((chain, linear))
         };
-        let (corrected, mut linear) = by(Print::Corrected)?;
+        let (corrected, mut linear) = by(Edition::Corrected)?;
         let matrix = corrected.rays().matrix;
         let mut chain = FirstOrderChain {
             error: distance(&linear.slices, &exact.slices),
@@ -112,8 +112,8 @@ impl FirstOrder {
     /// The chain of a surface with a BRDF. Its noise is that of the exact prediction: the
     /// difference of the two has little of its own.
     pub(crate) fn of_reflection(
-        view: &View<scattering::System>,
-        exact: &Prediction,
+        view: &Observed<scattering::System>,
+        exact: &Predicted,
     ) -> Option<Self> {
         let chain = scattering::chain(view)?;
         let difference = exact.to_first_order.as_ref()?;

@@ -64,7 +64,7 @@ pub fn compare(
         (estimate.variance, predicted.radial_power())
     };
     let power = CrossPower::new(measurement, index)?;
-    let sides = Sides {
+    let sides = Compared {
         measurement,
         index,
         prediction,
@@ -88,7 +88,7 @@ pub fn compare(
 }
 
 /// Both sides of a comparison, and what is between them.
-struct Sides<'a> {
+struct Compared<'a> {
     measurement: &'a Measurement,
     index: usize,
     prediction: &'a Prediction,
@@ -110,7 +110,7 @@ struct Judged {
     open: Option<String>,
 }
 
-impl Sides<'_> {
+impl Compared<'_> {
     fn judged(&self, test: &Test) -> Judged {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
         let p_value = self.residuals.p_value(test.seed);

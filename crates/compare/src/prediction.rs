@@ -101,7 +101,7 @@ impl Prediction {
         model: &M,
         over: Over<'_>,
         budget: Budget,
-        first_order: impl FnOnce(&etendue_theory::Prediction) -> Option<FirstOrder>,
+        first_order: impl FnOnce(&etendue_theory::Predicted) -> Option<FirstOrder>,
     ) -> Self {
         let parameters = model.parameters();
         let found = model.predict(&parameters, over, budget);

@@ -3,15 +3,15 @@
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Side, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, Scene};
-use etendue_theory::geometry::Print;
+use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Element, Plane, System};
-use etendue_theory::{View, scattering};
+use etendue_theory::{Observed, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
 /// where light comes from an environment, where a surface is not specular, and where the scene
 /// holds an object off the path.
 #[must_use]
-pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<View<System>> {
+pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
     if matches!(scene.light, Light::Environment { .. }) {
         return None;
     }
@@ -43,7 +43,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<View<System>> {
         layers: layers_before(scene, plane),
         elements: elements?,
     };
-    is_free(scene).then(|| View {
+    is_free(scene).then(|| Observed {
         system,
         plane: in_frame(scene, plane),
     })
@@ -53,7 +53,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<View<System>> {
 /// plane is not on the second leg, where the first surface has no BRDF, and where the scene holds
 /// an object off the path.
 #[must_use]
-pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<View<scattering::System>> {
+pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scattering::System>> {
     if plane.leg != 1 || !is_free(scene) {
         return None;
     }
@@ -71,7 +71,7 @@ pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<View<scattering:
         patch: object.patch,
         reflectance: reflectance.clone(),
     };
-    Some(View {
+    Some(Observed {
         system,
         plane: in_frame(scene, plane),
     })
@@ -102,11 +102,11 @@ fn in_frame(scene: &Scene, plane: &VirtualPlane) -> Plane {
 }
 
 /// The formulas a scene asks for.
-pub(crate) fn print(scene: &Scene) -> Print {
+pub(crate) fn print(scene: &Scene) -> Edition {
     if scene.file.as_printed {
-        Print::Equations
+        Edition::Equations
     } else {
-        Print::Corrected
+        Edition::Corrected
     }
 }
 

@@ -63,7 +63,7 @@ pub mod shading;
 mod testing;
 mod words;
 
-pub use model::{Model, Over, Prediction, View};
+pub use model::{Model, Observed, Over, Predicted};
 pub use nets::{Budget, REPLICATES};
 pub use parallel::{
     Chain, Harmonics, Operator, Source, Work, at, derivative, projection, quadrature_error, slices,

@@ -4,7 +4,7 @@ use etendue_field::{Grating, HalfPlane, Mask, Shape};
 use glam::DVec3;
 
 /// Lowest and highest coordinate along two axes.
-pub(crate) type Sides = [[f64; 2]; 2];
+pub(crate) type Bounds = [[f64; 2]; 2];
 
 /// A mask made ready for many questions.
 #[derive(Debug)]
@@ -12,7 +12,7 @@ pub(crate) struct Barrier<'a> {
     /// Where it stands: metres from the light, or before a receiver, as its owner counts.
     pub(crate) distance: f64,
     /// What half-planes leave open.
-    pub(crate) open: Sides,
+    pub(crate) open: Bounds,
     pub(crate) shapes: Bins<'a>,
     pub(crate) grating: Option<Grating>,
 }
@@ -145,7 +145,7 @@ impl<'a> Bins<'a> {
 
     /// Hands over every shape whose bounds meet a rectangle, once, in an order that depends on the
     /// rectangle alone.
-    pub(crate) fn meeting(&self, sides: Sides, mut each: impl FnMut(&'a Shape)) {
+    pub(crate) fn meeting(&self, sides: Bounds, mut each: impl FnMut(&'a Shape)) {
         if self.shapes.is_empty() {
             return;
         }

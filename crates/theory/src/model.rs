@@ -26,7 +26,7 @@ pub trait Model: Clone {
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()>;
 
     /// The slices with their error, a picture, and the derivatives by some of its parameters.
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction;
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted;
 
     /// What that takes.
     fn work(&self, over: Over<'_>, budget: Budget) -> Work;
@@ -57,7 +57,7 @@ pub trait Model: Clone {
 
 /// What theory says of a light field.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Prediction {
+pub struct Predicted {
     /// The slices of the windowed spectrum. Unit: W m⁻² sr⁻¹ · m², on a surface
     /// W m⁻² sr⁻¹ · m² rad².
     pub slices: Slices,
@@ -83,7 +83,7 @@ pub struct Prediction {
 
 /// A system of surfaces, and the plane at which its light is looked at.
 #[derive(Clone, Debug, PartialEq)]
-pub struct View<S> {
+pub struct Observed<S> {
     /// The light, and what it meets.
     pub system: S,
     /// Where it is looked at.

@@ -6,7 +6,7 @@ use etendue_compare::{Residuals, scattered};
 use etendue_field::{Complex, Crossing, Ledger, PhotonSource, Slices, VirtualPlane};
 use etendue_scene::{Event, Scene};
 use etendue_spectrum::{Measurement, estimate, measure};
-use etendue_theory::View;
+use etendue_theory::Observed;
 use etendue_theory::scattering::{System, chain};
 use etendue_trace::Tracer;
 use glam::DVec3;
@@ -87,11 +87,11 @@ pub(super) fn mean(photons: &Measurement) -> Slices {
     estimate.expect("a scene has 64 batches").mean
 }
 
-fn seen(scene: &Scene) -> View<System> {
+fn seen(scene: &Scene) -> Observed<System> {
     scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF")
 }
 
-fn said(view: &View<System>, plane: &VirtualPlane) -> Slices {
+fn said(view: &Observed<System>, plane: &VirtualPlane) -> Slices {
     let chain = chain(view).expect("a central ray");
     let [exact, _] = predicted::scattered(view, plane, &chain);
     exact

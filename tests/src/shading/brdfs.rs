@@ -6,8 +6,8 @@ use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::geometry::Map;
 use etendue_theory::shading::{
-    Factor, Fresnel, Lattice, Lobe, Reflection, Step, Term, Wave, cosine_hat, cosine_squared_hat,
-    semi_convolution, texture,
+    Factor, Fresnel, Lattice, Lobe, Reflection, Step, Term, TextureWave, cosine_hat,
+    cosine_squared_hat, semi_convolution, texture,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -233,7 +233,7 @@ fn textured() -> Comparison {
             (frequency, side),
             (-frequency, side.conj()),
         ]
-        .map(|(frequency, amplitude)| Wave {
+        .map(|(frequency, amplitude)| TextureWave {
             frequency,
             amplitude,
         });

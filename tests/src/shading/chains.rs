@@ -11,7 +11,7 @@ use etendue_field::Slices;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::Map;
-use etendue_theory::scattering::{Chain, chain, defect};
+use etendue_theory::scattering::{ReflectionChain, chain, defect};
 
 /// Of the exact prediction, which is not asked here.
 const LEVEL: f64 = 0.01;
@@ -19,7 +19,7 @@ const LEVEL: f64 = 0.01;
 const PHOTONS: u64 = 4_000_000;
 const SCENE: &str = "textured_glossy";
 
-type Change = fn(&mut Chain);
+type Change = fn(&mut ReflectionChain);
 
 fn faults() -> Vec<(&'static str, Change)> {
     vec![
@@ -123,7 +123,7 @@ fn judged(
     scene: &Scene,
     measurement: &Measurement,
     sound: &Prediction,
-    tampered: &Chain,
+    tampered: &ReflectionChain,
     slices: Slices,
 ) -> FirstOrderReport {
     let view = scattered(scene, &scene.planes[0]).expect("a plane behind a BRDF");

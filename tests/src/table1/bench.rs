@@ -5,7 +5,7 @@ use super::steps::Steps;
 use crate::predicted;
 use crate::scenes::compared;
 use etendue_compare::{FirstOrder, FirstOrderChain, FirstOrderReport, Prediction};
-use etendue_theory::geometry::{Matrix, Print, SpectrumMap};
+use etendue_theory::geometry::{Edition, Matrix, SpectrumMap};
 use etendue_theory::{Model, Parameter, rays};
 
 /// Of the exact prediction, which is not asked here.
@@ -40,7 +40,7 @@ impl<'a> Bench<'a> {
 
     /// How far the steps are from the chain that theory reads off the scene.
     pub(super) fn apart(&self, plane: usize) -> f64 {
-        let Some(read) = rays::chain(&self.outcome.system(plane), Print::Corrected) else {
+        let Some(read) = rays::chain(&self.outcome.system(plane), Edition::Corrected) else {
             return f64::NAN;
         };
         let put = self.sound().chain(&self.outcome.scene.planes[plane]);

@@ -5,7 +5,7 @@ use super::steps::Steps;
 use super::{Outcome, number, percent};
 use crate::report::Section;
 use etendue_compare::{FirstOrderReport, Verdict};
-use etendue_theory::geometry::{Map, Matrix, Print};
+use etendue_theory::geometry::{Edition, Map, Matrix};
 use std::f64::consts::TAU;
 
 /// What a chain that was put together here may differ from the one read off the scene.
@@ -15,7 +15,7 @@ const SAME: f64 = 1e-8;
 type Misprint = Box<dyn Fn(&mut Steps, f64, Matrix<2>)>;
 
 fn all() -> Vec<(&'static str, &'static str, Misprint)> {
-    let of = |print: Print, which: fn(&mut Steps, Steps)| -> Misprint {
+    let of = |print: Edition, which: fn(&mut Steps, Steps)| -> Misprint {
         Box::new(move |steps, theta0, shape| {
             let printed = Steps {
                 incidence: print.incidence_4d(theta0),
@@ -41,7 +41,7 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
         (
             "Eq. 9 as printed",
             "incidence",
-            of(Print::Equations, |s, p| s.incidence = p.incidence),
+            of(Edition::Equations, |s, p| s.incidence = p.incidence),
         ),
         (
             "Eq. 9, scale: ℓ̂(−c₀ Ωx) for ℓ̂(−Ωx/c₀)",
@@ -64,12 +64,12 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
         (
             "Table 1, incidence",
             "incidence",
-            of(Print::Table, |s, p| s.incidence = p.incidence),
+            of(Edition::Table, |s, p| s.incidence = p.incidence),
         ),
         (
             "Eq. 10 as printed",
             "outgoing",
-            of(Print::Equations, |s, p| s.outgoing = p.outgoing),
+            of(Edition::Equations, |s, p| s.outgoing = p.outgoing),
         ),
         (
             "Eq. 10, scale: ℓ̂(Ωx/c₁) for ℓ̂(c₁ Ωx)",
@@ -84,7 +84,7 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
         (
             "Table 1, outgoing",
             "outgoing",
-            of(Print::Table, |s, p| s.outgoing = p.outgoing),
+            of(Edition::Table, |s, p| s.outgoing = p.outgoing),
         ),
         ("Eq. 11, sign", "curvature", cosine(|theta0| theta0, -1.0)),
         (
@@ -100,12 +100,12 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
         (
             "Eqs. 9, 11, 10, 19 as printed",
             "outgoing",
-            of(Print::Equations, |s, p| *s = p),
+            of(Edition::Equations, |s, p| *s = p),
         ),
         (
             "Table 1 as printed",
             "outgoing",
-            of(Print::Table, |s, p| *s = p),
+            of(Edition::Table, |s, p| *s = p),
         ),
     ]
 }

@@ -21,7 +21,7 @@ use crate::scenes::{compared, predicted, traced};
 use etendue_compare::{PlaneComparison, Prediction, sidak, system};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
-use etendue_theory::View;
+use etendue_theory::Observed;
 use etendue_theory::rays::System;
 
 /// Share of true tables that may be rejected, over all planes.
@@ -40,7 +40,7 @@ impl Outcome {
     ///
     /// # Panics
     /// When the plane is not one that theory follows rays to.
-    fn system(&self, plane: usize) -> View<System> {
+    fn system(&self, plane: usize) -> Observed<System> {
         system(&self.scene, &self.scene.planes[plane]).expect("a scene of free specular surfaces")
     }
 

@@ -8,7 +8,7 @@ use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
 use etendue_theory::geometry::Media;
 use etendue_theory::rays::System;
-use etendue_theory::{Model, Parameter, View};
+use etendue_theory::{Model, Observed, Parameter};
 
 /// How far a fitted order may be from what is known beforehand.
 const ORDER: f64 = 0.15;
@@ -130,8 +130,8 @@ fn follows(fall: &Fall, known: Order) -> bool {
 }
 
 /// The last step on the way to a plane.
-fn operator(view: &View<System>) -> &'static str {
-    let View { system, plane } = view;
+fn operator(view: &Observed<System>) -> &'static str {
+    let Observed { system, plane } = view;
     let last = system.elements.last();
     if plane.arriving {
         return match plane.orientation {
@@ -160,8 +160,8 @@ fn operator(view: &View<System>) -> &'static str {
 }
 
 /// What the plane of incidence cuts out of a scene with one surface, whose principal axes lie along it.
-fn section(view: &View<System>) -> Option<(Path, Stage)> {
-    let View { system, plane } = view;
+fn section(view: &Observed<System>) -> Option<(Path, Stage)> {
+    let Observed { system, plane } = view;
     let value = |p: Parameter| view.value(p);
     let arriving = plane.arriving || system.elements.is_empty();
     let before = value(Parameter::Travel(0))?;

@@ -3,9 +3,9 @@
 use super::Outcome;
 use crate::predicted;
 use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
-use etendue_theory::geometry::Print;
+use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, System};
-use etendue_theory::{Model, Parameter, View};
+use etendue_theory::{Model, Observed, Parameter};
 
 /// Sizes of the neighbourhood, in that of the scene.
 const SIZES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
@@ -26,8 +26,8 @@ pub(super) enum Order {
 
 impl Order {
     /// That of a plane, before anything is computed.
-    pub(super) fn expected(view: &View<System>) -> Self {
-        let View { system, plane } = view;
+    pub(super) fn expected(view: &Observed<System>) -> Self {
+        let Observed { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
         let flat = |e: &rays::Element| {
             let flat = e.patch.curvature.iter().all(|k| k.abs() <= 0.0);
@@ -70,9 +70,9 @@ pub(super) struct Fall {
 pub(super) fn fall(outcome: &Outcome, index: usize) -> Fall {
     let view = outcome.system(index);
     let at = &outcome.scene.planes[index];
-    let map = rays::chain(&view, Print::Corrected).expect("light arrives");
+    let map = rays::chain(&view, Edition::Corrected).expect("light arrives");
     let errors = SIZES.map(|size| {
-        let view = View {
+        let view = Observed {
             system: view.system.shrunk(size),
             plane: view.plane,
         };

@@ -10,7 +10,7 @@ use etendue_compare::{Residuals, Verdict};
 use etendue_field::Specular;
 use etendue_theory::geometry::{Map, SpectrumMap};
 use etendue_theory::rays::System;
-use etendue_theory::{Model, Parameter, View};
+use etendue_theory::{Model, Observed, Parameter};
 
 type Change = fn(&mut Steps, &Bench<'_>);
 
@@ -156,13 +156,13 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
     }
 }
 
-type Tamper = fn(&View<System>) -> Option<View<System>>;
+type Tamper = fn(&Observed<System>) -> Option<Observed<System>>;
 
 fn numbers() -> Vec<(&'static str, Tamper)> {
-    fn scaled(view: &View<System>, p: Parameter, by: f64) -> Option<View<System>> {
+    fn scaled(view: &Observed<System>, p: Parameter, by: f64) -> Option<Observed<System>> {
         view.with(p, by * view.value(p)?)
     }
-    fn turned(view: &View<System>, degrees: f64) -> Option<View<System>> {
+    fn turned(view: &Observed<System>, degrees: f64) -> Option<Observed<System>> {
         let p = Parameter::Incidence(0);
         view.with(p, view.value(p)? + degrees.to_radians())
     }

@@ -3,8 +3,8 @@
 use super::Outcome;
 use crate::report::Section;
 use etendue_field::{Frame, Orientation};
-use etendue_theory::View;
-use etendue_theory::geometry::Print;
+use etendue_theory::Observed;
+use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, Element, System};
 use glam::DVec3;
 
@@ -33,9 +33,9 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
             continue;
         };
         let view = outcome.system(index);
-        let View { system, plane } = &view;
+        let Observed { system, plane } = &view;
         let ratio = index_ratio(system);
-        let chain = rays::chain(&view, Print::Corrected);
+        let chain = rays::chain(&view, Edition::Corrected);
         let linear = chain.map_or(f64::NAN, |c| c.rays().symplectic_defect(ratio));
         let mut most = [0.0_f64; 3];
         for at in bundle() {

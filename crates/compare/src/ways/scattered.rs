@@ -6,7 +6,7 @@ use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Profile, VirtualPlane};
 use etendue_scene::{Hit, Scene};
-use etendue_theory::View;
+use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::System;
 
@@ -15,7 +15,7 @@ use etendue_theory::scattering::System;
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
-    view: &View<System>,
+    view: &Observed<System>,
 ) -> Vec<String> {
     let Some(hit) = scene.path.ends_at(0) else {
         return Vec::new();

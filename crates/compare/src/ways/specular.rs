@@ -5,7 +5,7 @@ use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
-use etendue_theory::View;
+use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, System};
 use glam::DVec3;
 
@@ -14,7 +14,7 @@ use glam::DVec3;
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
-    view: &View<System>,
+    view: &Observed<System>,
 ) -> Vec<String> {
     let follower = Follower {
         scene,

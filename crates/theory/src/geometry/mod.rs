@@ -33,7 +33,7 @@
 //! is linear in the size e of the neighbourhood, with a relative error that falls as e, and as e²
 //! at normal incidence.
 //!
-//! **The print.** What the paper prints differs in places; [`Print`] has both.
+//! **The print.** What the paper prints differs in places; [`Edition`] has both.
 //!
 //! ```
 //! use etendue_theory::geometry::Map;
@@ -65,6 +65,6 @@ pub use kernel::plane_sphere_kernel;
 pub use map::Map;
 pub use matrix::Matrix;
 pub(crate) use matrix::{diagonal, from_fn, product, sum, times, transpose};
-pub use printed::Print;
+pub use printed::Edition;
 pub use refraction::Media;
 pub use spectrum_map::SpectrumMap;

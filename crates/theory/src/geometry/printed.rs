@@ -6,7 +6,7 @@ use std::f64::consts::TAU;
 /// What Durand et al. 2005 print for the steps on and off a surface differs from ray geometry, and
 /// between their text and their table. Mirror and travel are printed right.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Print {
+pub enum Edition {
     /// As ray geometry has it: the maps of this module.
     Corrected,
     /// The numbered equations: 9, 11, 10, and 19 for a surface in 3D.
@@ -16,7 +16,7 @@ pub enum Print {
     Table,
 }
 
-impl Print {
+impl Edition {
     /// Light incidence. Eq. 9: e^(−iΩθ θ₀) c₀ L(−c₀ Ωx, Ωθ); Table 1: e^(−iΩθ θ₀)/c₀ L(−c₀ Ωx, Ωθ).
     #[must_use]
     pub fn incidence(self, theta0: f64) -> SpectrumMap<2> {

@@ -13,7 +13,7 @@ impl Map<2> {
     ///
     /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005
     /// multiplies by the cosine twice, Table 1 in the argument, and both leave 2π out of the phase
-    /// ([`Print`](super::Print)).
+    /// ([`Edition`](super::Edition)).
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self {

@@ -14,7 +14,7 @@ pub(crate) use sobol::{DIMENSIONS, Net};
 
 use crate::Work;
 use crate::geometry::Matrix;
-use crate::model::Prediction;
+use crate::model::Predicted;
 use etendue_field::transform::SliceTransform;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
 use ndarray::{Array2, Array3};
@@ -69,7 +69,7 @@ pub(crate) trait Integrand: Sync {
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]);
 }
 
-impl Prediction {
+impl Predicted {
     /// Of light of which no ray was found.
     pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid) -> Self {
         Self {
@@ -106,7 +106,7 @@ pub(crate) fn sums(
     (window, grid): (&Window, &SliceGrid),
     bins: usize,
     budget: Budget,
-) -> Prediction {
+) -> Predicted {
     let nets = begin(integrand, grid, bins, 0, REPLICATES);
     let (nets, error) = doubled(integrand, (window, grid), nets, budget);
     finished(nets, ProjectionGrid::new(window, bins), error)
@@ -266,7 +266,7 @@ impl Running {
     }
 }
 
-fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Prediction {
+fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicted {
     let each = running[0].count;
     let mut values = Array2::zeros((grid.bins, grid.bins));
     let mut moments = Moments::default();
@@ -279,7 +279,7 @@ fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicti
         replicates.push(slices);
     }
     values /= grid.cell_area() * each * replicates.len() as f64;
-    Prediction {
+    Predicted {
         slices: mean(replicates.iter()),
         replicates,
         error: Some(error),

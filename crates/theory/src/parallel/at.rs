@@ -1,7 +1,7 @@
 use super::expansion::Expansion;
 use crate::Chain;
-use crate::parallel::patch::Fineness;
 use crate::parallel::slope::Slope;
+use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{Complex, Window};
 
 /// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
@@ -17,7 +17,7 @@ pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
         return receiver.at(window, frequency);
     }
     let [x, y, u, v] = frequency.map(f64::abs);
-    let fineness = Fineness::for_spectrum(&path, window, [x.max(y), u.max(v)]);
+    let fineness = DiscResolution::for_spectrum(&path, window, [x.max(y), u.max(v)]);
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
     Expansion::new(&path, window, &slope, &fineness).at(frequency)
 }

@@ -76,7 +76,7 @@ pub(crate) struct Layer<'a> {
 
 /// What a diffuse surface at the end of a [`Path`] does.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Reflection {
+pub(crate) struct DiffuseReflection {
     pub(crate) albedo: f64,
     /// Distance that the light travels afterwards, in metres.
     pub(crate) after: f64,
@@ -141,7 +141,7 @@ pub(crate) struct Path<'a> {
     pub(crate) layers: Vec<Layer<'a>>,
     /// How many factors G there are.
     pub(crate) cosines: u32,
-    pub(crate) reflection: Option<Reflection>,
+    pub(crate) reflection: Option<DiffuseReflection>,
 }
 
 impl Chain {
@@ -169,7 +169,7 @@ impl Chain {
                     let only_travel =
                         path.layers.is_empty() && path.cosines == 0 && path.reflection.is_none();
                     assert!(only_travel, "only travel may follow the diffuse {name}");
-                    path.reflection = Some(Reflection {
+                    path.reflection = Some(DiffuseReflection {
                         albedo: *albedo,
                         after: path.distance,
                     });

@@ -19,7 +19,7 @@
 
 use crate::parallel::expansion::Section;
 use crate::parallel::polygon::{self, Polygon, cross, dot};
-use crate::parallel::row::{Parts, Row, add_product, add_scaled};
+use crate::parallel::row::{FrequencyRow, Parts, add_product, add_scaled};
 use crate::parallel::wave::Wave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
@@ -93,7 +93,7 @@ impl<'a> Corners<'a> {
     }
 
     /// The windowed transforms of all polygons along a row, [polygon, n].
-    pub(crate) fn row(&self, row: &Row) -> Vec<Complex> {
+    pub(crate) fn row(&self, row: &FrequencyRow) -> Vec<Complex> {
         let count = row.count();
         let polygons = &self.section.polygons;
         let mut sums = Parts::zeros(polygons.len() * count);
@@ -121,7 +121,7 @@ impl<'a> Corners<'a> {
             .collect()
     }
 
-    fn quotients(&self, row: &Row, waves: &[Wave]) -> Quotients {
+    fn quotients(&self, row: &FrequencyRow, waves: &[Wave]) -> Quotients {
         let count = row.count();
         let mut quotients = Quotients {
             values: Parts::zeros(self.pairs.len() * waves.len() * count),
@@ -169,7 +169,7 @@ impl<'a> Corners<'a> {
     /// Adds the corners, for the waves of `chunk`.
     fn add(
         &self,
-        row: &Row,
+        row: &FrequencyRow,
         quotients: &Quotients,
         chunk: std::ops::Range<usize>,
         sums: &mut Parts,
@@ -235,7 +235,7 @@ fn prepared(polygon: &Polygon, index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec
 }
 
 /// The ends of a segment: (exp(−2πi k·a) − exp(−2πi k·b)) / (2πi k·d).
-fn ends(corners: &[polygon::Corner], index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
+fn ends(corners: &[polygon::Vertex], index: usize, pairs: &mut Vec<[usize; 2]>) -> Vec<Corner> {
     let signs = [-1.0, 1.0].into_iter();
     corners
         .iter()

@@ -1,6 +1,6 @@
 //! A disc as a weighted sum of rectangles, so that it can be multiplied out like all the rest.
 
-use crate::parallel::patch::Patch;
+use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::Disc;
 use std::f64::consts::FRAC_PI_2;
 
@@ -20,7 +20,7 @@ impl Discs {
         }
     }
 
-    pub(crate) fn patches(self, disc: &Disc) -> Vec<Patch> {
+    pub(crate) fn patches(self, disc: &Disc) -> Vec<WeightedRectangle> {
         match self {
             Self::Rule(n) => rule(disc, n),
             Self::Strips(n) => strips(disc, n),
@@ -35,7 +35,7 @@ impl Discs {
 /// cosines and sines of odd multiples of t that their oddness leaves. With the sum over multiples m
 /// < 2n in closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), c(i) =
 /// −(−1)^i / sin(π i/2n), c(0) = 0.
-fn rule(disc: &Disc, n: usize) -> Vec<Patch> {
+fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;
     let node = |j: usize| angle * (j as f64 + 0.5);
     let cosecant = |i: usize| match i {
@@ -48,7 +48,7 @@ fn rule(disc: &Disc, n: usize) -> Vec<Patch> {
         .map(|(j, k)| {
             let half = [node(j).cos(), node(k).sin()].map(|t| disc.radius * t);
             let difference = if k < j { -1.0 } else { 1.0 } * cosecant(k.abs_diff(j));
-            Patch {
+            WeightedRectangle {
                 extent: [0, 1].map(|i| [disc.center[i] - half[i], disc.center[i] + half[i]]),
                 weight: angle * (cosecant(k + j + 1) + difference),
             }
@@ -57,7 +57,7 @@ fn rule(disc: &Disc, n: usize) -> Vec<Patch> {
 }
 
 /// Strips between x = R sin t at n + 1 evenly spaced t. Second order in 1/n.
-fn strips(disc: &Disc, n: usize) -> Vec<Patch> {
+fn strips(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = |i: usize| FRAC_PI_2 * (2.0 * i as f64 / n as f64 - 1.0);
     // The area below sin t, for a radius of 1.
     let area = |t: f64| t + 0.5 * (2.0 * t).sin();
@@ -67,7 +67,7 @@ fn strips(disc: &Disc, n: usize) -> Vec<Patch> {
             let ends = [from, to].map(f64::sin);
             let half = 0.5 * (area(to) - area(from)) / (ends[1] - ends[0]);
             let around = |axis: usize, t: f64| disc.center[axis] + disc.radius * t;
-            Patch {
+            WeightedRectangle {
                 extent: [
                     ends.map(|e| around(0, e)),
                     [-half, half].map(|h| around(1, h)),
@@ -97,12 +97,12 @@ mod tests {
         2.0 * DISC.radius.powi(2) * integrate(64, [-FRAC_PI_2, FRAC_PI_2], f)
     }
 
-    fn transform(patches: &[Patch], omega: f64, azimuth: f64) -> f64 {
+    fn transform(patches: &[WeightedRectangle], omega: f64, azimuth: f64) -> f64 {
         let k = [azimuth.cos(), azimuth.sin()].map(|c| c * omega);
-        let side = |p: &Patch, i: usize| p.extent[i][1] - p.extent[i][0];
+        let side = |p: &WeightedRectangle, i: usize| p.extent[i][1] - p.extent[i][0];
         // Symmetrical, so that only the even part is left.
-        let middle = |p: &Patch, i: usize| 0.5 * (p.extent[i][1] + p.extent[i][0]);
-        let value = |p: &Patch| {
+        let middle = |p: &WeightedRectangle, i: usize| 0.5 * (p.extent[i][1] + p.extent[i][0]);
+        let value = |p: &WeightedRectangle| {
             let phase = TAU * (k[0] * middle(p, 0) + k[1] * middle(p, 1));
             let factors = [0, 1].map(|i| side(p, i) * sinc(side(p, i) * k[i]));
             p.weight * factors[0] * factors[1] * phase.cos()

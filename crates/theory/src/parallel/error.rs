@@ -45,7 +45,7 @@ pub fn quadrature_error(
 mod tests {
     use super::*;
     use crate::parallel::disc::Discs;
-    use crate::parallel::patch::Fineness;
+    use crate::parallel::weighted_rectangle::DiscResolution;
     use crate::slices;
     use crate::testing::*;
     use etendue_field::{FrequencyAxis, Profile};
@@ -98,7 +98,7 @@ mod tests {
         let chain = chain_of(spot(disc([0.0; 2], 0.3), 0.0), [(0.0, None)]);
         let window = window(Profile::Hann(0.5), Profile::Hann(0.5));
         let path = chain.path();
-        let coarse = Fineness(vec![Discs::Rule(12)]);
+        let coarse = DiscResolution(vec![Discs::Rule(12)]);
         let coarse = slices_at_fineness(&path, &window, &grid(), &coarse);
         let said = quadrature_error(&chain, &window, &grid(), &coarse).unwrap();
         let true_error = distance(&coarse, &slices(&chain, &window, &grid()));

@@ -1,9 +1,9 @@
 use crate::parallel::chain::{Emitter, Path};
 use crate::parallel::disc::Discs;
-use crate::parallel::patch::{Fineness, Patch};
 use crate::parallel::polygon::Polygon;
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
+use crate::parallel::weighted_rectangle::{DiscResolution, WeightedRectangle};
 use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
 
@@ -34,7 +34,7 @@ pub(crate) struct Section {
 
 /// weight · 1_P(x, u) · 1_Q(y, v), P and Q being polygons of the two sections.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Term {
+pub(crate) struct PolygonTerm {
     /// ±1, times the weights of parts of discs.
     pub(crate) weight: f64,
     /// Indices of P and Q.
@@ -67,7 +67,7 @@ pub(crate) struct Columns {
 pub(crate) struct Expansion {
     /// (x, u) and (y, v).
     pub(crate) sections: [Section; 2],
-    pub(crate) terms: Vec<Term>,
+    pub(crate) terms: Vec<PolygonTerm>,
     /// Products of the waves of both sections, to be added: the window and gratings; more than one
     /// for a factor of slope.
     pub(crate) products: Vec<[Vec<Wave>; 2]>,
@@ -154,7 +154,7 @@ impl Expansion {
         path: &Path<'_>,
         window: &Window,
         slope: &Slope,
-        fineness: &Fineness,
+        fineness: &DiscResolution,
     ) -> Self {
         let mut expansion = Self::empty(window);
         expansion.products = products(path, window, slope, &expansion.sections);
@@ -166,7 +166,7 @@ impl Expansion {
     pub(crate) fn within(
         path: &Path<'_>,
         window: &Window,
-        fineness: &Fineness,
+        fineness: &DiscResolution,
         most: usize,
     ) -> Option<Self> {
         let mut expansion = Self::empty(window);
@@ -182,7 +182,7 @@ impl Expansion {
         ];
         Self {
             sections,
-            terms: vec![Term {
+            terms: vec![PolygonTerm {
                 weight: 1.0,
                 polygons: [0, 0],
                 column: [0, 0],
@@ -195,7 +195,7 @@ impl Expansion {
 
     /// The light and the opaque masks; stops and says no where there are more terms or polygons
     /// than `most`.
-    fn multiply_out(&mut self, path: &Path<'_>, fineness: &Fineness, most: usize) -> bool {
+    fn multiply_out(&mut self, path: &Path<'_>, fineness: &DiscResolution, most: usize) -> bool {
         for section in &mut self.sections {
             section.has_discs = path.has_discs();
         }
@@ -224,7 +224,7 @@ impl Expansion {
     pub(crate) fn of_rectangles(chain: &crate::Chain, window: &Window) -> Self {
         let path = chain.path();
         let slope = Slope::new([&window.u, &window.v], path.slope_power());
-        let fineness = Fineness::for_spectrum(&path, window, [0.0; 2]);
+        let fineness = DiscResolution::for_spectrum(&path, window, [0.0; 2]);
         Self::new(&path, window, &slope, &fineness)
     }
 
@@ -235,7 +235,8 @@ impl Expansion {
                 shape, radiance, ..
             } => {
                 self.brightness = radiance;
-                self.terms = self.inside(&Patch::of_shape(&shape, discs), path.distance);
+                self.terms =
+                    self.inside(&WeightedRectangle::of_shape(&shape, discs), path.distance);
             }
             Emitter::Point { intensity } => {
                 self.brightness = intensity;
@@ -247,22 +248,23 @@ impl Expansion {
     }
 
     /// Times 1 − Σ patches.
-    fn block(&mut self, patches: &[Patch], distance: f64) {
+    fn block(&mut self, patches: &[WeightedRectangle], distance: f64) {
         let blocked = self.inside(patches, distance);
-        self.terms.extend(blocked.into_iter().map(|term| Term {
-            weight: -term.weight,
-            ..term
-        }));
+        self.terms
+            .extend(blocked.into_iter().map(|term| PolygonTerm {
+                weight: -term.weight,
+                ..term
+            }));
     }
 
     /// The terms times Σ patches in a plane, the empty ones dropped.
-    fn inside(&mut self, patches: &[Patch], distance: f64) -> Vec<Term> {
+    fn inside(&mut self, patches: &[WeightedRectangle], distance: f64) -> Vec<PolygonTerm> {
         let mut parts = Vec::new();
         let polygons = self.sections[1].polygons.len();
         for (parent, term) in self.terms.iter().enumerate() {
             let mut first = 0;
             for (i, patch) in patches.iter().enumerate() {
-                let along_x = |patch: &Patch| patch.extent[0].map(f64::to_bits);
+                let along_x = |patch: &WeightedRectangle| patch.extent[0].map(f64::to_bits);
                 if along_x(patch) != along_x(&patches[first]) {
                     first = i;
                 }
@@ -272,7 +274,7 @@ impl Expansion {
                 });
                 if let (Some(x), Some(y)) = (x, y) {
                     let column = self.columns + term.polygons[1] * patches.len() + first;
-                    parts.push(Term {
+                    parts.push(PolygonTerm {
                         weight: term.weight * patch.weight,
                         polygons: [x, y],
                         column: [parent, column],
@@ -292,7 +294,7 @@ impl Expansion {
         let mut sums: Vec<Sum> = Vec::new();
         let mut beside = vec![Sum::new(); self.sections[0].polygons.len()];
         for run in self.terms.chunk_by(|a, b| a.column == b.column) {
-            let Term {
+            let PolygonTerm {
                 weight,
                 polygons: [x, _],
                 column: [_, column],
@@ -349,7 +351,7 @@ fn products(
 }
 
 /// An opaque mask as patches.
-fn patches(mask: &Mask, discs: Discs) -> Vec<Patch> {
+fn patches(mask: &Mask, discs: Discs) -> Vec<WeightedRectangle> {
     let Mask::Opaque {
         shapes,
         half_planes,
@@ -357,8 +359,10 @@ fn patches(mask: &Mask, discs: Discs) -> Vec<Patch> {
     else {
         return Vec::new();
     };
-    let shapes = shapes.iter().flat_map(|s| Patch::of_shape(s, discs));
+    let shapes = shapes
+        .iter()
+        .flat_map(|s| WeightedRectangle::of_shape(s, discs));
     shapes
-        .chain(half_planes.iter().map(Patch::of_half_plane))
+        .chain(half_planes.iter().map(WeightedRectangle::of_half_plane))
         .collect()
 }

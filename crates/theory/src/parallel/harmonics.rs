@@ -3,9 +3,9 @@ use crate::Chain;
 use crate::parallel::chain::Path;
 use crate::parallel::corners::Corners;
 use crate::parallel::expansion::Expansion;
-use crate::parallel::patch::Fineness;
-use crate::parallel::row::Row;
+use crate::parallel::row::FrequencyRow;
 use crate::parallel::slope::Slope;
+use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{Complex, Window};
 use rayon::prelude::*;
 
@@ -17,12 +17,12 @@ use rayon::prelude::*;
 pub struct Harmonics {
     expansion: Expansion,
     /// For each product of waves, the tables of both sections.
-    tables: Vec<[Table; 2]>,
+    tables: Vec<[HarmonicTable; 2]>,
 }
 
 /// The factors of all polygons of a section, [position, slope, polygon].
 #[derive(Debug)]
-struct Table {
+struct HarmonicTable {
     /// Harmonics on either side of zero, along position and slope.
     half: [usize; 2],
     polygons: usize,
@@ -51,7 +51,7 @@ impl Harmonics {
         }
         let max = |axis: usize| spacing[axis] * half[axis] as f64;
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
-        let fineness = Fineness::for_spectrum(&path, window, highest);
+        let fineness = DiscResolution::for_spectrum(&path, window, highest);
         let slope = Slope::new([&window.u, &window.v], path.slope_power());
         let expansion = Expansion::new(&path, window, &slope, &fineness);
         let size = |axis: usize| {
@@ -63,7 +63,7 @@ impl Harmonics {
         }
         let table = |waves: &[Vec<Wave>; 2], axis: usize| {
             let along = [spacing[axis], spacing[axis + 2]];
-            Table::new(
+            HarmonicTable::new(
                 &expansion,
                 &waves[axis],
                 axis,
@@ -84,7 +84,7 @@ impl Harmonics {
     /// Beyond the harmonics it was made for.
     #[must_use]
     pub fn at(&self, [x, y, u, v]: [isize; 4]) -> Complex {
-        let of = |[first, second]: &[Table; 2]| {
+        let of = |[first, second]: &[HarmonicTable; 2]| {
             let (first, second) = (first.at([x, u]), second.at([y, v]));
             let terms = self.expansion.terms.iter();
             let sum: Complex = terms
@@ -96,7 +96,7 @@ impl Harmonics {
     }
 }
 
-impl Table {
+impl HarmonicTable {
     fn new(
         expansion: &Expansion,
         waves: &[Wave],
@@ -114,7 +114,7 @@ impl Table {
                 let harmonic = i as f64 - half[0] as f64;
                 let [position, step] = section.reduced([harmonic * spacing[0], spacing[1]]);
                 let half = half[1];
-                let row = corners.row(&Row {
+                let row = corners.row(&FrequencyRow {
                     position,
                     step,
                     half,

@@ -26,7 +26,6 @@ mod harmonics;
 #[cfg(test)]
 mod laws;
 mod model;
-mod patch;
 mod polygon;
 mod projection;
 mod receiver;
@@ -35,6 +34,7 @@ mod sampled;
 mod slices;
 mod slope;
 mod wave;
+mod weighted_rectangle;
 pub(crate) mod work;
 
 pub use at::at;

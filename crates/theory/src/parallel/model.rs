@@ -1,6 +1,6 @@
 //! A chain as a model: its parameters and its prediction.
 
-use crate::model::{Model, Over, Prediction};
+use crate::model::{Model, Over, Predicted};
 use crate::nets::{Budget, work_of_nets};
 use crate::parallel::{at, derivative, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
@@ -77,14 +77,14 @@ impl Model for Chain {
     }
 
     /// By closed forms, or by nets of rays where these take too long or do not resolve the scene.
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
         if self.is_sampled(over) {
             return self.sampled(parameters, over, budget);
         }
         let (window, grid, picture) = over;
         let slices = slices(self, window, grid);
         let derivatives = parameters.iter();
-        Prediction {
+        Predicted {
             derivatives: derivatives
                 .map(|parameter| derivative(self, *parameter, window, grid, &slices))
                 .collect(),

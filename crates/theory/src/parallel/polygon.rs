@@ -15,7 +15,7 @@ const SERIES_TERMS: u32 = 11;
 
 /// A corner of a polygon.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Corner {
+pub(crate) struct Vertex {
     /// (position, slope).
     pub(crate) at: [f64; 2],
     /// The direction of the edge that leaves it: an index into a list shared by many polygons.
@@ -28,7 +28,7 @@ pub(crate) struct Corner {
 /// A segment along (shear, 1) stands for δ(position − shear · slope): its integrals are over the
 /// slope.
 #[derive(Clone, Debug)]
-pub(crate) struct Polygon(Vec<Corner>);
+pub(crate) struct Polygon(Vec<Vertex>);
 
 pub(crate) fn dot(a: [f64; 2], b: [f64; 2]) -> f64 {
     a[0] * b[0] + a[1] * b[1]
@@ -46,7 +46,7 @@ impl Polygon {
     /// The square |position| < 1, |slope| < 1; `edges` are the directions of its sides of constant
     /// slope and of constant position.
     pub(crate) fn square(edges: [usize; 2]) -> Self {
-        let corner = |x, u, side: usize| Corner {
+        let corner = |x, u, side: usize| Vertex {
             at: [x, u],
             edge: edges[side],
         };
@@ -62,7 +62,7 @@ impl Polygon {
     /// 1).
     pub(crate) fn segment(shear: f64, edge: usize) -> Self {
         let end = 1.0 / shear.abs().max(1.0);
-        let corner = |u: f64| Corner {
+        let corner = |u: f64| Vertex {
             at: [shear * u, u],
             edge,
         };
@@ -73,12 +73,12 @@ impl Polygon {
         self.0.len() == 2
     }
 
-    pub(crate) fn corners(&self) -> &[Corner] {
+    pub(crate) fn corners(&self) -> &[Vertex] {
         &self.0
     }
 
     /// Corners with those that follow them.
-    fn sides(&self) -> impl Iterator<Item = (Corner, Corner)> {
+    fn sides(&self) -> impl Iterator<Item = (Vertex, Vertex)> {
         let next = self.0.iter().cycle().skip(1);
         self.0.iter().copied().zip(next.copied())
     }
@@ -100,7 +100,7 @@ impl Polygon {
             if leaves || enters {
                 let t = inside[0] / (inside[0] - inside[1]);
                 let step = minus(b.at, a.at);
-                kept.push(Corner {
+                kept.push(Vertex {
                     at: [a.at[0] + t * step[0], a.at[1] + t * step[1]],
                     edge: if leaves { edge } else { a.edge },
                 });
@@ -121,7 +121,7 @@ impl Polygon {
         }
         let t = inside[0] / (inside[0] - inside[1]);
         let step = minus(b.at, a.at);
-        let cut = Corner {
+        let cut = Vertex {
             at: [a.at[0] + t * step[0], a.at[1] + t * step[1]],
             edge: a.edge,
         };
@@ -164,7 +164,7 @@ impl Polygon {
         if self.is_segment() {
             return self.segment_transform(k);
         }
-        let phase = |corner: &Corner| TAU * dot(k, minus(corner.at, first.at)).abs();
+        let phase = |corner: &Vertex| TAU * dot(k, minus(corner.at, first.at)).abs();
         if self.0.iter().map(phase).fold(0.0, f64::max) < SERIES_PHASE {
             self.series(k) * Complex::cis(-TAU * dot(k, first.at))
         } else {

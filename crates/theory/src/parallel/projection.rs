@@ -2,10 +2,10 @@ use super::expansion::Expansion;
 use crate::Chain;
 use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::chain::Path;
-use crate::parallel::patch::Fineness;
 use crate::parallel::polygon::{Polygon, cross};
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
+use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{CosineTerm, Grating, Mask, Projection, ProjectionGrid, Window};
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -31,7 +31,7 @@ pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Proj
     if let Some(receiver) = path.receiver() {
         return receiver.projection(window, grid);
     }
-    let fineness = Fineness::for_projection(&path, window, grid.bins);
+    let fineness = DiscResolution::for_projection(&path, window, grid.bins);
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
     let expansion = Expansion::new(&path, window, &slope, &fineness);
     let densities = densities(&expansion, &slope);
@@ -51,14 +51,14 @@ pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Proj
 
 /// What multiplies a polygon of (x, u), once y and v are integrated over.
 #[derive(Clone, Debug)]
-enum Density {
+enum CellDensity {
     /// A constant, times the slope profile of the window.
     Uniform(f64),
     /// Amplitudes of a cosine series in u, the profile included.
     Series(Vec<f64>),
 }
 
-fn densities(expansion: &Expansion, slope: &Slope) -> Vec<Density> {
+fn densities(expansion: &Expansion, slope: &Slope) -> Vec<CellDensity> {
     let parts = expansion.products.iter().zip(&slope.parts);
     let weights: Vec<_> = parts
         .map(|(waves, part)| (weights(expansion, &waves[1]), &part[0]))
@@ -66,7 +66,7 @@ fn densities(expansion: &Expansion, slope: &Slope) -> Vec<Density> {
     let polygons = 0..expansion.sections[0].polygons.len();
     if slope.is_profile {
         return polygons
-            .map(|p| Density::Uniform(weights[0].0[p]))
+            .map(|p| CellDensity::Uniform(weights[0].0[p]))
             .collect();
     }
     polygons
@@ -77,7 +77,7 @@ fn densities(expansion: &Expansion, slope: &Slope) -> Vec<Density> {
                 let sums = series.iter_mut().zip(amplitudes);
                 sums.for_each(|(sum, amplitude)| *sum += weights[p] * amplitude);
             }
-            Density::Series(series)
+            CellDensity::Series(series)
         })
         .collect()
 }
@@ -156,7 +156,7 @@ impl<'a> Cells<'a> {
     }
 
     /// Σ ∫∫ density · W over the cells of slope bin `j`, for each position bin.
-    fn column(&self, j: usize, polygons: &[(&Polygon, Density)]) -> Vec<f64> {
+    fn column(&self, j: usize, polygons: &[(&Polygon, CellDensity)]) -> Vec<f64> {
         let mut sums = vec![0.0; self.bins];
         let [low, high] = [self.edge(j, 1), self.edge(j + 1, 1)];
         for (polygon, density) in polygons {
@@ -166,10 +166,10 @@ impl<'a> Cells<'a> {
             for i in self.touched(&part) {
                 let cell = part.strip(0.0, [self.edge(i, 0), self.edge(i + 1, 0)], 1);
                 sums[i] += match density {
-                    Density::Uniform(weight) => {
+                    CellDensity::Uniform(weight) => {
                         weight * self.integral(&cell, |u| self.window.u.value(u))
                     }
-                    Density::Series(terms) => self.integral(&cell, |u| self.sum(terms, u)),
+                    CellDensity::Series(terms) => self.integral(&cell, |u| self.sum(terms, u)),
                 };
             }
         }

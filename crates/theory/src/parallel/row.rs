@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 
 /// Frequencies with a common position frequency, in cycles per half-width.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
+pub(crate) struct FrequencyRow {
     /// Frequency along the position.
     pub(crate) position: f64,
     /// Spacing along the slope; the slope frequencies are (n − half) · step, 0 ≤ n ≤ 2 half.
@@ -29,7 +29,7 @@ impl Parts {
     }
 }
 
-impl Row {
+impl FrequencyRow {
     pub(crate) fn count(&self) -> usize {
         2 * self.half + 1
     }

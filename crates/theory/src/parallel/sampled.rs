@@ -1,7 +1,7 @@
 //! A chain whose closed form takes too long, or does not resolve a pattern: the same light by nets
 //! of rays.
 
-use crate::model::{Model, Moved, Over, Prediction, View};
+use crate::model::{Model, Moved, Observed, Over, Predicted};
 use crate::nets::Budget;
 use crate::rays::Plane;
 use crate::{Chain, Parameter, rays, scattering};
@@ -12,14 +12,14 @@ use glam::DVec3;
 
 /// What nets sum over.
 enum Sampled {
-    Rays(Box<View<rays::System>>),
-    Scattering(Box<View<scattering::System>>),
+    Rays(Box<Observed<rays::System>>),
+    Scattering(Box<Observed<scattering::System>>),
 }
 
 impl Chain {
     /// The prediction by nets of rays, with derivatives by some parameters.
     #[must_use]
-    pub fn sampled(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+    pub fn sampled(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
         const ONE_KIND: &str = "a parameter changes no kind of chain";
         match self.followed(over.0) {
             Sampled::Rays(view) => {
@@ -88,7 +88,7 @@ impl Chain {
                 layers,
                 elements: Vec::new(),
             };
-            return Sampled::Rays(Box::new(View { system, plane }));
+            return Sampled::Rays(Box::new(Observed { system, plane }));
         };
         let facing = Frame {
             origin: DVec3::Z * distance,
@@ -108,7 +108,7 @@ impl Chain {
             reflectance: diffuse(reflection.albedo),
         };
         let plane = across(facing.travelled(reflection.after));
-        Sampled::Scattering(Box::new(View { system, plane }))
+        Sampled::Scattering(Box::new(Observed { system, plane }))
     }
 }
 

@@ -2,10 +2,10 @@ use super::expansion::{Columns, Expansion, Sum};
 use crate::Chain;
 use crate::parallel::chain::Path;
 use crate::parallel::corners::Corners;
-use crate::parallel::patch::Fineness;
-use crate::parallel::row::Row;
+use crate::parallel::row::FrequencyRow;
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
+use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
@@ -24,8 +24,8 @@ pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
 }
 
 /// How discs are taken apart for a grid.
-pub(crate) fn fineness(path: &Path<'_>, window: &Window, grid: &SliceGrid) -> Fineness {
-    Fineness::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
+pub(crate) fn fineness(path: &Path<'_>, window: &Window, grid: &SliceGrid) -> DiscResolution {
+    DiscResolution::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
 }
 
 /// The slices with discs taken apart as told.
@@ -33,7 +33,7 @@ pub(crate) fn slices_at_fineness(
     path: &Path<'_>,
     window: &Window,
     grid: &SliceGrid,
-    fineness: &Fineness,
+    fineness: &DiscResolution,
 ) -> Slices {
     if let Some(receiver) = path.receiver() {
         return receiver.slices(window, grid);
@@ -100,7 +100,7 @@ impl<'a> Product<'a> {
                 .collect();
         }
         let [position, step] = section.reduced([rho * along, grid.nu.spacing * along]);
-        self.corners[axis].row(&Row {
+        self.corners[axis].row(&FrequencyRow {
             position,
             step,
             half: grid.nu.half,

@@ -8,10 +8,10 @@ use crate::Chain;
 use crate::Model;
 use crate::parallel::chain::Path;
 use crate::parallel::expansion::Expansion;
-use crate::parallel::patch::Fineness;
 use crate::parallel::projection::nodes_of_cells;
 use crate::parallel::slices::fineness;
 use crate::parallel::slope::Slope;
+use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
 
 /// The work of a prediction.
@@ -76,12 +76,12 @@ pub fn work(chain: &Chain, window: &Window, grid: &SliceGrid, picture: &Projecti
     }
     // The series of slopes are short, their products with gratings may not be.
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
-    let of = |fineness: &Fineness| Expansion::within(&path, window, fineness, MOST_PARTS);
-    let Some(single) = of(&Fineness::single(&path)) else {
+    let of = |fineness: &DiscResolution| Expansion::within(&path, window, fineness, MOST_PARTS);
+    let Some(single) = of(&DiscResolution::single(&path)) else {
         return too_many();
     };
     let round = path.has_discs().then(|| {
-        let strips = Fineness::for_projection(&path, window, picture.bins);
+        let strips = DiscResolution::for_projection(&path, window, picture.bins);
         Some([of(&fineness(&path, window, grid))?, of(&strips)?])
     });
     let [slices, strips] = match &round {

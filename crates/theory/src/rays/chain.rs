@@ -2,15 +2,15 @@
 
 use super::central::{Hit, Incidence};
 use super::{Element, Plane, System};
-use crate::geometry::{Map, Matrix, Print, SpectrumMap};
-use crate::model::View;
+use crate::geometry::{Edition, Map, Matrix, SpectrumMap};
+use crate::model::Observed;
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
 use glam::DVec3;
 
 /// The chain of first-order maps from the light to a plane.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FirstOrder {
+pub struct AffineChain {
     /// What it does to spectra of radiance. Beside the |det A| of its maps its factor has (n₂/n₁)²
     /// of each refraction, by which radiance grows.
     pub map: SpectrumMap<4>,
@@ -23,7 +23,7 @@ pub struct FirstOrder {
     pub foci: Vec<f64>,
 }
 
-impl FirstOrder {
+impl AffineChain {
     /// A of the rays, z' = A z + t: the transpose of the map's matrix.
     #[must_use]
     pub fn rays(&self) -> Map<4> {
@@ -40,8 +40,8 @@ impl FirstOrder {
 /// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and
 /// no lens.
 #[must_use]
-pub fn chain(view: &View<System>, print: Print) -> Option<FirstOrder> {
-    let View { system, plane } = view;
+pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
+    let Observed { system, plane } = view;
     let hits = system.hits()?;
     let mut walk = Walk {
         print,
@@ -85,7 +85,7 @@ pub fn chain(view: &View<System>, print: Print) -> Option<FirstOrder> {
             _ => walk.arriving_surface(plane),
         }
     }
-    Some(FirstOrder {
+    Some(AffineChain {
         map: walk.map,
         steps: walk.steps,
         foci,
@@ -95,7 +95,7 @@ pub fn chain(view: &View<System>, print: Print) -> Option<FirstOrder> {
 /// A chain on its way.
 #[derive(Clone)]
 struct Walk {
-    print: Print,
+    print: Edition,
     map: SpectrumMap<4>,
     steps: Vec<String>,
     /// Of the leg, at its start, or where light is.

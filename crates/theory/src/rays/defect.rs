@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::geometry::{Map, SpectrumMap, transpose};
-use crate::model::View;
+use crate::model::Observed;
 use etendue_field::Window;
 
 /// What stays of the error of a chain of affine maps, such as that of [`chain`](super::chain()), as
@@ -16,8 +16,8 @@ use etendue_field::Window;
 ///
 /// `None` where the central ray does not arrive.
 #[must_use]
-pub fn defect(view: &View<System>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
-    let View { system, plane } = view;
+pub fn defect(view: &Observed<System>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
+    let Observed { system, plane } = view;
     let lands = |ray| plane.coordinates(&system.follow(ray)?);
     let traced = Map::touching(|ray| Some(lands(ray)?.0))?;
     let chain = Map {

@@ -13,7 +13,7 @@ use etendue_field::{Shape, Window};
 
 /// What rays are drawn by. No choice is best everywhere: they are tried on the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Strategy {
+pub(super) enum RayStrategy {
     /// The picture of the light.
     Picture,
     /// Positions at the plane; of an area light, also points of it.
@@ -24,7 +24,7 @@ pub(super) enum Strategy {
     Plane,
 }
 
-impl Strategy {
+impl RayStrategy {
     pub(super) const ALL: [Self; 4] = [Self::Positions, Self::Slopes, Self::Picture, Self::Plane];
 }
 
@@ -63,7 +63,7 @@ impl Draw {
         system: &System,
         window: &Window,
         (center, jacobian): &([f64; 4], Matrix<4>),
-        strategy: Strategy,
+        strategy: RayStrategy,
     ) -> Option<Self> {
         let emission = system.emission();
         let profiles = [window.x, window.y, window.u, window.v];
@@ -84,10 +84,10 @@ impl Draw {
             })
         };
         let by = match strategy {
-            Strategy::Picture => By::Picture(system.picture_densities()?),
-            Strategy::Positions => aim(0)?,
-            Strategy::Slopes => aim(2)?,
-            Strategy::Plane => {
+            RayStrategy::Picture => By::Picture(system.picture_densities()?),
+            RayStrategy::Positions => aim(0)?,
+            RayStrategy::Slopes => aim(2)?,
+            RayStrategy::Plane => {
                 emission.shape?;
                 let rays = Map {
                     matrix: *jacobian,

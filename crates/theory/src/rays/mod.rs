@@ -1,7 +1,7 @@
 //! Windowed spectra behind specular surfaces, by following rays (docs/theory.md, section 8).
 //!
 //! In goes a [`System`]: a light, masks across its first leg, and the mirrors, refracting surfaces
-//! and lenses that the central ray visits. In goes a [`Plane`]. The [`View`](crate::View) of both
+//! and lenses that the central ray visits. In goes a [`Plane`]. The [`Observed`](crate::Observed) of both
 //! is a [`Model`](crate::Model): it follows rays through the real geometry and sums them, by a rule
 //! where that converges and over scrambled nets elsewhere.
 //! Beside it are the [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) read off
@@ -29,8 +29,8 @@
 //! ```
 //! use etendue_field::{FrequencyAxis, Frame, Image, Light, Orientation, Patch, Profile,
 //! # ProjectionGrid, Quantity, SliceGrid, Specular, Window};
-//! use etendue_theory::{Budget, Model, View};
-//! use etendue_theory::geometry::Print;
+//! use etendue_theory::{Budget, Model, Observed};
+//! use etendue_theory::geometry::Edition;
 //! use etendue_theory::rays::{Element, Plane, System, chain, linear};
 //! use glam::DVec3;
 //!
@@ -52,8 +52,8 @@
 //!     arriving: false,
 //!     quantity: Quantity::Radiance,
 //! };
-//! let view = View { system, plane };
-//! let first = chain(&view, Print::Corrected).unwrap();
+//! let view = Observed { system, plane };
+//! let first = chain(&view, Edition::Corrected).unwrap();
 //! assert!((first.foci[0] - 1.0).abs() < 1e-12);
 //! let profile = Profile::Hann(0.02);
 //! let window = Window { x: profile, y: profile, u: profile, v: profile };
@@ -84,7 +84,7 @@ mod sums;
 mod tests;
 mod trace;
 
-pub use chain::{FirstOrder, chain};
+pub use chain::{AffineChain, chain};
 pub use defect::defect;
 pub use predict::linear;
 

@@ -4,7 +4,7 @@
 use super::central::Hit;
 use super::{System, predict};
 use crate::Work;
-use crate::model::{Model, Moved, Over, Prediction, View};
+use crate::model::{Model, Moved, Observed, Over, Predicted};
 use crate::nets::{Budget, work_of_nets};
 use crate::parameter::{New, Parameter, resize};
 use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
@@ -15,7 +15,7 @@ const NOTHING: f64 = 1e-9;
 /// Step of a derivative, as a share of the parameter's scale.
 const STEP: f64 = 1e-3;
 
-impl Model for View<System> {
+impl Model for Observed<System> {
     fn light(&self) -> &Light {
         &self.system.light
     }
@@ -95,7 +95,7 @@ impl Model for View<System> {
         Some(())
     }
 
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
         let moved = parameters.iter().map(|parameter| self.moved(*parameter));
         let moved: Option<Vec<_>> = moved.collect();
         predict(
@@ -111,7 +111,7 @@ impl Model for View<System> {
     }
 }
 
-impl View<System> {
+impl Observed<System> {
     fn moved(&self, parameter: Parameter) -> Option<Moved<Self>> {
         let step = STEP * parameter.scale(self.value(parameter)?);
         Moved::new(self, parameter, step, |moved| moved)

@@ -1,11 +1,11 @@
 //! Slices behind specular surfaces.
 
 use super::System;
-use super::draw::{Draw, Strategy};
-use super::region::{Field, Finder, Neighbourhood, neighbourhood};
+use super::draw::{Draw, RayStrategy};
+use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
 use crate::geometry::{Map, SpectrumMap};
 use crate::mask::Masks;
-use crate::model::{Moved, Over, Prediction, View};
+use crate::model::{Moved, Observed, Over, Predicted};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
 use etendue_field::{Complex, Mask, Slices, TwoPlane, Window};
 use glam::DVec3;
@@ -27,18 +27,18 @@ const FOR_PICTURES: Budget = Budget {
 /// else over nets of rays. Derivatives are central differences, the rays of both sides drawn alike:
 /// good to about a per cent. The same bytes on any number of threads.
 pub(crate) fn predict(
-    view: &View<System>,
-    moved: &[Moved<View<System>>],
+    view: &Observed<System>,
+    moved: &[Moved<Observed<System>>],
     over: Over<'_>,
     budget: Budget,
-) -> Prediction {
-    let View { system, plane } = view;
+) -> Predicted {
+    let Observed { system, plane } = view;
     let masks = Masks::new(&system.layers);
     let field = exact_field(view, &masks);
     let way = neighbourhood(system, plane)
         .and_then(|lands| Some((lands, best(&field, system, &lands, over)?)));
     let budgets = [budget, FOR_PICTURES];
-    Prediction {
+    Predicted {
         derivatives: derivatives(moved, over, way.map(|(_, strategy)| strategy)),
         ..summed(&field, system, way, over, budgets)
     }
@@ -52,11 +52,11 @@ pub(crate) fn predict(
 /// t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact.
 #[must_use]
 pub fn linear(
-    view: &View<System>,
+    view: &Observed<System>,
     over: Over<'_>,
     map: &SpectrumMap<4>,
     budget: Budget,
-) -> Prediction {
+) -> Predicted {
     let system = &view.system;
     let masks = Masks::new(&system.layers);
     let rays = rays(map);
@@ -67,9 +67,9 @@ pub fn linear(
 }
 
 fn derivatives(
-    moved: &[Moved<View<System>>],
+    moved: &[Moved<Observed<System>>],
     over: Over<'_>,
-    strategy: Option<Strategy>,
+    strategy: Option<RayStrategy>,
 ) -> Vec<Slices> {
     let zeros = || vec![Slices::zeros(*over.1); moved.len()];
     let Some(strategy) = strategy else {
@@ -80,7 +80,7 @@ fn derivatives(
         .map(|view| Masks::new(&view.system.layers))
         .collect();
     let draws: Option<Vec<Draw>> = sides()
-        .map(|View { system, plane }| {
+        .map(|Observed { system, plane }| {
             let lands = neighbourhood(system, plane)?;
             Draw::new(system, over.0, &lands, strategy)
         })
@@ -95,7 +95,7 @@ fn derivatives(
         })
         .collect();
     let mut means = nets::means(&fields[..], over.0, over.1).into_iter();
-    let derivative = |moved: &Moved<View<System>>| {
+    let derivative = |moved: &Moved<Observed<System>>| {
         let (mut above, below) = (means.next()?, means.next()?);
         above.half -= &below.half;
         above.half /= Complex::from(moved.apart);
@@ -104,8 +104,8 @@ fn derivatives(
     moved.iter().filter_map(derivative).collect()
 }
 
-fn exact_field<'a>(view: &'a View<System>, masks: &'a Masks<'a>) -> impl Field + 'a {
-    let View { system, plane } = view;
+fn exact_field<'a>(view: &'a Observed<System>, masks: &'a Masks<'a>) -> impl RayField + 'a {
+    let Observed { system, plane } = view;
     move |ray| {
         let flux = flux(system, masks, ray);
         if flux <= 0.0 {
@@ -117,11 +117,11 @@ fn exact_field<'a>(view: &'a View<System>, masks: &'a Masks<'a>) -> impl Field +
 }
 
 fn linear_field<'a>(
-    view: &'a View<System>,
+    view: &'a Observed<System>,
     masks: &'a Masks<'a>,
     map: &'a SpectrumMap<4>,
-) -> impl Field + 'a {
-    let View { system, plane } = view;
+) -> impl RayField + 'a {
+    let Observed { system, plane } = view;
     let rays = rays(map);
     move |ray: [f64; 4]| {
         let [.., u, v] = ray;
@@ -146,15 +146,15 @@ fn flux(system: &System, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
 }
 
 fn summed(
-    field: &impl Field,
+    field: &impl RayField,
     system: &System,
-    way: Option<(Neighbourhood, Strategy)>,
+    way: Option<(Neighbourhood, RayStrategy)>,
     (window, grid, picture): Over<'_>,
     [of_slices, of_pictures]: [Budget; 2],
-) -> Prediction {
+) -> Predicted {
     let draw = way.and_then(|(lands, strategy)| Draw::new(system, window, &lands, strategy));
     let (Some((lands, _)), Some(draw)) = (way, draw) else {
-        return Prediction::dark(grid, picture);
+        return Predicted::dark(grid, picture);
     };
     let drawn = [Drawn {
         field: Box::new(field),
@@ -178,7 +178,7 @@ fn summed(
     };
     let by_nets = nets::sums(&drawn[..], (window, grid), picture.bins, budget);
     match by_rule {
-        Some((slices, error)) => Prediction {
+        Some((slices, error)) => Predicted {
             slices,
             replicates: Vec::new(),
             error: Some(error),
@@ -190,12 +190,12 @@ fn summed(
 
 /// What draws rays with the least error.
 fn best(
-    field: &impl Field,
+    field: &impl RayField,
     system: &System,
     lands: &Neighbourhood,
     (window, grid, _): Over<'_>,
-) -> Option<Strategy> {
-    let tried = Strategy::ALL.iter().filter_map(|&strategy| {
+) -> Option<RayStrategy> {
+    let tried = RayStrategy::ALL.iter().filter_map(|&strategy| {
         let draw = Draw::new(system, window, lands, strategy)?;
         let drawn = [Drawn {
             field: Box::new(field),
@@ -210,7 +210,7 @@ fn best(
 
 /// A light field and how its rays are drawn.
 struct Drawn<'a> {
-    field: Box<dyn Field + 'a>,
+    field: Box<dyn RayField + 'a>,
     draw: &'a Draw,
     window: &'a Window,
 }

@@ -4,7 +4,7 @@
 //! At the border of the region that lands in the window nothing is left, so that the error is
 //! aliasing: it vanishes when there are more nodes than cycles.
 
-use super::region::{Field, Finder};
+use super::region::{Finder, RayField};
 use super::sums::sums;
 use crate::nets::Node;
 use crate::numerics::distance;
@@ -21,7 +21,7 @@ const ENOUGH: f64 = 1e-4;
 /// its frequencies, (5/4)³ being 2.
 const LEFT: f64 = 2.0;
 
-impl<F: Field> Finder<'_, F> {
+impl<F: RayField> Finder<'_, F> {
     /// The slices, and ‖error‖/‖F‖: twice what finer rules change on slices at right angles. `None`
     /// if that does not come below 10⁻⁴.
     pub(super) fn slices(&self, grid: &SliceGrid) -> Option<(Slices, f64)> {

@@ -12,8 +12,8 @@ pub(super) type Region = [[f64; 2]; 2];
 /// A light field as its rays: from a ray at the light (x, y, u, v) to its coordinates at the plane
 /// and what it adds to ray space there per unit of the emission's coordinates. `None` if it does
 /// not arrive.
-pub(super) trait Field: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
-impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> Field for F {}
+pub(super) trait RayField: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync {}
+impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 
 /// Cells along each side of the box in which rays are looked for.
 const CELLS: usize = 32;
@@ -55,7 +55,7 @@ pub(super) fn neighbourhood(system: &System, plane: &Plane) -> Option<Neighbourh
     Some((lands([0.0; 4])?, jacobian))
 }
 
-impl<F: Field> Finder<'_, F> {
+impl<F: RayField> Finder<'_, F> {
     /// The ray at coordinates (a, b) of the emission.
     pub(super) fn ray(&self, inner: [f64; 2]) -> [f64; 4] {
         let mut ray = [0.0; 4];

@@ -62,7 +62,7 @@ fn opaque_strips() {
     let (mut closed, mut polygons) = (Vec::new(), Vec::new());
     for sample in samples(&block["samples_2d"]) {
         let below = number(&sample["distance_below_blockers"]);
-        let bench = Bench { below, ..bench };
+        let bench = GaussianBlock { below, ..bench };
         let k = frequency(sample);
         let distance = bench.to_blockers + below;
         let open = gaussian::area_light(bench.light, distance, &gaussian, k);

@@ -53,7 +53,7 @@ impl Travelled {
 
 /// A light, a plane of blockers, and a receiver.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Bench {
+pub(crate) struct GaussianBlock {
     /// Width of the light, in metres; its radiance is 1.
     pub(crate) light: f64,
     /// Distance from the light to the blockers, in metres.
@@ -190,7 +190,7 @@ fn dawson(x: f64) -> f64 {
 /// The same light seen through a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
 #[must_use]
 pub(crate) fn through_grating(
-    bench: &Bench,
+    bench: &GaussianBlock,
     grating: &Grating,
     window: &Gaussian,
     [x, v]: [f64; 2],
@@ -206,7 +206,7 @@ pub(crate) fn through_grating(
 /// strip and light, v = (y − y₀)/d₁ and x = y + d₂ v.
 #[must_use]
 pub(crate) fn blocked_by_strip(
-    bench: &Bench,
+    bench: &GaussianBlock,
     strip: [f64; 2],
     window: &Gaussian,
     [omega_x, omega_v]: [f64; 2],
@@ -250,7 +250,7 @@ pub(crate) fn shaded(window: &Gaussian, field: impl Fn(&Gaussian) -> Complex) ->
 /// The spectrum of the irradiance below a grating, no window:
 /// Σ cₙ w sinc(w(Ωx − n f)) ĝ(DΩx − d₁ n f) (Durand et al. 2005, Eq. 7 without the albedo).
 #[must_use]
-pub(crate) fn irradiance(bench: &Bench, grating: &Grating, x: f64) -> Complex {
+pub(crate) fn irradiance(bench: &GaussianBlock, grating: &Grating, x: f64) -> Complex {
     let w = bench.light;
     let distance = bench.to_blockers + bench.below;
     let lines = grating.lines().into_iter();

@@ -51,7 +51,7 @@ fn matrix<const N: usize>(value: &Value) -> Matrix<N> {
 }
 
 /// What a row of a chain does.
-enum Step<const N: usize> {
+enum BlockStep<const N: usize> {
     Map(Map<N>),
     Window([f64; N]),
     Lobe(f64),
@@ -59,7 +59,7 @@ enum Step<const N: usize> {
 
 /// Follows a chain row by row and compares all it tells: matrices, covariances, determinants,
 /// spectral covariances.
-fn assert_chain<const N: usize>(block: &Value, steps: &[Step<N>]) {
+fn assert_chain<const N: usize>(block: &Value, steps: &[BlockStep<N>]) {
     let rows = samples(&block["rows"]);
     assert_eq!(rows.len(), steps.len() + 1);
     let entries = |got: Matrix<N>, expected: &Value| -> Vec<(Complex, Complex)> {
@@ -75,12 +75,12 @@ fn assert_chain<const N: usize>(block: &Value, steps: &[Step<N>]) {
     for (step, row) in steps.iter().zip(&rows[1..]) {
         let before = power_spectrum(&field);
         field = match step {
-            Step::Map(map) => {
+            BlockStep::Map(map) => {
                 matrices.extend(entries(map.matrix, &row["matrix"]));
                 map.covariance(&field)
             }
-            Step::Window(std) => gaussian_window(&field, *std).unwrap(),
-            Step::Lobe(std) => gaussian_lobe(&field, *std),
+            BlockStep::Window(std) => gaussian_window(&field, *std).unwrap(),
+            BlockStep::Lobe(std) => gaussian_lobe(&field, *std),
         };
         fields.extend(entries(field, &row["Sigma"]));
         let volume = Map::linear(field).det();
@@ -88,7 +88,7 @@ fn assert_chain<const N: usize>(block: &Value, steps: &[Step<N>]) {
         let expected = &row["power_spectrum_covariance"];
         if !expected.is_null() {
             powers.extend(entries(power_spectrum(&field).unwrap(), expected));
-            if let Step::Map(map) = step {
+            if let BlockStep::Map(map) = step {
                 let moved = map.spectral_covariance(&before.unwrap()).unwrap();
                 powers.extend(entries(moved, expected));
             }
@@ -110,15 +110,15 @@ fn covariance_along_a_path_in_2d() {
     let p = |name: &str| number(&block["params"][name]);
     let [wx, wv] = [0, 1].map(|i| number(&block["params"]["win"][i]));
     let steps = [
-        Step::Map(Map::travel(p("d1"))),
-        Step::Window([wx, wv]),
-        Step::Map(Map::<2>::incidence(p("th0"))),
-        Step::Map(Map::<2>::curvature(p("k"))),
-        Step::Map(Map::mirror()),
-        Step::Lobe(p("lobe")),
-        Step::Map(Map::<2>::back(p("k"))),
-        Step::Map(Map::<2>::outgoing(p("th1"))),
-        Step::Map(Map::travel(p("d2"))),
+        BlockStep::Map(Map::travel(p("d1"))),
+        BlockStep::Window([wx, wv]),
+        BlockStep::Map(Map::<2>::incidence(p("th0"))),
+        BlockStep::Map(Map::<2>::curvature(p("k"))),
+        BlockStep::Map(Map::mirror()),
+        BlockStep::Lobe(p("lobe")),
+        BlockStep::Map(Map::<2>::back(p("k"))),
+        BlockStep::Map(Map::<2>::outgoing(p("th1"))),
+        BlockStep::Map(Map::travel(p("d2"))),
     ];
     assert_chain(&block, &steps);
 }
@@ -130,14 +130,14 @@ fn covariance_along_a_path_in_4d() {
     let shape = matrix::<2>(&block["params"]["M"]);
     let theta0 = p("th0");
     let steps = [
-        Step::Map(Map::travel(p("d1"))),
-        Step::Map(Map::<4>::incidence(theta0)),
-        Step::Map(Map::<4>::curvature(shape, theta0)),
-        Step::Map(Map::mirror()),
-        Step::Lobe(p("lobe")),
-        Step::Map(Map::<4>::back(shape, -theta0)),
-        Step::Map(Map::<4>::outgoing(-theta0)),
-        Step::Map(Map::travel(p("d2"))),
+        BlockStep::Map(Map::travel(p("d1"))),
+        BlockStep::Map(Map::<4>::incidence(theta0)),
+        BlockStep::Map(Map::<4>::curvature(shape, theta0)),
+        BlockStep::Map(Map::mirror()),
+        BlockStep::Lobe(p("lobe")),
+        BlockStep::Map(Map::<4>::back(shape, -theta0)),
+        BlockStep::Map(Map::<4>::outgoing(-theta0)),
+        BlockStep::Map(Map::travel(p("d2"))),
     ];
     assert_chain(&block, &steps);
 }

@@ -30,7 +30,7 @@ impl GratingScene {
         } = self.scene;
         let open = |distance| gaussian::area_light(bench.light, distance, &gaussian, k);
         let seen = |below, window: &Gaussian| {
-            gaussian::through_grating(&Bench { below, ..bench }, &self.grating, window, k)
+            gaussian::through_grating(&GaussianBlock { below, ..bench }, &self.grating, window, k)
         };
         let endless = Gaussian {
             b: f64::INFINITY,

@@ -18,7 +18,7 @@ use crate::parallel::expansion::Expansion;
 use crate::testing::{chain, lambertian, window};
 use crate::{Chain, g_hat, g_hat_3d};
 use etendue_field::{Complex, Profile, Rectangle};
-use gaussian::{Bench, Gaussian};
+use gaussian::{Gaussian, GaussianBlock};
 use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
@@ -101,7 +101,7 @@ fn light(width: f64, distance: f64) -> Chain {
 }
 
 struct Scene {
-    bench: Bench,
+    bench: GaussianBlock,
     gaussian: Gaussian,
     profiles: [Profile; 2],
 }
@@ -110,7 +110,7 @@ struct Scene {
 fn scene(parameters: &Value) -> Scene {
     let p = |name: &str| number(&parameters[name]);
     Scene {
-        bench: Bench {
+        bench: GaussianBlock {
             light: p("w"),
             to_blockers: p("d1"),
             below: p("d2"),

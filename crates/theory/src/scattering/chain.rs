@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::geometry::{Map, Matrix};
-use crate::model::View;
+use crate::model::Observed;
 use crate::rays::{Incidence, Plane, Ray};
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity};
@@ -13,7 +13,7 @@ use glam::DVec3;
 /// Local coordinates are (s, t, θ, φ): positions along T and B, angles to the local normals, T
 /// lying in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chain {
+pub struct ReflectionChain {
     /// From (x, y, u, v) at the light to local coordinates of where light comes from: travel,
     /// incidence, curvature.
     pub onto: Map<4>,
@@ -41,8 +41,8 @@ pub struct Chain {
 /// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), which its tests hold them
 /// against.
 #[must_use]
-pub fn chain(view: &View<System>) -> Option<Chain> {
-    let View { system, plane } = view;
+pub fn chain(view: &Observed<System>) -> Option<ReflectionChain> {
+    let Observed { system, plane } = view;
     let central = Ray {
         point: DVec3::ZERO,
         direction: DVec3::Z,
@@ -84,7 +84,7 @@ pub fn chain(view: &View<System>) -> Option<Chain> {
         };
         steps.push(cosine.to_owned());
     }
-    Some(Chain {
+    Some(ReflectionChain {
         onto,
         off,
         incidence: incidence.theta0,
@@ -99,13 +99,13 @@ pub fn chain(view: &View<System>) -> Option<Chain> {
 /// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
 /// them: zero for that of [`chain`].
 #[must_use]
-pub fn defect(view: &View<System>, tried: &Chain) -> Option<f64> {
+pub fn defect(view: &Observed<System>, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;
     let onto = tried.onto.apart(&traced.onto, &[1.0; 4]);
     Some(onto.max(tried.off.apart(&traced.off, &[1.0; 4])))
 }
 
-impl Chain {
+impl ReflectionChain {
     /// A of the rays from the light to the plane by way of the mirror direction, z' = A z.
     #[must_use]
     pub fn rays(&self) -> Map<4> {

@@ -7,7 +7,7 @@
 use super::exact::Leaving;
 use super::incoming::{Part, secant};
 use super::sky::Sky;
-use super::{Chain, System};
+use super::{ReflectionChain, System};
 use crate::geometry::{Map, Matrix, product, times};
 use crate::nets::Density;
 use etendue_field::{Brdf, Frame, Light, Lobe, Shape, Window};
@@ -17,7 +17,7 @@ use std::sync::Arc;
 
 /// What is drawn how. No choice is best everywhere: they are tried on the scene.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(super) struct Strategy {
+pub(super) struct LightStrategy {
     /// Half of the slopes about the mirrored light.
     pub(super) mirrored: bool,
     /// Half of the parts of the light by the lobe.
@@ -26,7 +26,7 @@ pub(super) struct Strategy {
     pub(super) quarters: bool,
 }
 
-impl Strategy {
+impl LightStrategy {
     /// This one, changed in one way.
     pub(super) fn neighbours(self) -> [Self; 3] {
         [
@@ -92,8 +92,8 @@ impl Rays {
     pub(super) fn new(
         system: &System,
         window: &Window,
-        chain: Option<&Chain>,
-        strategy: Strategy,
+        chain: Option<&ReflectionChain>,
+        strategy: LightStrategy,
     ) -> Self {
         let profiles = [window.x, window.y, window.u, window.v];
         let chain = chain.filter(|_| strategy.mirrored);
@@ -125,7 +125,7 @@ impl Rays {
 
 impl Mirrored {
     /// `None` where light comes from everywhere, or slopes do not tell angles apart.
-    fn new(system: &System, chain: &Chain) -> Option<Self> {
+    fn new(system: &System, chain: &ReflectionChain) -> Option<Self> {
         let off = chain.off.inverse()?;
         let block = |map: &Map<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
@@ -196,7 +196,7 @@ pub(super) struct Lights<'a> {
 
 impl<'a> Lights<'a> {
     /// For a surface whose normal is this where the central ray meets it.
-    pub(super) fn new(system: &'a System, normal: DVec3, strategy: Strategy) -> Self {
+    pub(super) fn new(system: &'a System, normal: DVec3, strategy: LightStrategy) -> Self {
         let sky = match &system.light {
             Light::Environment { environment } => Sky::new(environment, normal).map(Arc::new),
             _ => None,
@@ -205,11 +205,11 @@ impl<'a> Lights<'a> {
     }
 
     /// The same for a changed system in the same environment.
-    pub(super) fn of<'b>(&'b self, system: &'b System, strategy: Strategy) -> Lights<'b> {
+    pub(super) fn of<'b>(&'b self, system: &'b System, strategy: LightStrategy) -> Lights<'b> {
         Lights::under(system, self.sky.clone(), strategy)
     }
 
-    fn under(system: &'a System, sky: Option<Arc<Sky<'a>>>, strategy: Strategy) -> Self {
+    fn under(system: &'a System, sky: Option<Arc<Sky<'a>>>, strategy: LightStrategy) -> Self {
         let strategy = strategy.in_effect(system);
         Self {
             system,

@@ -2,7 +2,7 @@
 
 use super::System;
 use super::brdf;
-use super::chain::Chain;
+use super::chain::ReflectionChain;
 use super::incoming::{Incoming, Part};
 use crate::geometry::{Map, Matrix};
 use crate::mask::Masks;
@@ -14,7 +14,7 @@ use std::f64::consts::{PI, TAU};
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
     pub(super) system: &'a System,
-    chain: &'a Chain,
+    chain: &'a ReflectionChain,
     /// From the plane to local coordinates of where light goes.
     off: Map<4>,
     /// Positions on the surface to those at its distance across the light's axis, as a matrix.
@@ -26,7 +26,7 @@ pub(super) struct Linear<'a> {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(system: &'a System, chain: &'a Chain) -> Option<Self> {
+    pub(super) fn new(system: &'a System, chain: &'a ReflectionChain) -> Option<Self> {
         let m = &chain.onto.matrix;
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;

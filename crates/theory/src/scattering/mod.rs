@@ -2,7 +2,7 @@
 //!
 //! In goes a [`System`]: a light, masks across its way, and a curved surface with a BRDF that may
 //! vary over it. In goes a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or across
-//! its way onwards. The [`View`](crate::View) of both is a [`Model`](crate::Model): it sums rays of
+//! its way onwards. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums rays of
 //! the plane over scrambled nets, and for each of them a
 //! part of the light that shines on the point it leaves,
 //!
@@ -26,7 +26,7 @@ mod sky;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{Chain, chain, defect};
+pub use chain::{ReflectionChain, chain, defect};
 pub use predict::beside;
 
 pub(crate) use predict::predict;

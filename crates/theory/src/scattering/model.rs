@@ -2,7 +2,7 @@
 
 use super::{System, chain, predict};
 use crate::Work;
-use crate::model::{Model, Moved, Over, Prediction, View};
+use crate::model::{Model, Moved, Observed, Over, Predicted};
 use crate::nets::{Budget, work_of_nets};
 use crate::parameter::{New, Parameter};
 use etendue_field::{Complex, Light, Lobe, Reflectance};
@@ -10,7 +10,7 @@ use etendue_field::{Complex, Light, Lobe, Reflectance};
 /// Step of a derivative, as a share of the parameter's scale.
 const STEP: f64 = 1e-3;
 
-impl Model for View<System> {
+impl Model for Observed<System> {
     fn light(&self) -> &Light {
         &self.system.light
     }
@@ -85,7 +85,7 @@ impl Model for View<System> {
 
     /// With the difference to the first-order chain. All light is in proportion to an albedo where
     /// no other BRDF is blended with it.
-    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Prediction {
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
         let Reflectance { brdf, blend, .. } = &self.system.reflectance;
         let is_factor = |parameter: &Parameter| {
             *parameter == Parameter::Albedo && blend.is_none() && brdf.albedo > 0.0

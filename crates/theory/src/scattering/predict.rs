@@ -1,12 +1,12 @@
 //! Slices of scattered light, over scrambled nets of rays.
 
-use super::draw::{Lights, Rays, Strategy};
+use super::draw::{LightStrategy, Lights, Rays};
 use super::exact::Leaving;
 use super::incoming::Part;
 use super::linear::Linear;
-use super::{Chain, System};
+use super::{ReflectionChain, System};
 use crate::mask::Masks;
-use crate::model::{Moved, Over, Prediction, View};
+use crate::model::{Moved, Observed, Over, Predicted};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
 use etendue_field::{EnvironmentMap, Light, TwoPlane, Window};
 use glam::DVec3;
@@ -22,14 +22,14 @@ use glam::DVec3;
 /// edges are no edges of a difference. Shadows do not move with masks: what is lit on one side
 /// alone adds noise, the less the farther the sides are apart.
 pub(crate) fn predict(
-    view: &View<System>,
-    chain: Option<&Chain>,
-    moved: &[Moved<View<System>>],
+    view: &Observed<System>,
+    chain: Option<&ReflectionChain>,
+    moved: &[Moved<Observed<System>>],
     (window, grid, picture): Over<'_>,
     budget: Budget,
-) -> Prediction {
+) -> Predicted {
     let system = &view.system;
-    let field = |strategy| Field::new(view, window, chain, strategy);
+    let field = |strategy| ScatteredField::new(view, window, chain, strategy);
     let strategy = best(system, |strategy| {
         nets::trial(&field(strategy), (window, grid)).powi(2) * strategy.time()
     });
@@ -40,7 +40,7 @@ pub(crate) fn predict(
     };
     let around = Around::new(&field, chain, moved, strategy);
     let mut means = nets::means(&around, window, grid).into_iter();
-    Prediction {
+    Predicted {
         to_first_order: around.linear.as_ref().and_then(|_| means.next()),
         derivatives: means.collect(),
         ..nets::sums(&field, (window, grid), picture.bins, budget)
@@ -50,7 +50,12 @@ pub(crate) fn predict(
 /// What a chain that may be another than that of [`chain`](super::chain()) predicts: the surface as
 /// it is, and its difference to the chain.
 #[must_use]
-pub fn beside(view: &View<System>, chain: &Chain, over: Over<'_>, budget: Budget) -> Prediction {
+pub fn beside(
+    view: &Observed<System>,
+    chain: &ReflectionChain,
+    over: Over<'_>,
+    budget: Budget,
+) -> Predicted {
     predict(view, Some(chain), &[], over, budget)
 }
 
@@ -67,8 +72,8 @@ fn cost(system: &System) -> f64 {
 }
 
 /// The strategy that costs least, each choice being tried once.
-fn best(system: &System, cost: impl Fn(Strategy) -> f64) -> Strategy {
-    let mut best = Strategy::default();
+fn best(system: &System, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
+    let mut best = LightStrategy::default();
     let mut least = cost(best);
     for choice in 0..best.neighbours().len() {
         let next = best.neighbours()[choice].in_effect(system);
@@ -84,20 +89,20 @@ fn best(system: &System, cost: impl Fn(Strategy) -> f64) -> Strategy {
 }
 
 /// A light field as it is.
-struct Field<'a> {
-    view: &'a View<System>,
+struct ScatteredField<'a> {
+    view: &'a Observed<System>,
     window: &'a Window,
     masks: Masks<'a>,
     rays: Rays,
     lights: Lights<'a>,
 }
 
-impl<'a> Field<'a> {
+impl<'a> ScatteredField<'a> {
     fn new(
-        view: &'a View<System>,
+        view: &'a Observed<System>,
         window: &'a Window,
-        chain: Option<&Chain>,
-        strategy: Strategy,
+        chain: Option<&ReflectionChain>,
+        strategy: LightStrategy,
     ) -> Self {
         let system = &view.system;
         let normal = chain.map_or(DVec3::NEG_Z, |chain| chain.frame.d);
@@ -138,8 +143,8 @@ fn over(radiance: f64, density: f64) -> f64 {
 }
 
 /// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
-fn radiance(view: &View<System>, masks: &Masks<'_>, leaving: &Leaving, part: Part) -> f64 {
-    let View { system, plane } = view;
+fn radiance(view: &Observed<System>, masks: &Masks<'_>, leaving: &Leaving, part: Part) -> f64 {
+    let Observed { system, plane } = view;
     let radiance = system.radiance(masks, leaving, part);
     if plane.orientation.is_local() {
         // On the surface itself the integral is over its area, larger than the tangent plane's.
@@ -149,7 +154,7 @@ fn radiance(view: &View<System>, masks: &Masks<'_>, leaving: &Leaving, part: Par
     }
 }
 
-impl Integrand for Field<'_> {
+impl Integrand for ScatteredField<'_> {
     fn fields(&self) -> usize {
         1
     }
@@ -174,7 +179,7 @@ type Drawn = Option<(Part, f64)>;
 ///
 /// Where it leaves a ray or the light as they are, it takes them from the light field itself.
 struct Side<'a> {
-    view: &'a View<System>,
+    view: &'a Observed<System>,
     moves_surface: bool,
     moves_light: bool,
     masks: Masks<'a>,
@@ -182,8 +187,12 @@ struct Side<'a> {
 }
 
 impl<'a> Side<'a> {
-    fn new(view: &'a View<System>, field: &'a Field<'a>, strategy: Strategy) -> Self {
-        let View { system, plane } = field.view;
+    fn new(
+        view: &'a Observed<System>,
+        field: &'a ScatteredField<'a>,
+        strategy: LightStrategy,
+    ) -> Self {
+        let Observed { system, plane } = field.view;
         let moves_surface = view.system.patch != system.patch || view.plane != *plane;
         Self {
             view,
@@ -198,7 +207,7 @@ impl<'a> Side<'a> {
     /// The radiance of a ray, over the density with which a part of the light was drawn. Beside it
     /// is what the light field itself has.
     fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, Drawn)) -> Option<f64> {
-        let View { system, plane } = self.view;
+        let Observed { system, plane } = self.view;
         let (mut leaving, mut drawn) = *own;
         if self.moves_surface {
             leaving = system.leaving(plane, z)?;
@@ -214,17 +223,17 @@ impl<'a> Side<'a> {
 
 /// What is around a light field: it to first order, and with parameters changed.
 struct Around<'a> {
-    field: &'a Field<'a>,
+    field: &'a ScatteredField<'a>,
     linear: Option<Linear<'a>>,
     moved: Vec<(f64, [Side<'a>; 2])>,
 }
 
 impl<'a> Around<'a> {
     fn new(
-        field: &'a Field<'a>,
-        chain: Option<&'a Chain>,
-        moved: &'a [Moved<View<System>>],
-        strategy: Strategy,
+        field: &'a ScatteredField<'a>,
+        chain: Option<&'a ReflectionChain>,
+        moved: &'a [Moved<Observed<System>>],
+        strategy: LightStrategy,
     ) -> Self {
         let side = |view| Side::new(view, field, strategy);
         let moved = moved.iter();

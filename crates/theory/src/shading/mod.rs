@@ -52,5 +52,5 @@ pub use cosine::{cosine_hat, cosine_power_hat, cosine_series, cosine_squared_hat
 pub use diffuse::{g_hat, g_hat_3d};
 pub use fresnel::Fresnel;
 pub use lobe::Lobe;
-pub use product::{Lattice, Wave, angular_product, semi_convolution, texture};
+pub use product::{Lattice, TextureWave, angular_product, semi_convolution, texture};
 pub use reflection::{Factor, Reflection, Step, Term};

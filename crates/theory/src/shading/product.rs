@@ -56,7 +56,7 @@ pub fn angular_product(
 /// A wave A e^(2πi f s) of a texture along the surface. A real texture has each with its conjugate
 /// at −f.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wave {
+pub struct TextureWave {
     /// f, in cycles per metre of arc length.
     pub frequency: f64,
     /// A.
@@ -69,7 +69,11 @@ pub struct Wave {
 /// Only positions are affected, so it may come before or after the step back from the local
 /// normals, but before the outgoing angle.
 #[must_use]
-pub fn texture(waves: &[Wave], omega: [f64; 2], before: &dyn Fn([f64; 2]) -> Complex) -> Complex {
+pub fn texture(
+    waves: &[TextureWave],
+    omega: [f64; 2],
+    before: &dyn Fn([f64; 2]) -> Complex,
+) -> Complex {
     let [x, theta] = omega;
     let waves = waves.iter();
     waves
@@ -128,7 +132,7 @@ mod tests {
             spacing: 1e-4,
             ..lattice
         };
-        let wave = Wave {
+        let wave = TextureWave {
             frequency: 2.0,
             amplitude: Complex::from(1.0),
         };

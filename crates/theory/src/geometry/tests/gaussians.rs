@@ -1,7 +1,7 @@
 //! Spectra and covariances of mapped fields.
 
 use super::*;
-use crate::geometry::Print;
+use crate::geometry::Edition;
 use crate::geometry::covariance::{
     gaussian_lobe, gaussian_spectrum, gaussian_window, power_spectrum,
 };
@@ -62,7 +62,7 @@ fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
     };
     let before = |omega| transform(&field, omega);
     // What the paper prints is another function.
-    let printed = Print::Equations.incidence(0.5);
+    let printed = Edition::Equations.incidence(0.5);
     let printed = printed.then(&Map::<2>::curvature(0.8).spectrum_map());
     for omega in [[0.0, 0.0], [1.0, -0.7], [-0.5, 1.0]] {
         let expected = transform(&after, omega);

@@ -4,7 +4,7 @@
 use super::rays::{circle, error_and_order};
 use super::trace::{Surface, reflected};
 use super::*;
-use crate::geometry::{Print, SpectrumMap};
+use crate::geometry::{Edition, SpectrumMap};
 use etendue_field::Complex;
 use std::f64::consts::TAU;
 
@@ -28,7 +28,7 @@ fn with_two_pi(mut step: SpectrumMap<2>) -> SpectrumMap<2> {
 /// A mirror chain with the prints of incidence, of curvature and of outgoing angle.
 fn mirror(
     incidence: &SpectrumMap<2>,
-    curvature: Print,
+    curvature: Edition,
     outgoing: &SpectrumMap<2>,
 ) -> SpectrumMap<2> {
     incidence
@@ -40,7 +40,7 @@ fn mirror(
 
 #[test]
 fn corrected_is_the_map() {
-    let print = Print::Corrected;
+    let print = Edition::Corrected;
     let map = Map::<2>::mirror_reflection(THETA0, K).spectrum_map();
     assert_eq!(print.mirror_reflection(THETA0, K), map);
     let map = Map::<4>::mirror_reflection(THETA0, SHAPE).spectrum_map();
@@ -51,9 +51,9 @@ fn corrected_is_the_map() {
 
 #[test]
 fn no_misprint_follows_the_rays() {
-    use Print::{Corrected, Equations, Table};
-    let incidence = |print: Print| print.incidence(THETA0);
-    let outgoing = |print: Print| print.outgoing(-THETA0);
+    use Edition::{Corrected, Equations, Table};
+    let incidence = |print: Edition| print.incidence(THETA0);
+    let outgoing = |print: Edition| print.outgoing(-THETA0);
     let right = [incidence(Corrected), outgoing(Corrected)];
     let scaled = [with_two_pi(incidence(Table)), with_two_pi(outgoing(Table))];
     let mut phase = [incidence(Corrected), outgoing(Corrected)];
@@ -95,8 +95,8 @@ fn no_misprint_follows_the_rays() {
 
 #[test]
 fn eq_19_has_no_cosine() {
-    for print in [Print::Equations, Print::Table] {
-        let right = Print::Corrected;
+    for print in [Edition::Equations, Edition::Table] {
+        let right = Edition::Corrected;
         let chain = right
             .incidence_4d(THETA0)
             .then(&print.curvature_4d(SHAPE, THETA0))
@@ -109,7 +109,7 @@ fn eq_19_has_no_cosine() {
         assert!(rays(&chain).symplectic_defect(1.0) > 0.05);
     }
     let sphere = [[-0.5, 0.0], [0.0, -0.5]];
-    let map = rays(&Print::Table.mirror_reflection_4d(0.7, sphere)).matrix;
+    let map = rays(&Edition::Table.mirror_reflection_4d(0.7, sphere)).matrix;
     assert!((map[1][1] / map[3][1] + 1.0).abs() < 1e-15); // the sagittal focus R/2: rounding
 }
 
@@ -117,17 +117,17 @@ fn eq_19_has_no_cosine() {
 fn planar_mirrors_keep_magnitudes() {
     let before = |[x, t]: [f64; 2]| Complex::new((-x * x - t * t + x * t).exp(), x - t);
     for omega in [[0.3, 0.2], [-1.0, 0.4], [0.0, 0.0]] {
-        let size = |print: Print| {
+        let size = |print: Edition| {
             let mirror = print.mirror_reflection(THETA0, 0.0);
             mirror.spectrum(omega, &before).norm()
         };
         let expected = before([-omega[0], -omega[1]]).norm();
         let cos = THETA0.cos();
         let rounding = 1e-14;
-        assert!((size(Print::Corrected) - expected).abs() < rounding);
+        assert!((size(Edition::Corrected) - expected).abs() < rounding);
         // The two wrong arguments of Table 1 cancel on a plane, the factors of Eq. 9 and 10 do not.
-        assert!((size(Print::Table) - expected).abs() < rounding);
-        assert!((size(Print::Equations) - cos * cos * expected).abs() < rounding);
+        assert!((size(Edition::Table) - expected).abs() < rounding);
+        assert!((size(Edition::Equations) - cos * cos * expected).abs() < rounding);
     }
 }
 
@@ -137,12 +137,12 @@ fn constant_fields_keep_their_value() {
     let value = |step: SpectrumMap<2>| step.factor / step.matrix[0][0].abs();
     let cos = THETA0.cos();
     let close = |a: f64, b: f64| (a - b).abs() < 1e-15; // rounding
-    assert!(close(value(Print::Corrected.incidence(THETA0)), 1.0));
-    assert!(close(value(Print::Corrected.outgoing(THETA0)), 1.0));
-    assert!(close(value(Print::Equations.incidence(THETA0)), 1.0));
+    assert!(close(value(Edition::Corrected.incidence(THETA0)), 1.0));
+    assert!(close(value(Edition::Corrected.outgoing(THETA0)), 1.0));
+    assert!(close(value(Edition::Equations.incidence(THETA0)), 1.0));
     assert!(close(
-        value(Print::Table.incidence(THETA0)) * cos * cos,
+        value(Edition::Table.incidence(THETA0)) * cos * cos,
         1.0
     ));
-    assert!(close(value(Print::Table.outgoing(THETA0)), cos * cos));
+    assert!(close(value(Edition::Table.outgoing(THETA0)), cos * cos));
 }

@@ -3,13 +3,13 @@ use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;
 
 /// A chain walked from its end by hand: distances and masks, and factors G.
-struct Walk<'a> {
+struct WalkedRay<'a> {
     distance: f64,
     masks: Vec<(f64, &'a Mask)>,
     cosines: i32,
 }
 
-impl<'a> Walk<'a> {
+impl<'a> WalkedRay<'a> {
     fn new(chain: &'a Chain) -> Self {
         let mut walk = Self {
             distance: 0.0,
@@ -61,7 +61,7 @@ pub(super) fn brute_force(
     frequencies: &[[f64; 4]],
     rays: u32,
 ) -> Vec<Complex> {
-    let walk = Walk::new(chain);
+    let walk = WalkedRay::new(chain);
     let half = [window.x.half_width(), window.y.half_width()];
     let powers = [1, 2, 3, 4].map(|i| 1.167_303_978_261_418_7_f64.powi(-i));
     let mut sums = vec![Complex::ZERO; frequencies.len()];

@@ -2,8 +2,8 @@
 
 use super::{FREQUENCIES, brute_force, hann, zero};
 use crate::parallel::expansion::Expansion;
-use crate::parallel::patch::Fineness;
 use crate::parallel::slope::Slope;
+use crate::parallel::weighted_rectangle::DiscResolution;
 use crate::reference::gaussian::{Gaussian, disc_light, point_light};
 use crate::testing::*;
 use crate::{Chain, Model, Operator, Parameter, at};
@@ -112,7 +112,7 @@ fn a_spot_of_exponent_four_is_a_cosine() {
 fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex {
     let path = chain.path();
     let slope = Slope::new([&window.u, &window.v], power);
-    let fineness = Fineness::for_spectrum(&path, window, [3.0; 2]);
+    let fineness = DiscResolution::for_spectrum(&path, window, [3.0; 2]);
     let expansion = Expansion::new(&path, window, &slope, &fineness);
     expansion.at(k)
 }

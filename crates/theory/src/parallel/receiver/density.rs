@@ -1,6 +1,6 @@
 //! What is integrated over the slopes that arrive at a point: (1 + u² + v²)^(−p) times gratings.
 
-use crate::mask::Sides;
+use crate::mask::Bounds;
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;
@@ -21,7 +21,7 @@ const FEW: usize = 16;
 
 /// The lobe (1 + u² + v²)^(−p), u and v being slopes.
 #[derive(Clone, Copy, Debug)]
-enum Lobe {
+enum SlopePower {
     /// p = 0.
     Flat,
     /// p = 2: the cosine of a Lambertian receiver with du dv, G of docs/theory.md, Eq. 7.
@@ -32,7 +32,7 @@ enum Lobe {
     Power(f64),
 }
 
-impl Lobe {
+impl SlopePower {
     #[expect(clippy::cast_possible_truncation, reason = "a small whole number")]
     fn new(power: f64) -> Self {
         if power.abs() < f64::EPSILON {
@@ -120,7 +120,7 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
 /// The lobe, and rules that integrate it and the gratings in front of it.
 #[derive(Debug)]
 pub(crate) struct Integrator {
-    lobe: Lobe,
+    lobe: SlopePower,
     /// For u and for v.
     counts: [Counts; 2],
     /// Gauss rules on (−1, 1), by their number of nodes.
@@ -132,7 +132,7 @@ impl Integrator {
     /// and along v, add up to `frequencies`.
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {
-            lobe: Lobe::new(power),
+            lobe: SlopePower::new(power),
             counts: frequencies.map(|f| Counts::new(power, f)),
             rules: (0..=MOST + ARC).map(gauss_legendre).collect(),
         }
@@ -155,12 +155,12 @@ impl Density<'_> {
     }
 
     /// The integral over a rectangle; its sign turns where an interval is turned.
-    pub(crate) fn rectangle(&self, sides: Sides) -> f64 {
+    pub(crate) fn rectangle(&self, sides: Bounds) -> f64 {
         let [u, v] = sides;
         if self.gratings.is_empty() {
             match self.integrator.lobe {
-                Lobe::Flat => return (u[1] - u[0]) * (v[1] - v[0]),
-                Lobe::Cosine if self.size(sides) > FEW => return cosine(sides),
+                SlopePower::Flat => return (u[1] - u[0]) * (v[1] - v[0]),
+                SlopePower::Cosine if self.size(sides) > FEW => return cosine(sides),
                 _ => {}
             }
         }
@@ -176,9 +176,9 @@ impl Density<'_> {
     pub(crate) fn along_u(&self, [from, to]: [f64; 2], v: f64) -> f64 {
         if self.gratings.is_empty() {
             match self.integrator.lobe {
-                Lobe::Flat => return to - from,
-                Lobe::Cosine => return cosine_along_u(to, v) - cosine_along_u(from, v),
-                Lobe::Half(_) | Lobe::Power(_) => {}
+                SlopePower::Flat => return to - from,
+                SlopePower::Cosine => return cosine_along_u(to, v) - cosine_along_u(from, v),
+                SlopePower::Half(_) | SlopePower::Power(_) => {}
             }
         }
         let lobe = |u: f64| self.integrator.lobe.value(1.0 + u * u + v * v);
@@ -196,12 +196,12 @@ impl Density<'_> {
     }
 
     /// Steps of [`Self::rectangle`].
-    pub(crate) fn steps(&self, sides: Sides) -> f64 {
+    pub(crate) fn steps(&self, sides: Bounds) -> f64 {
         let [u, v] = self.along(sides);
         let few = u * v <= FEW as f64;
         match self.integrator.lobe {
-            Lobe::Flat if self.gratings.is_empty() => CLOSED,
-            Lobe::Cosine if self.gratings.is_empty() && !few => CLOSED,
+            SlopePower::Flat if self.gratings.is_empty() => CLOSED,
+            SlopePower::Cosine if self.gratings.is_empty() && !few => CLOSED,
             _ => self.step() * (u * v + 10.0 * (u + v)),
         }
     }
@@ -209,7 +209,7 @@ impl Density<'_> {
     /// Steps of [`Self::along_u`] over a length.
     pub(crate) fn steps_along_u(&self, length: f64) -> f64 {
         match self.integrator.lobe {
-            Lobe::Flat | Lobe::Cosine if self.gratings.is_empty() => CLOSED,
+            SlopePower::Flat | SlopePower::Cosine if self.gratings.is_empty() => CLOSED,
             _ => self.step() * self.along([[0.0, length], [0.0; 2]])[0],
         }
     }
@@ -217,14 +217,14 @@ impl Density<'_> {
     /// Steps for the lobe at a node.
     fn step(&self) -> f64 {
         match self.integrator.lobe {
-            Lobe::Flat | Lobe::Cosine => 3.0,
-            Lobe::Half(_) => 10.0,
-            Lobe::Power(_) => 40.0,
+            SlopePower::Flat | SlopePower::Cosine => 3.0,
+            SlopePower::Half(_) => 10.0,
+            SlopePower::Power(_) => 40.0,
         }
     }
 
     /// Nodes along the sides of a rectangle.
-    fn along(&self, sides: Sides) -> [f64; 2] {
+    fn along(&self, sides: Bounds) -> [f64; 2] {
         [0, 1].map(|axis| {
             let [low, high] = sides[axis];
             let [panels, nodes] = self.integrator.counts[axis].of(high - low);
@@ -233,7 +233,7 @@ impl Density<'_> {
     }
 
     /// Nodes of a rectangle.
-    fn size(&self, sides: Sides) -> usize {
+    fn size(&self, sides: Bounds) -> usize {
         let along = [0, 1].map(|axis| {
             let [low, high] = sides[axis];
             self.integrator.counts[axis].of(high - low)
@@ -259,7 +259,7 @@ impl Density<'_> {
 }
 
 /// ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md, Eq. 15).
-fn cosine([[u0, u1], [v0, v1]]: Sides) -> f64 {
+fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
     let corner = |u: f64, v: f64| {
         let side = |u: f64, v: f64| {
             let c = u.hypot(1.0);
@@ -290,7 +290,7 @@ mod tests {
     }
 
     /// The same integral by many panels of many nodes.
-    fn brute(density: &Density<'_>, [u, v]: Sides) -> f64 {
+    fn brute(density: &Density<'_>, [u, v]: Bounds) -> f64 {
         let cut = |[low, high]: [f64; 2], i: u32| {
             let step = (high - low) / 20.0;
             [low + step * f64::from(i), low + step * f64::from(i + 1)]

@@ -3,7 +3,7 @@
 use super::Receiver;
 use super::kernel::{Axis, Kernels};
 use crate::parallel::chain::Emitter;
-use crate::parallel::row::Row;
+use crate::parallel::row::FrequencyRow;
 use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2};
 use rayon::prelude::*;
@@ -25,9 +25,9 @@ const ORDER: i32 = 2;
 /// Places in a cell of a projection along each axis, at least.
 const PLACES: usize = 4;
 
-/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame round:
+/// Radiance that leaves the receiver, times the area of a node. DiffuseReflection turns the frame round:
 /// x' = −x, y' = y, as D' = −D and X' = −X.
-pub(super) struct Table {
+pub(super) struct ExitantTable {
     axes: [Axis; 2],
     /// x' and y' of the nodes: the middles of equal cells.
     coordinates: [Vec<f64>; 2],
@@ -143,7 +143,7 @@ impl Receiver<'_> {
     }
 
     /// Radiance on `nodes` × `nodes` nodes over what is seen through a window.
-    pub(super) fn table(&self, window: &Window, nodes: usize) -> Table {
+    pub(super) fn table(&self, window: &Window, nodes: usize) -> ExitantTable {
         let axes = axes(window, self.after);
         let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
         let middle = |k: usize, i: usize| (i as f64 + 0.5) * size[k] - axes[k].reach();
@@ -158,7 +158,7 @@ impl Receiver<'_> {
             })
             .collect();
         let values = Array2::from_shape_fn((nodes, nodes), |(i, j)| rows[i][j]);
-        Table {
+        ExitantTable {
             axes,
             coordinates,
             values,
@@ -174,7 +174,7 @@ pub(super) fn axes(window: &Window, after: f64) -> [Axis; 2] {
     })
 }
 
-impl Table {
+impl ExitantTable {
     pub(super) fn slices(&self, grid: &SliceGrid) -> Slices {
         let [azimuths, rows, _] = grid.half_shape();
         let values: Vec<Vec<Complex>> = (0..azimuths * rows)
@@ -182,7 +182,7 @@ impl Table {
             .map(|i| {
                 let (sin, cos) = grid.azimuth(i / rows).sin_cos();
                 let rho = (i % rows) as f64 * grid.rho.spacing;
-                let frequencies = [cos, sin].map(|along| Row {
+                let frequencies = [cos, sin].map(|along| FrequencyRow {
                     position: rho * along,
                     step: grid.nu.spacing * along,
                     half: grid.nu.half,
@@ -214,7 +214,7 @@ impl Table {
 
     /// A row where nothing travels: radiance does not know the slope, and the spectrum is a
     /// product.
-    fn at_receiver(&self, frequencies: &[Row; 2]) -> Vec<Complex> {
+    fn at_receiver(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let wave = |k: usize| -> Vec<Complex> {
             let (window, frequency) = (self.axes[k].position, frequencies[k].position);
             let coordinates = self.coordinates[k].iter();
@@ -234,7 +234,7 @@ impl Table {
     }
 
     /// A row after travel: Σ K(x') E(x', y') K(y').
-    fn travelled(&self, frequencies: &[Row; 2]) -> Vec<Complex> {
+    fn travelled(&self, frequencies: &[FrequencyRow; 2]) -> Vec<Complex> {
         let kernels = |k: usize| self.axes[k].along(&self.coordinates[k], &frequencies[k]);
         let [x, y]: [Kernels; 2] = [kernels(0), kernels(1)];
         let (re, im) = (x.re.dot(&self.values), x.im.dot(&self.values));

@@ -1,7 +1,7 @@
 //! How light from one coordinate of the receiver adds to the spectrum of a window farther on.
 
 use crate::numerics::quadrature::gauss_legendre;
-use crate::parallel::row::{Parts, Row, add_scaled};
+use crate::parallel::row::{FrequencyRow, Parts, add_scaled};
 use etendue_field::{Complex, Profile};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;
@@ -37,7 +37,7 @@ impl Axis {
     }
 
     /// The same for all ν of a row.
-    pub(crate) fn along(&self, coordinates: &[f64], row: &Row) -> Kernels {
+    pub(crate) fn along(&self, coordinates: &[f64], row: &FrequencyRow) -> Kernels {
         let rule = self.rule([row.position, row.step * row.half as f64]);
         let mut re = Array2::zeros((row.count(), coordinates.len()));
         let mut im = re.clone();
@@ -49,7 +49,7 @@ impl Axis {
         Kernels { re, im }
     }
 
-    fn column(&self, t: f64, row: &Row, rule: &[(f64, f64)]) -> Parts {
+    fn column(&self, t: f64, row: &FrequencyRow, rule: &[(f64, f64)]) -> Parts {
         let mut sum = Parts::zeros(row.count());
         let mut wave = Parts::zeros(row.count());
         for (weight, x, u) in self.rays(t, rule) {

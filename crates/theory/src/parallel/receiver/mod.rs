@@ -16,11 +16,11 @@ mod region;
 mod tests;
 mod work;
 
-use crate::mask::{Barrier, Sides};
+use crate::mask::{Barrier, Bounds};
 use crate::parallel::chain::{Emitter, Layer};
 use density::{Density, Integrator};
 use etendue_field::{Disc, Grating, Rectangle, Shape};
-use region::Region;
+use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};
 
 /// A Lambertian receiver, what shines on it, and how far its light then travels.
@@ -40,14 +40,14 @@ pub(crate) struct Receiver<'a> {
 /// How slopes tell positions upstream: position = origin + b · slope at a distance h before the
 /// receiver.
 #[derive(Clone, Copy, Debug)]
-enum Bundle {
+enum SlopeProjection {
     /// Rays that arrive at a point of the receiver: b = −h.
     At([f64; 2]),
     /// Rays that left a point light at this distance: b = distance − h.
     From(f64),
 }
 
-impl Bundle {
+impl SlopeProjection {
     fn origin(&self) -> [f64; 2] {
         match *self {
             Self::At(point) => point,
@@ -63,8 +63,8 @@ impl Bundle {
         }
     }
 
-    /// Sides in a plane, as slopes.
-    fn slopes(&self, sides: Sides, before: f64) -> Sides {
+    /// Bounds in a plane, as slopes.
+    fn slopes(&self, sides: Bounds, before: f64) -> Bounds {
         let (origin, scale) = (self.origin(), self.scale(before));
         [0, 1].map(|k| {
             let [a, b] = sides[k].map(|c| (c - origin[k]) / scale);
@@ -72,8 +72,8 @@ impl Bundle {
         })
     }
 
-    /// Sides in slopes, as positions in a plane.
-    fn positions(&self, sides: Sides, before: f64) -> Sides {
+    /// Bounds in slopes, as positions in a plane.
+    fn positions(&self, sides: Bounds, before: f64) -> Bounds {
         let (origin, scale) = (self.origin(), self.scale(before));
         [0, 1].map(|k| {
             let [a, b] = sides[k].map(|c| origin[k] + scale * c);
@@ -124,9 +124,9 @@ impl<'a> Receiver<'a> {
     ) -> Self {
         let shading = if cosine { 2.0 } else { 0.0 };
         let (lobe, bundle) = match light {
-            Emitter::Area { exponent, .. } => (0.5 * exponent, Bundle::At([0.0; 2])),
+            Emitter::Area { exponent, .. } => (0.5 * exponent, SlopeProjection::At([0.0; 2])),
             // Its radiance is I √(1 + u² + v²) δ(x − D u) δ(y − D v).
-            Emitter::Point { .. } => (-0.5, Bundle::From(distance)),
+            Emitter::Point { .. } => (-0.5, SlopeProjection::From(distance)),
         };
         let barriers: Vec<_> = layers
             .iter()
@@ -158,13 +158,13 @@ impl<'a> Receiver<'a> {
             Emitter::Area {
                 shape, radiance, ..
             } => {
-                let bundle = Bundle::At([x, y]);
-                let region = Region::shape(&bundle.seen(&shape, self.distance));
+                let bundle = SlopeProjection::At([x, y]);
+                let region = ReceiverRegion::shape(&bundle.seen(&shape, self.distance));
                 radiance * self.received(&bundle, region)
             }
             Emitter::Point { intensity } => {
                 let [u, v] = [x, y].map(|c| c / self.distance);
-                let bundle = Bundle::From(self.distance);
+                let bundle = SlopeProjection::From(self.distance);
                 let through = self.barriers.iter().map(|barrier| {
                     let scale = bundle.scale(barrier.distance);
                     barrier.transmittance(scale * u, scale * v)
@@ -183,14 +183,15 @@ impl<'a> Receiver<'a> {
             return self.irradiance(center[0], center[1]);
         };
         // dx dy = D² du dv cancels the square of the distance.
-        let bundle = Bundle::From(self.distance);
+        let bundle = SlopeProjection::From(self.distance);
         let sides = Rectangle { center, size };
-        let region = Region::rectangle(bundle.slopes([sides.extent(0), sides.extent(1)], 0.0));
+        let region =
+            ReceiverRegion::rectangle(bundle.slopes([sides.extent(0), sides.extent(1)], 0.0));
         intensity * self.received(&bundle, region) / sides.area()
     }
 
     /// The integral over those slopes of a region that no blocker stops.
-    fn received(&self, bundle: &Bundle, region: Region) -> f64 {
+    fn received(&self, bundle: &SlopeProjection, region: ReceiverRegion) -> f64 {
         self.passed(
             bundle,
             region,
@@ -203,8 +204,8 @@ impl<'a> Receiver<'a> {
     /// stops.
     fn passed(
         &self,
-        bundle: &Bundle,
-        region: Region,
+        bundle: &SlopeProjection,
+        region: ReceiverRegion,
         barriers: &[Barrier<'_>],
         density: &Density<'_>,
     ) -> f64 {
@@ -226,7 +227,7 @@ impl<'a> Receiver<'a> {
     }
 
     /// What is integrated over slopes behind the gratings of some barriers.
-    fn density(&self, bundle: &Bundle, barriers: &[Barrier<'_>]) -> Density<'_> {
+    fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> Density<'_> {
         let gratings = barriers
             .iter()
             .filter_map(|b| b.grating.map(|g| bundle.grating(&g, b.distance)));

@@ -1,7 +1,7 @@
 //! Sets of slopes: a rectangle and discs, intersected.
 
 use super::density::Density;
-use crate::mask::Sides;
+use crate::mask::Bounds;
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
@@ -10,15 +10,15 @@ const SAME: f64 = 1e-12;
 
 /// The intersection of a rectangle and discs, in slopes.
 #[derive(Clone, Debug)]
-pub(crate) struct Region {
+pub(crate) struct ReceiverRegion {
     /// The rectangle; its sides may be infinite where there are discs.
-    sides: Sides,
+    sides: Bounds,
     discs: Vec<Disc>,
 }
 
-impl Region {
+impl ReceiverRegion {
     /// A rectangle.
-    pub(crate) fn rectangle(sides: Sides) -> Self {
+    pub(crate) fn rectangle(sides: Bounds) -> Self {
         Self {
             sides,
             discs: vec![],
@@ -37,7 +37,7 @@ impl Region {
     }
 
     /// The smallest rectangle known to hold it.
-    pub(crate) fn bounds(&self) -> Sides {
+    pub(crate) fn bounds(&self) -> Bounds {
         let discs = self.discs.iter().map(|disc| {
             let bounds = Shape::Disc(*disc).bounds();
             [bounds.extent(0), bounds.extent(1)]
@@ -46,7 +46,7 @@ impl Region {
     }
 
     /// What it has in common with a rectangle; `None` if nothing.
-    pub(crate) fn within(&self, sides: Sides) -> Option<Self> {
+    pub(crate) fn within(&self, sides: Bounds) -> Option<Self> {
         let region = Self {
             sides: common(self.sides, sides),
             discs: self.discs.clone(),
@@ -220,16 +220,16 @@ fn on(disc: &Disc, angle: f64) -> [f64; 2] {
     ]
 }
 
-fn contains([u, v]: Sides, x: f64, y: f64) -> bool {
+fn contains([u, v]: Bounds, x: f64, y: f64) -> bool {
     u[0] <= x && x <= u[1] && v[0] <= y && y <= v[1]
 }
 
-fn common(a: Sides, b: Sides) -> Sides {
+fn common(a: Bounds, b: Bounds) -> Bounds {
     [0, 1].map(|k| [a[k][0].max(b[k][0]), a[k][1].min(b[k][1])])
 }
 
 /// Distances of a point from the nearest and the farthest point of a rectangle.
-fn distances(sides: Sides, point: [f64; 2]) -> [f64; 2] {
+fn distances(sides: Bounds, point: [f64; 2]) -> [f64; 2] {
     let along = [0, 1].map(|k| {
         let [below, above] = [sides[k][0] - point[k], point[k] - sides[k][1]];
         [below.max(above).max(0.0), (-below).max(-above)]

@@ -2,8 +2,8 @@
 
 use super::density::Density;
 use super::kernel::Axis;
-use super::region::Region;
-use super::{Bundle, Receiver, exitant};
+use super::region::ReceiverRegion;
+use super::{Receiver, SlopeProjection, exitant};
 use crate::mask::Barrier;
 use crate::parallel::chain::Emitter;
 use crate::parallel::work::Work;
@@ -69,14 +69,17 @@ impl Receiver<'_> {
     fn steps(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
         let (bundle, region) = match &self.light {
             Emitter::Area { shape, .. } => {
-                let bundle = Bundle::At(center);
-                (bundle, Region::shape(&bundle.seen(shape, self.distance)))
+                let bundle = SlopeProjection::At(center);
+                (
+                    bundle,
+                    ReceiverRegion::shape(&bundle.seen(shape, self.distance)),
+                )
             }
             _ => {
-                let bundle = Bundle::From(self.distance);
+                let bundle = SlopeProjection::From(self.distance);
                 let sides = Rectangle { center, size };
                 let sides = bundle.slopes([sides.extent(0), sides.extent(1)], 0.0);
-                (bundle, Region::rectangle(sides))
+                (bundle, ReceiverRegion::rectangle(sides))
             }
         };
         let density = self.density(&bundle, &self.barriers);
@@ -88,8 +91,8 @@ impl Receiver<'_> {
     /// Adds the steps of [`Self::passed`], up to [`MOST`].
     fn count(
         &self,
-        bundle: &Bundle,
-        region: &Region,
+        bundle: &SlopeProjection,
+        region: &ReceiverRegion,
         barriers: &[Barrier<'_>],
         density: &Density<'_>,
         steps: &mut f64,

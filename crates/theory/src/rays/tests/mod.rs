@@ -1,7 +1,7 @@
 use super::*;
-use crate::geometry::{Print, SpectrumMap};
+use crate::geometry::{Edition, SpectrumMap};
 use crate::numerics::distance;
-use crate::{Budget, Model, Prediction, View};
+use crate::{Budget, Model, Observed, Predicted};
 use etendue_field::{
     Complex, FrequencyAxis, Image, Profile, ProjectionGrid, SliceGrid, Slices, Window,
 };
@@ -13,14 +13,14 @@ const BUDGET: Budget = Budget {
     error: 1e-5,
 };
 
-fn view(system: &System, plane: &Plane) -> View<System> {
-    View {
+fn view(system: &System, plane: &Plane) -> Observed<System> {
+    Observed {
         system: system.clone(),
         plane: *plane,
     }
 }
 
-fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Prediction {
+fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     let picture = ProjectionGrid::new(window, 32);
     view(system, plane).predict(&[], (window, grid, &picture), BUDGET)
 }
@@ -31,7 +31,7 @@ fn linear(
     window: &Window,
     grid: &SliceGrid,
     map: &SpectrumMap<4>,
-) -> Prediction {
+) -> Predicted {
     let picture = ProjectionGrid::new(window, 32);
     super::linear(&view(system, plane), (window, grid, &picture), map, BUDGET)
 }

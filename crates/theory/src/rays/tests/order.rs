@@ -5,7 +5,7 @@ use super::*;
 
 /// ‖linear − exact‖/‖exact‖ at a size e: windows and light e times as wide, frequencies 1/e times
 /// as high.
-fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Print) -> f64 {
+fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
     let window = window(Profile::Hann(widths[0] * e), Profile::Hann(widths[1] * e));
     let grid = grid(3, widths.map(|w| w * e));
     let system = system.shrunk(e);
@@ -20,7 +20,7 @@ fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Print)
 
 /// The power of e with which it falls.
 fn order(system: &System, plane: &Plane, widths: [f64; 2]) -> f64 {
-    let [wide, narrow] = [0.1, 0.05].map(|e| error(system, plane, widths, e, Print::Corrected));
+    let [wide, narrow] = [0.1, 0.05].map(|e| error(system, plane, widths, e, Edition::Corrected));
     assert!(wide < 0.5 && narrow > 0.0, "{wide} {narrow}");
     (wide / narrow).log2()
 }
@@ -72,14 +72,14 @@ fn area_lights_converge() {
 fn printed_chains_do_not_converge() {
     let oblique = mirror(projector([0.4, 0.3]), 0.7, [0.0, 0.0], [-0.5, 0.3, 0.0]);
     let plane = after(&oblique, 0.4);
-    for print in [Print::Equations, Print::Table] {
+    for print in [Edition::Equations, Edition::Table] {
         let [wide, narrow] = [0.1, 0.05].map(|e| error(&oblique, &plane, [0.6, 0.5], e, print));
         assert!(
             narrow > 0.1 && narrow > 0.8 * wide,
             "{print:?}: {wide} {narrow}"
         );
     }
-    assert!(error(&oblique, &plane, [0.6, 0.5], 0.05, Print::Corrected) < 0.05);
+    assert!(error(&oblique, &plane, [0.6, 0.5], 0.05, Edition::Corrected) < 0.05);
 }
 
 #[test]
@@ -91,7 +91,7 @@ fn planes_on_surfaces_converge() {
         assert!(found > least, "{found} {plane:?}");
     }
     for (system, plane) in read_off::surface_planes().into_iter().take(4) {
-        for print in [Print::Equations, Print::Table] {
+        for print in [Edition::Equations, Edition::Table] {
             let narrow = error(&system, &plane, [0.5, 0.5], 0.02, print);
             assert!(narrow > 0.1, "{print:?}: {narrow}");
         }

@@ -27,7 +27,7 @@ fn traced(system: &System, plane: &Plane) -> [[f64; 4]; 4] {
 }
 
 /// Largest difference between the chain's rays and the traced ones, the offset included.
-fn off(system: &System, plane: &Plane, print: Print) -> f64 {
+fn off(system: &System, plane: &Plane, print: Edition) -> f64 {
     let first = chain(&view(system, plane), print).unwrap();
     let center = lands(system, plane, [0.0; 4]).unwrap();
     let rays = first.rays();
@@ -116,13 +116,13 @@ fn chain_is_the_derivative_of_the_rays() {
     assert!(systems.len() > 180);
     for system in systems {
         let mut plane = after(&system, 0.65);
-        let off_by = off(&system, &plane, Print::Corrected);
+        let off_by = off(&system, &plane, Edition::Corrected);
         assert!(off_by < CLOSE, "{off_by:e} {:?}", system.elements);
         // A plane turned about the ray, its origin aside.
         let x = plane.frame.x * 0.8 + plane.frame.y * 0.6;
         let origin = plane.frame.origin + x * 0.01;
         plane.frame = Frame::new(origin, plane.frame.d, x).unwrap();
-        let off_by = off(&system, &plane, Print::Corrected);
+        let off_by = off(&system, &plane, Edition::Corrected);
         assert!(off_by < CLOSE, "turned: {off_by:e}");
     }
 }
@@ -132,7 +132,7 @@ fn printed_chains_are_not() {
     // Onto a surface none is right; behind a mirror curvature tells.
     let system = mirror(light(), 0.7, [0.0, 0.0], [-0.5, -0.2, 0.0]);
     let plane = after(&system, 0.65);
-    for print in [Print::Equations, Print::Table] {
+    for print in [Edition::Equations, Edition::Table] {
         assert!(off(&system, &plane, print) > 0.1);
     }
 }
@@ -195,9 +195,9 @@ pub(super) fn surface_planes() -> Vec<(System, Plane)> {
 #[test]
 fn surface_planes_are_read_off() {
     for (system, plane) in surface_planes() {
-        let off_by = off(&system, &plane, Print::Corrected);
+        let off_by = off(&system, &plane, Edition::Corrected);
         assert!(off_by < CLOSE, "{off_by:e} {plane:?}");
-        for print in [Print::Equations, Print::Table] {
+        for print in [Edition::Equations, Edition::Table] {
             let oblique = plane.longitude.abs() > 0.1;
             assert!(!oblique || off(&system, &plane, print) > 0.1, "{print:?}");
         }
@@ -208,7 +208,7 @@ fn surface_planes_are_read_off() {
 fn foci_of_a_hollow_sphere() {
     let (theta0, radius) = (0.7_f64, 2.0);
     let system = mirror(beam([0.1, 0.1]), theta0, [0.0; 2], [-1.0 / radius; 3]);
-    let first = chain(&view(&system, &after(&system, 0.5)), Print::Corrected).unwrap();
+    let first = chain(&view(&system, &after(&system, 0.5)), Edition::Corrected).unwrap();
     // Coddington's equations: R/2 · cos θ₀ and R/(2 cos θ₀).
     let expected = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()];
     assert!((expected[0] - 0.764_842).abs() < 1e-6 && (expected[1] - 1.307_459).abs() < 1e-6);
@@ -249,7 +249,7 @@ fn focus_of_a_ball_lens() {
             element("back", half(1.0 + 2.0 * radius, -1.0 / radius), out),
         ],
     );
-    let first = chain(&view(&ball, &after(&ball, 0.1)), Print::Corrected).unwrap();
+    let first = chain(&view(&ball, &after(&ball, 0.1)), Edition::Corrected).unwrap();
     // The focal length n R/(2(n − 1)) counts from the centre (Hecht, Optics).
     let expected = n * radius / (2.0 * (n - 1.0)) - radius;
     for focus in &first.foci {
@@ -264,7 +264,7 @@ fn focus_of_a_ball_lens() {
 #[test]
 fn steps_read_like_a_figure() {
     let system = mirror(projector([0.1, 0.1]), 0.6, [0.0; 2], [-0.5; 3]);
-    let first = chain(&view(&system, &after(&system, 0.7)), Print::Corrected).unwrap();
+    let first = chain(&view(&system, &after(&system, 0.7)), Edition::Corrected).unwrap();
     assert_eq!(
         first.steps,
         [
@@ -285,7 +285,7 @@ fn a_wrong_map_leaves_a_defect() {
     let window = window(Profile::Hann(0.02), Profile::Hann(0.02));
     for system in systems() {
         let view = view(&system, &after(&system, 0.5));
-        let sound = chain(&view, Print::Corrected).unwrap().map;
+        let sound = chain(&view, Edition::Corrected).unwrap().map;
         let found = |map: &SpectrumMap<4>| defect(&view, map, &window).unwrap();
         // Differences over steps of 10⁻⁵ leave 10⁻¹⁰ of a metre, here of two centimetres.
         assert!(found(&sound) < 1e-7, "{:e}", found(&sound));

@@ -11,7 +11,7 @@ fn covariance_of_a_gaussian_beam() {
     let wide = window(Profile::Box(2.0), Profile::Box(1.0));
     let got = exact(&oblique, &plane, &wide, &grid(1, [0.2, 0.2]));
     let got = got.covariance.unwrap();
-    let map = chain(&view(&oblique, &plane), Print::Corrected)
+    let map = chain(&view(&oblique, &plane), Edition::Corrected)
         .unwrap()
         .rays();
     let variance = w * w / std::f64::consts::TAU;

@@ -4,7 +4,7 @@ use crate::geometry::Map;
 use crate::numerics::distance;
 use crate::rays::Plane;
 use crate::testing::{chain_of, opaque, window};
-use crate::{Model, Operator, Parameter, Prediction, View, slices};
+use crate::{Model, Observed, Operator, Parameter, Predicted, slices};
 use etendue_field::{
     Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Image, LatLong, Lobe, Orientation,
     Profile, ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
@@ -16,7 +16,7 @@ use std::sync::Arc;
 const DISTANCE: f64 = 1.0;
 
 /// Two million nodes: errors are far below what these tests look for.
-fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Prediction {
+fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     by(
         system,
         plane,
@@ -32,7 +32,7 @@ fn linearised(
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
-    chain: &Chain,
+    chain: &ReflectionChain,
 ) -> f64 {
     let right = by(system, plane, window, grid, Some(chain));
     let mut near = right.to_first_order.unwrap();
@@ -40,8 +40,8 @@ fn linearised(
     distance(&near, &right.slices)
 }
 
-fn view(system: &System, plane: &Plane) -> View<System> {
-    View {
+fn view(system: &System, plane: &Plane) -> Observed<System> {
+    Observed {
         system: system.clone(),
         plane: *plane,
     }
@@ -52,8 +52,8 @@ fn by(
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
-    chain: Option<&Chain>,
-) -> Prediction {
+    chain: Option<&ReflectionChain>,
+) -> Predicted {
     let budget = Budget {
         nodes: 2e6,
         error: 1e-4,
@@ -314,7 +314,9 @@ fn wrong_operators_are_seen() {
     let grid = grid([1.2 * e; 2]);
     let right = exact(&system, &plane, &window, &grid);
     let sound = chain(&view(&system, &plane)).unwrap();
-    let error = |system: &System, chain: &Chain| linearised(system, &plane, &window, &grid, chain);
+    let error = |system: &System, chain: &ReflectionChain| {
+        linearised(system, &plane, &window, &grid, chain)
+    };
     let least = error(&system, &sound);
     let mut turned = sound.clone();
     // The central ray as if it came along the normal: no cosine, and no mirror direction.
@@ -410,7 +412,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         let masks = crate::mask::Masks::new(&[]);
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
-            let lights = draw::Lights::new(&system, leaving.normal, draw::Strategy::default());
+            let lights = draw::Lights::new(&system, leaving.normal, draw::LightStrategy::default());
             let mut net = crate::nets::Net::new(1);
             let count = 1 << 18;
             let points = (0..count).filter_map(|_| {

@@ -32,13 +32,13 @@ fn opaque(shapes: Vec<Shape>) -> Mask {
 }
 
 /// A light, masks at distances before a receiver, and the distance of the light.
-struct Bench {
+struct TestReceiver {
     light: Light,
     masks: Vec<(f64, Mask)>,
     distance: f64,
 }
 
-impl Bench {
+impl TestReceiver {
     fn new(light: Light, masks: Vec<(f64, Mask)>) -> Self {
         Self {
             light,
@@ -119,7 +119,7 @@ impl Bench {
 
 /// Benches with every kind of light and mask, off the centre so that nothing hides behind a
 /// symmetry.
-fn benches() -> Vec<Bench> {
+fn benches() -> Vec<TestReceiver> {
     let slab = rectangle([0.13, -0.07], [0.5, 0.3]);
     let round = disc([-0.1, 0.12], 0.25);
     let few = vec![
@@ -145,17 +145,17 @@ fn benches() -> Vec<Bench> {
         })
     };
     vec![
-        Bench::new(area(slab, 0.0), vec![]),
-        Bench::new(area(round, 0.0), vec![]),
-        Bench::new(area(slab, 0.0), vec![(1.0, opaque(few.clone()))]),
-        Bench::new(area(round, 0.0), vec![(1.0, opaque(few.clone()))]),
-        Bench::new(
+        TestReceiver::new(area(slab, 0.0), vec![]),
+        TestReceiver::new(area(round, 0.0), vec![]),
+        TestReceiver::new(area(slab, 0.0), vec![(1.0, opaque(few.clone()))]),
+        TestReceiver::new(area(round, 0.0), vec![(1.0, opaque(few.clone()))]),
+        TestReceiver::new(
             area(round, 6.0),
             vec![(1.2, opaque(few)), (0.5, opaque(near.clone()))],
         ),
-        Bench::new(area(slab, 30.0), vec![(0.8, edge.clone())]),
-        Bench::new(area(slab, 0.0), vec![(1.0, grating(0, 6.0))]),
-        Bench::new(
+        TestReceiver::new(area(slab, 30.0), vec![(0.8, edge.clone())]),
+        TestReceiver::new(area(slab, 0.0), vec![(1.0, grating(0, 6.0))]),
+        TestReceiver::new(
             area(round, 3.0),
             vec![(1.1, grating(1, 5.0)), (0.7, edge), (0.4, opaque(near))],
         ),

@@ -7,10 +7,10 @@ use std::f64::consts::PI;
 /// As promised: relative to the irradiance without blockers.
 const CLOSE: f64 = 1e-12;
 
-fn alone(light: Light, distance: f64) -> Bench {
-    Bench {
+fn alone(light: Light, distance: f64) -> TestReceiver {
+    TestReceiver {
         distance,
-        ..Bench::new(light, vec![])
+        ..TestReceiver::new(light, vec![])
     }
 }
 
@@ -114,7 +114,7 @@ fn tiles_that_fill_the_plane_leave_nothing() {
             .collect()
     };
     for exponent in [0.0, 5.0] {
-        let bench = Bench::new(
+        let bench = TestReceiver::new(
             area(disc([-0.1, 0.12], 0.4), exponent),
             vec![(1.0, opaque(tiles(0.11)))],
         );
@@ -188,7 +188,7 @@ fn half_planes_are_very_large_rectangles() {
     let left = rectangle([-0.1 - far, 0.0], [2.0 * far, 4.0 * far]);
     let above = rectangle([far - 0.1, 0.12 + far], [2.0 * far; 2]);
     let [a, b] = [corner, opaque(vec![left, above])]
-        .map(|mask| Bench::new(light.clone(), vec![(1.0, mask)]));
+        .map(|mask| TestReceiver::new(light.clone(), vec![(1.0, mask)]));
     for [x, y] in [[0.0, 0.0], [0.3, 0.2]] {
         let [a, b] = [&a, &b].map(|bench| bench.receiver().irradiance(x, y));
         assert!((a - b).abs() < CLOSE * b && a > 0.0, "{a} {b}");
@@ -201,7 +201,7 @@ fn point_light() {
         rectangle([0.1, 0.0], [0.1, 0.1]),
         disc([-0.1, 0.1], 0.03),
     ]);
-    let bench = Bench::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
+    let bench = TestReceiver::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
     let receiver = bench.receiver();
     let lit = |x: f64, y: f64| {
         let r2 = 4.0 + x * x + y * y;

@@ -65,7 +65,7 @@ pub(super) fn cube(count: u32) -> impl Iterator<Item = [f64; 6]> {
 
 /// The spectrum at frequencies by rays drawn at random through the window and from the light,
 /// followed back.
-fn drawn(bench: &Bench, after: f64, window: &Window, rays: u32) -> Vec<Complex> {
+fn drawn(bench: &TestReceiver, after: f64, window: &Window, rays: u32) -> Vec<Complex> {
     let Light::Area { shape, .. } = bench.light else {
         unreachable!("area lights only")
     };
@@ -165,7 +165,7 @@ fn error_falls_with_the_square_of_the_spacing() {
             .map(Shape::Rectangle)
             .collect(),
     );
-    let bench = Bench::new(
+    let bench = TestReceiver::new(
         area(Shape::Rectangle(square([0.0; 2], 0.2)), 0.0),
         vec![(1.0, mask)],
     );
@@ -201,7 +201,7 @@ fn error_is_told() {
             "{number}: {told:e} {truth:e}"
         );
     }
-    let dark = Bench::new(
+    let dark = TestReceiver::new(
         area(Shape::Rectangle(square([0.0; 2], 0.2)), 0.0),
         vec![(1.0, opaque(vec![rectangle([0.0; 2], [4.0; 2])]))],
     );
@@ -257,7 +257,7 @@ fn any_number_of_threads_gives_the_same_bits() {
 #[test]
 fn hard_shadows_of_a_point_light() {
     let mask = opaque(vec![rectangle([0.1, -0.05], [0.2, 0.15])]);
-    let bench = Bench::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
+    let bench = TestReceiver::new(Light::Point { intensity: 3.0 }, vec![(0.5, mask)]);
     let receiver = bench.receiver();
     let [x, y, u, v] = [2.0, -3.0, 1.0, 0.5];
     // In the turned frame, over a rectangle of the receiver; the shadow is 4/3 as large as the

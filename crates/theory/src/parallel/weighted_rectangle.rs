@@ -21,13 +21,13 @@ const MOST_STRIPS: f64 = 64.0;
 
 /// weight · 1[x in extent 0] · 1[y in extent 1]: a light or a blocker, or a part of one. Metres.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Patch {
+pub(crate) struct WeightedRectangle {
     /// Lowest and highest coordinate along X and along Y; may be infinite.
     pub(crate) extent: [[f64; 2]; 2],
     pub(crate) weight: f64,
 }
 
-impl Patch {
+impl WeightedRectangle {
     pub(crate) fn of_shape(shape: &Shape, discs: Discs) -> Vec<Self> {
         match shape {
             Shape::Rectangle(rectangle) => vec![Self::of_rectangle(rectangle)],
@@ -54,12 +54,12 @@ impl Patch {
 
 /// How the discs of a chain are taken apart: those of the light, then those of each opaque mask.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Fineness(pub(crate) Vec<Discs>);
+pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
-impl Fineness {
+impl DiscResolution {
     /// For spectra up to `frequency`, along position and slope (docs/theory.md, after Eq. 5b).
     pub(crate) fn for_spectrum(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
-        let rates = Rates::new(path, window, frequency);
+        let rates = EdgeBandwidth::new(path, window, frequency);
         let nodes = Self::of(path, |radius, plane| {
             let nodes = (PI * radius * rates.at(plane)).ceil() + SPARE_NODES;
             Discs::Rule(whole(nodes.min(MOST_NODES)))
@@ -137,7 +137,7 @@ impl Fineness {
 
 /// How fast integrals over the lines x − h u = c may change with c: they are the spectrum of all
 /// the rest of the field along the line of frequencies (Ωx − γ, Ωu + h γ).
-struct Rates {
+struct EdgeBandwidth {
     /// Largest |Ωx| and |Ωu|, shifted by gratings.
     frequency: [f64; 2],
     /// What the window adds to them.
@@ -146,7 +146,7 @@ struct Rates {
     planes: Vec<f64>,
 }
 
-impl Rates {
+impl EdgeBandwidth {
     fn new(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
         let [x, y, u, v] = [&window.x, &window.y, &window.u, &window.v].map(Profile::half_width);
         // A spot is as narrow as 1/√n.
