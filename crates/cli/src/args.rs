@@ -75,7 +75,7 @@ pub(crate) struct RunArgs {
     #[arg(long, value_name = "OUTCOME")]
     pub(crate) expect: Option<Expect>,
 
-    /// Edition nothing but errors
+    /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
 }
@@ -108,7 +108,7 @@ pub(crate) struct MeasureArgs {
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 
-    /// Edition nothing but errors
+    /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
 }
@@ -137,7 +137,7 @@ pub(crate) struct PredictArgs {
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 
-    /// Edition nothing but errors
+    /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
 }
@@ -171,7 +171,7 @@ pub(crate) struct CompareArgs {
     #[arg(long, value_name = "OUTCOME")]
     pub(crate) expect: Option<Expect>,
 
-    /// Edition nothing but errors
+    /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
 }

@@ -87,8 +87,8 @@ impl Agreement {
         }
     }
 
-    /// Photons that bring the noise to the resolution; `None` where the error of the prediction alone
-    /// is above that, or noise is not what keeps the test from a verdict.
+    /// Photons that bring the noise to the resolution; `None` where the error of the prediction
+    /// alone is above that, or noise is not what keeps the test from a verdict.
     pub(crate) fn photons_needed(
         &self,
         emitted: u64,

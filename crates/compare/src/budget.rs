@@ -12,8 +12,9 @@ const SHARE: f64 = 0.25;
 /// Fewest rays, for runs with few photons.
 const FEWEST: f64 = 1.1e6;
 
-/// A prediction ends when its error is half of the photons' noise, with which the smallest detectable
-/// change is 12 % larger than with none, or when it has taken about as long as tracing the photons.
+/// A prediction ends when its error is half of the photons' noise, with which the smallest
+/// detectable change is 12 % larger than with none, or when it has taken about as long as tracing
+/// the photons.
 pub(crate) fn budget(scene: &Scene) -> Budget {
     let photons = scene.run.photons as f64;
     Budget {

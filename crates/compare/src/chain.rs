@@ -38,7 +38,7 @@ pub fn chain(scene: &Scene, plane: &VirtualPlane) -> Chain {
             .extend([cosine, Operator::Diffuse { name, albedo }]);
     }
     walk.travel(&plane.name, plane.distance);
-    if plane.quantity == Quantity::DifferentialIrradiance {
+    if plane.leg == 0 && plane.quantity == Quantity::DifferentialIrradiance {
         let name = plane.name.clone();
         walk.operators.push(Operator::Cosine { name });
     }

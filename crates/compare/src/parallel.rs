@@ -1,6 +1,6 @@
 //! What keeps a plane from the theory of light between parallel planes.
 
-use etendue_field::{Frame, Light, Orientation, Profile, VirtualPlane};
+use etendue_field::{Frame, Light, Orientation, Profile, Quantity, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -31,6 +31,9 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
     if plane.orientation != Orientation::Orthogonal {
         found.push(format!("{:?}", plane.orientation));
     }
+    if plane.leg > 0 && plane.quantity == Quantity::DifferentialIrradiance {
+        found.push("the cosine of light that a surface has reflected".to_owned());
+    }
     if plane.leg > 1 {
         found.push(format!("{} reflections in a row", plane.leg));
     }
@@ -48,7 +51,10 @@ const ROUNDING: f64 = 1e-6;
 /// not lie across the path. On the way back flat ones across the path count too.
 fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     let mut found = Vec::new();
-    let visited = |object| scene.path.visits(object);
+    // What light visits only later may stand in its way before.
+    let ends = (0..=plane.leg).filter_map(|leg| scene.path.ends_at(leg));
+    let ends: Vec<Object> = ends.map(|hit| hit.object).collect();
+    let visited = |object| ends.contains(&object);
     for (i, surface) in scene.surfaces.iter().enumerate() {
         let name = &surface.name;
         if !visited(Object::Surface(i)) && (plane.leg > 0 || surface.across().is_none()) {

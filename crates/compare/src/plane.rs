@@ -117,7 +117,8 @@ impl Compared<'_> {
         let agrees = if self.is_dark() {
             self.inside() == 0
         } else {
-            p_value.is_some_and(|p| p >= test.level)
+            // Residuals that are all zero have no p.
+            p_value.is_none_or(|p| p >= test.level)
         };
         let photons_needed = self.photons_needed(&agreement, test);
         let open = self.open_question(&agreement, agrees, photons_needed, test);

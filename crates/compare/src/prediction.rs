@@ -2,7 +2,6 @@
 
 use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
-use crate::chain::chain;
 use crate::class::Class;
 use crate::first_order::FirstOrder;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
@@ -73,8 +72,8 @@ impl Prediction {
         self.quadrature_error.filter(|_| self.is_statistical())
     }
 
-    /// What theory predicts for a plane of a scene. Where no theory applies it is that of its chain
-    /// as far as the chain goes: see [`Self::reference`].
+    /// What theory predicts for a plane of a scene: nothing where none applies, and
+    /// [`Self::reference`] takes its place.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane, applicability: &Applicability) -> Self {
         let empty = Self::darkness(scene, plane, applicability);
@@ -85,7 +84,7 @@ impl Prediction {
         let over = (&plane.window, &plane.grid, &cells);
         match &applicability.theory {
             Theory::Parallel(chain) => empty.by(chain, over, budget(scene), |_| None),
-            Theory::None => empty.by(&chain(scene, plane), over, budget(scene), |_| None),
+            Theory::None => empty,
             Theory::Specular(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
                 FirstOrder::new(scene, view, over, exact)
             }),

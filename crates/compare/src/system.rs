@@ -1,7 +1,7 @@
 //! Smooth surfaces read off the scene, for rays and for reflection by a BRDF.
 
 use crate::chain::stands_before;
-use etendue_field::{Light, Mask, Orientation, Side, VirtualPlane};
+use etendue_field::{Light, Mask, Orientation, Side, Specular, VirtualPlane};
 use etendue_scene::{Event, Hit, Object, Scene};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Element, Plane, System};
@@ -30,11 +30,14 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
                     event,
                 })
             }
-            Object::Mesh(i) => Some(Element {
-                name: scene.meshes[i].name.clone(),
-                patch: scene.meshes[i].osculating(&hit)?,
-                event: scene.meshes[i].smooth.as_ref()?.event,
-            }),
+            Object::Mesh(i) => {
+                let mesh = &scene.meshes[i];
+                Some(Element {
+                    name: mesh.name.clone(),
+                    patch: mesh.osculating(&hit)?,
+                    event: seen_from(mesh.smooth.as_ref()?.event, mesh.is_met_on_its_back(&hit)),
+                })
+            }
             Object::Surface(_) => None,
         })
         .collect();
@@ -49,12 +52,28 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
     })
 }
 
+/// An event of a surface whose front is turned to the light.
+fn seen_from(event: Specular, back: bool) -> Specular {
+    match event {
+        Specular::Refraction {
+            front,
+            back: behind,
+        } if back => Specular::Refraction {
+            front: behind,
+            back: front,
+        },
+        event => event,
+    }
+}
+
 /// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
 /// plane is not on the second leg, where the first surface has no BRDF, and where the scene holds
 /// an object off the path.
 #[must_use]
 pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scattering::System>> {
-    if plane.leg != 1 || !is_free(scene) {
+    // A plane on the next surface has that one's coordinates.
+    let is_on_next = plane.side == Side::Before && plane.orientation != Orientation::Orthogonal;
+    if plane.leg != 1 || is_on_next || !is_free(scene) {
         return None;
     }
     let Object::Patch(i) = scene.path.legs[1].leaves?.object else {

@@ -12,15 +12,7 @@ impl MeshObject {
     /// curvatures are the principal ones, and it is on the side the light comes from. `None` where there are too few vertices.
     #[must_use]
     pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
-        let distance = |corners: &[DVec3; 3]| {
-            let middle: DVec3 = corners.iter().sum::<DVec3>() / 3.0;
-            middle.distance_squared(hit.point)
-        };
-        let nearest = self
-            .triangles
-            .iter()
-            .min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
-        let [a, b, c] = *nearest;
+        let [a, b, c] = self.triangles[self.nearest(hit)?];
         let edge = a.distance(b).max(b.distance(c)).max(c.distance(a));
         let corners = self.triangles.as_flattened();
         let near = corners
@@ -48,6 +40,22 @@ impl MeshObject {
             curvature: [curvature(cos, sin), curvature(-sin, cos), 0.0],
             aperture: far,
         })
+    }
+
+    /// Whether light comes to a hit from the side that the mesh's normals point away from.
+    #[must_use]
+    pub fn is_met_on_its_back(&self, hit: &Hit) -> bool {
+        let nearest = self.nearest(hit);
+        nearest.is_some_and(|i| self.normal(i, hit.point).dot(hit.normal) < 0.0)
+    }
+
+    /// The triangle whose middle is nearest to a hit.
+    fn nearest(&self, hit: &Hit) -> Option<usize> {
+        let distance = |i: &usize| {
+            let middle: DVec3 = self.triangles[*i].iter().sum::<DVec3>() / 3.0;
+            middle.distance_squared(hit.point)
+        };
+        (0..self.triangles.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
 }
 

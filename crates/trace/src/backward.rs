@@ -265,6 +265,10 @@ impl Backward {
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
+        // Light begins in the plane across the central ray at its centre.
+        if leg == 0 && end <= 0.0 {
+            return 0.0;
+        }
         let this = &self.legs[leg];
         if !matches!(this.ends, Some(Object::Surface(_))) {
             let leaves = this.leaves.as_ref();

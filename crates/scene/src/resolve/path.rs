@@ -346,7 +346,7 @@ impl MeshObject {
     }
 
     /// The normal at a point of a triangle, outward as it is wound.
-    fn normal(&self, triangle: usize, point: DVec3) -> DVec3 {
+    pub(crate) fn normal(&self, triangle: usize, point: DVec3) -> DVec3 {
         let corners = &self.triangles[triangle];
         match &self.smooth {
             Some(smooth) => interpolated_normal(corners, &smooth.normals[triangle], point),

@@ -31,8 +31,8 @@ const NODES_OF_DERIVATIVES: u32 = 1 << 15;
 /// Nodes of a net before its error is first looked at.
 const FIRST: u32 = 1 << 11;
 
-/// Fewest nodes of a net that a prediction stops with because its error is small: nets that have not
-/// met their heavy rays yet agree too well.
+/// Fewest nodes of a net that a prediction stops with because its error is small: nets that have
+/// not met their heavy rays yet agree too well.
 const LEAST: u32 = 1 << 14;
 
 /// When to stop adding nodes.
@@ -99,8 +99,8 @@ struct Running {
     count: f64,
 }
 
-/// The first field, summed over the nodes of independent nets, which are doubled until the budget says to stop. The same bytes
-/// on any number of threads.
+/// The first field, summed over the nodes of independent nets, which are doubled until the budget
+/// says to stop. The same bytes on any number of threads.
 pub(crate) fn sums(
     integrand: &(impl Integrand + ?Sized),
     (window, grid): (&Window, &SliceGrid),

@@ -97,7 +97,8 @@ pub(crate) enum Emitter {
 
 impl Emitter {
     /// # Panics
-    /// When light goes through a picture or comes from far away: `rays` and `scattering` predict that.
+    /// When light goes through a picture or comes from far away: `rays` and `scattering` predict
+    /// that.
     pub(crate) fn new(light: &Light) -> Self {
         match *light {
             Light::Area {

@@ -107,7 +107,7 @@ fn eliminate(nodes: &[Vec<f64>; 2], value: impl Fn(f64, f64) -> f64) -> Vec<[Vec
     }
 }
 
-/// FrequencyRow, column and absolute value of the largest element.
+/// Row, column and absolute value of the largest element.
 fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
     let mut best = (0, 0, 0.0);
     for (i, row) in matrix.iter().enumerate() {

@@ -1,12 +1,12 @@
 //! Windowed spectra behind specular surfaces, by following rays (docs/theory.md, section 8).
 //!
 //! In goes a [`System`]: a light, masks across its first leg, and the mirrors, refracting surfaces
-//! and lenses that the central ray visits. In goes a [`Plane`]. The [`Observed`](crate::Observed) of both
-//! is a [`Model`](crate::Model): it follows rays through the real geometry and sums them, by a rule
-//! where that converges and over scrambled nets elsewhere.
-//! Beside it are the [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) read off
-//! the same system, and the [`linear()`] prediction that it makes. So a measured difference from the
-//! first-order chain splits into noise, linearisation and faults.
+//! and lenses that the central ray visits. In goes a [`Plane`]. The [`Observed`](crate::Observed)
+//! of both is a [`Model`](crate::Model): it follows rays through the real geometry and sums them,
+//! by a rule where that converges and over scrambled nets elsewhere. Beside it are the
+//! [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) read off the same system,
+//! and the [`linear()`] prediction that it makes. So a measured difference from the first-order
+//! chain splits into noise, linearisation and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
 //! (x, y) are along X and Y. A ray carries flux:

@@ -62,9 +62,8 @@ impl Masks<'_> {
             (Light::Beam { irradiance, image }, _) => ([0.0; 2], irradiance * image.value(x, y)),
             (Light::Area { .. } | Light::Environment { .. }, _) => ([0.0; 2], 0.0),
         };
-        // Behind its plane a light does not shine; one from far away shines forward everywhere.
-        let is_behind = z <= 0.0 && !matches!(light, Light::Environment { .. });
-        let passes = if weight > 0.0 && !is_behind {
+        // Light begins in its plane, also that from far away.
+        let passes = if weight > 0.0 && z > 0.0 {
             self.transmittance(point, slopes)
         } else {
             0.0

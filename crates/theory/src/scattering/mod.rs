@@ -1,16 +1,17 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
 //! In goes a [`System`]: a light, masks across its way, and a curved surface with a BRDF that may
-//! vary over it. In goes a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or across
-//! its way onwards. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums rays of
-//! the plane over scrambled nets, and for each of them a
-//! part of the light that shines on the point it leaves,
+//! vary over it. In goes a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or
+//! across its way onwards. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model):
+//! it sums rays of the plane over scrambled nets, and for each of them a part of the light that
+//! shines on the point it leaves,
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi.
 //!
-//! Beside it is the chain of first-order operators (Durand et al. 2005, section 4): affine maps onto
-//! the surface and off it, a product with the clamped cosine, and a convolution with the lobe of the
-//! BRDF that the central ray meets. What it is off, and derivatives, are sums over the same rays.
+//! Beside it is the chain of first-order operators (Durand et al. 2005, section 4): affine maps
+//! onto the surface and off it, a product with the clamped cosine, and a convolution with the lobe
+//! of the BRDF that the central ray meets. What it is off, and derivatives, are sums over the same
+//! rays.
 //!
 //! This module shares no intersection, no BRDF and no sampling with the tracers.
 

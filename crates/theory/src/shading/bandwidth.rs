@@ -30,8 +30,8 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Eq. 20 of Durand et al. 2005, corrected: Ω_ρ |1 + 2kd/cos θ₁|, for an environment with content
-    /// at all frequencies.
+    /// Eq. 20 of Durand et al. 2005, corrected: Ω_ρ |1 + 2kd/cos θ₁|, for an environment with
+    /// content at all frequencies.
     #[must_use]
     pub fn environment(&self) -> f64 {
         self.lobe_cutoff * self.doubled_shear().abs()

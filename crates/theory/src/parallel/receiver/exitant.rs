@@ -25,8 +25,8 @@ const ORDER: i32 = 2;
 /// Places in a cell of a projection along each axis, at least.
 const PLACES: usize = 4;
 
-/// Radiance that leaves the receiver, times the area of a node. DiffuseReflection turns the frame round:
-/// x' = −x, y' = y, as D' = −D and X' = −X.
+/// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame
+/// round: x' = −x, y' = y, as D' = −D and X' = −X.
 pub(super) struct ExitantTable {
     axes: [Axis; 2],
     /// x' and y' of the nodes: the middles of equal cells.
