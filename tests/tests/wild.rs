@@ -268,7 +268,7 @@ fn a_blocker_in_a_later_leg_is_decided() {
 /// So is light that meets a surface twice; rays of theory meet it once.
 #[test]
 fn a_hollow_met_twice_is_decided() {
-    let scene = scene("hollow_twice");
+    let scene = edited("hollow_twice", &[MORE]);
     for plane in 0..2 {
         decided_by_reference(&scene, plane, |scene, reference| {
             by_specular(scene, plane, reference)

@@ -32,7 +32,8 @@ pub struct FirstOrderChain {
     /// ‖first order − exact‖/‖exact‖ as computed, by the corrected formulas.
     pub error: f64,
     /// What stays of its error as the neighbourhood of the central ray shrinks: zero but for
-    /// rounding if every map is right (see [`rays::defect`]).
+    /// rounding if every map is right (see [`rays::defect`]). Of the printed formulas where
+    /// `slices` are of those.
     pub defect: f64,
     /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
     /// formulas.
@@ -88,6 +89,9 @@ impl FirstOrder {
             Some((chain, linear))
         };
         let (corrected, mut linear) = by(Edition::Corrected)?;
+        if exact.is_dark() {
+            return None;
+        }
         let matrix = corrected.rays().matrix;
         let mut chain = FirstOrderChain {
             error: distance(&linear.slices, &exact.slices),
@@ -115,7 +119,7 @@ impl FirstOrder {
         view: &Observed<scattering::System>,
         exact: &Predicted,
     ) -> Option<Self> {
-        let chain = scattering::chain(view)?;
+        let chain = scattering::chain(view).filter(|_| !exact.is_dark())?;
         let difference = exact.to_first_order.as_ref()?;
         let near = |slices: &Slices| Slices {
             half: &slices.half + &difference.half,

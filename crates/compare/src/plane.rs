@@ -1,6 +1,7 @@
 //! A plane of a measurement held against its prediction.
 
 use crate::agreement::{Agreement, UNSEEN};
+use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
@@ -170,7 +171,14 @@ impl Compared<'_> {
         } else if inside == 0 {
             Some(format!("none of {emitted} photons came into the window"))
         } else if self.is_sparse() {
-            Some(format!("too few photons in the window, {inside}{needs}"))
+            let of = if self.prediction.class == Class::Reference {
+                "photons, or rays of the other tracer,"
+            } else {
+                "photons, or rays of the prediction,"
+            };
+            Some(format!(
+                "too few {of} in the window: {inside} photons{needs}"
+            ))
         } else if agreement.is_blurred(self.prediction, agrees) {
             let error = percent(self.prediction.systematic_error().unwrap_or_default());
             Some(format!(
@@ -196,7 +204,12 @@ impl Compared<'_> {
             None
         } else if self.is_sparse() {
             let batches = self.measurement.batches().len() as f64;
-            Some((emitted as f64 * EACH * batches / inside as f64).ceil())
+            // Of n replicates that hold m rays in the mean n e⁻ᵐ are empty.
+            let all = self.prediction.replicates.len() as f64;
+            let empty = self.prediction.replicates.iter().filter(|r| is_dark(r));
+            let each = (all / empty.count() as f64).ln();
+            let more = (EACH * batches / inside as f64).max(EACH / each);
+            more.is_finite().then(|| (emitted as f64 * more).ceil())
         } else {
             agreement.photons_needed(emitted, self.prediction, test)
         }
@@ -207,7 +220,7 @@ impl Compared<'_> {
     }
 
     fn is_dark(&self) -> bool {
-        self.predicted.half.iter().all(|f| f.norm_sqr() <= 0.0)
+        is_dark(self.predicted)
     }
 
     /// Whether a batch of photons, or a replicate of the prediction, found no light: so few say
@@ -215,7 +228,6 @@ impl Compared<'_> {
     fn is_sparse(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
         let mut replicates = self.prediction.replicates.iter();
-        let is_dark = |slices: &Slices| slices.half.iter().all(|f| f.norm_sqr() <= 0.0);
         batches.any(|batch| batch.tally.inside == 0) || replicates.any(is_dark)
     }
 
@@ -309,6 +321,10 @@ fn covariance(
         predicted,
         propagated,
     }))
+}
+
+fn is_dark(slices: &Slices) -> bool {
+    slices.half.iter().all(|f| f.norm_sqr() <= 0.0)
 }
 
 /// The predicted slices, set to zero where they are the rounding errors of a dark field.

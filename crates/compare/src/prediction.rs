@@ -56,10 +56,9 @@ pub struct PredictedParameter {
 }
 
 impl Prediction {
-    /// Whether the slices have a statistical error, which their replicates show; also where no ray
-    /// was found that could show one.
+    /// Whether the slices have a statistical error, which their replicates show.
     pub(crate) fn is_statistical(&self) -> bool {
-        !self.replicates.is_empty() || self.quadrature_error == Some(f64::INFINITY)
+        !self.replicates.is_empty()
     }
 
     /// ‖error‖/‖slices‖ that no replicates show.

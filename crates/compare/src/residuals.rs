@@ -104,7 +104,7 @@ impl Residuals {
         sum / Complex::from(self.count() as f64)
     }
 
-    /// The variance of [`Self::mean`] from the spread of the batches (docs/theory.md, Eq. 12).
+    /// The variance of [`Self::mean`] from the spread of the batches (docs/theory.md (12)).
     pub(crate) fn variance(&self) -> Array3<f64> {
         let mean = self.mean();
         let mut variance = Array3::zeros(self.grid.half_shape());
@@ -296,8 +296,8 @@ fn check(measured: &Slices, predicted: &Slices) {
     assert_eq!(measured, predicted, "frequencies measured and predicted");
 }
 
-/// The radial power of the mean of independent replicates, without their noise (docs/theory.md, Eq.
-/// 13): crossed with each other they have none in common. [ρ, ν].
+/// The radial power of the mean of independent replicates, without their noise (docs/theory.md
+/// (13)): crossed with each other they have none in common. [ρ, ν].
 pub(crate) fn crossed_power(replicates: &[Slices]) -> Array2<f64> {
     let grid = replicates[0].grid;
     let mut sum = Array3::<Complex>::zeros(grid.half_shape());

@@ -68,7 +68,7 @@ impl Profile {
         }
     }
 
-    /// The profile inside its support as a sum of cosines (docs/theory.md, Eq. 3).
+    /// The profile inside its support as a sum of cosines (docs/theory.md (3)).
     ///
     /// Exact for Hann and Box. A Gaussian is written as the sum of its copies a period 2L apart, a
     /// Fourier series; L is chosen so that the copies add less than 10⁻¹⁶ inside the cut, and terms

@@ -14,7 +14,7 @@ pub struct SliceEstimate {
     pub batches: usize,
     /// The mean S̄ of the batches S_r.
     pub mean: Slices,
-    /// σ², the variance of the mean (docs/theory.md, Eq. 12): E|S̄ − E S̄|², estimated without bias by Σ|S_r − S̄|²/(R(R−1)), also
+    /// σ², the variance of the mean (docs/theory.md (12)): E|S̄ − E S̄|², estimated without bias by Σ|S_r − S̄|²/(R(R−1)), also
     /// when the batches differ in size. [azimuth, ρ ≥ 0, ν].
     pub variance: Array3<f64>,
 }

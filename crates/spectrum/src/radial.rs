@@ -16,7 +16,7 @@ pub struct RadialPower {
     pub sigma: Array2<f64>,
 }
 
-/// The power spectrum of a plane by crossing independent batches (docs/theory.md, Eq. 13):
+/// The power spectrum of a plane by crossing independent batches (docs/theory.md (13)):
 ///
 /// U = (|Σ S_r|² − Σ |S_r|²)/(R(R−1)),
 ///

@@ -81,6 +81,14 @@ pub struct Predicted {
     pub to_first_order: Option<Slices>,
 }
 
+impl Predicted {
+    /// Whether no light was found.
+    #[must_use]
+    pub fn is_dark(&self) -> bool {
+        self.slices.half.iter().all(|f| f.norm_sqr() <= 0.0)
+    }
+}
+
 /// A system of surfaces, and the plane at which its light is looked at.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Observed<S> {

@@ -1,6 +1,6 @@
 //! Numbers of a model that a measurement may be asked for.
 
-use etendue_field::{Light, Shape};
+use etendue_field::{Light, Patch, Shape};
 
 /// A number of a [`Model`](crate::Model). Indices are those of the operators of a chain, or of the
 /// elements of a system.
@@ -108,6 +108,29 @@ impl Parameter {
         }
         Some(())
     }
+}
+
+/// Curvatures of a patch that are parameters, as axes: those that are alike are one.
+pub(crate) fn curvatures(patch: &Patch) -> Vec<usize> {
+    let [k1, k2, _] = patch.curvature;
+    if same(k1, k2) { vec![0] } else { vec![0, 1] }
+}
+
+/// Gives a patch another curvature along an axis, and all that equal it.
+pub(crate) fn change_curvature(patch: &mut Patch, axis: usize, new: New<'_>) -> Option<()> {
+    let old = *patch.curvature.get(axis)?;
+    let value = new(old);
+    for (i, k) in patch.curvature.iter_mut().enumerate() {
+        if i == axis || old != 0.0 && same(*k, old) {
+            *k = value;
+        }
+    }
+    Some(())
+}
+
+/// Whether two curvatures are one but for rounding.
+fn same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
 }
 
 /// The new value of a parameter as a function of the old one.

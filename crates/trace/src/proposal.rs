@@ -35,7 +35,7 @@ impl Follower {
         Self { half, kind }
     }
 
-    /// For slopes of light that a surface receives, up to `half`: as the cosine weighs them in 2D (docs/theory.md, Eq. 6).
+    /// For slopes of light that a surface receives, up to `half`: as the cosine weighs them in 2D (docs/theory.md (6)).
     pub(crate) fn cosine(half: f64) -> Self {
         let kind = Kind::Cosine;
         Self { half, kind }

@@ -17,7 +17,7 @@ use ndarray::{ArrayViewMut2, Axis};
 use spread::{Placement, spread};
 use std::fmt;
 
-/// The plan of the slice transform: all slices of a sum of weighted rays (docs/theory.md, Eq. 11),
+/// The plan of the slice transform: all slices of a sum of weighted rays (docs/theory.md (11)),
 ///
 /// S_φ(ρ, ν) = Σ w e^(−2πi (ρ p + ν q)),  p = x cos φ + y sin φ,  q = u cos φ + v sin φ,
 ///

@@ -25,7 +25,7 @@ pub struct FullRadial {
     pub sigma: Array2<f64>,
 }
 
-/// The power of a spectrum by crossing the independent groups it is the sum of (docs/theory.md, Eq. 13), bin by bin.
+/// The power of a spectrum by crossing the independent groups it is the sum of (docs/theory.md (13)), bin by bin.
 ///
 /// Group r holds the share a_r of the batches and G_r of the spectrum, G = Σ G_r. E G_r = a_r F, so
 ///

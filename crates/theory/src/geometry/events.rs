@@ -6,7 +6,7 @@ impl Map<2> {
     /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
     ///
     /// Incidence, curvature, mirror, back, outgoing at −θ₀. The product is x' = −x, θ' = −θ −
-    /// (2k/cos θ₀) x (docs/theory.md, Eq. 26): both shears of a curved surface add up (Durand et
+    /// (2k/cos θ₀) x (docs/theory.md (26)): both shears of a curved surface add up (Durand et
     /// al. 2005, step 6).
     #[must_use]
     pub fn mirror_reflection(theta0: f64, k: f64) -> Self {

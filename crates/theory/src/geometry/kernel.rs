@@ -17,7 +17,7 @@ const LARGEST: f64 = 1e5;
 /// Frequencies in cycles per unit slope and per radian. Absolute error below 10⁻¹³, K being π at
 /// most, for frequencies up to 160; not a number beyond 10⁵. It takes a time proportional to Ωθ.
 ///
-/// π times Bateman's function k_b(a) with a = 2πΩv, b = 2πΩθ (docs/theory.md, Eq. 30). K(−Ωv, −Ωθ)
+/// π times Bateman's function k_b(a) with a = 2πΩv, b = 2πΩθ (docs/theory.md (30)). K(−Ωv, −Ωθ)
 /// = K(Ωv, Ωθ), K(0, Ωθ) = π sinc(b/2).
 #[must_use]
 pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {

@@ -2,7 +2,7 @@ use super::SpectrumMap;
 use super::matrix::{self, Matrix, congruent, diagonal, plus, times, transpose};
 use etendue_field::Complex;
 
-/// An affine map of rays, z' = A z + t, that keeps radiance (docs/theory.md, Eq. 1).
+/// An affine map of rays, z' = A z + t, that keeps radiance (docs/theory.md (1)).
 ///
 /// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No
 /// other N has constructors.

@@ -2,7 +2,7 @@
 //!
 //! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step turns
 //! it into z' = A z + t and keeps its radiance, and so turns the spectrum L into L'(Ω) = |det A|
-//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md, Eq. 1). That is a [`Map`]; everything else here makes one,
+//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). That is a [`Map`]; everything else here makes one,
 //! or says what one does to rays, spectra and covariances. Steps are chained by [`Map::then`] in
 //! the order in which light meets them:
 //!

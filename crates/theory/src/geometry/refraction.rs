@@ -42,7 +42,7 @@ impl Map<2> {
     /// Refraction of local directions, Snell's law made linear at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
     /// θ₀/(n₂ cos θ₂).
     ///
-    /// By differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md, Eq. 27); the paper has no
+    /// By differentiating n₁ sin θ = n₂ sin θ' (docs/theory.md (27)); the paper has no
     /// refraction. Directions stay flipped, and light goes on through the surface: the next step
     /// back into a light frame is the inverse of the incidence at θ₂. `None` where all light is
     /// reflected, and at the critical angle, where there is no derivative.
@@ -62,7 +62,7 @@ impl Map<4> {
     /// incidence.
     ///
     /// The tangential part of n ω is the same on both sides; along B that is n sin φ, along T it is
-    /// n cos φ sin θ, where cos φ is 1 to first order (docs/theory.md, Eq. 27).
+    /// n cos φ sin θ, where cos φ is 1 to first order (docs/theory.md (27)).
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let in_plane = Map::<2>::refraction(theta0, media)?;

@@ -21,7 +21,7 @@ impl<const N: usize> Map<N> {
 
     /// A thin lens of focal length f, in metres: u' = u − x/f, v' = v − y/f. Positive f converges.
     ///
-    /// The ideal lens: it images planes onto planes exactly in slopes (docs/theory.md, Eq. 24). The
+    /// The ideal lens: it images planes onto planes exactly in slopes (docs/theory.md (24)). The
     /// paper has no lens.
     #[must_use]
     pub fn thin_lens(focal_length: f64) -> Self {

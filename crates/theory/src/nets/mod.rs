@@ -70,11 +70,11 @@ pub(crate) trait Integrand: Sync {
 }
 
 impl Predicted {
-    /// Of light of which no ray was found.
+    /// Of light of which no ray was found, in any of the nets.
     pub(crate) fn dark(grid: &SliceGrid, picture: &ProjectionGrid) -> Self {
         Self {
             slices: Slices::zeros(*grid),
-            replicates: Vec::new(),
+            replicates: vec![Slices::zeros(*grid); REPLICATES],
             error: Some(f64::INFINITY),
             unblocked: 0.0,
             projection: Projection {
@@ -306,7 +306,7 @@ pub(crate) fn mean<'a>(slices: impl ExactSizeIterator<Item = &'a Slices>) -> Sli
     sum
 }
 
-/// ‖σ‖/‖F‖, σ being the standard error of the mean (docs/theory.md, Eq. 12).
+/// ‖σ‖/‖F‖, σ being the standard error of the mean (docs/theory.md (12)).
 fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone) -> f64 {
     let r = slices.len() as f64;
     let mean = mean(slices.clone());

@@ -12,7 +12,7 @@ pub struct Source {
 /// What happens to the light field on its way.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Operator {
-    /// Free travel (docs/theory.md, Eq. 2): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d
+    /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d
     /// Ωx) (Durand et al. 2005, Eq. 3). As a map it is
     /// [`Map::travel`](crate::geometry::Map::travel); here distances add up, and polygons are
     /// sheared.
@@ -32,7 +32,7 @@ pub enum Operator {
         /// What it lets through; coordinates relative to the central ray.
         mask: Mask,
     },
-    /// A product with G = (1 + u² + v²)⁻² (docs/theory.md, Eq. 7): radiance becomes differential
+    /// A product with G = (1 + u² + v²)⁻² (docs/theory.md (7)): radiance becomes differential
     /// irradiance.
     Cosine {
         /// Name of the surface.

@@ -28,7 +28,7 @@ impl Discs {
     }
 }
 
-/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md, Eq. 5b).
+/// Σ w_jk 1[|x| < R cos t_j] 1[|y| < R sin t_k], t_j = π (2j + 1)/4n (docs/theory.md (5b)).
 ///
 /// It stands for the disc under every integral with something smooth: ∫ A(R cos t) dB(R sin t), A
 /// and B being the integrals over the two rectangles' sides, once A and B have been written in the

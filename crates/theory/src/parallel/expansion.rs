@@ -57,7 +57,7 @@ pub(crate) struct Columns {
 }
 
 /// The light field of a path inside a window, multiplied out: brightness · Σ products · Σ terms
-/// (docs/theory.md, Eqs. 4 and 5d).
+/// (docs/theory.md (4) and (5d)).
 ///
 /// A rectangle in a plane at distance h is a strip x − h u ∈ [low, high] times one in (y, v), so
 /// the product source · Π_layers (1 − Σ blockers) is a signed sum of products of convex polygons.

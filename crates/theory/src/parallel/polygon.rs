@@ -1,5 +1,5 @@
 //! Convex polygons in the (position, slope) plane of one axis, and their exact Fourier transforms
-//! (docs/theory.md, Eq. 5).
+//! (docs/theory.md (5)).
 //!
 //! Lengths are in units of the half-widths of the window, so that 1 is the size of everything.
 

@@ -60,7 +60,8 @@ impl Chain {
             let step = STEP * parameter.scale(self.value(*parameter)?);
             Moved::new(self, *parameter, step.min(most), &into)
         };
-        parameters.iter().filter_map(moved).collect()
+        let moved: Option<Vec<_>> = parameters.iter().map(moved).collect();
+        moved.expect("parameters of the chain")
     }
 
     /// The chain as a system of rays, or as a flat surface that scatters.

@@ -1,5 +1,5 @@
 //! Factors of slope alone: (1 + u² + v²)^p times the slope profiles of a window, as a short sum of
-//! products of cosine series (docs/theory.md, Eq. 5d).
+//! products of cosine series (docs/theory.md (5d)).
 //!
 //! The product is taken apart by elimination with complete pivoting, a(u) b(v) at a time (Townsend
 //! and Trefethen 2013), and each factor is fitted by cosines of a period longer than the window,

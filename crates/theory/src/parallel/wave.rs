@@ -54,7 +54,7 @@ impl Wave {
     }
 
     /// ½ (1 + m cos(2π f t + p)), t = x − `distance` · u: a grating as the plane sees it
-    /// (docs/theory.md, Eq. 5c).
+    /// (docs/theory.md (5c)).
     pub(crate) fn of_grating(grating: &Grating, distance: f64, half: [f64; 2]) -> [Self; 2] {
         let f = grating.frequency;
         let frequency = [f * half[0], -f * distance * half[1]];

@@ -6,7 +6,7 @@ use super::{System, predict};
 use crate::Work;
 use crate::model::{Model, Moved, Observed, Over, Predicted};
 use crate::nets::{Budget, work_of_nets};
-use crate::parameter::{New, Parameter, resize};
+use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
 use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
 use glam::{DQuat, DVec3};
 
@@ -35,11 +35,8 @@ impl Model for Observed<System> {
                 Specular::Refraction { .. } => all.push(Parameter::Index(i)),
             }
             all.push(Parameter::Incidence(i));
-            all.push(Parameter::Curvature(i, 0));
-            let [k1, k2, k3] = element.patch.curvature;
-            if !(same(k1, k2) && same(k1, k3) && k1 != 0.0) {
-                all.push(Parameter::Curvature(i, 1));
-            }
+            let axes = curvatures(&element.patch).into_iter();
+            all.extend(axes.map(|axis| Parameter::Curvature(i, axis)));
         }
         if plane.orientation == Orientation::Orthogonal || plane.arriving {
             all.push(Parameter::Travel(system.elements.len()));
@@ -140,15 +137,7 @@ impl Observed<System> {
     fn curve(&mut self, i: usize, axis: usize, new: New<'_>) -> Option<()> {
         let is_last = i + 1 == self.system.elements.len();
         let patch = &mut self.system.elements.get_mut(i)?.patch;
-        let current = *patch.curvature.get(axis)?;
-        let value = new(current);
-        let sphere_or_cylinder = patch.curvature[2] != 0.0;
-        for (k, other) in patch.curvature.iter_mut().enumerate() {
-            let goes_along = sphere_or_cylinder && current != 0.0 && same(*other, current);
-            if k == axis || goes_along {
-                *other = value;
-            }
-        }
+        change_curvature(patch, axis, new)?;
         // A leaving plane with local normals is on the surface itself.
         if is_last && !self.plane.arriving && self.plane.patch.is_some() {
             self.plane.patch = Some(*patch);
@@ -204,8 +193,4 @@ fn tilted(frame: &Frame, hit: &Hit, by: f64) -> Frame {
         y: turn * frame.y,
         d: turn * frame.d,
     }
-}
-
-fn same(a: f64, b: f64) -> bool {
-    (a - b).abs() <= 1e-12 * a.abs().max(b.abs())
 }

@@ -7,10 +7,10 @@ use crate::geometry::{Map, SpectrumMap};
 use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over, Predicted};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
-use etendue_field::{Complex, Mask, Slices, TwoPlane, Window};
+use etendue_field::{Complex, FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
-/// Where neither is asked for.
+/// Of a prediction that needs neither picture nor moments.
 const NO_PICTURES: Budget = Budget {
     nodes: 0.0,
     error: f64::INFINITY,
@@ -145,6 +145,17 @@ fn flux(system: &System, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
     system.emitted(ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
 }
 
+/// Where slices are by a rule, nets make pictures and moments alone.
+const NO_FREQUENCIES: SliceGrid = SliceGrid {
+    azimuths: 1,
+    rho: NO_FREQUENCY,
+    nu: NO_FREQUENCY,
+};
+const NO_FREQUENCY: FrequencyAxis = FrequencyAxis {
+    half: 1,
+    spacing: 1.0,
+};
+
 fn summed(
     field: &impl RayField,
     system: &System,
@@ -171,20 +182,17 @@ fn summed(
         neighbourhood: lands,
     };
     let by_rule = is_smooth.then(|| finder.slices(grid)).flatten();
-    let budget = if by_rule.is_some() {
-        of_pictures
-    } else {
-        of_slices
-    };
-    let by_nets = nets::sums(&drawn[..], (window, grid), picture.bins, budget);
+    // A rule that meets no light is no proof that there is none.
+    let by_rule = by_rule.filter(|(slices, _)| slices.half.iter().any(|f| f.norm_sqr() > 0.0));
+    let by_nets = |grid, budget| nets::sums(&drawn[..], (window, grid), picture.bins, budget);
     match by_rule {
         Some((slices, error)) => Predicted {
             slices,
             replicates: Vec::new(),
             error: Some(error),
-            ..by_nets
+            ..by_nets(&NO_FREQUENCIES, of_pictures)
         },
-        None => by_nets,
+        None => by_nets(grid, of_slices),
     }
 }
 

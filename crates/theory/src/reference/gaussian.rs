@@ -20,7 +20,7 @@ pub(crate) struct Gaussian {
     pub(crate) b: f64,
 }
 
-/// What light has become after a distance under the window (docs/theory.md, Eq. 9).
+/// What light has become after a distance under the window (docs/theory.md (9)).
 struct Travelled {
     distance: f64,
     /// 1/a².
@@ -88,7 +88,7 @@ impl Grating {
 
 /// The field |x − D v| < w/2 of an area light of width w at distance D under the window: q^(−1/2)
 /// exp(−πω²/q) ∫ exp(−πPy² − 2πiQy) dy over the light, with ω = Ωv + DΩx, q = D²/a² + 1/b², P =
-/// 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md, Eq. 9).
+/// 1/(a²b²q), Q = Ωx − Dω/(a²q) (docs/theory.md (9)).
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
@@ -106,7 +106,7 @@ pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 
 }
 
 /// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the
-/// area light's factor (docs/theory.md, Eq. 20).
+/// area light's factor (docs/theory.md (20)).
 #[must_use]
 pub(crate) fn point_light(distance: f64, window: &Gaussian, k: [f64; 2]) -> f64 {
     let travelled = Travelled::new(distance, window);
@@ -130,7 +130,7 @@ pub(crate) fn spot(
 
 /// The field of a disc of radius R at distance D, in 4D under the window of a and b along both
 /// axes: q⁻¹ exp(−π|ω|²/q) 2π ∫₀ᴿ r exp(−πPr²) J₀(2π|Q|r) dr, ω and Q being vectors
-/// (docs/theory.md, Eq. 21).
+/// (docs/theory.md (21)).
 ///
 /// Frequencies (Ωx, Ωy, Ωu, Ωv). The disc is centred, so the spectrum is real.
 #[must_use]
@@ -169,7 +169,7 @@ pub(crate) struct Tilted {
 
 /// The spectra of a field alone, with x < 0 blocked and with x > 0 blocked: F₀ = γ^(−1/2)
 /// exp(−πΩv²/γ) a exp(−πa²Ω'²), and F₀/2 ∓ i/√π times the same without its last exponential times
-/// Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md, Eq. 22).
+/// Dawson(√π a Ω'), with 1/a² = α − β²/γ and Ω' = Ωx − βΩv/γ (docs/theory.md (22)).
 #[must_use]
 pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     let Tilted { alpha, beta, gamma } = *field;
@@ -229,7 +229,7 @@ pub(crate) fn blocked_by_strip(
 
 /// A field times g(v) = (1 + v²)^(−3/2), from the same field under other Gaussian windows:
 /// g(v) = 4/√π ∫₀^∞ s² exp(−s²) exp(−s²v²) ds adds s²/π to 1/b²
-/// (docs/theory.md, Eq. 8).
+/// (docs/theory.md (8)).
 ///
 /// The integrand is even and analytic in s: the trapezoid rule converges exponentially.
 #[must_use]

@@ -14,8 +14,8 @@ pub(crate) struct JitteredArray {
 }
 
 /// The expected power E|B̂(Ω)|² of the blocked part B = Σ rect((x − xₙ)/s) of a jittered array, in
-/// m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ) (docs/theory.md, Eq.
-/// 10).
+/// m²: s² sinc²(sΩ) [N (1 − sinc²(jΩ)) + D² sinc²(jΩ)], D = sin(πNpΩ)/sin(πpΩ) (docs/theory.md
+/// (10)).
 ///
 /// The first term is the noise of the offsets, the second what is left of the lines of a regular
 /// array.

@@ -55,7 +55,7 @@ impl<'a> Linear<'a> {
 
     /// The radiance that leaves along the ray at z of the plane, of what a part of the light shines
     /// there, per unit of its measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being the mirror
-    /// direction about the normal (docs/theory.md, Eq. 41).
+    /// direction about the normal (docs/theory.md (41)).
     pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: Part) -> f64 {
         let local = self.off.apply(z);
         let point = self.point(local);

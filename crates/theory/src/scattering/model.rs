@@ -4,7 +4,7 @@ use super::{System, chain, predict};
 use crate::Work;
 use crate::model::{Model, Moved, Observed, Over, Predicted};
 use crate::nets::{Budget, work_of_nets};
-use crate::parameter::{New, Parameter};
+use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use etendue_field::{Complex, Light, Lobe, Reflectance};
 
 /// Step of a derivative, as a share of the parameter's scale.
@@ -23,13 +23,9 @@ impl Model for Observed<System> {
             ..
         } = &self.system;
         let mut all = Parameter::of_light(light);
-        let [k1, k2, _] = patch.curvature;
-        if k1 != 0.0 {
-            all.push(Parameter::Curvature(0, 0));
-        }
-        if k2 != 0.0 && (k2 - k1).abs() > 1e-12 * k1.abs() {
-            all.push(Parameter::Curvature(0, 1));
-        }
+        let axes = curvatures(patch).into_iter();
+        let curved = axes.filter(|axis| patch.curvature[*axis] != 0.0);
+        all.extend(curved.map(|axis| Parameter::Curvature(0, axis)));
         all.push(Parameter::Albedo);
         if reflectance.brdf.lobe != Lobe::Lambertian {
             all.push(Parameter::Lobe);
@@ -69,15 +65,7 @@ impl Model for Observed<System> {
                 | Lobe::Beckmann { roughness: number }
                 | Lobe::Ggx { roughness: number } => *number = new(*number),
             },
-            Parameter::Curvature(0, axis) => {
-                let old = *patch.curvature.get(axis)?;
-                let value = new(old);
-                for k in &mut patch.curvature {
-                    if (*k - old).abs() <= 1e-12 * old.abs() {
-                        *k = value;
-                    }
-                }
-            }
+            Parameter::Curvature(0, axis) => change_curvature(patch, axis, new)?,
             _ => parameter.change_light(light, new)?,
         }
         Some(())

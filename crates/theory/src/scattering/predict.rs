@@ -14,7 +14,7 @@ use glam::DVec3;
 /// The windowed spectrum of what a surface scatters, with the derivatives by what was moved.
 ///
 /// Rays are drawn at the plane, and for each four parts of the light that shines on the point it
-/// leaves (docs/theory.md, Eq. 40). `chain` is that of [`chain`](super::chain()); it tells where
+/// leaves (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it tells where
 /// rays are worth drawing. The same bytes on any number of threads.
 ///
 /// What the chain predicts, and the derivatives, are differences of the radiance of the same rays:

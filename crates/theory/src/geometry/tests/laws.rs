@@ -68,7 +68,7 @@ fn thin_lens_between_travels() {
 fn closed_form_of_a_mirror() {
     let (theta0, k) = (0.7_f64, -0.4);
     let c0 = theta0.cos();
-    let expected = Map::<2>::linear([[-1.0, 0.0], [-2.0 * k / c0, -1.0]]); // docs/theory.md, Eq. 26
+    let expected = Map::<2>::linear([[-1.0, 0.0], [-2.0 * k / c0, -1.0]]); // docs/theory.md (26)
     let mirror = Map::<2>::mirror_reflection(theta0, k);
     assert!(apart(&mirror, &expected) < ROUNDING);
     assert!((mirror.focus().unwrap() + c0 / (2.0 * k)).abs() < ROUNDING);

@@ -24,7 +24,7 @@ const FEW: usize = 16;
 enum SlopePower {
     /// p = 0.
     Flat,
-    /// p = 2: the cosine of a Lambertian receiver with du dv, G of docs/theory.md, Eq. 7.
+    /// p = 2: the cosine of a Lambertian receiver with du dv, G of docs/theory.md (7).
     Cosine,
     /// p = n/2.
     Half(i32),
@@ -258,7 +258,7 @@ impl Density<'_> {
     }
 }
 
-/// ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md, Eq. 15).
+/// ∫∫ (1 + u² + v²)⁻² du dv over a rectangle (docs/theory.md (15)).
 fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
     let corner = |u: f64, v: f64| {
         let side = |u: f64, v: f64| {

@@ -28,7 +28,7 @@ impl Axis {
     }
 
     /// K(t) = ∫ W(t + a u) W(u) e^(−2πi(ω (t + a u) + ν u)) du at some coordinates t and one
-    /// frequency (docs/theory.md, Eq. 19).
+    /// frequency (docs/theory.md (19)).
     pub(crate) fn at(&self, coordinates: &[f64], [omega, nu]: [f64; 2]) -> Vec<Complex> {
         let rule = self.rule([omega, nu]);
         let wave = |x: f64, u: f64| Complex::cis(-TAU * (omega * x + nu * u));
