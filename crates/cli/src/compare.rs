@@ -3,7 +3,7 @@ use crate::batches::{self, Held};
 use crate::conclude::{Case, Ending, conclude, plan};
 use crate::failure::Failure;
 use crate::results::{MEASUREMENT, PREDICTION, Results};
-use crate::stored::Stored;
+use crate::stored::{Stored, check_earlier};
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
 use crate::{predictions, progress, say};
@@ -25,6 +25,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     stage.finish_and_clear();
     watch.lap("read");
     let plan = plan(&case.scene, &[], inputs, args.force.force);
+    check_earlier(&args.out, &case.scene, args.force.force)?;
     let results = Results::claim(&args.out, plan)?;
     let (held, all) = (case.measurement.batches().len(), case.scene.run.batches);
     if !args.quiet && held < all as usize {

@@ -1,5 +1,6 @@
 use crate::args::{Expect, Save};
 use crate::failure::Failure;
+use crate::inquiry::inquire;
 use crate::method::Method;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
@@ -70,8 +71,9 @@ pub(crate) fn conclude(
     let stage = progress::stage("comparing", ending.quiet);
     let planes = compared(case)?;
     watch.lap("compare");
+    let inquiries = stage.suspend(|| inquire(case, &planes, ending.quiet))?;
     stage.set_message("writing results");
-    let summary = Summary::new(case, &planes);
+    let summary = Summary::new(case, &planes, inquiries);
     let finished = written(case, ending, results, &summary, &planes, watch)?;
     stage.finish_and_clear();
     finished.tell_replaced(ending.quiet);

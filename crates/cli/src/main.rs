@@ -15,6 +15,7 @@ mod export;
 mod failure;
 mod field;
 mod files;
+mod inquiry;
 mod interrupt;
 mod limits;
 mod load;

@@ -2,10 +2,10 @@
 
 use crate::failure::Failure;
 use crate::npz::NpzFile;
-use crate::results::{Finished, MOST_INDEX, Results};
+use crate::results::{Finished, MOST_INDEX, Results, SUMMARY};
 use crate::summary::json;
 use crate::{load, machine, sealed};
-use etendue_scene::{Scene, SceneFile, read_below, scene_hash};
+use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json as tree_of};
@@ -196,6 +196,31 @@ impl<T> Stored<T> {
     /// What is wrong with the index, for the user.
     pub(crate) fn fault(&self, what: impl Display) -> Failure {
         Failure::bad_input(format!("{}: {what}", self.path.display()))
+    }
+}
+
+/// Fails where a folder holds a result of another scene, so that no result takes the place of one
+/// that only shares its name. How a scene was measured does not count.
+pub(crate) fn check_earlier(folder: &Path, scene: &Scene, force: bool) -> Result<(), Failure> {
+    let path = folder.join(SUMMARY);
+    let earlier = read_file(&path, MOST_INDEX).ok();
+    let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let Some(mut earlier) =
+        earlier.and_then(|mut earlier| Some(earlier.get_mut("scene_file")?.take()))
+    else {
+        return Ok(());
+    };
+    let mut now = serde_json::to_value(&scene.file).unwrap_or_default();
+    for tree in [&mut earlier, &mut now] {
+        tree.as_object_mut().map(|fields| fields.remove("run"));
+    }
+    match difference(&earlier, &now).filter(|_| !force) {
+        None => Ok(()),
+        Some((field, earlier, now)) => Err(Failure::cannot_run(format!(
+            "{} holds the result of another scene, in which {field} is {earlier} and not {now}: \
+             choose another folder with --out, or replace it with --force",
+            folder.display()
+        ))),
     }
 }
 

@@ -1,10 +1,11 @@
 use crate::conclude::Case;
+use crate::inquiry::Inquiry;
 use crate::machine;
 use crate::method::Method;
 use crate::stored::VERSION;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
-use etendue_scene::Emission;
+use etendue_scene::{Emission, SceneFile};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;
@@ -15,6 +16,8 @@ pub(crate) struct Summary {
     pub(crate) scene: String,
     /// BLAKE3 of the scene: of its file, defaults and overrides included, and of what it names.
     pub(crate) scene_hash: String,
+    /// The scene as it was run, defaults and overrides included.
+    pub(crate) scene_file: SceneFile,
     pub(crate) version: &'static str,
     pub(crate) seed: u64,
     pub(crate) method: Method,
@@ -30,10 +33,12 @@ pub(crate) struct Summary {
     pub(crate) verdict: Verdict,
     pub(crate) alpha: f64,
     pub(crate) planes: Vec<PlaneReport>,
+    /// What the other tracer says of planes that fail.
+    pub(crate) inquiries: Vec<Inquiry>,
 }
 
 impl Summary {
-    pub(crate) fn new(case: &Case, planes: &[PlaneComparison]) -> Self {
+    pub(crate) fn new(case: &Case, planes: &[PlaneComparison], inquiries: Vec<Inquiry>) -> Self {
         let Case {
             scene,
             method,
@@ -50,6 +55,7 @@ impl Summary {
         Self {
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
+            scene_file: scene.file.clone(),
             version: VERSION,
             seed: scene.run.seed,
             method: *method,
@@ -61,6 +67,7 @@ impl Summary {
             verdict: worst.unwrap_or(Verdict::Pass),
             alpha: scene.run.alpha,
             planes: reports,
+            inquiries,
         }
     }
 
@@ -113,6 +120,8 @@ impl Stopwatch {
     pub(crate) fn json(&self, photons: u64) -> Vec<u8> {
         #[derive(Serialize)]
         struct Timing {
+            /// What was typed.
+            command: Vec<String>,
             seconds: BTreeMap<&'static str, f64>,
             threads: usize,
             /// Emitted photons over the seconds of tracing and transforming.
@@ -120,7 +129,9 @@ impl Stopwatch {
             peak_memory_bytes: Option<u64>,
         }
         let trace = self.seconds.iter().find(|(stage, _)| *stage == "trace");
+        let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         json(&Timing {
+            command: words.collect(),
             seconds: self.seconds.iter().copied().collect(),
             threads: rayon::current_num_threads(),
             photons_per_second: trace.map(|(_, seconds)| photons as f64 / seconds),

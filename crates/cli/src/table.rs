@@ -39,6 +39,8 @@ fn text(summary: &Summary) -> String {
         );
     }
     lines.extend(summary.planes.iter().filter_map(on_chain));
+    let inquiries = summary.inquiries.iter();
+    lines.extend(inquiries.map(|inquiry| format!("{}: {}", inquiry.plane, inquiry.finding)));
     lines.push(format!("verdict: {}", verdict_text(summary)));
     lines.join("\n")
 }

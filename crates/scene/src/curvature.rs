@@ -4,12 +4,15 @@ use crate::scene::{Hit, MeshObject};
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
-/// Longest edges of the triangle hit within which vertices count.
+/// Longest edges of the triangle hit within which vertices count for the tangent plane.
 const EDGES: f64 = 6.0;
+/// And for curvature: normals turn linearly over a few triangles alone.
+const EDGES_OF_NORMALS: f64 = 2.5;
 
 impl MeshObject {
-    /// The paraboloid that lies closest, by least squares, to the vertices around a hit: its frame has the principal directions there, its
-    /// curvatures are the principal ones, and it is on the side the light comes from. `None` where there are too few vertices.
+    /// The paraboloid that stands for the mesh around a hit, by least squares: its tangent plane is that of the vertices, and its curvatures
+    /// are those of their normals, between which light interpolates. Its frame has the principal directions, and it is on the side the light
+    /// comes from. `None` where there are too few vertices, or the mesh is not smooth.
     #[must_use]
     pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
         let [a, b, c] = self.triangles[self.nearest(hit)?];
@@ -25,12 +28,25 @@ impl MeshObject {
             let [_, s, t, ..] = quadric(&frame, &near, edge)?;
             frame = frame.turned_to((frame.d - s * frame.x - t * frame.y).normalize());
         }
-        let [h, _, _, ss, st, tt] = quadric(&frame, &near, edge)?;
-        // h = … + ½ (ss s² + 2 st s t + tt t²): the principal axes of that form, turned over, since convex is positive.
+        let [h, ..] = quadric(&frame, &near, edge)?;
+        let side = if self.is_met_on_its_back(hit) {
+            -1.0
+        } else {
+            1.0
+        };
+        let normals = self.smooth.as_ref()?.normals.as_flattened().iter();
+        let near: Vec<(DVec3, DVec3)> = corners
+            .iter()
+            .zip(normals.map(|normal| side * normal))
+            .filter(|(p, _)| p.distance(hit.point) < EDGES_OF_NORMALS * edge)
+            .map(|(p, normal)| (frame.to_local(*p), frame.vector_to_local(normal)))
+            .collect();
+        let [ss, st, tt] = shape(&near, edge)?;
+        // The principal axes of the form ss s² + 2 st s t + tt t².
         let angle = 0.5 * (2.0 * st).atan2(ss - tt);
         let (sin, cos) = angle.sin_cos();
         let along = cos * frame.x + sin * frame.y;
-        let curvature = |c: f64, s: f64| -(ss * c * c + 2.0 * st * c * s + tt * s * s);
+        let curvature = |c: f64, s: f64| ss * c * c + 2.0 * st * c * s + tt * s * s;
         let far = corners
             .iter()
             .map(|p| p.distance(hit.point))
@@ -59,13 +75,36 @@ impl MeshObject {
     }
 }
 
+/// The derivatives of normals by place, n = n₀ + S (s, t) by least squares, S symmetric: ss, st and tt, per metre, convex positive.
+fn shape(points: &[(DVec3, DVec3)], unit: f64) -> Option<[f64; 3]> {
+    let rows = points.iter().flat_map(|(at, normal)| {
+        let DVec3 { x, y, .. } = *at / unit;
+        [
+            [1.0, 0.0, x, y, 0.0, normal.x],
+            [0.0, 1.0, 0.0, x, y, normal.y],
+        ]
+    });
+    let [_, _, ss, st, tt] = least_squares(rows)?;
+    Some([ss, st, tt].map(|entry| entry / unit))
+}
+
 /// h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, of the quadratic in (s, t) closest to points (s, t, h).
 fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
-    // Normal equations, bordered by their right side.
-    let mut m = [[0.0; 7]; 6];
-    for point in points {
+    let rows = points.iter().map(|point| {
         let DVec3 { x, y, z } = frame.to_local(*point) / unit;
-        let row = [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y, z];
+        [1.0, x, y, 0.5 * x * x, x * y, 0.5 * y * y, z]
+    });
+    let [h, s, t, ss, st, tt] = least_squares(rows)?;
+    Some([h * unit, s, t, ss / unit, st / unit, tt / unit])
+}
+
+/// The numbers x with which rows [a, b] come closest to a · x = b. `None` where rows do not tell them.
+fn least_squares<const N: usize, const M: usize>(
+    rows: impl Iterator<Item = [f64; M]>,
+) -> Option<[f64; N]> {
+    // Normal equations, bordered by their right side.
+    let mut m = [[0.0; M]; N];
+    for row in rows {
         for (i, line) in m.iter_mut().enumerate() {
             for (entry, value) in line.iter_mut().zip(row) {
                 *entry += row[i] * value;
@@ -73,7 +112,7 @@ fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
         }
     }
     // Elimination; the matrix is symmetric and positive, so no pivot is looked for.
-    for i in 0..6 {
+    for i in 0..N {
         let pivot = m[i][i];
         if pivot <= 1e-9 {
             return None;
@@ -90,6 +129,5 @@ fn quadric(frame: &Frame, points: &[DVec3], unit: f64) -> Option<[f64; 6]> {
         }
         m[i] = line;
     }
-    let [h, s, t, ss, st, tt] = m.map(|line| line[6]);
-    Some([h * unit, s, t, ss / unit, st / unit, tt / unit])
+    Some(m.map(|line| line[N]))
 }
