@@ -26,12 +26,11 @@ const STEEPEST: f64 = 30.0;
 
 impl System {
     pub(super) fn emission(&self) -> Emission {
-        let (inner, image, shape) = match self.light {
-            Light::Projector { image, .. } => ([2, 3], Some(image), None),
-            Light::Point { .. } => ([2, 3], None, None),
-            Light::Beam { image, .. } => ([0, 1], Some(image), None),
-            Light::Area { shape, .. } => ([2, 3], None, Some(shape)),
-            Light::Environment { .. } => from_far_away(),
+        let image = self.light.image();
+        let inner = if self.light.is_distant() {
+            [0, 1]
+        } else {
+            [2, 3]
         };
         let mut cycles = [0.0; 2];
         if let Some(image) = image {
@@ -49,7 +48,7 @@ impl System {
         }
         Emission {
             inner,
-            shape,
+            shape: self.light.shape().copied(),
             reach: image.map_or([STEEPEST; 2], |image| image.width.map(|w| GAUSSIAN * w)),
             cycles,
         }
@@ -58,9 +57,7 @@ impl System {
     /// The densities of the two coordinates of a picture, in proportion to it; `None` where there
     /// is none.
     pub(super) fn picture_densities(&self) -> Option<[Density; 2]> {
-        let (Light::Projector { image, .. } | Light::Beam { image, .. }) = self.light else {
-            return None;
-        };
+        let image = self.light.image()?;
         let along = |axis: usize| {
             let width = image.width[axis];
             let grating = image.grating.filter(|g| g.axis == axis);

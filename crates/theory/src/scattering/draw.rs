@@ -47,7 +47,7 @@ impl LightStrategy {
 
     /// This one without what makes no difference to a system.
     pub(super) fn in_effect(self, system: &System) -> Self {
-        let has_extent = has_extent(&system.light);
+        let has_extent = system.light.has_extent();
         let has_lobe = angular_width(&system.reflectance.brdf).is_some();
         let has_center = !matches!(system.light, Light::Environment { .. });
         Self {
@@ -132,9 +132,9 @@ impl Mirrored {
         };
         // What the central point of the light, or the axis of a beam, shines along.
         let free = match system.light {
-            Light::Beam { .. } => 0,
             Light::Environment { .. } => return None,
-            Light::Area { .. } | Light::Point { .. } | Light::Projector { .. } => 2,
+            Light::Beam { .. } => 0,
+            _ => 2,
         };
         let onto = &chain.onto;
         let (places, _) = inverted(&block(onto, 0, free))?;
@@ -155,10 +155,8 @@ impl Mirrored {
             phi0 + phi + from[1] - arrives[1],
         ];
         let (inverse, determinant) = inverted(&by(2))?;
-        let light = match &system.light {
-            Light::Area { shape, .. } => radius(shape) / chain.distance,
-            _ => 0.0,
-        };
+        let shape = system.light.shape();
+        let light = shape.map_or(0.0, |shape| radius(shape) / chain.distance);
         Some(Self {
             first,
             at: by(0),
@@ -243,7 +241,7 @@ impl<'a> Lights<'a> {
     /// A part of the light, and its density in the part's measure.
     pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(Part, f64)> {
         let light = &self.system.light;
-        if !has_extent(light) {
+        if !light.has_extent() {
             return Some((Part::Whole, 1.0));
         }
         if !self.by_lobe {
@@ -320,11 +318,6 @@ impl<'a> Lights<'a> {
             Part::Sky { .. } | Part::Whole => 1.0,
         }
     }
-}
-
-/// Whether light comes to a point from more than one direction.
-fn has_extent(light: &Light) -> bool {
-    matches!(light, Light::Area { .. } | Light::Environment { .. })
 }
 
 /// The slopes of light along a direction, if it goes forward.
