@@ -71,19 +71,22 @@ impl System {
         };
         Some([along(0)?, along(1)?])
     }
+}
 
-    /// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves the light.
-    pub(super) fn emitted(&self, ray: [f64; 4]) -> f64 {
-        let [x, y, u, v] = ray;
-        let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();
-        match self.light {
-            Light::Projector { intensity, image } => intensity * image.value(u, v) * cosine.powi(3),
-            Light::Point { intensity } => intensity * cosine.powi(3),
-            Light::Beam { irradiance, image } => irradiance * image.value(x, y),
-            Light::Area {
-                radiance, exponent, ..
-            } => radiance * cosine.powi(4) * cosine.powf(exponent),
-            Light::Environment { .. } => from_far_away(),
+/// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves a light.
+pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
+    let [x, y, u, v] = ray;
+    let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();
+    match light {
+        Light::Projector { intensity, image } => intensity * image.value(u, v) * cosine.powi(3),
+        Light::Point { intensity } => intensity * cosine.powi(3),
+        Light::Beam { irradiance, image } => irradiance * image.value(x, y),
+        Light::Area {
+            radiance, exponent, ..
+        } => radiance * cosine.powi(4) * cosine.powf(*exponent),
+        // Its rays leave no plane.
+        Light::Environment { .. } => {
+            panic!("rays of an environment are not followed from the light")
         }
     }
 }
@@ -104,9 +107,4 @@ pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
             [x + r * cos, y + r * sin]
         }
     }
-}
-
-/// A ray of an environment leaves no plane.
-fn from_far_away() -> ! {
-    panic!("rays of an environment are not followed from the light")
 }
