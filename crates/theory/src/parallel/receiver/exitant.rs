@@ -2,7 +2,6 @@
 
 use super::Receiver;
 use super::kernel::{Axis, Kernels};
-use crate::parallel::chain::Emitter;
 use crate::parallel::row::FrequencyRow;
 use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2};
@@ -119,12 +118,10 @@ impl Receiver<'_> {
 
     /// The width of the light.
     fn width(&self) -> f64 {
-        match self.light {
-            Emitter::Area { shape, .. } => match shape {
-                Shape::Rectangle(r) => r.size[0].min(r.size[1]),
-                Shape::Disc(d) => d.radius,
-            },
-            Emitter::Point { .. } => 0.0,
+        match self.light.shape {
+            Some(Shape::Rectangle(r)) => r.size[0].min(r.size[1]),
+            Some(Shape::Disc(d)) => d.radius,
+            None => 0.0,
         }
     }
 
