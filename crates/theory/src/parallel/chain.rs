@@ -179,7 +179,7 @@ impl Path<'_> {
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
             Mask::Opaque { shapes, .. } => Some(&shapes[..]),
-            Mask::Grating(_) => None,
+            _ => None,
         });
         std::iter::once(self.light_shapes())
             .chain(of_masks)

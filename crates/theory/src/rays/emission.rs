@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::nets::Density;
-use etendue_field::{Light, Mask, Shape};
+use etendue_field::{Light, Shape};
 use std::f64::consts::{PI, TAU};
 
 /// What the light's rays are counted by: two of the coordinates x, y, u, v, and for an area light
@@ -41,7 +41,7 @@ impl System {
             }
         }
         for (distance, mask) in &self.layers {
-            if let Mask::Grating(grating) = mask {
+            if let Some(grating) = mask.grating() {
                 let per_unit = if inner[0] == 0 { 1.0 } else { *distance };
                 cycles[grating.axis] += grating.frequency.abs() * per_unit;
             }

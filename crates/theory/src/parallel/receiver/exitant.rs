@@ -109,7 +109,7 @@ impl Receiver<'_> {
             let grown = self.distance / beyond;
             let is_told = |length: f64| length * grown > LEAST * cell;
             let penumbra = self.width() * barrier.distance / beyond;
-            match barrier.grating {
+            match barrier.mask.grating() {
                 Some(grating) => is_told(1.0 / grating.frequency.abs()),
                 None => penumbra > LEAST * cell || barrier.shapes.narrowest().is_none_or(is_told),
             }
@@ -131,7 +131,7 @@ impl Receiver<'_> {
         let width = self.width();
         let lengths = self.barriers.iter().map(|barrier| {
             let beyond = self.distance - barrier.distance;
-            match barrier.grating {
+            match barrier.mask.grating() {
                 Some(grating) => self.distance / (beyond * grating.frequency.abs()),
                 None => width * barrier.distance / beyond,
             }

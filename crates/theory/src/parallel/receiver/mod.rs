@@ -135,7 +135,7 @@ impl<'a> Receiver<'a> {
         let frequency = |axis: usize| {
             let gratings = barriers
                 .iter()
-                .filter_map(|b| b.grating.map(|g| bundle.grating(&g, b.distance)));
+                .filter_map(|b| b.mask.grating().map(|g| bundle.grating(g, b.distance)));
             let along = gratings.filter(|g| g.axis == axis);
             along.map(|g| g.frequency.abs()).sum()
         };
@@ -225,7 +225,7 @@ impl<'a> Receiver<'a> {
     fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> Density<'_> {
         let gratings = barriers
             .iter()
-            .filter_map(|b| b.grating.map(|g| bundle.grating(&g, b.distance)));
+            .filter_map(|b| b.mask.grating().map(|g| bundle.grating(g, b.distance)));
         Density {
             integrator: &self.integrator,
             gratings: gratings.collect(),
