@@ -4,13 +4,14 @@
 //! window, the lobe of the BRDF and the light, and where two of them compete, half of the rays are
 //! drawn by each and all are weighed by the mixture (the balance heuristic, Veach and Guibas 1995).
 
+use super::brdf::angular_width;
 use super::exact::Leaving;
 use super::incoming::{Part, secant};
 use super::sky::Sky;
 use super::{ReflectionChain, System};
 use crate::geometry::{Map, Matrix, product, times};
 use crate::nets::Density;
-use etendue_field::{Brdf, Frame, Light, Lobe, Shape, Window};
+use etendue_field::{Frame, Light, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -364,15 +365,6 @@ impl LobeDensity {
         // Per steradian of normals, and four times their cosine of those of light.
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())
-    }
-}
-
-/// Radians from the mirror direction within which most of a lobe lies; `None` where that is all.
-fn angular_width(brdf: &Brdf) -> Option<f64> {
-    match brdf.lobe {
-        Lobe::Lambertian => None,
-        Lobe::Phong { exponent } => Some((2.0 / (exponent + 1.0)).sqrt()),
-        Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => Some(2.0 * roughness),
     }
 }
 
