@@ -6,7 +6,7 @@ use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{deliver, limits, load, method, progress, say};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
-use etendue_field::{Lobe, VirtualPlane};
+use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
 use etendue_theory::shading::Criterion;
 use std::path::PathBuf;
@@ -260,9 +260,9 @@ fn beyond_criteria(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
             plane.name
         ));
     }
-    if reflectance.brdf.lobe == Lobe::Lambertian {
+    if !reflectance.brdf.lobe.is_about_mirror() {
         warnings.push(format!(
-            "{}: {name} is Lambertian; criteria are of lobes",
+            "{}: the lobe of {name} is about its normal; criteria are of those about the mirror direction",
             plane.name
         ));
     }

@@ -74,7 +74,7 @@ fn half_width(scene: &Scene, planes: &[&VirtualPlane]) -> f64 {
             shapes,
             half_planes,
         } => Some((shapes, half_planes)),
-        Mask::Grating(_) => None,
+        _ => None,
     });
     let ends = layers.flat_map(|(shapes, half_planes)| {
         let shapes = shapes.iter().flat_map(|shape| shape.bounds().extent(0));

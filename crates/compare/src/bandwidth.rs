@@ -28,10 +28,11 @@ pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
     }
     let chain = scattering::chain(&view)?;
     let lobe_cutoff = match system.reflectance.brdf.lobe {
-        Lobe::Lambertian => 0.0,
         Lobe::Phong { exponent } => cutoff(shading::Lobe::Phong { exponent }),
         Lobe::Beckmann { roughness } => cutoff(shading::Lobe::Beckmann { roughness }),
         Lobe::Ggx { roughness } => cutoff(shading::Lobe::Ggx { roughness }),
+        // It is about the normal.
+        _ => 0.0,
     };
     let last = system.layers.last().map(|(distance, _)| *distance);
     let edge = if system.light.is_distant() {

@@ -4,7 +4,7 @@ use crate::budget::budget;
 use crate::residuals::Residuals;
 use crate::system::print;
 use crate::verdict::Verdict;
-use etendue_field::{Light, Profile, Shape, Slices, Window};
+use etendue_field::{Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{Edition, Map, Matrix};
@@ -183,24 +183,21 @@ fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Mat
     // What has no width gets one that is narrow beside the window; what has no end adds no inverse.
     let narrow = window.map(|v| 1e8 / v);
     let picture = |w: f64| TAU / (w * w);
-    let inverse = match system.light {
-        Light::Projector { image, .. } => {
-            let [u, v] = image.width.map(picture);
-            [narrow[0], narrow[1], u, v]
-        }
-        Light::Beam { image, .. } => {
-            let [x, y] = image.width.map(picture);
-            [x, y, narrow[2], narrow[3]]
-        }
-        Light::Point { .. } => [narrow[0], narrow[1], 0.0, 0.0],
-        Light::Area { shape, .. } => {
-            let [x, y] = match shape {
-                Shape::Rectangle(r) => r.size.map(|side| 12.0 / (side * side)),
-                Shape::Disc(disc) => [4.0 / (disc.radius * disc.radius); 2],
-            };
+    let light = &system.light;
+    let [a, b] = light
+        .image()
+        .map_or([0.0; 2], |image| image.width.map(picture));
+    let inverse = match light.shape() {
+        Some(Shape::Rectangle(r)) => {
+            let [x, y] = r.size.map(|side| 12.0 / (side * side));
             [x, y, 0.0, 0.0]
         }
-        _ => return None,
+        Some(Shape::Disc(disc)) => {
+            let inverse = 4.0 / (disc.radius * disc.radius);
+            [inverse, inverse, 0.0, 0.0]
+        }
+        None if light.is_distant() => [a, b, narrow[2], narrow[3]],
+        None => [narrow[0], narrow[1], a, b],
     };
     let mut inverse = Map::linear(*chain).spectral_covariance(&diagonal(inverse))?;
     for (row, v) in window.iter().enumerate() {

@@ -25,11 +25,11 @@ pub enum NotInMitsuba {
         /// Its exponent n.
         exponent: f64,
     },
-    /// A grating.
+    /// A mask that is not opaque.
     #[error(
-        "Mitsuba has no cosine mask, only pictures of one: the grating {name:?} cannot be exported"
+        "Mitsuba has no semi-transparent mask, only pictures of one: {name:?} cannot be exported"
     )]
-    Grating {
+    Mask {
         /// Name of its layer.
         name: String,
     },
@@ -163,7 +163,7 @@ impl Writer {
             half_planes,
         } = &layer.mask
         else {
-            return Err(NotInMitsuba::Grating { name: name.clone() });
+            return Err(NotInMitsuba::Mask { name: name.clone() });
         };
         self.xml.comment(&format!("blockers {name:?}"));
         let (mut rectangles, mut discs) = (Vec::new(), Vec::new());

@@ -45,10 +45,28 @@ pub enum Light {
 }
 
 impl Light {
+    /// The picture it shines through.
+    #[must_use]
+    pub fn image(&self) -> Option<&Image> {
+        match self {
+            Self::Projector { image, .. } | Self::Beam { image, .. } => Some(image),
+            _ => None,
+        }
+    }
+
+    /// The flat shape that shines.
+    #[must_use]
+    pub fn shape(&self) -> Option<&Shape> {
+        match self {
+            Self::Area { shape, .. } => Some(shape),
+            _ => None,
+        }
+    }
+
     /// Whether it shines through a picture.
     #[must_use]
     pub fn is_picture(&self) -> bool {
-        matches!(self, Self::Projector { .. } | Self::Beam { .. })
+        self.image().is_some()
     }
 
     /// Whether it comes to a point from more than one direction. Backward rays hit no other.

@@ -1,5 +1,6 @@
 use crate::{Grating, Raster};
 use serde::{Serialize, Serializer};
+use std::mem::discriminant;
 use std::sync::Arc;
 
 /// How a surface reflects light: a BRDF that may vary over it.
@@ -58,6 +59,26 @@ pub enum Lobe {
         /// α.
         roughness: f64,
     },
+}
+
+impl Lobe {
+    /// Whether it is about the mirror direction; else about the normal.
+    #[must_use]
+    pub fn is_about_mirror(&self) -> bool {
+        !matches!(self, Self::Lambertian)
+    }
+
+    /// The number it has, and what that is called.
+    #[must_use]
+    pub fn number_mut(&mut self) -> Option<(&'static str, &mut f64)> {
+        match self {
+            Self::Lambertian => None,
+            Self::Phong { exponent } => Some(("exponent", exponent)),
+            Self::Beckmann { roughness } | Self::Ggx { roughness } => {
+                Some(("roughness", roughness))
+            }
+        }
+    }
 }
 
 /// The share of light that is reflected, unpolarised, as it depends on the angle of incidence.
@@ -169,18 +190,13 @@ impl Brdf {
     fn towards(&self, other: &Self, share: f64) -> Self {
         let between = |a: f64, b: f64| a + share * (b - a);
         let nearer = if share < 0.5 { self } else { other };
-        let lobe = match (self.lobe, other.lobe) {
-            (Lobe::Phong { exponent: a }, Lobe::Phong { exponent: b }) => Lobe::Phong {
-                exponent: between(a, b),
-            },
-            (Lobe::Beckmann { roughness: a }, Lobe::Beckmann { roughness: b }) => Lobe::Beckmann {
-                roughness: between(a, b),
-            },
-            (Lobe::Ggx { roughness: a }, Lobe::Ggx { roughness: b }) => Lobe::Ggx {
-                roughness: between(a, b),
-            },
-            _ => nearer.lobe,
-        };
+        let [mut lobe, mut a, mut b] = [nearer, self, other].map(|brdf| brdf.lobe);
+        if discriminant(&a) == discriminant(&b)
+            && let [Some((_, mixed)), Some((_, a)), Some((_, b))] =
+                [&mut lobe, &mut a, &mut b].map(Lobe::number_mut)
+        {
+            *mixed = between(*a, *b);
+        }
         let fresnel = match (self.fresnel, other.fresnel) {
             (Fresnel::Dielectric { index: a }, Fresnel::Dielectric { index: b }) => {
                 Fresnel::Dielectric {

@@ -154,7 +154,17 @@ pub enum Mask {
 }
 
 impl Mask {
+    /// The grating, if it is one.
+    #[must_use]
+    pub fn grating(&self) -> Option<&Grating> {
+        match self {
+            Self::Grating(grating) => Some(grating),
+            Self::Opaque { .. } => None,
+        }
+    }
+
     /// The share of radiance that passes at (x, y).
+    #[inline]
     #[must_use]
     pub fn transmittance(&self, x: f64, y: f64) -> f64 {
         match self {

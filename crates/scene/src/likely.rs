@@ -2,7 +2,7 @@
 
 use crate::file::{FrequenciesFile, PlaneFile};
 use crate::scene::{BlockerLayer, Scene};
-use etendue_field::{Light, Mask, Shape, VirtualPlane, Window, tidy};
+use etendue_field::{Light, Mask, VirtualPlane, Window, tidy};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -163,15 +163,11 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     if at >= end {
         return None;
     }
-    let light = match &scene.light {
-        Light::Area { shape, .. } => half_size(shape),
-        Light::Point { .. } | Light::Projector { .. } => [0.0; 2],
-        Light::Beam { .. } | Light::Environment { .. } => [f64::INFINITY; 2],
-    };
     let along = |axis: usize| {
         let [x, u] = windows[axis];
         let hit = x + (plane.distance - end) * u;
-        let from_light = light[axis] + (hit - light[axis]) * at / end;
+        let [_, light] = scene.light.extent(axis);
+        let from_light = light + (hit - light) * at / end;
         let from_plane = x + (end - at) * u;
         match (plane.leg, &scene.light) {
             (_, Light::Beam { .. }) => hit,
@@ -182,8 +178,4 @@ fn reach(scene: &Scene, plane: &VirtualPlane, at: f64) -> Option<[f64; 2]> {
     };
     let reach = [0, 1].map(along);
     reach.iter().all(|reach| reach.is_finite()).then_some(reach)
-}
-
-fn half_size(shape: &Shape) -> [f64; 2] {
-    shape.bounds().size.map(|size| 0.5 * size)
 }

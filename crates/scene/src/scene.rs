@@ -1,7 +1,5 @@
 use crate::{Emission, SceneFile};
-use etendue_field::{
-    Frame, Light, Lobe, Mask, Patch, Rectangle, Reflectance, Specular, VirtualPlane,
-};
+use etendue_field::{Frame, Light, Mask, Patch, Rectangle, Reflectance, Specular, VirtualPlane};
 use glam::DVec3;
 use std::collections::BTreeMap;
 
@@ -207,7 +205,7 @@ impl Event {
     pub fn mirrors(&self) -> bool {
         match self {
             Self::Specular(event) => *event == Specular::Mirror,
-            Self::Reflects(reflectance) => reflectance.brdf.lobe != Lobe::Lambertian,
+            Self::Reflects(reflectance) => reflectance.brdf.lobe.is_about_mirror(),
         }
     }
 }

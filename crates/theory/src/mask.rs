@@ -1,6 +1,6 @@
 //! Masks made ready for many questions: the share of a ray that passes, and the shapes in its way.
 
-use etendue_field::{Grating, HalfPlane, Mask, Shape};
+use etendue_field::{HalfPlane, Mask, Shape};
 use glam::DVec3;
 
 /// Lowest and highest coordinate along two axes.
@@ -14,17 +14,17 @@ pub(crate) struct Barrier<'a> {
     /// What half-planes leave open.
     pub(crate) open: Bounds,
     pub(crate) shapes: Bins<'a>,
-    pub(crate) grating: Option<Grating>,
+    pub(crate) mask: &'a Mask,
 }
 
 impl<'a> Barrier<'a> {
     pub(crate) fn new(distance: f64, mask: &'a Mask) -> Self {
-        let (shapes, half_planes, grating): (&[Shape], &[HalfPlane], _) = match mask {
+        let (shapes, half_planes): (&[Shape], &[HalfPlane]) = match mask {
             Mask::Opaque {
                 shapes,
                 half_planes,
-            } => (shapes, half_planes, None),
-            Mask::Grating(grating) => (&[], &[], Some(*grating)),
+            } => (shapes, half_planes),
+            _ => (&[], &[]),
         };
         let mut open = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
         for half in half_planes {
@@ -39,21 +39,21 @@ impl<'a> Barrier<'a> {
             distance,
             open,
             shapes: Bins::new(shapes),
-            grating,
+            mask,
         }
     }
 
     /// The share of radiance that passes at (x, y).
     pub(crate) fn transmittance(&self, x: f64, y: f64) -> f64 {
+        if !matches!(self.mask, Mask::Opaque { .. }) {
+            return self.mask.transmittance(x, y);
+        }
         let [ox, oy] = self.open;
         let between = |[low, high]: [f64; 2], t: f64| low < t && t < high;
         let mut blocked = !(between(ox, x) && between(oy, y));
         self.shapes
             .meeting([[x, x], [y, y]], |shape| blocked |= shape.contains(x, y));
-        if blocked {
-            return 0.0;
-        }
-        self.grating.map_or(1.0, |g| g.transmittance(x, y))
+        if blocked { 0.0 } else { 1.0 }
     }
 }
 

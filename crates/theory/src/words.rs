@@ -37,23 +37,25 @@ pub(crate) fn curvature([[a, b], [c, d]]: Matrix<2>) -> String {
     }
 }
 
-pub(crate) fn mask(mask: &Mask) -> String {
+/// What a mask does; `named` goes before it, such as "bars: ".
+pub(crate) fn mask(named: &str, mask: &Mask) -> String {
     match mask {
         Mask::Opaque {
             shapes,
             half_planes,
-        } => format!(
-            "multiply  visibility of {}",
-            opaque(shapes, half_planes.len())
-        ),
+        } => {
+            let opaque = opaque(shapes, half_planes.len());
+            format!("multiply  visibility of {named}{opaque}")
+        }
         Mask::Grating(grating) => {
-            format!("multiply  grating {}", formula(grating, ["x", "y"]))
+            let formula = formula(grating, ["x", "y"]);
+            format!("multiply  grating {named}{formula}")
         }
     }
 }
 
 /// E.g. "4 opaque rectangles, 1 half-plane".
-pub(crate) fn opaque(shapes: &[Shape], half_planes: usize) -> String {
+fn opaque(shapes: &[Shape], half_planes: usize) -> String {
     let discs = shapes
         .iter()
         .filter(|s| matches!(s, Shape::Disc(_)))

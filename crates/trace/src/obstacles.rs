@@ -1,5 +1,5 @@
 use crate::bvh::{Form, Target, Targets};
-use etendue_field::{Frame, Grating, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
+use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -44,7 +44,7 @@ pub(crate) struct Obstacles {
     targets: Targets<Meeting>,
     /// What has no end.
     half_planes: Vec<Layer<HalfPlane>>,
-    gratings: Vec<Layer<Grating>>,
+    semi_transparent: Vec<Layer<Mask>>,
 }
 
 /// Something that fills the plane of its blockers.
@@ -78,7 +78,7 @@ impl Obstacles {
     /// What stands around a leg of the path.
     pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
         let mut targets = Vec::new();
-        let (mut half_planes, mut gratings) = (Vec::new(), Vec::new());
+        let (mut half_planes, mut semi_transparent) = (Vec::new(), Vec::new());
         let around = Around(leg.frame);
         let later = leg.leaves.map(|_| leg.frame);
         for layer in &scene.blockers {
@@ -98,10 +98,10 @@ impl Obstacles {
                         what: *half,
                     }));
                 }
-                Mask::Grating(grating) => gratings.push(Layer {
+                mask => semi_transparent.push(Layer {
                     distance,
                     leg: later,
-                    what: *grating,
+                    what: mask.clone(),
                 }),
             }
         }
@@ -144,7 +144,7 @@ impl Obstacles {
         Self {
             targets: Targets::new(&targets, origins),
             half_planes,
-            gratings,
+            semi_transparent,
         }
     }
 
@@ -169,7 +169,7 @@ impl Obstacles {
         }
     }
 
-    /// The share of light on a ray that gratings let through between `from` and a plane.
+    /// The share of light on a ray that semi-transparent masks let through between `from` and a plane.
     #[inline]
     pub(crate) fn transmittance(
         &self,
@@ -178,10 +178,10 @@ impl Obstacles {
         distance: f64,
         side: Side,
     ) -> f64 {
-        let met = self.gratings.iter().filter_map(|grating| {
-            let (at, [x, y]) = grating.crossing(ray);
+        let met = self.semi_transparent.iter().filter_map(|layer| {
+            let (at, [x, y]) = layer.crossing(ray);
             let passed = at > from && is_passed(at, distance, side);
-            passed.then(|| grating.what.transmittance(x, y))
+            passed.then(|| layer.what.transmittance(x, y))
         });
         met.product()
     }

@@ -51,7 +51,7 @@ fn shapes(blockers: &BlockersFile) -> u64 {
     match blockers {
         BlockersFile::JitteredSquares { count, .. } => count.map(u64::from).iter().product(),
         BlockersFile::Shapes { shapes, .. } => shapes.len() as u64,
-        BlockersFile::Grating { .. } | BlockersFile::Mesh { .. } => 0,
+        _ => 0,
     }
 }
 

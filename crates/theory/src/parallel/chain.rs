@@ -84,15 +84,14 @@ pub(crate) struct DiffuseReflection {
 
 /// A light whose field has closed forms between parallel planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Emitter {
-    /// A flat shape of radiance L₀ cosⁿθ, n being the exponent.
-    Area {
-        shape: Shape,
-        radiance: f64,
-        exponent: f64,
-    },
-    /// A point on the central ray.
-    Point { intensity: f64 },
+pub(crate) struct Emitter {
+    /// What shines; `None` for a point on the central ray.
+    pub(crate) shape: Option<Shape>,
+    /// Radiance or intensity along the central ray.
+    pub(crate) brightness: f64,
+    /// The power p of the factor (1 + u² + v²)^p on radiance: −n/2 from a spot's cosⁿθ, ½ from a
+    /// point (its distance to (x, y) is D √(1 + u² + v²)).
+    pub(crate) power: f64,
 }
 
 impl Emitter {
@@ -100,34 +99,17 @@ impl Emitter {
     /// When light goes through a picture or comes from far away: `rays` and `scattering` predict
     /// that.
     pub(crate) fn new(light: &Light) -> Self {
-        match *light {
+        let (brightness, power) = match *light {
             Light::Area {
-                shape,
-                radiance,
-                exponent,
-            } => Self::Area {
-                shape,
-                radiance,
-                exponent,
-            },
-            Light::Point { intensity } => Self::Point { intensity },
+                radiance, exponent, ..
+            } => (radiance, -0.5 * exponent),
+            Light::Point { intensity } => (intensity, 0.5),
             _ => panic!("a projector, a beam or an environment has no closed form here"),
-        }
-    }
-
-    /// As the other theories know it.
-    pub(crate) fn light(self) -> Light {
-        match self {
-            Self::Area {
-                shape,
-                radiance,
-                exponent,
-            } => Light::Area {
-                shape,
-                radiance,
-                exponent,
-            },
-            Self::Point { intensity } => Light::Point { intensity },
+        };
+        Self {
+            shape: light.shape().copied(),
+            brightness,
+            power,
         }
     }
 }
@@ -186,27 +168,19 @@ impl Chain {
 impl Path<'_> {
     /// Shapes of the light: one, or none of a point.
     pub(crate) fn light_shapes(&self) -> &[Shape] {
-        match &self.light {
-            Emitter::Area { shape, .. } => std::slice::from_ref(shape),
-            Emitter::Point { .. } => &[],
-        }
+        self.light.shape.as_slice()
     }
 
-    /// The power p of the factor (1 + u² + v²)^p: −n/2 from a spot's cosⁿθ, ½ from a point
-    /// (its distance to (x, y) is D √(1 + u² + v²)), −2 from each cosine.
+    /// The power p of the factor (1 + u² + v²)^p: the light's, and −2 from each cosine.
     pub(crate) fn slope_power(&self) -> f64 {
-        let light = match self.light {
-            Emitter::Area { exponent, .. } => -0.5 * exponent,
-            Emitter::Point { .. } => 0.5,
-        };
-        light - 2.0 * f64::from(self.cosines)
+        self.light.power - 2.0 * f64::from(self.cosines)
     }
 
     /// The shapes in each plane with edges: the light's, then those of opaque masks.
     pub(crate) fn planes(&self) -> Vec<&[Shape]> {
         let of_masks = self.layers.iter().filter_map(|layer| match layer.mask {
             Mask::Opaque { shapes, .. } => Some(&shapes[..]),
-            Mask::Grating(_) => None,
+            _ => None,
         });
         std::iter::once(self.light_shapes())
             .chain(of_masks)

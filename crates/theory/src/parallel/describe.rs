@@ -1,8 +1,8 @@
 //! Chains in words.
 
-use crate::words::{formula, opaque};
+use crate::words::{self, formula};
 use crate::{Chain, Operator, Source};
-use etendue_field::{Disc, Image, Light, Mask, Rectangle, Shape, tidy};
+use etendue_field::{Disc, Image, Light, Rectangle, Shape, tidy};
 
 impl Chain {
     /// The chain in words: one line for each step.
@@ -65,18 +65,7 @@ impl Operator {
                 let (distance, size) = (tidy(*distance), tidy(distance.abs()));
                 format!("map  travel {distance} m, {from} to {to}: ℓ̂(Ωx, Ωu {sign} {size} Ωx)")
             }
-            Self::Visibility { name, mask } => match mask {
-                Mask::Opaque {
-                    shapes,
-                    half_planes,
-                } => {
-                    let opaque = opaque(shapes, half_planes.len());
-                    format!("multiply  visibility of {name}: {opaque}")
-                }
-                Mask::Grating(grating) => {
-                    format!("multiply  grating {name}: {}", formula(grating, ["x", "y"]))
-                }
-            },
+            Self::Visibility { name, mask } => words::mask(&format!("{name}: "), mask),
             Self::Cosine { name } => {
                 format!("multiply  cosine at {name}: G = (1 + u² + v²)⁻²")
             }

@@ -1,4 +1,4 @@
-use crate::parallel::chain::{Emitter, Path};
+use crate::parallel::chain::Path;
 use crate::parallel::disc::Discs;
 use crate::parallel::polygon::Polygon;
 use crate::parallel::slope::Slope;
@@ -230,19 +230,12 @@ impl Expansion {
 
     /// The light itself.
     fn shine(&mut self, path: &Path<'_>, discs: Discs) {
-        match path.light {
-            Emitter::Area {
-                shape, radiance, ..
-            } => {
-                self.brightness = radiance;
-                self.terms =
-                    self.inside(&WeightedRectangle::of_shape(&shape, discs), path.distance);
-            }
-            Emitter::Point { intensity } => {
-                self.brightness = intensity;
-                for section in &mut self.sections {
-                    section.become_segment(path.distance);
-                }
+        self.brightness = path.light.brightness;
+        if let Some(shape) = &path.light.shape {
+            self.terms = self.inside(&WeightedRectangle::of_shape(shape, discs), path.distance);
+        } else {
+            for section in &mut self.sections {
+                section.become_segment(path.distance);
             }
         }
     }

@@ -70,7 +70,7 @@ impl Chain {
         let layers = path.layers.iter();
         let distance = path.distance;
         let layers = layers.map(|layer| (distance - layer.distance, layer.mask.clone()));
-        let (light, layers) = (path.light.light(), layers.collect());
+        let (light, layers) = (self.source.light.clone(), layers.collect());
         let across = |frame| Plane {
             frame,
             orientation: Orientation::Orthogonal,

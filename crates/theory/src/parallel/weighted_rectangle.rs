@@ -157,12 +157,12 @@ impl EdgeBandwidth {
             planes: vec![path.distance],
         };
         for layer in &path.layers {
-            match layer.mask {
-                Mask::Grating(grating) => {
-                    rates.frequency[0] += grating.frequency.abs();
-                    rates.frequency[1] += (grating.frequency * layer.distance).abs();
-                }
-                Mask::Opaque { .. } => rates.planes.push(layer.distance),
+            if let Some(grating) = layer.mask.grating() {
+                rates.frequency[0] += grating.frequency.abs();
+                rates.frequency[1] += (grating.frequency * layer.distance).abs();
+            }
+            if matches!(layer.mask, Mask::Opaque { .. }) {
+                rates.planes.push(layer.distance);
             }
         }
         rates

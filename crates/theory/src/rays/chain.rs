@@ -57,7 +57,7 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
     for (i, (element, hit)) in system.elements.iter().zip(&hits).enumerate() {
         for (distance, mask) in layers.drain(..) {
             walk.travel(distance - travelled, "mask");
-            walk.steps.push(words::mask(&mask));
+            walk.steps.push(words::mask("", &mask));
             travelled = distance;
         }
         walk.travel(hit.distance - travelled, &element.name);
@@ -73,7 +73,7 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
     }
     for (distance, mask) in layers {
         walk.travel(distance - travelled, "mask");
-        walk.steps.push(words::mask(&mask));
+        walk.steps.push(words::mask("", &mask));
         travelled = distance;
     }
     if !on_last {

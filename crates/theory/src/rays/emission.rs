@@ -2,7 +2,7 @@
 
 use super::System;
 use crate::nets::Density;
-use etendue_field::{Light, Mask, Shape};
+use etendue_field::{Light, Shape};
 use std::f64::consts::{PI, TAU};
 
 /// What the light's rays are counted by: two of the coordinates x, y, u, v, and for an area light
@@ -26,12 +26,11 @@ const STEEPEST: f64 = 30.0;
 
 impl System {
     pub(super) fn emission(&self) -> Emission {
-        let (inner, image, shape) = match self.light {
-            Light::Projector { image, .. } => ([2, 3], Some(image), None),
-            Light::Point { .. } => ([2, 3], None, None),
-            Light::Beam { image, .. } => ([0, 1], Some(image), None),
-            Light::Area { shape, .. } => ([2, 3], None, Some(shape)),
-            Light::Environment { .. } => from_far_away(),
+        let image = self.light.image();
+        let inner = if self.light.is_distant() {
+            [0, 1]
+        } else {
+            [2, 3]
         };
         let mut cycles = [0.0; 2];
         if let Some(image) = image {
@@ -42,14 +41,14 @@ impl System {
             }
         }
         for (distance, mask) in &self.layers {
-            if let Mask::Grating(grating) = mask {
+            if let Some(grating) = mask.grating() {
                 let per_unit = if inner[0] == 0 { 1.0 } else { *distance };
                 cycles[grating.axis] += grating.frequency.abs() * per_unit;
             }
         }
         Emission {
             inner,
-            shape,
+            shape: self.light.shape().copied(),
             reach: image.map_or([STEEPEST; 2], |image| image.width.map(|w| GAUSSIAN * w)),
             cycles,
         }
@@ -58,9 +57,7 @@ impl System {
     /// The densities of the two coordinates of a picture, in proportion to it; `None` where there
     /// is none.
     pub(super) fn picture_densities(&self) -> Option<[Density; 2]> {
-        let (Light::Projector { image, .. } | Light::Beam { image, .. }) = self.light else {
-            return None;
-        };
+        let image = self.light.image()?;
         let along = |axis: usize| {
             let width = image.width[axis];
             let grating = image.grating.filter(|g| g.axis == axis);
@@ -74,19 +71,22 @@ impl System {
         };
         Some([along(0)?, along(1)?])
     }
+}
 
-    /// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves the light.
-    pub(super) fn emitted(&self, ray: [f64; 4]) -> f64 {
-        let [x, y, u, v] = ray;
-        let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();
-        match self.light {
-            Light::Projector { intensity, image } => intensity * image.value(u, v) * cosine.powi(3),
-            Light::Point { intensity } => intensity * cosine.powi(3),
-            Light::Beam { irradiance, image } => irradiance * image.value(x, y),
-            Light::Area {
-                radiance, exponent, ..
-            } => radiance * cosine.powi(4) * cosine.powf(exponent),
-            Light::Environment { .. } => from_far_away(),
+/// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves a light.
+pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
+    let [x, y, u, v] = ray;
+    let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();
+    match light {
+        Light::Projector { intensity, image } => intensity * image.value(u, v) * cosine.powi(3),
+        Light::Point { intensity } => intensity * cosine.powi(3),
+        Light::Beam { irradiance, image } => irradiance * image.value(x, y),
+        Light::Area {
+            radiance, exponent, ..
+        } => radiance * cosine.powi(4) * cosine.powf(*exponent),
+        // Its rays leave no plane.
+        Light::Environment { .. } => {
+            panic!("rays of an environment are not followed from the light")
         }
     }
 }
@@ -107,9 +107,4 @@ pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
             [x + r * cos, y + r * sin]
         }
     }
-}
-
-/// A ray of an environment leaves no plane.
-fn from_far_away() -> ! {
-    panic!("rays of an environment are not followed from the light")
 }

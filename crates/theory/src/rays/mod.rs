@@ -89,7 +89,7 @@ pub use defect::defect;
 pub use predict::linear;
 
 pub(crate) use central::Incidence;
-pub(crate) use emission::point_of;
+pub(crate) use emission::{emitted, point_of};
 pub(crate) use predict::predict;
 pub(crate) use trace::Ray;
 

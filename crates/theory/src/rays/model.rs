@@ -168,7 +168,7 @@ impl System {
                     shape;
                 *center = center.map(|c| c * factor);
             }
-            Light::Point { .. } | Light::Environment { .. } => {}
+            _ => {}
         }
         system
     }

@@ -2,6 +2,7 @@
 
 use super::System;
 use super::draw::{Draw, RayStrategy};
+use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
 use crate::geometry::{Map, SpectrumMap};
 use crate::mask::Masks;
@@ -142,7 +143,7 @@ fn rays(map: &SpectrumMap<4>) -> Map<4> {
 /// Flux per unit of the emission's coordinates of a ray that has passed the masks.
 fn flux(system: &System, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
     let [x, y, u, v] = ray;
-    system.emitted(ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
+    emitted(&system.light, ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
 }
 
 /// Where slices are by a rule, nets make pictures and moments alone.

@@ -55,6 +55,15 @@ pub(super) fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     brdf.albedo * lobe
 }
 
+/// Radians from the mirror direction within which most of a lobe lies; `None` where that is all.
+pub(super) fn angular_width(brdf: &Brdf) -> Option<f64> {
+    match brdf.lobe {
+        Lobe::Lambertian => None,
+        Lobe::Phong { exponent } => Some((2.0 / (exponent + 1.0)).sqrt()),
+        Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => Some(2.0 * roughness),
+    }
+}
+
 /// tan² of the tilt of the microfacet that reflects one direction into the other, and the cosine at
 /// which it is met.
 fn half_way(normal: DVec3, from: DVec3, to: DVec3) -> [f64; 2] {

@@ -144,7 +144,7 @@ fn steps(
     };
     for (next, mask) in &system.layers {
         steps.push(travel(at.0, "mask", next - at.1));
-        steps.push(words::mask(mask));
+        steps.push(words::mask("", mask));
         at = ("mask", *next);
     }
     steps.push(travel(at.0, name, distance - at.1));

@@ -4,13 +4,14 @@
 //! window, the lobe of the BRDF and the light, and where two of them compete, half of the rays are
 //! drawn by each and all are weighed by the mixture (the balance heuristic, Veach and Guibas 1995).
 
+use super::brdf::angular_width;
 use super::exact::Leaving;
 use super::incoming::{Part, secant};
 use super::sky::Sky;
 use super::{ReflectionChain, System};
 use crate::geometry::{Map, Matrix, product, times};
 use crate::nets::Density;
-use etendue_field::{Brdf, Frame, Light, Lobe, Shape, Window};
+use etendue_field::{Frame, Light, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -47,7 +48,7 @@ impl LightStrategy {
 
     /// This one without what makes no difference to a system.
     pub(super) fn in_effect(self, system: &System) -> Self {
-        let has_extent = has_extent(&system.light);
+        let has_extent = system.light.has_extent();
         let has_lobe = angular_width(&system.reflectance.brdf).is_some();
         let has_center = !matches!(system.light, Light::Environment { .. });
         Self {
@@ -132,9 +133,9 @@ impl Mirrored {
         };
         // What the central point of the light, or the axis of a beam, shines along.
         let free = match system.light {
-            Light::Beam { .. } => 0,
             Light::Environment { .. } => return None,
-            Light::Area { .. } | Light::Point { .. } | Light::Projector { .. } => 2,
+            Light::Beam { .. } => 0,
+            _ => 2,
         };
         let onto = &chain.onto;
         let (places, _) = inverted(&block(onto, 0, free))?;
@@ -155,10 +156,8 @@ impl Mirrored {
             phi0 + phi + from[1] - arrives[1],
         ];
         let (inverse, determinant) = inverted(&by(2))?;
-        let light = match &system.light {
-            Light::Area { shape, .. } => radius(shape) / chain.distance,
-            _ => 0.0,
-        };
+        let shape = system.light.shape();
+        let light = shape.map_or(0.0, |shape| radius(shape) / chain.distance);
         Some(Self {
             first,
             at: by(0),
@@ -243,7 +242,7 @@ impl<'a> Lights<'a> {
     /// A part of the light, and its density in the part's measure.
     pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(Part, f64)> {
         let light = &self.system.light;
-        if !has_extent(light) {
+        if !light.has_extent() {
             return Some((Part::Whole, 1.0));
         }
         if !self.by_lobe {
@@ -322,11 +321,6 @@ impl<'a> Lights<'a> {
     }
 }
 
-/// Whether light comes to a point from more than one direction.
-fn has_extent(light: &Light) -> bool {
-    matches!(light, Light::Area { .. } | Light::Environment { .. })
-}
-
 /// The slopes of light along a direction, if it goes forward.
 fn forward(along: DVec3) -> Option<[f64; 2]> {
     (along.z > 0.0).then(|| [along.x / along.z, along.y / along.z])
@@ -371,15 +365,6 @@ impl LobeDensity {
         // Per steradian of normals, and four times their cosine of those of light.
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())
-    }
-}
-
-/// Radians from the mirror direction within which most of a lobe lies; `None` where that is all.
-fn angular_width(brdf: &Brdf) -> Option<f64> {
-    match brdf.lobe {
-        Lobe::Lambertian => None,
-        Lobe::Phong { exponent } => Some((2.0 / (exponent + 1.0)).sqrt()),
-        Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => Some(2.0 * roughness),
     }
 }
 

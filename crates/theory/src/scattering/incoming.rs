@@ -1,6 +1,7 @@
 //! What shines on a point from one part of the light.
 
 use crate::mask::Masks;
+use crate::rays::emitted;
 use etendue_field::Light;
 use glam::DVec3;
 
@@ -33,34 +34,20 @@ impl Masks<'_> {
     /// What a part of a light shines on a point in the frame at the light.
     pub(super) fn incoming(&self, light: &Light, point: DVec3, part: Part) -> Incoming {
         let DVec3 { x, y, z } = point;
-        let (slopes, weight) = match (light, part) {
-            (
-                Light::Area {
-                    shape,
-                    radiance,
-                    exponent,
-                },
-                Part::Point([a, b]),
-            ) if shape.contains(a, b) => {
-                let slopes = [(x - a) / z, (y - b) / z];
-                let emitted = radiance * secant(slopes).powf(-exponent);
-                (slopes, emitted / (z * z))
-            }
+        // Where the ray leaves the plane at the light, and with what slopes.
+        let ([a, b], [u, v]) = match part {
+            Part::Sky { slopes, .. } => ([0.0; 2], slopes),
+            Part::Whole if light.is_distant() => ([x, y], [0.0; 2]),
+            Part::Whole => ([0.0; 2], [x / z, y / z]),
+            Part::Point([a, b]) => ([a, b], [(x - a) / z, (y - b) / z]),
+        };
+        let slopes = [u, v];
+        let weight = match part {
             // du dv = dω / cos³.
-            (Light::Environment { .. }, Part::Sky { slopes, radiance }) => {
-                (slopes, radiance * secant(slopes).powi(3))
-            }
-            (Light::Point { intensity }, _) => {
-                let slopes = [x / z, y / z];
-                (slopes, intensity * secant(slopes) / (z * z))
-            }
-            (Light::Projector { intensity, image }, _) => {
-                let slopes = [x / z, y / z];
-                let seen = image.value(slopes[0], slopes[1]);
-                (slopes, intensity * seen * secant(slopes) / (z * z))
-            }
-            (Light::Beam { irradiance, image }, _) => ([0.0; 2], irradiance * image.value(x, y)),
-            (Light::Area { .. } | Light::Environment { .. }, _) => ([0.0; 2], 0.0),
+            Part::Sky { radiance, .. } => radiance * secant(slopes).powi(3),
+            Part::Whole if light.is_distant() => emitted(light, [a, b, u, v]),
+            // From flux per du dv to radiance, and du dv = dx dy / z².
+            _ => emitted(light, [a, b, u, v]) * secant(slopes).powi(4) / (z * z),
         };
         // Light begins in its plane, also that from far away.
         let passes = if weight > 0.0 && z > 0.0 {

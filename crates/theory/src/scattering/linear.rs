@@ -95,7 +95,7 @@ impl<'a> Linear<'a> {
                 let cos = (theta.cos() * phi.cos()).max(0.0);
                 factor() * (exponent + 1.0) / TAU * cos.powf(exponent)
             }
-            Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
+            _ => {
                 let to = away(theta - self.chain.incidence, phi);
                 brdf::value(brdf, DVec3::Z, center, to)
             }

@@ -37,10 +37,11 @@ impl Model for Observed<System> {
         let name = &self.system.name;
         match parameter {
             Parameter::Albedo => format!("albedo of {name}"),
-            Parameter::Lobe => match self.system.reflectance.brdf.lobe {
-                Lobe::Phong { .. } => format!("exponent of {name}"),
-                _ => format!("roughness of {name}"),
-            },
+            Parameter::Lobe => {
+                let mut lobe = self.system.reflectance.brdf.lobe;
+                let number = lobe.number_mut().map_or("number", |(number, _)| number);
+                format!("{number} of {name}")
+            }
             Parameter::Curvature(_, axis) => format!("curvature {} of {name}", axis + 1),
             _ => {
                 let of_light = parameter.name_of_light(self.light(), "light");
@@ -59,12 +60,10 @@ impl Model for Observed<System> {
         } = &mut self.system;
         match parameter {
             Parameter::Albedo => reflectance.brdf.albedo = new(reflectance.brdf.albedo),
-            Parameter::Lobe => match &mut reflectance.brdf.lobe {
-                Lobe::Lambertian => return None,
-                Lobe::Phong { exponent: number }
-                | Lobe::Beckmann { roughness: number }
-                | Lobe::Ggx { roughness: number } => *number = new(*number),
-            },
+            Parameter::Lobe => {
+                let (_, number) = reflectance.brdf.lobe.number_mut()?;
+                *number = new(*number);
+            }
             Parameter::Curvature(0, axis) => change_curvature(patch, axis, new)?,
             _ => parameter.change_light(light, new)?,
         }

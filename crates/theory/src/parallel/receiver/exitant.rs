@@ -2,7 +2,6 @@
 
 use super::Receiver;
 use super::kernel::{Axis, Kernels};
-use crate::parallel::chain::Emitter;
 use crate::parallel::row::FrequencyRow;
 use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
 use ndarray::{Array1, Array2};
@@ -110,7 +109,7 @@ impl Receiver<'_> {
             let grown = self.distance / beyond;
             let is_told = |length: f64| length * grown > LEAST * cell;
             let penumbra = self.width() * barrier.distance / beyond;
-            match barrier.grating {
+            match barrier.mask.grating() {
                 Some(grating) => is_told(1.0 / grating.frequency.abs()),
                 None => penumbra > LEAST * cell || barrier.shapes.narrowest().is_none_or(is_told),
             }
@@ -119,12 +118,10 @@ impl Receiver<'_> {
 
     /// The width of the light.
     fn width(&self) -> f64 {
-        match self.light {
-            Emitter::Area { shape, .. } => match shape {
-                Shape::Rectangle(r) => r.size[0].min(r.size[1]),
-                Shape::Disc(d) => d.radius,
-            },
-            Emitter::Point { .. } => 0.0,
+        match self.light.shape {
+            Some(Shape::Rectangle(r)) => r.size[0].min(r.size[1]),
+            Some(Shape::Disc(d)) => d.radius,
+            None => 0.0,
         }
     }
 
@@ -134,7 +131,7 @@ impl Receiver<'_> {
         let width = self.width();
         let lengths = self.barriers.iter().map(|barrier| {
             let beyond = self.distance - barrier.distance;
-            match barrier.grating {
+            match barrier.mask.grating() {
                 Some(grating) => self.distance / (beyond * grating.frequency.abs()),
                 None => width * barrier.distance / beyond,
             }

@@ -123,10 +123,10 @@ impl<'a> Receiver<'a> {
         albedo: f64,
     ) -> Self {
         let shading = if cosine { 2.0 } else { 0.0 };
-        let (lobe, bundle) = match light {
-            Emitter::Area { exponent, .. } => (0.5 * exponent, SlopeProjection::At([0.0; 2])),
-            // Its radiance is I √(1 + u² + v²) δ(x − D u) δ(y − D v).
-            Emitter::Point { .. } => (-0.5, SlopeProjection::From(distance)),
+        let bundle = match light.shape {
+            Some(_) => SlopeProjection::At([0.0; 2]),
+            // Its radiance has δ(x − D u) δ(y − D v).
+            None => SlopeProjection::From(distance),
         };
         let barriers: Vec<_> = layers
             .iter()
@@ -135,11 +135,11 @@ impl<'a> Receiver<'a> {
         let frequency = |axis: usize| {
             let gratings = barriers
                 .iter()
-                .filter_map(|b| b.grating.map(|g| bundle.grating(&g, b.distance)));
+                .filter_map(|b| b.mask.grating().map(|g| bundle.grating(g, b.distance)));
             let along = gratings.filter(|g| g.axis == axis);
             along.map(|g| g.frequency.abs()).sum()
         };
-        let integrator = Integrator::new(lobe + shading, [frequency(0), frequency(1)]);
+        let integrator = Integrator::new(shading - light.power, [frequency(0), frequency(1)]);
         Self {
             light,
             barriers,
@@ -154,40 +154,35 @@ impl<'a> Receiver<'a> {
     ///
     /// To 10⁻¹² of the irradiance without blockers.
     pub(crate) fn irradiance(&self, x: f64, y: f64) -> f64 {
-        match self.light {
-            Emitter::Area {
-                shape, radiance, ..
-            } => {
-                let bundle = SlopeProjection::At([x, y]);
-                let region = ReceiverRegion::shape(&bundle.seen(&shape, self.distance));
-                radiance * self.received(&bundle, region)
-            }
-            Emitter::Point { intensity } => {
-                let [u, v] = [x, y].map(|c| c / self.distance);
-                let bundle = SlopeProjection::From(self.distance);
-                let through = self.barriers.iter().map(|barrier| {
-                    let scale = bundle.scale(barrier.distance);
-                    barrier.transmittance(scale * u, scale * v)
-                });
-                let lobe = self.density(&bundle, &[]).value(u, v);
-                through.product::<f64>() * intensity * lobe / self.distance.powi(2)
-            }
+        let brightness = self.light.brightness;
+        if let Some(shape) = &self.light.shape {
+            let bundle = SlopeProjection::At([x, y]);
+            let region = ReceiverRegion::shape(&bundle.seen(shape, self.distance));
+            return brightness * self.received(&bundle, region);
         }
+        let [u, v] = [x, y].map(|c| c / self.distance);
+        let bundle = SlopeProjection::From(self.distance);
+        let through = self.barriers.iter().map(|barrier| {
+            let scale = bundle.scale(barrier.distance);
+            barrier.transmittance(scale * u, scale * v)
+        });
+        let lobe = self.density(&bundle, &[]).value(u, v);
+        through.product::<f64>() * brightness * lobe / self.distance.powi(2)
     }
 
     /// Mean irradiance over a rectangle of the receiver around a point, if the light is a point;
     /// else the irradiance at the middle. Shadows of a point light end abruptly, and a value in the
     /// middle of a cell would say nothing of the rest.
     fn cell(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
-        let Emitter::Point { intensity } = self.light else {
+        if self.light.shape.is_some() {
             return self.irradiance(center[0], center[1]);
-        };
+        }
         // dx dy = D² du dv cancels the square of the distance.
         let bundle = SlopeProjection::From(self.distance);
         let sides = Rectangle { center, size };
         let region =
             ReceiverRegion::rectangle(bundle.slopes([sides.extent(0), sides.extent(1)], 0.0));
-        intensity * self.received(&bundle, region) / sides.area()
+        self.light.brightness * self.received(&bundle, region) / sides.area()
     }
 
     /// The integral over those slopes of a region that no blocker stops.
@@ -230,7 +225,7 @@ impl<'a> Receiver<'a> {
     fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> Density<'_> {
         let gratings = barriers
             .iter()
-            .filter_map(|b| b.grating.map(|g| bundle.grating(&g, b.distance)));
+            .filter_map(|b| b.mask.grating().map(|g| bundle.grating(g, b.distance)));
         Density {
             integrator: &self.integrator,
             gratings: gratings.collect(),

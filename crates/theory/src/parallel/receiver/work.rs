@@ -5,7 +5,6 @@ use super::kernel::Axis;
 use super::region::ReceiverRegion;
 use super::{Receiver, SlopeProjection, exitant};
 use crate::mask::Barrier;
-use crate::parallel::chain::Emitter;
 use crate::parallel::work::Work;
 use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 
@@ -67,15 +66,15 @@ impl Receiver<'_> {
 
     /// Steps of [`Self::cell`].
     fn steps(&self, center: [f64; 2], size: [f64; 2]) -> f64 {
-        let (bundle, region) = match &self.light {
-            Emitter::Area { shape, .. } => {
+        let (bundle, region) = match &self.light.shape {
+            Some(shape) => {
                 let bundle = SlopeProjection::At(center);
                 (
                     bundle,
                     ReceiverRegion::shape(&bundle.seen(shape, self.distance)),
                 )
             }
-            _ => {
+            None => {
                 let bundle = SlopeProjection::From(self.distance);
                 let sides = Rectangle { center, size };
                 let sides = bundle.slopes([sides.extent(0), sides.extent(1)], 0.0);
