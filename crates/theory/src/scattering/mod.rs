@@ -14,7 +14,7 @@
 //!
 //! This module shares no intersection, no BRDF and no sampling with the tracers.
 
-mod brdf;
+pub mod brdf;
 mod chain;
 mod draw;
 mod exact;
