@@ -68,7 +68,7 @@ fn against(
     each.fold(0.0, worse)
 }
 
-/// A rectangle to the left, a disc to the right, half-planes beyond.
+/// A rectangle to the left, a disc to the right, and a half-plane beyond them on any side.
 fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     let mut world = World::new(dice).with_wall(1.0);
     let (center, origin) = layer(dice, &world);
@@ -76,23 +76,19 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
     let size = [between(dice, 0.1, 0.3), between(dice, 0.4, 1.0)];
     let disc = [between(dice, 0.4, 0.6), between(dice, -0.2, 0.2)];
     let radius = between(dice, 0.1, 0.3);
-    let edges = [between(dice, 1.0, 1.2), between(dice, -1.2, -1.0)];
+    let (axis, is_above) = (dice.below(2), dice.one_in(2));
+    let edge = between(dice, 1.0, 1.2) * if is_above { 1.0 } else { -1.0 };
     world.blockers = format!(
         "Shapes(name: \"b\", center: {}, shapes: [Rectangle(center: {}, size: {}), \
-         Disc(center: {}, radius: {radius:?}), HalfPlane(axis: X, edge: {:?}, opaque: Above)])",
+         Disc(center: {}, radius: {radius:?}), \
+         HalfPlane(axis: {}, edge: {edge:?}, opaque: {})])",
         triple(origin),
         pair(rectangle),
         pair(size),
         pair(disc),
-        edges[0],
+        ["X", "Y"][axis],
+        if is_above { "Above" } else { "Below" },
     );
-    if dice.one_in(2) {
-        // Across the other axis, below.
-        let above = format!("HalfPlane(axis: X, edge: {:?}, opaque: Above)", edges[0]);
-        let below = format!("HalfPlane(axis: Y, edge: {:?}, opaque: Below)", edges[1]);
-        world.blockers = world.blockers.replace(&above, &below);
-    }
-    let is_below = world.blockers.contains("Below");
     let scene = world.scene(Path::new("."));
     against(dice, &scene, center, |at| {
         let [x, y] = match fault {
@@ -108,10 +104,10 @@ fn shapes(dice: &mut Dice, fault: &str) -> f64 {
         let in_rectangle = (x - rectangle[0]).abs() <= part * size[0]
             && (y - rectangle[1]).abs() <= part * size[1];
         let in_disc = (x - disc[0]).hypot(y - disc[1]) <= radius;
-        let beyond = if is_below {
-            y <= edges[1]
+        let beyond = if is_above {
+            [x, y][axis] >= edge
         } else {
-            x >= edges[0]
+            [x, y][axis] <= edge
         };
         let in_half = beyond != (fault == "the other half of the plane");
         if in_rectangle || in_disc || in_half {

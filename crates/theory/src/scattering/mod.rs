@@ -12,7 +12,8 @@
 //! the surface and off it, a product with the clamped cosine, and a convolution with the lobe of the
 //! BRDF that the central ray meets. What it is off, and derivatives, are sums over the same rays.
 //!
-//! This module shares no intersection, no BRDF and no sampling with the tracers.
+//! This module shares no intersection, no value of a BRDF and no sampling with the tracers; how a
+//! BRDF varies over a surface is in `etendue_field`, for both.
 
 pub mod brdf;
 mod chain;
