@@ -48,9 +48,10 @@ impl Check {
         outcome.difference <= self.tolerance.0
     }
 
-    /// Whether a difference with a fault is one that the check would report.
+    /// Whether a difference with a fault is one that the check reports: a number, so that no fault
+    /// passes for seen because it is nonsense.
     pub(super) fn sees(&self, planted: f64) -> bool {
-        planted > self.tolerance.0
+        planted.is_finite() && planted > self.tolerance.0
     }
 }
 
@@ -59,10 +60,12 @@ pub(super) fn worse(a: f64, b: f64) -> f64 {
     if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
-/// How far two numbers are apart, as a share of the second.
+/// How far two numbers are apart, as a share of the larger.
 pub(super) fn relative(a: f64, b: f64) -> f64 {
-    if a.to_bits() == b.to_bits() {
-        return 0.0;
+    let larger = worse(a.abs(), b.abs());
+    if larger > 0.0 {
+        (a - b).abs() / larger
+    } else {
+        0.0
     }
-    (a - b).abs() / b.abs().max(f64::MIN_POSITIVE)
 }

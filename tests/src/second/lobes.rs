@@ -73,7 +73,7 @@ pub(super) fn checks() -> Vec<Check> {
     both.into_iter().flatten().collect()
 }
 
-/// As a share of the second value.
+/// As a share of the value.
 fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &str) -> f64 {
     let brdf = Brdf {
         lobe: lobe(dice),

@@ -11,6 +11,7 @@ mod brdf;
 mod check;
 mod files;
 mod lobes;
+mod maps;
 mod masks;
 mod meshes;
 mod paths;
@@ -78,6 +79,7 @@ fn checks() -> io::Result<Vec<Check>> {
         meshes::checks(),
         paths::checks(),
         views::checks(),
+        maps::checks(),
     ];
     Ok(all.into_iter().flatten().collect())
 }

@@ -7,7 +7,7 @@ use super::smooth::Smooth;
 use super::vector::{Axes, Vector, dot, plus, times, turned_along, unit};
 use super::world::{World, triple};
 use crate::hostile::dice::Dice;
-use etendue_field::{Crossing, PhotonSource, VirtualPlane};
+use etendue_field::{Crossing, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_trace::Tracer;
 use std::path::Path;
 
@@ -24,7 +24,7 @@ const VIEWS: &[&str] = &[
 ];
 
 /// Planes, each with whether light arrives there, and its orientation.
-const PLANES: [(&str, bool, View); 7] = [
+pub(super) const PLANES: [(&str, bool, View); 7] = [
     ("Orthogonal", true, View::Across),
     ("Tangent", true, View::Tangent),
     ("LocalNormals", true, View::Local),
@@ -35,7 +35,7 @@ const PLANES: [(&str, bool, View); 7] = [
 ];
 
 #[derive(Clone, Copy, Debug, PartialEq)]
-enum View {
+pub(super) enum View {
     Across,
     Tangent,
     Local,
@@ -79,24 +79,13 @@ fn difference(dice: &mut Dice, fault: &str) -> f64 {
     let mirror = Turn::Back(plus(d, -2.0 * dot(d, n), n));
     let legs = Legs::new(&world.light, smooth.axes.origin, n, mirror, fault);
     let mut largest = 0.0;
-    for (i, (_, arrives, view)) in PLANES.iter().enumerate() {
-        let (across, frames) = if *arrives {
-            (0, (legs.before, legs.arriving))
-        } else {
-            (4, (legs.after, legs.leaving))
-        };
+    for (i, plane) in PLANES.iter().enumerate() {
+        let across = if plane.1 { 0 } else { 4 };
         // The same photons in the same order.
         if crossings[i].is_empty() || crossings[i].len() != crossings[across].len() {
             return 1.0;
         }
-        let looking = Looking {
-            smooth: &smooth,
-            leg: frames.0,
-            surface: frames.1.0,
-            longitude: frames.1.1,
-            arrives: *arrives,
-            view: *view,
-        };
+        let looking = Looking::new(&smooth, &legs, *plane);
         for (before, seen) in crossings[across].iter().zip(&crossings[i]) {
             let off = looking.off(&scene.planes[i], before, seen, fault);
             largest = worse(largest, off);
@@ -106,16 +95,38 @@ fn difference(dice: &mut Dice, fault: &str) -> f64 {
 }
 
 /// How a plane looks at the surface.
-struct Looking<'a> {
-    smooth: &'a Smooth,
-    leg: Axes,
-    surface: Axes,
-    longitude: f64,
-    arrives: bool,
-    view: View,
+pub(super) struct Looking<'a> {
+    pub(super) smooth: &'a Smooth,
+    pub(super) leg: Axes,
+    pub(super) surface: Axes,
+    pub(super) longitude: f64,
+    pub(super) arrives: bool,
+    pub(super) view: View,
 }
 
 impl Looking<'_> {
+    pub(super) fn new<'a>(
+        smooth: &'a Smooth,
+        legs: &Legs,
+        (_, arrives, view): (&str, bool, View),
+    ) -> Looking<'a> {
+        let (leg, (surface, longitude)) = if arrives {
+            (legs.before, legs.arriving)
+        } else {
+            (legs.after, legs.leaving)
+        };
+        // Light that is turned about the normal has the longitude of where a mirror would send it.
+        let turned = if view == View::Mirrored { -1.0 } else { 1.0 };
+        Looking {
+            smooth,
+            leg,
+            surface,
+            longitude: turned * longitude,
+            arrives,
+            view,
+        }
+    }
+
     /// How far coordinates, weight and the factor of differential irradiance are from those of the
     /// ray across the leg.
     fn off(&self, plane: &VirtualPlane, across: &Crossing, seen: &Crossing, fault: &str) -> f64 {
@@ -127,30 +138,11 @@ impl Looking<'_> {
         }
         let foot = self.leg.point([ray.x, ray.y, 0.0]);
         let along = unit(self.leg.vector([ray.u, ray.v, 1.0]));
-        let Some((point, normal)) = self.met(foot, along, fault) else {
+        let Some(second) = self.seen(foot, along, fault) else {
             return 1.0;
         };
-        let turned = |axis: Vector| match fault {
-            "the central normal" => axis,
-            _ => turned_along(axis, self.surface.d, normal),
-        };
-        let away = times(if self.arrives { -1.0 } else { 1.0 }, along);
-        let [t, b, n] =
-            [self.surface.x, self.surface.y, self.surface.d].map(|axis| dot(away, turned(axis)));
-        // cos φ (sin θ T + cos θ N) + sin φ B
-        let (mut theta, mut phi) = (t.atan2(n), b.asin());
-        let mut center = self.longitude;
-        if self.view == View::Mirrored {
-            center = -center;
-            if fault != "not turned about the normal" {
-                (theta, phi) = (-theta, -phi);
-            }
-        }
-        if fault == "sign of latitude" {
-            phi = -phi;
-        }
-        let [s, t, _] = self.surface.coordinates(point);
-        let cosines = theta.cos() * phi.cos() * phi.cos();
+        let [.., u, phi] = second;
+        let cosines = (u + self.longitude).cos() * phi.cos() * phi.cos();
         let per_flux = if fault == "cosines left out" {
             1.0
         } else {
@@ -158,17 +150,39 @@ impl Looking<'_> {
         };
         // Flux Φ adds Φ (1 + u² + v²)² across the leg, Φ/(cos θ cos² φ) on the surface.
         let weight = across.weight / (secant_squared * secant_squared) / per_flux;
-        let z = [
-            s - seen.ray.x,
-            t - seen.ray.y,
-            theta - center - seen.ray.u,
-            phi - seen.ray.v,
-        ];
-        let z = z.into_iter().fold(0.0, |most, off| worse(most, off.abs()));
-        worse(
-            z,
-            worse(relative(seen.weight, weight), relative(factor, cosines)),
-        )
+        let TwoPlane { x, y, u, v } = seen.ray;
+        let z = [x, y, u, v].into_iter().zip(second);
+        let z = z.fold(0.0, |most, (a, b)| worse(most, (a - b).abs()));
+        let factors = worse(relative(seen.weight, weight), relative(factor, cosines));
+        worse(z, factors)
+    }
+
+    /// The coordinates of the ray through a point along a unit vector.
+    pub(super) fn seen(&self, foot: Vector, along: Vector, fault: &str) -> Option<[f64; 4]> {
+        if self.view == View::Across {
+            let [x, y, z] = self.leg.coordinates(foot);
+            let [dx, dy, dz] = self.leg.components(along);
+            let [u, v] = [dx / dz, dy / dz];
+            return Some([x - z * u, y - z * v, u, v]);
+        }
+        let (point, normal) = self.met(foot, along, fault)?;
+        let turned = |axis: Vector| match fault {
+            "the central normal" => axis,
+            _ => turned_along(axis, self.surface.d, normal),
+        };
+        let away = times(if self.arrives { -1.0 } else { 1.0 }, along);
+        let axes = [self.surface.x, self.surface.y, self.surface.d];
+        let [t, b, n] = axes.map(|axis| dot(away, turned(axis)));
+        // cos φ (sin θ T + cos θ N) + sin φ B
+        let (mut theta, mut phi) = (t.atan2(n), b.asin());
+        if self.view == View::Mirrored && fault != "not turned about the normal" {
+            (theta, phi) = (-theta, -phi);
+        }
+        if fault == "sign of latitude" {
+            phi = -phi;
+        }
+        let [s, t, _] = self.surface.coordinates(point);
+        Some([s, t, theta - self.longitude, phi])
     }
 
     /// Where the line of a ray meets what the plane looks at, nearest to the central hit, and the
