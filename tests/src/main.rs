@@ -3,6 +3,7 @@
 //! `short` is a few minutes, for every change; `suite` goes through all scenes without smooth surfaces and writes `docs/suite.md`; `table1` through the
 //! operators of the paper, `shading` through what surfaces do to light, and `main` is the full account of the main scene: each writes its part of
 //! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
+//! `second` holds what theory and the tracers share against a second implementation.
 //! `hostile` and `kills` attack the program `etendue` from outside; `wild` hunts for scenes on which it is wrong.
 
 mod bandwidth;
@@ -16,6 +17,7 @@ mod predicted;
 mod report;
 mod rows;
 mod scenes;
+mod second;
 mod shading;
 mod statistics;
 mod suite;
@@ -36,6 +38,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
   cargo run --release -p etendue-validation -- nets         three minutes; writes docs/nets.md
+  cargo run --release -p etendue-validation -- second       seconds; shared functions, written twice
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- wild         100 random scenes, for etendue beside it
@@ -96,6 +99,8 @@ enum Command {
     },
     /// Errors that predictions by nets of rays state, against the truth; into docs/nets.md.
     Nets,
+    /// What theory and the tracers share, against a second implementation of it; exit code 1 if they differ or a planted fault is not seen.
+    Second,
     /// Mutated scenes, meshes, pictures and stored stages as input of the program; exit code 1 if it does not bear one.
     Hostile(hostile::Options),
     /// The program killed, started twice at once and on full disks; exit code 1 if it leaves a broken result or loses a file.
@@ -125,13 +130,16 @@ fn main() -> ExitCode {
         return nets::page();
     }
     if let Command::Hostile(options) = &command {
-        return attacked(hostile::hostile(options));
+        return printed(hostile::hostile(options));
     }
     if let Command::Kills(options) = &command {
-        return attacked(kills::kills(options));
+        return printed(kills::kills(options));
     }
     if let Command::Wild(options) = &command {
-        return attacked(wild::wild(options));
+        return printed(wild::wild(options));
+    }
+    if matches!(command, Command::Second) {
+        return printed(second::second());
     }
     let parts = match command {
         Command::All => &[
@@ -172,13 +180,13 @@ fn main() -> ExitCode {
     }
 }
 
-/// Prints what came of attacks on the program.
+/// Prints a section that is no part of a page.
 #[expect(
     clippy::print_stdout,
     clippy::print_stderr,
     reason = "the report is the product"
 )]
-fn attacked(outcome: std::io::Result<Section>) -> ExitCode {
+fn printed(outcome: std::io::Result<Section>) -> ExitCode {
     match outcome {
         Ok(section) => {
             println!("{}", section.markdown());
@@ -269,7 +277,11 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Shading { photons } => shading::shading(photons),
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
         // These have reports of their own.
-        Command::Nets | Command::Hostile(_) | Command::Kills(_) | Command::Wild(_) => Vec::new(),
+        Command::Nets
+        | Command::Second
+        | Command::Hostile(_)
+        | Command::Kills(_)
+        | Command::Wild(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);

@@ -10,7 +10,7 @@
 mod aim;
 mod backward;
 mod bounce;
-mod brdf;
+pub mod brdf;
 mod bvh;
 mod emit;
 mod ground;

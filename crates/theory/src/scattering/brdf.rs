@@ -6,7 +6,8 @@ use std::f64::consts::{PI, TAU};
 
 /// The BRDF for light that comes from `from` and leaves along `to`, unit vectors away from the
 /// surface with this unit normal; sr⁻¹.
-pub(super) fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
+#[must_use]
+pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let (cos_from, cos_to) = (normal.dot(from), normal.dot(to));
     if cos_from <= 0.0 || cos_to <= 0.0 {
         return 0.0;

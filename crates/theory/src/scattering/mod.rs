@@ -13,9 +13,10 @@
 //! of the BRDF that the central ray meets. What it is off, and derivatives, are sums over the same
 //! rays.
 //!
-//! This module shares no intersection, no BRDF and no sampling with the tracers.
+//! This module shares no intersection, no value of a BRDF and no sampling with the tracers; how a
+//! BRDF varies over a surface is in `etendue_field`, for both.
 
-mod brdf;
+pub mod brdf;
 mod chain;
 mod draw;
 mod exact;

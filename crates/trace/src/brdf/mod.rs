@@ -17,7 +17,8 @@ use microfacet::{Distribution, Microfacets};
 
 /// The BRDF for light that comes from one direction and goes to another, sr⁻¹.
 #[inline]
-pub(crate) fn value(brdf: &Brdf, from: DVec3, to: DVec3) -> f64 {
+#[must_use]
+pub fn value(brdf: &Brdf, from: DVec3, to: DVec3) -> f64 {
     if from.z <= 0.0 || to.z <= 0.0 {
         return 0.0;
     }

@@ -1,0 +1,154 @@
+//! A surface with a picture, written down in a scene file: the picture's format, its place on the
+//! surface, blend and texture.
+
+use super::check::{Check, worse};
+use super::pattern::{Levels, Pattern, Varied};
+use super::smooth::Smooth;
+use super::textures::apart;
+use super::vector::{between, scale};
+use super::world::{World, pair};
+use crate::hostile::dice::Dice;
+use etendue_field::{Brdf, Fresnel, Grating, Lobe};
+use etendue_scene::Event;
+use std::io;
+use std::path::Path;
+use std::rc::Rc;
+use tempfile::TempDir;
+
+/// Places for each scene.
+const EACH: u32 = 20;
+
+const FAULTS: &[&str] = &[
+    "blend order swapped",
+    "flipped",
+    "left for right",
+    "axes swapped",
+    "sign of t",
+    "along turned over",
+];
+
+/// The picture in the folder.
+const FILE: &str = "blend.png";
+
+/// Red, green and blue in luminance (Rec. ITU-R BT.709).
+fn luminance([r, g, b]: [f64; 3]) -> f64 {
+    0.2126 * r + 0.7152 * g + 0.0722 * b
+}
+
+pub(super) fn checks(folder: &Rc<TempDir>, picture: &Levels) -> Vec<Check> {
+    let (folder, picture) = (Rc::clone(folder), picture.clone());
+    vec![Check {
+        name: "blend over a picture of a file",
+        rounds: [150, EACH],
+        tolerance: (1e-11, "rounding of places and levels"),
+        faults: FAULTS,
+        difference: Box::new(move |dice, fault| pictured(dice, fault, folder.path(), &picture)),
+    }]
+}
+
+fn pictured(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f64 {
+    let mut world = World::new(dice);
+    let (smooth, words) = Smooth::new(dice, &world, 0.7);
+    let size = [between(dice, 0.3, 0.8), between(dice, 0.3, 0.8)];
+    let mut brdf = || Brdf {
+        lobe: Lobe::Ggx {
+            roughness: scale(dice, 1e-2, 1.0),
+        },
+        albedo: dice.unit(),
+        fresnel: Fresnel::Dielectric {
+            index: scale(dice, 1.1, 3.0),
+        },
+    };
+    let (one, two) = (brdf(), brdf());
+    let grating = Grating {
+        axis: 1,
+        frequency: between(dice, 1.0, 9.0),
+        modulation: dice.unit(),
+        phase: dice.unit(),
+    };
+    world.surfaces = format!(
+        "{words}Reflects(brdf: {}, other: {}, blend: Picture(file: \"{FILE}\", size: {}), \
+         texture: Cosine(axis: Y, frequency: {:?}, modulation: {:?}, phase: {:?})))",
+        in_words(&one),
+        in_words(&two),
+        pair(size),
+        grating.frequency,
+        grating.modulation,
+        grating.phase,
+    );
+    let scene = world.scene(folder);
+    let object = &scene.patches[0];
+    let Event::Reflects(reflectance) = &object.event else {
+        return f64::NAN;
+    };
+    let varied = Varied {
+        brdf: one,
+        other: two,
+        blend: Pattern::Picture(picture.clone(), size),
+        texture: Pattern::Cosine(grating),
+    };
+    let each = (0..EACH).map(|_| {
+        let at = [between(dice, -0.4, 0.4), between(dice, -0.4, 0.4)];
+        let point = smooth.point(at[0], at[1]);
+        let [s, t, _] = smooth.wrong(fault).axes.coordinates(point);
+        let place = object.patch.frame.to_local(world.resolved(point).into());
+        apart(&reflectance.at(place.x, place.y), &varied.at([s, t], fault))
+    });
+    each.fold(0.0, worse)
+}
+
+fn in_words(brdf: &Brdf) -> String {
+    let (Lobe::Ggx { roughness }, Fresnel::Dielectric { index }) = (brdf.lobe, brdf.fresnel) else {
+        return String::new();
+    };
+    let albedo = brdf.albedo;
+    format!("(lobe: Ggx({roughness:?}), albedo: {albedo:?}, fresnel: Dielectric({index:?}))")
+}
+
+/// Writes the picture, of 16 bits and in colour, and says what its levels are.
+pub(super) fn write_picture(folder: &Path, dice: &mut Dice) -> io::Result<Levels> {
+    let (width, height) = (7_u16, 5_u16);
+    let count = usize::from(width) * usize::from(height);
+    let colors: Vec<[u16; 3]> = (0..count)
+        .map(|_| [0; 3].map(|_| u16::from_be_bytes([dice.byte(), dice.byte()])))
+        .collect();
+    let file = std::fs::File::create(folder.join(FILE))?;
+    let mut encoder = png::Encoder::new(file, width.into(), height.into());
+    encoder.set_color(png::ColorType::Rgb);
+    encoder.set_depth(png::BitDepth::Sixteen);
+    let bytes: Vec<u8> = colors
+        .as_flattened()
+        .iter()
+        .flat_map(|level| level.to_be_bytes())
+        .collect();
+    encoder.write_header()?.write_image_data(&bytes)?;
+    let values = colors
+        .iter()
+        .map(|color| luminance(color.map(|level| f64::from(level) / 65_535.0)));
+    Ok(Levels {
+        width: width.into(),
+        height: height.into(),
+        values: values.collect(),
+    })
+}
+
+/// Writes a map of the sky, in 32-bit colour, and says what its levels are.
+pub(super) fn write_map(path: &Path, dice: &mut Dice) -> io::Result<Levels> {
+    let (width, height) = (16_u16, 9_u16);
+    let count = usize::from(width) * usize::from(height);
+    let colors: Vec<[f32; 3]> = (0..count)
+        .map(|_| [0; 3].map(|_| f32::from(dice.byte()) + 1.0))
+        .collect();
+    let (w, h) = (usize::from(width), usize::from(height));
+    exr::prelude::write_rgb_file(path, w, h, |column, row| {
+        let [r, g, b] = colors[row * w + column];
+        (r, g, b)
+    })
+    .map_err(io::Error::other)?;
+    let values = colors.iter().map(|color| luminance(color.map(f64::from)));
+    Ok(Levels {
+        width: w,
+        height: h,
+        values: values.collect(),
+    })
+}

@@ -1,0 +1,122 @@
+//! The BRDFs of the tracers and those of theory against the second ones.
+
+use super::brdf::{self, mirrored};
+use super::check::{Check, relative};
+use super::vector::{Vector, aside, between, direction, scale};
+use crate::hostile::dice::Dice;
+use etendue_field::{Brdf, Fresnel, Lobe};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// A BRDF of one side: of a description and two directions, the normal being along Z.
+type Fast = fn(&Brdf, Vector, Vector) -> f64;
+
+fn traced(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
+    etendue_trace::brdf::value(brdf, from.into(), to.into())
+}
+
+fn predicted(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
+    etendue_theory::scattering::brdf::value(brdf, DVec3::Z, from.into(), to.into())
+}
+
+const FRESNEL: &[&str] = &["s alone", "p alone", "media swapped", "k left out"];
+const PHONG: &[&str] = &["about the half-way vector", "(n + 2)/2π in front"];
+const BECKMANN: &[&str] = &[
+    "α² is the variance along an axis",
+    "masked one way only",
+    "facet on the side of one direction",
+];
+const GGX: &[&str] = &[
+    "Beckmann's masking",
+    "masked one way only",
+    "D to the power 3/2",
+];
+
+pub(super) fn checks() -> Vec<Check> {
+    let of = |fast: Fast, names: [&'static str; 4]| {
+        let check = |name, faults, tolerance, lobe: fn(&mut Dice) -> Lobe| Check {
+            name,
+            rounds: [4000, 1],
+            tolerance,
+            faults,
+            difference: Box::new(move |dice, fault| difference(fast, lobe, dice, fault)),
+        };
+        let angles = (1e-11, "rounding of cos α, n = 10⁴ times");
+        let facets = (3e-9, "1 − cos² of a facet loses 10⁻¹⁵ of α² = 10⁻⁶");
+        let plain = (1e-11, "rounding, more where all is nearly reflected");
+        [
+            check(names[0], FRESNEL, plain, |_| Lobe::Lambertian),
+            check(names[1], PHONG, angles, |dice| Lobe::Phong {
+                exponent: scale(dice, 0.1, 1e4),
+            }),
+            check(names[2], BECKMANN, facets, |dice| Lobe::Beckmann {
+                roughness: scale(dice, 1e-3, 1.0),
+            }),
+            check(names[3], GGX, facets, |dice| Lobe::Ggx {
+                roughness: scale(dice, 1e-3, 1.0),
+            }),
+        ]
+    };
+    let tracers = [
+        "tracers: Fresnel factors",
+        "tracers: Phong",
+        "tracers: Beckmann",
+        "tracers: GGX",
+    ];
+    let theory = [
+        "theory: Fresnel factors",
+        "theory: Phong",
+        "theory: Beckmann",
+        "theory: GGX",
+    ];
+    let both = [of(traced, tracers), of(predicted, theory)];
+    both.into_iter().flatten().collect()
+}
+
+/// As a share of the value.
+fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &str) -> f64 {
+    let brdf = Brdf {
+        lobe: lobe(dice),
+        albedo: dice.unit(),
+        fresnel: fresnel(dice),
+    };
+    let tilt = between(dice, 0.0, 1.55);
+    let from = aside(dice, [0.0, 0.0, 1.0], tilt);
+    let to = to(dice, brdf.lobe, from);
+    relative(fast(&brdf, from, to), brdf::value(&brdf, from, to, fault))
+}
+
+pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {
+    match dice.below(3) {
+        0 => Fresnel::White,
+        1 => Fresnel::Dielectric {
+            index: scale(dice, 0.05, 20.0),
+        },
+        _ => Fresnel::Conductor {
+            n: scale(dice, 0.05, 20.0),
+            k: between(dice, 0.0, 20.0),
+        },
+    }
+}
+
+/// A direction where the lobe is, now and then below the surface.
+fn to(dice: &mut Dice, lobe: Lobe, from: Vector) -> Vector {
+    match lobe {
+        Lobe::Lambertian => direction(dice),
+        Lobe::Phong { exponent } => {
+            let mirror = [-from[0], -from[1], from[2]];
+            let by = between(dice, 0.0, 4.0) / (exponent + 1.0).sqrt();
+            aside(dice, mirror, by.min(PI))
+        }
+        Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => {
+            let tilt = (roughness * between(dice, 0.0, 4.0)).atan();
+            let around = between(dice, 0.0, TAU);
+            let facet = [
+                tilt.sin() * around.cos(),
+                tilt.sin() * around.sin(),
+                tilt.cos(),
+            ];
+            mirrored(from, facet)
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Theory's affine maps at surfaces against differences of rays followed by the second
+//! implementation. They are theory's own, but read off the conventions that the tracers share.
+
+use super::check::{Check, worse};
+use super::paths::{Legs, Turn};
+use super::smooth::Smooth;
+use super::vector::{Axes, Vector, dot, plus, turned_along, unit};
+use super::views::{Looking, PLANES, View};
+use super::world::World;
+use crate::hostile::dice::Dice;
+use etendue_field::{
+    Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Reflectance, Specular,
+};
+use etendue_theory::geometry::{Edition, Map};
+use etendue_theory::rays::{self, Element, Plane};
+use etendue_theory::{Observed, scattering};
+use std::path::Path;
+
+/// Half of the difference between two rays, in metres and radians.
+const STEP: f64 = 1e-5;
+
+const MIRROR: &[&str] = &[
+    "sign of latitude",
+    "the central normal",
+    "not turned about the normal",
+    "hollow for convex",
+];
+const ONTO: &[&str] = &[
+    "sign of latitude",
+    "the central normal",
+    "hollow for convex",
+];
+const OFF: &[&str] = &["sign of latitude", "the central normal"];
+
+pub(super) fn checks() -> Vec<Check> {
+    let check = |name, faults, difference: fn(&mut Dice, &str) -> f64| Check {
+        name,
+        rounds: [300, 4],
+        tolerance: (
+            1e-7,
+            "differences over 10⁻⁵: its square times third derivatives",
+        ),
+        faults,
+        difference: Box::new(difference),
+    };
+    vec![
+        check("theory: map to planes at a mirror", MIRROR, at_mirror),
+        check("theory: map onto a surface with a BRDF", ONTO, onto),
+        check("theory: map off a surface with a BRDF", OFF, off),
+    ]
+}
+
+/// A surface that the central ray meets, and as theory has it.
+struct Met {
+    world: World,
+    smooth: Smooth,
+    legs: Legs,
+    patch: Patch,
+}
+
+impl Met {
+    fn new(dice: &mut Dice) -> Self {
+        let mut world = World::new(dice);
+        let (smooth, words) = Smooth::new(dice, &world, 0.7);
+        world.surfaces = words + "Mirror)";
+        let patch = world.scene(Path::new(".")).patches[0].patch;
+        let (d, n) = (world.light.d, smooth.axes.d);
+        let mirror = Turn::Back(plus(d, -2.0 * dot(d, n), n));
+        let legs = Legs::new(&world.light, smooth.axes.origin, n, mirror, "");
+        Self {
+            world,
+            smooth,
+            legs,
+            patch,
+        }
+    }
+
+    /// The frame of some axes in the coordinates at the light.
+    fn frame(&self, axes: &Axes) -> Frame {
+        let vector = |a: Vector| self.world.light.components(a).into();
+        Frame {
+            origin: self.world.resolved(axes.origin).into(),
+            x: vector(axes.x),
+            y: vector(axes.y),
+            d: vector(axes.d),
+        }
+    }
+
+    fn plane(&self, looking: &Looking<'_>) -> Plane {
+        let (axes, orientation) = match looking.view {
+            View::Across => (&looking.leg, Orientation::Orthogonal),
+            View::Tangent => (&looking.surface, Orientation::Tangent),
+            View::Local => (&looking.surface, Orientation::LocalNormals),
+            View::Mirrored => (&looking.surface, Orientation::Mirrored),
+        };
+        Plane {
+            frame: self.frame(axes),
+            orientation,
+            longitude: looking.longitude,
+            patch: orientation.is_local().then_some(self.patch),
+            arriving: looking.arrives,
+            quantity: Quantity::Radiance,
+        }
+    }
+
+    /// The ray (x, y, u, v) of the light.
+    fn emitted(&self, [x, y, u, v]: [f64; 4]) -> (Vector, Vector) {
+        let light = &self.world.light;
+        (light.point([x, y, 0.0]), unit(light.vector([u, v, 1.0])))
+    }
+
+    /// The system of reflection off its surface.
+    fn scattering(&self, plane: Plane) -> Observed<scattering::System> {
+        let brdf = Brdf {
+            lobe: Lobe::Lambertian,
+            albedo: 1.0,
+            fresnel: Fresnel::White,
+        };
+        let system = scattering::System {
+            light: Light::Point { intensity: 1.0 },
+            layers: Vec::new(),
+            name: "it".to_owned(),
+            patch: self.patch,
+            reflectance: Reflectance {
+                brdf,
+                blend: None,
+                texture: None,
+            },
+        };
+        Observed { system, plane }
+    }
+}
+
+/// How far a map is from the derivative of a function at a ray.
+fn apart(map: &Map<4>, at: [f64; 4], of: impl Fn([f64; 4]) -> Option<[f64; 4]>) -> f64 {
+    let each = (0..4).map(|i| {
+        let moved = |by: f64| {
+            let mut z = at;
+            z[i] += by;
+            of(z)
+        };
+        let (Some(above), Some(below)) = (moved(STEP), moved(-STEP)) else {
+            return f64::NAN;
+        };
+        let rows = map.matrix.iter().zip(above.iter().zip(below));
+        let off = rows.map(|(row, (a, b))| (row[i] - (a - b) / (2.0 * STEP)).abs());
+        off.fold(0.0, worse)
+    });
+    each.fold(0.0, worse)
+}
+
+fn at_mirror(dice: &mut Dice, fault: &str) -> f64 {
+    let met = Met::new(dice);
+    let seen = *dice.pick(&PLANES);
+    let smooth = met.smooth.wrong(fault);
+    let looking = Looking::new(&smooth, &met.legs, seen);
+    let mirror = Element {
+        name: "it".to_owned(),
+        patch: met.patch,
+        event: Specular::Mirror,
+    };
+    let system = rays::System {
+        light: Light::Point { intensity: 1.0 },
+        layers: Vec::new(),
+        elements: if looking.arrives {
+            Vec::new()
+        } else {
+            vec![mirror]
+        },
+    };
+    let plane = met.plane(&looking);
+    let Some(chain) = rays::chain(&Observed { system, plane }, Edition::Corrected) else {
+        return f64::NAN;
+    };
+    apart(&chain.rays(), [0.0; 4], |z| {
+        let (start, along) = met.emitted(z);
+        if looking.arrives {
+            return looking.seen(start, along, fault);
+        }
+        let point = plus(start, *smooth.hits(start, along).first()?, along);
+        let normal = smooth.normal(point);
+        let mirrored = plus(along, -2.0 * dot(along, normal), normal);
+        looking.seen(point, mirrored, fault)
+    })
+}
+
+fn onto(dice: &mut Dice, fault: &str) -> f64 {
+    let met = Met::new(dice);
+    let smooth = met.smooth.wrong(fault);
+    let looking = Looking::new(&smooth, &met.legs, ("", true, View::Local));
+    let leaving = Looking::new(&smooth, &met.legs, ("", false, View::Across));
+    let Some(chain) = scattering::chain(&met.scattering(met.plane(&leaving))) else {
+        return f64::NAN;
+    };
+    apart(&chain.onto, [0.0; 4], |z| {
+        let (start, along) = met.emitted(z);
+        looking.seen(start, along, fault)
+    })
+}
+
+/// From (s, t, θ, φ) of light that leaves the surface to the coordinates of a plane.
+fn off(dice: &mut Dice, fault: &str) -> f64 {
+    let met = Met::new(dice);
+    let leaving = *dice.pick(&PLANES[4..]);
+    let looking = Looking::new(&met.smooth, &met.legs, leaving);
+    let Some(chain) = scattering::chain(&met.scattering(met.plane(&looking))) else {
+        return f64::NAN;
+    };
+    let (axes, longitude) = met.legs.leaving;
+    apart(
+        &chain.off,
+        [0.0, 0.0, longitude, 0.0],
+        |[s, t, theta, phi]| {
+            let [p, q, _] = met.smooth.axes.coordinates(axes.point([s, t, 0.0]));
+            let point = met.smooth.point(p, q);
+            let normal = met.smooth.normal(point);
+            let local = [phi.cos() * theta.sin(), phi.sin(), phi.cos() * theta.cos()];
+            let along = turned_along(axes.vector(local), axes.d, normal);
+            looking.seen(point, along, fault)
+        },
+    )
+}

@@ -1,0 +1,255 @@
+//! Blockers, slides and windows against their definitions; blockers and slides as written in scene
+//! files.
+
+use super::check::{Check, relative, worse};
+use super::pattern::cosine;
+use super::textures::grating;
+use super::vector::{Vector, between, scale};
+use super::world::{World, pair, triple};
+use crate::hostile::dice::Dice;
+use etendue_field::{Grating, Light, Profile, TwoPlane, Window};
+use etendue_scene::Scene;
+use std::f64::consts::PI;
+use std::path::Path;
+
+/// Places for each scene.
+const EACH: u32 = 20;
+
+const SHAPES: &[&str] = &[
+    "x and y swapped",
+    "sizes are half-widths",
+    "the other half of the plane",
+    "from the central ray",
+];
+const GRATING: &[&str] = &["axes swapped", "from the central ray", "phase subtracted"];
+const SQUARES: &[&str] = &["x and y swapped", "half a pitch off", "sides of a pitch"];
+const SLIDE: &[&str] = &["widths swapped", "axes swapped", "no π"];
+const WINDOW: &[&str] = &["cosine not squared", "half-width is the width", "no π"];
+
+pub(super) fn checks() -> Vec<Check> {
+    let exact = (0.0, "a number of two"); // 0 or 1 on both sides
+    let angle = (1e-11, "rounding of 2π f t, up to 10³");
+    let slide = (1e-11, "rounding of exponents and angles");
+    let check = |name, faults, tolerance, difference: fn(&mut Dice, &str) -> f64| Check {
+        name,
+        rounds: [200, EACH],
+        tolerance,
+        faults,
+        difference: Box::new(difference),
+    };
+    vec![
+        check("mask of shapes", SHAPES, exact, shapes),
+        check("mask of squares", SQUARES, exact, squares),
+        check("mask of a grating", GRATING, angle, masked_by_grating),
+        check("slide of a projector", SLIDE, slide, slide_of_projector),
+        check("window", WINDOW, slide, window),
+    ]
+}
+
+/// The center of a layer: along X and Y, and the world's.
+fn layer(dice: &mut Dice, world: &World) -> ([f64; 2], Vector) {
+    let [x, y] = [between(dice, -0.5, 0.5), between(dice, -0.5, 0.5)];
+    ([x, y], world.light.point([x, y, 0.5]))
+}
+
+/// What the resolved mask lets through at places around its center, against what is so by words.
+fn against(
+    dice: &mut Dice,
+    scene: &Scene,
+    center: [f64; 2],
+    second: impl Fn([f64; 2]) -> f64,
+) -> f64 {
+    let each = (0..EACH).map(|_| {
+        let at = [between(dice, -1.5, 1.5), between(dice, -1.5, 1.5)];
+        let mask = &scene.blockers[0].mask;
+        let fast = mask.transmittance(center[0] + at[0], center[1] + at[1]);
+        (fast - second(at)).abs()
+    });
+    each.fold(0.0, worse)
+}
+
+/// A rectangle to the left, a disc to the right, and a half-plane beyond them on any side.
+fn shapes(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (center, origin) = layer(dice, &world);
+    let rectangle = [between(dice, -0.6, -0.4), between(dice, -0.2, 0.2)];
+    let size = [between(dice, 0.1, 0.3), between(dice, 0.4, 1.0)];
+    let disc = [between(dice, 0.4, 0.6), between(dice, -0.2, 0.2)];
+    let radius = between(dice, 0.1, 0.3);
+    let (axis, is_above) = (dice.below(2), dice.one_in(2));
+    let edge = between(dice, 1.0, 1.2) * if is_above { 1.0 } else { -1.0 };
+    world.blockers = format!(
+        "Shapes(name: \"b\", center: {}, shapes: [Rectangle(center: {}, size: {}), \
+         Disc(center: {}, radius: {radius:?}), \
+         HalfPlane(axis: {}, edge: {edge:?}, opaque: {})])",
+        triple(origin),
+        pair(rectangle),
+        pair(size),
+        pair(disc),
+        ["X", "Y"][axis],
+        if is_above { "Above" } else { "Below" },
+    );
+    let scene = world.scene(Path::new("."));
+    against(dice, &scene, center, |at| {
+        let [x, y] = match fault {
+            "x and y swapped" => [at[1], at[0]],
+            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
+            _ => at,
+        };
+        let part = if fault == "sizes are half-widths" {
+            1.0
+        } else {
+            0.5
+        };
+        let in_rectangle = (x - rectangle[0]).abs() <= part * size[0]
+            && (y - rectangle[1]).abs() <= part * size[1];
+        let in_disc = (x - disc[0]).hypot(y - disc[1]) <= radius;
+        let beyond = if is_above {
+            [x, y][axis] >= edge
+        } else {
+            [x, y][axis] <= edge
+        };
+        let in_half = beyond != (fault == "the other half of the plane");
+        if in_rectangle || in_disc || in_half {
+            0.0
+        } else {
+            1.0
+        }
+    })
+}
+
+/// Squares on a regular grid: the middle of it at the center.
+fn squares(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (center, origin) = layer(dice, &world);
+    let count = [1 + dice.below(8), 1 + dice.below(8)];
+    let (pitch, fill) = (between(dice, 0.1, 0.4), between(dice, 0.2, 0.9));
+    world.blockers = format!(
+        "JitteredSquares(name: \"b\", center: {}, count: ({}, {}), pitch: {pitch:?}, \
+         fill: {fill:?})",
+        triple(origin),
+        count[0],
+        count[1],
+    );
+    let scene = world.scene(Path::new("."));
+    against(dice, &scene, center, |at| {
+        let at = match fault {
+            "x and y swapped" => [at[1], at[0]],
+            "half a pitch off" => [at[0] + 0.5 * pitch, at[1]],
+            _ => at,
+        };
+        let side = if fault == "sides of a pitch" {
+            pitch
+        } else {
+            fill * pitch
+        };
+        let within = |axis: usize| {
+            (0..count[axis]).any(|i| {
+                let middle = (i as f64 - (count[axis] as f64 - 1.0) / 2.0) * pitch;
+                (at[axis] - middle).abs() <= side / 2.0
+            })
+        };
+        if within(0) && within(1) { 0.0 } else { 1.0 }
+    })
+}
+
+/// ½ (1 + m cos(2π f t + p)), t from the center.
+fn masked_by_grating(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (center, origin) = layer(dice, &world);
+    let grating = grating(dice);
+    world.blockers = format!(
+        "Grating(name: \"b\", center: {}, {})",
+        triple(origin),
+        words(&grating)
+    );
+    let scene = world.scene(Path::new("."));
+    against(dice, &scene, center, |at| {
+        let at = match fault {
+            "axes swapped" => [at[1], at[0]],
+            "from the central ray" => [at[0] + center[0], at[1] + center[1]],
+            _ => at,
+        };
+        cosine(&grating, at, fault)
+    })
+}
+
+fn words(grating: &Grating) -> String {
+    let Grating {
+        axis,
+        frequency,
+        modulation,
+        phase,
+    } = grating;
+    let axis = ["X", "Y"][*axis];
+    format!("axis: {axis}, frequency: {frequency:?}, modulation: {modulation:?}, phase: {phase:?}")
+}
+
+/// exp(−π u²/w²) along both axes, times the grating.
+fn slide_of_projector(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let widths = [scale(dice, 0.03, 0.3), scale(dice, 0.03, 0.3)];
+    let grating = grating(dice);
+    world.lamp = format!(
+        "Projector(center: {}, image: (width: {}, grating: ({})))",
+        triple(world.light.origin),
+        pair(widths),
+        words(&grating)
+    );
+    let scene = world.scene(Path::new("."));
+    let Light::Projector { image, .. } = scene.light else {
+        return f64::NAN;
+    };
+    let widths = match fault {
+        "widths swapped" => [widths[1], widths[0]],
+        _ => widths,
+    };
+    let pi = if fault == "no π" { 1.0 } else { PI };
+    let each = (0..EACH).map(|_| {
+        let at = [between(dice, -0.3, 0.3), between(dice, -0.3, 0.3)];
+        let gauss = |axis: usize| (-pi * (at[axis] / widths[axis]).powi(2)).exp();
+        let through = match fault {
+            "axes swapped" => cosine(&grating, [at[1], at[0]], fault),
+            _ => cosine(&grating, at, fault),
+        };
+        (image.value(at[0], at[1]) - gauss(0) * gauss(1) * through).abs()
+    });
+    each.fold(0.0, worse)
+}
+
+/// The four profiles of docs/conventions.md, Window.
+fn window(dice: &mut Dice, fault: &str) -> f64 {
+    let profiles = [0; 4].map(|_| match dice.below(3) {
+        0 => Profile::Hann(scale(dice, 0.1, 1.0)),
+        1 => Profile::Box(scale(dice, 0.1, 1.0)),
+        _ => Profile::Gaussian {
+            width: scale(dice, 0.1, 1.0),
+            cut: scale(dice, 0.1, 1.0),
+        },
+    });
+    let [x, y, u, v] = profiles;
+    let fast = Window { x, y, u, v };
+    let half = if fault == "half-width is the width" {
+        0.5
+    } else {
+        1.0
+    };
+    let power = if fault == "cosine not squared" { 1 } else { 2 };
+    let pi = if fault == "no π" { 1.0 } else { PI };
+    let value = |profile: &Profile, t: f64| {
+        let (end, inside) = match *profile {
+            Profile::Hann(h) => (h * half, (PI * t / (2.0 * h * half)).cos().powi(power)),
+            Profile::Box(h) => (h * half, 1.0),
+            Profile::Gaussian { width, cut } => (cut * half, (-pi * t * t / (width * width)).exp()),
+        };
+        if t.abs() < end { inside } else { 0.0 }
+    };
+    let each = (0..EACH).map(|_| {
+        // Most rays are inside the window, some beyond.
+        let at = profiles.map(|profile| profile.half_width() * between(dice, -1.05, 1.05));
+        let second: f64 = profiles.iter().zip(at).map(|(p, t)| value(p, t)).product();
+        let [x, y, u, v] = at;
+        relative(fast.value(&TwoPlane { x, y, u, v }) + 1e-6, second + 1e-6)
+    });
+    each.fold(0.0, worse)
+}

@@ -1,0 +1,211 @@
+//! The central ray at a surface, from docs/conventions.md, Frames: the frames of the legs before
+//! and after it, and of the surface.
+
+use super::check::{Check, worse};
+use super::smooth::Smooth;
+use super::vector::{
+    Axes, Vector, across, angle, between, cross, dot, plus, times, turned_along, unit,
+};
+use super::world::{World, frames_apart, triple};
+use crate::hostile::dice::Dice;
+use std::path::Path;
+
+const FRAMES: &[&str] = &[
+    "X not turned round",
+    "not turned to where it goes",
+    "T turned over",
+    "sign of longitude",
+    "N in front of light gone through",
+];
+
+const RECTANGLE: &[&str] = &["edges along Y", "turned over"];
+
+/// What happens to the central ray at a surface.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Turn {
+    /// It goes along a direction on the side it came from.
+    Back(Vector),
+    /// It goes through, along a direction.
+    Through(Vector),
+}
+
+/// Frames at the point that the central ray hits.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Legs {
+    pub(super) before: Axes,
+    pub(super) after: Axes,
+    /// T, B, N for light that arrives, and for light that leaves; with the longitudes of the
+    /// central ray.
+    pub(super) arriving: (Axes, f64),
+    pub(super) leaving: (Axes, f64),
+}
+
+pub(super) fn checks() -> Vec<Check> {
+    vec![
+        Check {
+            name: "frames of legs and surfaces, longitudes",
+            rounds: [400, 4],
+            tolerance: (1e-11, "rounding of coordinates and turns"),
+            faults: FRAMES,
+            difference: Box::new(frames),
+        },
+        Check {
+            name: "frame of a rectangle",
+            rounds: [400, 1],
+            tolerance: (1e-13, "rounding of coordinates of a few metres"),
+            faults: RECTANGLE,
+            difference: Box::new(rectangle),
+        },
+    ]
+}
+
+impl Legs {
+    pub(super) fn new(light: &Axes, hit: Vector, facing: Vector, turn: Turn, fault: &str) -> Self {
+        let before = Axes {
+            origin: hit,
+            ..*light
+        };
+        // On the side that light comes from.
+        let normal = times(-dot(facing, light.d).signum(), facing);
+        let after = Self::after(&before, normal, turn, fault);
+        let t = across(light.d, normal);
+        // Along −X at normal incidence.
+        let t = times(-dot(t, light.x).signum(), t);
+        let t = if fault == "T turned over" {
+            times(-1.0, t)
+        } else {
+            t
+        };
+        let surface = |sign: f64| Axes {
+            origin: hit,
+            x: times(sign, t),
+            y: cross(normal, t),
+            d: times(sign, normal),
+        };
+        // From N towards T.
+        let longitude = |axes: &Axes, away: Vector| {
+            let theta = dot(away, axes.x).atan2(dot(away, axes.d));
+            if fault == "sign of longitude" {
+                -theta
+            } else {
+                theta
+            }
+        };
+        let arriving = surface(1.0);
+        let leaving = match turn {
+            Turn::Through(_) if fault != "N in front of light gone through" => surface(-1.0),
+            _ => surface(1.0),
+        };
+        Self {
+            before,
+            after,
+            arriving: (arriving, longitude(&arriving, times(-1.0, light.d))),
+            leaving: (leaving, longitude(&leaving, after.d)),
+        }
+    }
+
+    /// That of a mirror, X turned round, or that in which it came; turned by the smallest angle to
+    /// where it goes.
+    fn after(before: &Axes, normal: Vector, turn: Turn, fault: &str) -> Axes {
+        let mirrored = |a: Vector| plus(a, -2.0 * dot(a, normal), normal);
+        let x_sign = if fault == "X not turned round" {
+            1.0
+        } else {
+            -1.0
+        };
+        let (x, y, d, to) = match turn {
+            Turn::Through(to) => (before.x, before.y, before.d, to),
+            Turn::Back(to) => (
+                times(x_sign, mirrored(before.x)),
+                mirrored(before.y),
+                mirrored(before.d),
+                to,
+            ),
+        };
+        let along = match fault {
+            "not turned to where it goes" => |a: Vector, _: Vector, _: Vector| a,
+            _ => turned_along,
+        };
+        Axes {
+            origin: before.origin,
+            x: along(x, d, to),
+            y: along(y, d, to),
+            d: to,
+        }
+    }
+}
+
+/// A direction that leaves a surface on the side that light comes from.
+fn leaves(dice: &mut Dice, normal: Vector) -> Vector {
+    let tilt = between(dice, 0.0, 1.3);
+    super::vector::aside(dice, normal, tilt)
+}
+
+/// What happens to the central ray, and the words for it.
+fn turn(dice: &mut Dice, light: &Axes, facing: Vector) -> (Turn, String, String) {
+    let mirror = plus(light.d, -2.0 * dot(light.d, facing), facing);
+    match dice.below(3) {
+        0 => (Turn::Back(mirror), "Mirror".to_owned(), String::new()),
+        1 => {
+            let (front, back) = (between(dice, 1.0, 1.2), between(dice, 1.2, 2.0));
+            let sine = front / back * angle(light.d, times(-1.0, facing)).sin();
+            let aside = across(light.d, facing);
+            let inwards = times(-(1.0 - sine * sine).sqrt(), facing);
+            let through = unit(plus(inwards, sine, aside));
+            let words = format!("Refraction(front: {front:?}, back: {back:?})");
+            (Turn::Through(through), words, String::new())
+        }
+        _ => {
+            let back = leaves(dice, facing);
+            let words = "Reflects(brdf: (lobe: Phong(10)))".to_owned();
+            let onwards = format!(", leaves: {}", triple(times(0.5, back)));
+            (Turn::Back(back), words, onwards)
+        }
+    }
+}
+
+fn frames(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice);
+    let (smooth, words) = Smooth::new(dice, &world, 1.2);
+    let facing = smooth.axes.d;
+    let (turn, event, onwards) = turn(dice, &world.light, facing);
+    world.surfaces = words + &event + ")";
+    world.onwards = onwards;
+    world.planes = "(name: \"a\", at: Before(\"it\")), (name: \"b\", at: After(\"it\")), \
+        (name: \"c\", at: Before(\"it\"), orientation: Tangent), \
+        (name: \"d\", at: After(\"it\"), orientation: LocalNormals)"
+        .to_owned();
+    let scene = world.scene(Path::new("."));
+    let legs = Legs::new(&world.light, smooth.axes.origin, facing, turn, fault);
+    let across = [(legs.before, 0.0), (legs.after, 0.0)];
+    let all = across.into_iter().chain([legs.arriving, legs.leaving]);
+    let apart = scene
+        .planes
+        .iter()
+        .zip(all)
+        .map(|(plane, (axes, longitude))| {
+            let turned = (plane.longitude - longitude).abs();
+            worse(frames_apart(&plane.frame, &axes), turned)
+        });
+    apart.fold(0.0, worse)
+}
+
+/// Edges are along the part of X that is orthogonal to where it faces, and across.
+fn rectangle(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice);
+    let center = world.light.point([0.0, 0.0, 2.0]);
+    let facing = leaves(dice, times(-1.0, world.light.d));
+    world.surfaces = format!(
+        "Rectangle(name: \"it\", center: {}, size: (3, 2), facing: {})",
+        triple(center),
+        triple(times(3.0, facing))
+    );
+    let scene = world.scene(Path::new("."));
+    let (facing, along) = match fault {
+        "edges along Y" => (facing, world.light.y),
+        "turned over" => (times(-1.0, facing), world.light.x),
+        _ => (facing, world.light.x),
+    };
+    let fast = world.light.in_world(&scene.surfaces[0].frame);
+    frames_apart(&fast, &Axes::new(center, facing, along))
+}

@@ -1,0 +1,189 @@
+//! Patterns, pictures and blends from their definitions (docs of `etendue_field::Pattern`,
+//! scenes/README.md).
+
+use etendue_field::{Brdf, Fresnel, Grating, Lobe};
+use std::f64::consts::TAU;
+
+/// The levels of a picture, row by row from the top, each row from the left.
+#[derive(Clone, Debug)]
+pub(super) struct Levels {
+    pub(super) width: usize,
+    pub(super) height: usize,
+    pub(super) values: Vec<f64>,
+}
+
+/// A pattern in the second implementation.
+#[derive(Clone, Debug)]
+pub(super) enum Pattern {
+    Cosine(Grating),
+    Checkerboard(f64),
+    /// With its width and height, metres.
+    Picture(Levels, [f64; 2]),
+}
+
+impl Pattern {
+    /// Its value at a place along the axes of the surface.
+    pub(super) fn value(&self, at: [f64; 2], fault: &str) -> f64 {
+        let [s, t] = match fault {
+            "axes swapped" => [at[1], at[0]],
+            "sign of t" => [at[0], -at[1]],
+            _ => at,
+        };
+        match self {
+            Self::Cosine(grating) => cosine(grating, [s, t], fault),
+            Self::Checkerboard(period) => checkerboard(*period, [s, t], fault),
+            Self::Picture(levels, size) => levels.picture(*size, [s, t], fault),
+        }
+    }
+}
+
+/// ½ (1 + m cos(2π f t + p)).
+pub(super) fn cosine(grating: &Grating, at: [f64; 2], fault: &str) -> f64 {
+    let angle = TAU * grating.frequency * at[grating.axis];
+    let angle = match fault {
+        "phase subtracted" => angle - grating.phase,
+        _ => angle + grating.phase,
+    };
+    0.5 + 0.5 * grating.modulation * angle.cos()
+}
+
+/// Squares of half a period are counted along both axes from the vertex: where the sum is even it
+/// is 1.
+fn checkerboard(period: f64, at: [f64; 2], fault: &str) -> f64 {
+    let side = match fault {
+        "a side is a period" => period,
+        _ => period / 2.0,
+    };
+    let odd = |t: f64| (t / side).floor().rem_euclid(2.0) > 0.5;
+    let is_even = odd(at[0]) == odd(at[1]);
+    let is_one = match fault {
+        "parity" => !is_even,
+        _ => is_even,
+    };
+    if is_one { 1.0 } else { 0.0 }
+}
+
+impl Levels {
+    pub(super) fn level(&self, column: usize, row: usize) -> f64 {
+        self.values[row * self.width + column]
+    }
+
+    /// A picture around the vertex, its top along Y: bilinear between centres of pixels, as at the
+    /// nearest centre beyond the outermost, 0 beyond its edge.
+    fn picture(&self, [width, height]: [f64; 2], [s, t]: [f64; 2], fault: &str) -> f64 {
+        if s.abs() > width / 2.0 || t.abs() > height / 2.0 {
+            return 0.0;
+        }
+        let left = match fault {
+            "left for right" => width / 2.0 - s,
+            _ => width / 2.0 + s,
+        };
+        let top = match fault {
+            "flipped" => height / 2.0 + t,
+            _ => height / 2.0 - t,
+        };
+        let off = if fault == "centres at corners" {
+            0.0
+        } else {
+            0.5
+        };
+        let centres = |count: usize, side: f64| -> Vec<f64> {
+            let pitch = side / count as f64;
+            (0..count).map(|i| (i as f64 + off) * pitch).collect()
+        };
+        let (i, across) = between(&centres(self.width, width), left, fault);
+        let (j, down) = between(&centres(self.height, height), top, fault);
+        let next = [(i + 1).min(self.width - 1), (j + 1).min(self.height - 1)];
+        let row = |j: usize| (1.0 - across) * self.level(i, j) + across * self.level(next[0], j);
+        (1.0 - down) * row(j) + down * row(next[1])
+    }
+}
+
+/// The last of ascending centres before a place, and how far on towards the next one it is; the
+/// outermost hold beyond.
+fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
+    let last = centres.len() - 1;
+    if at <= centres[0] {
+        return (0, 0.0);
+    }
+    if at >= centres[last] {
+        return (last, 0.0);
+    }
+    let before = (0..last).rev().find(|i| centres[*i] <= at).unwrap_or(0);
+    let share = (at - centres[before]) / (centres[before + 1] - centres[before]);
+    match fault {
+        "nearest pixel" => (before, share.round()),
+        _ => (before, share),
+    }
+}
+
+/// A BRDF that varies over a surface.
+#[derive(Clone, Debug)]
+pub(super) struct Varied {
+    pub(super) brdf: Brdf,
+    pub(super) other: Brdf,
+    pub(super) blend: Pattern,
+    pub(super) texture: Pattern,
+}
+
+impl Varied {
+    /// The BRDF at a place: `brdf` where the blend is 1, `other` where it is 0. Numbers in between
+    /// are interpolated; of lobes or Fresnel factors of different kinds the nearer is taken. The
+    /// texture multiplies.
+    pub(super) fn at(&self, at: [f64; 2], fault: &str) -> Brdf {
+        let share = self.blend.value(at, fault);
+        let share = match fault {
+            "blend order swapped" => 1.0 - share,
+            "the nearer for what is between" => share.round(),
+            _ => share,
+        };
+        let mixed = |a: f64, b: f64| share * a + (1.0 - share) * b;
+        let nearer = if share >= 0.5 {
+            &self.brdf
+        } else {
+            &self.other
+        };
+        let albedo = mixed(self.brdf.albedo, self.other.albedo);
+        Brdf {
+            lobe: lobe(self.brdf.lobe, self.other.lobe, mixed).unwrap_or(nearer.lobe),
+            albedo: match fault {
+                "texture left out" => albedo,
+                _ => albedo * self.texture.value(at, fault),
+            },
+            fresnel: fresnel(self.brdf.fresnel, self.other.fresnel, mixed)
+                .unwrap_or(nearer.fresnel),
+        }
+    }
+}
+
+fn lobe(a: Lobe, b: Lobe, mixed: impl Fn(f64, f64) -> f64) -> Option<Lobe> {
+    match (a, b) {
+        (Lobe::Phong { exponent: a }, Lobe::Phong { exponent: b }) => Some(Lobe::Phong {
+            exponent: mixed(a, b),
+        }),
+        (Lobe::Beckmann { roughness: a }, Lobe::Beckmann { roughness: b }) => {
+            Some(Lobe::Beckmann {
+                roughness: mixed(a, b),
+            })
+        }
+        (Lobe::Ggx { roughness: a }, Lobe::Ggx { roughness: b }) => Some(Lobe::Ggx {
+            roughness: mixed(a, b),
+        }),
+        _ => None,
+    }
+}
+
+fn fresnel(a: Fresnel, b: Fresnel, mixed: impl Fn(f64, f64) -> f64) -> Option<Fresnel> {
+    match (a, b) {
+        (Fresnel::Dielectric { index: a }, Fresnel::Dielectric { index: b }) => {
+            Some(Fresnel::Dielectric { index: mixed(a, b) })
+        }
+        (Fresnel::Conductor { n, k }, Fresnel::Conductor { n: m, k: l }) => {
+            Some(Fresnel::Conductor {
+                n: mixed(n, m),
+                k: mixed(k, l),
+            })
+        }
+        _ => None,
+    }
+}

@@ -1,0 +1,195 @@
+//! Environments, written down in scene files, against their definition: axes, pixels and lobes.
+
+use super::check::{Check, relative, worse};
+use super::pattern::Levels;
+use super::vector::{Axes, Vector, angle, aside, between, direction, scale, times};
+use super::world::{World, triple};
+use crate::hostile::dice::Dice;
+use etendue_field::Light;
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+use std::rc::Rc;
+use tempfile::TempDir;
+
+/// Directions for each scene.
+const EACH: u32 = 20;
+
+const MAP: &[&str] = &[
+    "turned by 90°",
+    "sign of longitude",
+    "upside down",
+    "the way light goes",
+    "centres at corners",
+    "axes of the world",
+];
+const LOBES: &[&str] = &["the way light goes", "axes of the world", "2 σ² for σ²"];
+
+/// The name of a map in the folder.
+pub(super) const FILE: &str = "sky.exr";
+
+pub(super) fn checks(folder: &Rc<TempDir>, map: &Levels) -> Vec<Check> {
+    let (of_map, of_lobes, map) = (Rc::clone(folder), Rc::clone(folder), map.clone());
+    vec![
+        Check {
+            name: "environment map of a file",
+            rounds: [150, EACH],
+            tolerance: (1e-12, "rounding of angles and levels"),
+            faults: MAP,
+            difference: Box::new(move |dice, fault| mapped(dice, fault, of_map.path(), &map)),
+        },
+        Check {
+            name: "environment of spherical Gaussians",
+            rounds: [150, EACH],
+            tolerance: (1e-11, "rounding of unit vectors, 4/σ times, σ ≥ 10⁻³"),
+            faults: LOBES,
+            difference: Box::new(move |dice, fault| lobed(dice, fault, of_lobes.path())),
+        },
+    ]
+}
+
+/// The axes of a map: Y is `up`, Z is `front` as far as it is orthogonal to it, X = Y × Z.
+fn axes(dice: &mut Dice) -> (Axes, String) {
+    let up = direction(dice);
+    let tilt = between(dice, 0.3, 2.8);
+    let front = aside(dice, up, tilt);
+    // D is up and X to the front, so Y = D × X is the X of the map.
+    let text = format!("up: {}, front: {}", triple(up), triple(times(3.0, front)));
+    (Axes::new([0.0; 3], up, front), text)
+}
+
+/// The components of a direction along X, up and front of the map.
+fn seen(axes: &Axes, from: Vector, fault: &str) -> Vector {
+    if fault == "axes of the world" {
+        return from;
+    }
+    let [front, x, up] = axes.components(from);
+    [x, up, front]
+}
+
+/// Where light comes from that goes along a direction.
+fn origin(along: Vector, fault: &str) -> Vector {
+    match fault {
+        "the way light goes" => along,
+        _ => times(-1.0, along),
+    }
+}
+
+/// What the scene has along a direction of the world.
+fn fast(world: &World, light: &Light, along: Vector) -> f64 {
+    let Light::Environment { environment } = light else {
+        return f64::NAN;
+    };
+    environment.radiance(world.light.components(along).into())
+}
+
+fn mapped(dice: &mut Dice, fault: &str, folder: &Path, map: &Levels) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (axes, text) = axes(dice);
+    let brightness = scale(dice, 0.1, 10.0);
+    world.lamp = format!(
+        "Environment(center: {}, {text}, scale: {brightness:?}, map: File(\"{FILE}\"))",
+        triple(world.light.origin)
+    );
+    let scene = world.scene(folder);
+    let each = (0..EACH).map(|_| {
+        let along = direction(dice);
+        let second = map.radiance(seen(&axes, origin(along, fault), fault), fault);
+        relative(fast(&world, &scene.light, along), brightness * second)
+    });
+    each.fold(0.0, worse)
+}
+
+impl Levels {
+    /// Radiance from a direction (x, up, front): the centre of column i of w is at longitude
+    /// π (1 − (2 i + 1)/w), from the front towards x, that of row j of h at latitude
+    /// π (½ − (j + ½)/h). Bilinear between, all around; from the outermost rows to the poles as in
+    /// the row.
+    fn radiance(&self, [x, up, front]: Vector, fault: &str) -> f64 {
+        let longitude = angle([0.0, 0.0, 1.0], [x, 0.0, front]) * x.signum();
+        let latitude = PI / 2.0 - angle([0.0, 1.0, 0.0], [x, up, front]);
+        let [w, h] = [self.width as f64, self.height as f64];
+        let longitude = match fault {
+            "turned by 90°" => longitude + PI / 2.0,
+            "sign of longitude" => -longitude,
+            "centres at corners" => longitude + PI / w,
+            _ => longitude,
+        };
+        let latitude = match fault {
+            "upside down" => -latitude,
+            _ => latitude,
+        };
+        let row = |j: usize| {
+            // Columns left and right of the place, the last one again before the first.
+            let columns = (0..=self.width).map(|i| {
+                let right = PI * (1.0 - (2.0 * i as f64 + 1.0) / w);
+                let past = (right + TAU / w - longitude).rem_euclid(TAU) / (TAU / w);
+                (i, past)
+            });
+            let place = columns.min_by(|a, b| a.1.total_cmp(&b.1));
+            let (right, share) = place.unwrap_or((0, 0.0));
+            let left = (right + self.width - 1) % self.width;
+            (1.0 - share) * self.level(left, j) + share * self.level(right % self.width, j)
+        };
+        let centre = |j: usize| PI * (0.5 - (j as f64 + 0.5) / h);
+        let below = (0..self.height).find(|j| centre(*j) <= latitude);
+        match below {
+            Some(0) => row(0),
+            None => row(self.height - 1),
+            Some(j) => {
+                let share = (centre(j - 1) - latitude) / (centre(j - 1) - centre(j));
+                (1.0 - share) * row(j - 1) + share * row(j)
+            }
+        }
+    }
+}
+
+fn lobed(dice: &mut Dice, fault: &str, folder: &Path) -> f64 {
+    let mut world = World::new(dice).with_wall(1.0);
+    let (axes, text) = axes(dice);
+    let brightness = scale(dice, 0.1, 10.0);
+    let lobes: Vec<(Vector, f64, f64)> = (0..2)
+        .map(|_| {
+            let tilt = between(dice, 0.0, 1.0);
+            let from = aside(dice, times(-1.0, world.light.d), tilt);
+            (from, scale(dice, 1e-3, 3.0), scale(dice, 0.1, 10.0))
+        })
+        .collect();
+    let words: Vec<String> = lobes
+        .iter()
+        .map(|(from, width, radiance)| {
+            let from = triple(times(2.0, seen(&axes, *from, "")));
+            format!("(from: {from}, width: {width:?}, radiance: {radiance:?})")
+        })
+        .collect();
+    world.lamp = format!(
+        "Environment(center: {}, {text}, scale: {brightness:?}, map: Lobes([{}]))",
+        triple(world.light.origin),
+        words.join(", ")
+    );
+    let scene = world.scene(folder);
+    let each = (0..EACH).map(|_| {
+        let (from, width, _) = lobes[dice.below(2)];
+        let tilt = width * between(dice, 0.0, 4.0);
+        let along = times(-1.0, aside(dice, from, tilt));
+        let second: f64 = lobes
+            .iter()
+            .map(|(middle, width, radiance)| {
+                // The fault takes the numbers of the file for directions of the world.
+                let middle = match fault {
+                    "axes of the world" => seen(&axes, *middle, ""),
+                    _ => *middle,
+                };
+                let gamma = angle(middle, origin(along, fault));
+                let fall = 2.0 * (gamma / 2.0).sin().powi(2);
+                let squared = width * width * if fault == "2 σ² for σ²" { 2.0 } else { 1.0 };
+                radiance * (-fall / squared).exp()
+            })
+            .sum();
+        // Where nothing of the lobes is left there is nothing to compare.
+        relative(
+            fast(&world, &scene.light, along) + 1e-9,
+            brightness * second + 1e-9,
+        )
+    });
+    each.fold(0.0, worse)
+}

@@ -1,0 +1,161 @@
+//! Smooth surfaces as solids: a plane, a ball, a round bar, a paraboloid.
+
+use super::vector::{Axes, Vector, aside, between, dot, length, plus, times, unit};
+use super::world::{World, triple};
+use crate::hostile::dice::Dice;
+
+/// What a scene file calls a form.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Form {
+    Plane,
+    Sphere(f64),
+    Cylinder(f64),
+    Paraboloid(f64, f64),
+}
+
+/// A surface with its vertex at the origin of its axes, which faces along D and whose first
+/// curvature is along X.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Smooth {
+    pub(super) axes: Axes,
+    pub(super) form: Form,
+    pub(super) aperture: f64,
+}
+
+impl Smooth {
+    /// A surface that the central ray of a world meets at its vertex, tilted by up to `most`, and
+    /// its words but for the event.
+    pub(super) fn new(dice: &mut Dice, world: &World, most: f64) -> (Self, String) {
+        let tilt = between(dice, 0.1, most);
+        let facing = aside(dice, times(-1.0, world.light.d), tilt);
+        let lean = between(dice, 0.5, 2.5);
+        let along = aside(dice, facing, lean);
+        let mut curvature = || {
+            let sign = if dice.one_in(2) { 1.0 } else { -1.0 };
+            sign * between(dice, 0.3, 1.0)
+        };
+        let (k, l) = (curvature(), curvature());
+        let form = *dice.pick(&[
+            Form::Plane,
+            Form::Sphere(k),
+            Form::Cylinder(k),
+            Form::Paraboloid(k, l),
+        ]);
+        let center = world.light.point([0.0, 0.0, 1.0]);
+        let aperture = 0.6;
+        let words = format!(
+            "Smooth(name: \"it\", center: {}, facing: {}, along: {}, form: {form:?}, \
+             aperture: {aperture:?}, event: ",
+            triple(center),
+            triple(times(2.0, facing)),
+            triple(along)
+        );
+        let axes = Axes::new(center, facing, along);
+        let smooth = Self {
+            axes,
+            form,
+            aperture,
+        };
+        (smooth, words)
+    }
+
+    /// The same with a fault.
+    pub(super) fn wrong(mut self, fault: &str) -> Self {
+        let Axes { origin, x, y, d } = self.axes;
+        match (fault, self.form) {
+            ("axes swapped", _) => self.axes = Axes::new(origin, d, y),
+            ("along turned over", _) => self.axes = Axes::new(origin, d, times(-1.0, x)),
+            ("hollow for convex", Form::Sphere(k)) => self.form = Form::Sphere(-k),
+            ("hollow for convex", Form::Cylinder(k)) => self.form = Form::Cylinder(-k),
+            ("hollow for convex", Form::Paraboloid(k, l)) => self.form = Form::Paraboloid(-k, -l),
+            ("curvature is the diameter's", Form::Sphere(k)) => self.form = Form::Sphere(2.0 * k),
+            ("aperture is a diameter", _) => self.aperture *= 0.5,
+            _ => {}
+        }
+        self
+    }
+
+    /// The middle of the ball, or of the bar at the vertex: behind the vertex where the surface is
+    /// convex.
+    fn middle(&self, k: f64) -> Vector {
+        plus(self.axes.origin, -1.0 / k, self.axes.d)
+    }
+
+    /// The point over (s, t).
+    pub(super) fn point(&self, s: f64, t: f64) -> Vector {
+        // How far a circle of radius 1/k is below its top.
+        let sagged = |k: f64, r2: f64| (1.0 - (1.0 - k * k * r2).sqrt()) / k;
+        let below = match self.form {
+            Form::Plane => 0.0,
+            Form::Sphere(k) => sagged(k, s * s + t * t),
+            Form::Cylinder(k) => sagged(k, s * s),
+            Form::Paraboloid(k, l) => 0.5 * (k * s * s + l * t * t),
+        };
+        self.axes.point([s, t, -below])
+    }
+
+    /// The normal at a point of it, on the side it faces.
+    pub(super) fn normal(&self, point: Vector) -> Vector {
+        match self.form {
+            Form::Plane => self.axes.d,
+            Form::Sphere(k) => unit(times(k, plus(point, -1.0, self.middle(k)))),
+            Form::Cylinder(k) => unit(times(k, self.round(plus(point, -1.0, self.middle(k))))),
+            Form::Paraboloid(k, l) => {
+                let [s, t, _] = self.axes.coordinates(point);
+                unit(self.axes.vector([k * s, l * t, 1.0]))
+            }
+        }
+    }
+
+    /// The part of a vector across the bar, which is along Y.
+    fn round(&self, a: Vector) -> Vector {
+        plus(a, -dot(a, self.axes.y), self.axes.y)
+    }
+
+    /// How far along a ray with a unit direction it is met, nearest first.
+    pub(super) fn hits(&self, start: Vector, towards: Vector) -> Vec<f64> {
+        let roots = match self.form {
+            Form::Plane => {
+                let [.., height] = self.axes.coordinates(start);
+                vec![-height / dot(towards, self.axes.d)]
+            }
+            Form::Sphere(k) => chord(plus(self.middle(k), -1.0, start), towards, 1.0 / k),
+            Form::Cylinder(k) => {
+                let to_middle = self.round(plus(self.middle(k), -1.0, start));
+                let across = self.round(towards);
+                let steps = chord(to_middle, unit(across), 1.0 / k);
+                steps.into_iter().map(|t| t / length(across)).collect()
+            }
+            Form::Paraboloid(k, l) => {
+                let [s, t, h] = self.axes.coordinates(start);
+                let [ds, dt, dh] = self.axes.components(towards);
+                let a = 0.5 * (k * ds * ds + l * dt * dt);
+                let b = dh + k * s * ds + l * t * dt;
+                let c = h + 0.5 * (k * s * s + l * t * t);
+                let root = (b * b - 4.0 * a * c).sqrt();
+                vec![(-b - root) / (2.0 * a), (-b + root) / (2.0 * a)]
+            }
+        };
+        let mut met: Vec<f64> = roots
+            .into_iter()
+            .filter(|t| t.is_finite() && self.holds(plus(start, *t, towards)))
+            .collect();
+        met.sort_by(f64::total_cmp);
+        met
+    }
+
+    /// Whether a point of the solid's surface is within the aperture, and on the half around the
+    /// vertex.
+    fn holds(&self, point: Vector) -> bool {
+        let [s, t, _] = self.axes.coordinates(point);
+        s.hypot(t) <= self.aperture && dot(self.normal(point), self.axes.d) > 0.0
+    }
+}
+
+/// Where a line enters and leaves a ball whose middle is `to_middle` away from where it starts.
+fn chord(to_middle: Vector, towards: Vector, radius: f64) -> Vec<f64> {
+    let nearest = dot(to_middle, towards);
+    let off = length(plus(to_middle, -nearest, towards));
+    let half = (radius * radius - off * off).sqrt();
+    vec![nearest - half, nearest + half]
+}

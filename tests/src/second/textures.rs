@@ -1,0 +1,167 @@
+//! Patterns, pictures and blends against the second ones.
+
+use super::check::{Check, relative, worse};
+use super::lobes;
+use super::pattern::{Levels, Pattern, Varied};
+use super::vector::{between, scale};
+use crate::hostile::dice::Dice;
+use etendue_field::{self as field, Brdf, Fresnel, Grating, Lobe, Raster, Reflectance};
+use std::f64::consts::TAU;
+use std::sync::Arc;
+
+const COSINE: &[&str] = &["axes swapped", "phase subtracted"];
+const BOARD: &[&str] = &["parity", "a side is a period"];
+const PICTURE: &[&str] = &[
+    "flipped",
+    "left for right",
+    "axes swapped",
+    "nearest pixel",
+    "centres at corners",
+];
+const BLEND: &[&str] = &[
+    "blend order swapped",
+    "the nearer for what is between",
+    "texture left out",
+];
+
+pub(super) fn checks() -> Vec<Check> {
+    let check = |name, faults, tolerance, pattern: fn(&mut Dice) -> Pattern| Check {
+        name,
+        rounds: [4000, 1],
+        tolerance,
+        faults,
+        difference: Box::new(move |dice, fault| {
+            let pattern = pattern(dice);
+            let at = place(dice);
+            (fast(&pattern).value(at[0], at[1]) - pattern.value(at, fault)).abs()
+        }),
+    };
+    let angle = (1e-12, "rounding of 2π f t, up to 300");
+    let exact = (0.0, "a number of two"); // 0 or 1 on both sides
+    let levels = (1e-13, "rounding"); // of shares of levels up to 1
+    vec![
+        check("pattern Cosine", COSINE, angle, cosine),
+        check("pattern Checkerboard", BOARD, exact, |dice| {
+            Pattern::Checkerboard(scale(dice, 0.01, 1.0))
+        }),
+        check("pattern Picture", PICTURE, levels, picture),
+        Check {
+            name: "blend and texture",
+            rounds: [4000, 1],
+            tolerance: (1e-11, "rounding of patterns and numbers between"),
+            faults: BLEND,
+            difference: Box::new(blended),
+        },
+    ]
+}
+
+fn blended(dice: &mut Dice, fault: &str) -> f64 {
+    let varied = varied(dice);
+    let at = place(dice);
+    let reflectance = Reflectance {
+        brdf: varied.brdf,
+        blend: Some((varied.other, fast(&varied.blend))),
+        texture: Some(fast(&varied.texture)),
+    };
+    apart(&reflectance.at(at[0], at[1]), &varied.at(at, fault))
+}
+
+/// How far two BRDFs are apart; 1 if they are of different kinds.
+pub(super) fn apart(a: &Brdf, b: &Brdf) -> f64 {
+    let lobes = match (a.lobe, b.lobe) {
+        (Lobe::Lambertian, Lobe::Lambertian) => 0.0,
+        (Lobe::Phong { exponent: a }, Lobe::Phong { exponent: b })
+        | (Lobe::Beckmann { roughness: a }, Lobe::Beckmann { roughness: b })
+        | (Lobe::Ggx { roughness: a }, Lobe::Ggx { roughness: b }) => relative(a, b),
+        _ => 1.0,
+    };
+    let fresnels = match (a.fresnel, b.fresnel) {
+        (Fresnel::White, Fresnel::White) => 0.0,
+        (Fresnel::Dielectric { index: a }, Fresnel::Dielectric { index: b }) => relative(a, b),
+        (Fresnel::Conductor { n, k }, Fresnel::Conductor { n: m, k: l }) => {
+            relative(n, m).max((k - l).abs())
+        }
+        _ => 1.0,
+    };
+    worse(worse(lobes, fresnels), (a.albedo - b.albedo).abs())
+}
+
+fn place(dice: &mut Dice) -> [f64; 2] {
+    [between(dice, -0.7, 0.7), between(dice, -0.7, 0.7)]
+}
+
+/// The same pattern as the fast side has it.
+fn fast(pattern: &Pattern) -> field::Pattern {
+    match pattern {
+        Pattern::Cosine(grating) => field::Pattern::Cosine(*grating),
+        Pattern::Checkerboard(period) => field::Pattern::Checkerboard { period: *period },
+        Pattern::Picture(levels, size) => {
+            let raster = Raster::new(levels.width, levels.height, levels.values.clone());
+            field::Pattern::Picture(field::Picture {
+                size: *size,
+                pixels: Arc::new(raster.expect("as many levels as pixels")),
+            })
+        }
+    }
+}
+
+pub(super) fn grating(dice: &mut Dice) -> Grating {
+    Grating {
+        axis: dice.below(2),
+        frequency: scale(dice, 0.1, 50.0),
+        modulation: dice.unit(),
+        phase: between(dice, 0.0, TAU),
+    }
+}
+
+fn cosine(dice: &mut Dice) -> Pattern {
+    Pattern::Cosine(grating(dice))
+}
+
+fn picture(dice: &mut Dice) -> Pattern {
+    let [width, height] = [1 + dice.below(6), 1 + dice.below(6)];
+    let values = (0..width * height).map(|_| dice.unit()).collect();
+    let levels = Levels {
+        width,
+        height,
+        values,
+    };
+    Pattern::Picture(levels, [scale(dice, 0.3, 2.0), scale(dice, 0.3, 2.0)])
+}
+
+fn pattern(dice: &mut Dice) -> Pattern {
+    match dice.below(3) {
+        0 => cosine(dice),
+        1 => Pattern::Checkerboard(scale(dice, 0.01, 1.0)),
+        _ => picture(dice),
+    }
+}
+
+fn brdf(dice: &mut Dice) -> Brdf {
+    let lobe = match dice.below(4) {
+        0 => Lobe::Lambertian,
+        1 => Lobe::Phong {
+            exponent: scale(dice, 1.0, 1e4),
+        },
+        2 => Lobe::Beckmann {
+            roughness: scale(dice, 1e-3, 1.0),
+        },
+        _ => Lobe::Ggx {
+            roughness: scale(dice, 1e-3, 1.0),
+        },
+    };
+    Brdf {
+        lobe,
+        albedo: dice.unit(),
+        fresnel: lobes::fresnel(dice),
+    }
+}
+
+fn varied(dice: &mut Dice) -> Varied {
+    Varied {
+        brdf: brdf(dice),
+        other: brdf(dice),
+        blend: pattern(dice),
+        texture: pattern(dice),
+    }
+}

@@ -1,0 +1,142 @@
+//! Vectors and axes in plain numbers, so that the second implementation shares no frame with the
+//! first.
+
+use crate::hostile::dice::Dice;
+use etendue_field::Frame;
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+pub(super) type Vector = [f64; 3];
+
+pub(super) fn dot(a: Vector, b: Vector) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+pub(super) fn cross(a: Vector, b: Vector) -> Vector {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
+}
+
+/// a + k b.
+pub(super) fn plus(a: Vector, k: f64, b: Vector) -> Vector {
+    [0, 1, 2].map(|i| a[i] + k * b[i])
+}
+
+pub(super) fn times(k: f64, a: Vector) -> Vector {
+    a.map(|component| k * component)
+}
+
+pub(super) fn length(a: Vector) -> f64 {
+    dot(a, a).sqrt()
+}
+
+pub(super) fn unit(a: Vector) -> Vector {
+    times(1.0 / length(a), a)
+}
+
+pub(super) fn distance(a: Vector, b: Vector) -> f64 {
+    length(plus(a, -1.0, b))
+}
+
+/// The angle between two directions, good where it is small.
+pub(super) fn angle(a: Vector, b: Vector) -> f64 {
+    length(cross(a, b)).atan2(dot(a, b))
+}
+
+/// The part of a vector that is orthogonal to a unit vector, of unit length.
+pub(super) fn across(a: Vector, normal: Vector) -> Vector {
+    unit(plus(a, -dot(a, normal), normal))
+}
+
+/// A vector turned about a unit vector (Rodrigues 1840).
+pub(super) fn turned(a: Vector, axis: Vector, by: f64) -> Vector {
+    let along = times(dot(a, axis), axis);
+    let aside = plus(a, -1.0, along);
+    let turned = plus(times(by.cos(), aside), by.sin(), cross(axis, a));
+    plus(along, 1.0, turned)
+}
+
+/// A vector turned as the smallest turn from one unit vector to another takes it.
+pub(super) fn turned_along(a: Vector, from: Vector, to: Vector) -> Vector {
+    let axis = cross(from, to);
+    if length(axis) < 1e-12 {
+        return a;
+    }
+    turned(a, unit(axis), angle(from, to))
+}
+
+/// Three orthogonal directions X, Y = D × X and D, at a place.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axes {
+    pub(super) origin: Vector,
+    pub(super) x: Vector,
+    pub(super) y: Vector,
+    pub(super) d: Vector,
+}
+
+impl Axes {
+    /// X is the part of `x` that is orthogonal to `d`.
+    pub(super) fn new(origin: Vector, d: Vector, x: Vector) -> Self {
+        let d = unit(d);
+        let x = across(x, d);
+        let y = cross(d, x);
+        Self { origin, x, y, d }
+    }
+
+    /// The vector with these components.
+    pub(super) fn vector(&self, [a, b, c]: Vector) -> Vector {
+        plus(plus(times(a, self.x), b, self.y), c, self.d)
+    }
+
+    /// The point with these coordinates.
+    pub(super) fn point(&self, at: Vector) -> Vector {
+        plus(self.origin, 1.0, self.vector(at))
+    }
+
+    /// A frame given in these axes, in those of the world.
+    pub(super) fn in_world(&self, local: &Frame) -> Frame {
+        let vector = |a: DVec3| DVec3::from(self.vector(a.to_array()));
+        Frame {
+            origin: self.point(local.origin.to_array()).into(),
+            x: vector(local.x),
+            y: vector(local.y),
+            d: vector(local.d),
+        }
+    }
+
+    /// The components of a vector.
+    pub(super) fn components(&self, a: Vector) -> Vector {
+        [dot(a, self.x), dot(a, self.y), dot(a, self.d)]
+    }
+
+    /// The coordinates of a point.
+    pub(super) fn coordinates(&self, point: Vector) -> Vector {
+        self.components(plus(point, -1.0, self.origin))
+    }
+}
+
+pub(super) fn between(dice: &mut Dice, low: f64, high: f64) -> f64 {
+    low + (high - low) * dice.unit()
+}
+
+/// Small ones as often as large ones.
+pub(super) fn scale(dice: &mut Dice, low: f64, high: f64) -> f64 {
+    low * (high / low).powf(dice.unit())
+}
+
+/// Any direction.
+pub(super) fn direction(dice: &mut Dice) -> Vector {
+    let height = between(dice, -1.0, 1.0);
+    let around = between(dice, 0.0, TAU);
+    let across = (1.0 - height * height).sqrt();
+    [across * around.cos(), across * around.sin(), height]
+}
+
+/// A direction at an angle to a unit vector.
+pub(super) fn aside(dice: &mut Dice, from: Vector, by: f64) -> Vector {
+    let axis = across(direction(dice), from);
+    unit(turned(from, axis, by.min(PI)))
+}

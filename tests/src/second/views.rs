@@ -1,0 +1,209 @@
+//! Coordinates of planes on surfaces: photons that cross a plane across the central ray, and the
+//! same photons as planes on the surface have them.
+
+use super::check::{Check, relative, worse};
+use super::paths::{Legs, Turn};
+use super::smooth::Smooth;
+use super::vector::{Axes, Vector, dot, plus, times, turned_along, unit};
+use super::world::{World, triple};
+use crate::hostile::dice::Dice;
+use etendue_field::{Crossing, PhotonSource, TwoPlane, VirtualPlane};
+use etendue_trace::Tracer;
+use std::path::Path;
+
+/// Photons of a batch, of which there is one.
+const EACH: u32 = 32;
+
+const VIEWS: &[&str] = &[
+    "sign of longitude",
+    "sign of latitude",
+    "the central normal",
+    "not turned about the normal",
+    "foot on the tangent plane",
+    "cosines left out",
+];
+
+/// Planes, each with whether light arrives there, and its orientation.
+pub(super) const PLANES: [(&str, bool, View); 7] = [
+    ("Orthogonal", true, View::Across),
+    ("Tangent", true, View::Tangent),
+    ("LocalNormals", true, View::Local),
+    ("Mirrored", true, View::Mirrored),
+    ("Orthogonal", false, View::Across),
+    ("Tangent", false, View::Tangent),
+    ("LocalNormals", false, View::Local),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum View {
+    Across,
+    Tangent,
+    Local,
+    Mirrored,
+}
+
+pub(super) fn checks() -> Vec<Check> {
+    vec![Check {
+        name: "coordinates and weights on surfaces",
+        rounds: [60, EACH * 5],
+        tolerance: (1e-11, "rounding over cosines, and of hits"),
+        faults: VIEWS,
+        difference: Box::new(difference),
+    }]
+}
+
+fn difference(dice: &mut Dice, fault: &str) -> f64 {
+    let mut world = World::new(dice);
+    let (smooth, words) = Smooth::new(dice, &world, 0.7);
+    world.lamp = format!(
+        "Projector(center: {}, image: (width: (0.08, 0.08)))",
+        triple(world.light.origin)
+    );
+    world.surfaces = words + "Mirror)";
+    let planes = PLANES
+        .iter()
+        .enumerate()
+        .map(|(i, (orientation, arrives, _))| {
+            let side = if *arrives { "Before" } else { "After" };
+            format!(
+                "(name: \"p{i}\", at: {side}(\"it\"), orientation: {orientation}, \
+             quantity: DifferentialIrradiance)"
+            )
+        });
+    world.planes = planes.collect::<Vec<_>>().join(", ");
+    let scene = world.scene(Path::new("."));
+    let mut crossings: Vec<Vec<Crossing>> = vec![Vec::new(); PLANES.len()];
+    let mut record = |plane: usize, all: &[Crossing]| crossings[plane].extend(all);
+    Tracer::new(&scene).emit(0, &mut record, &|_| {});
+    let (d, n) = (world.light.d, smooth.axes.d);
+    let mirror = Turn::Back(plus(d, -2.0 * dot(d, n), n));
+    let legs = Legs::new(&world.light, smooth.axes.origin, n, mirror, fault);
+    let mut largest = 0.0;
+    for (i, plane) in PLANES.iter().enumerate() {
+        let across = if plane.1 { 0 } else { 4 };
+        // The same photons in the same order.
+        if crossings[i].is_empty() || crossings[i].len() != crossings[across].len() {
+            return 1.0;
+        }
+        let looking = Looking::new(&smooth, &legs, *plane);
+        for (before, seen) in crossings[across].iter().zip(&crossings[i]) {
+            let off = looking.off(&scene.planes[i], before, seen, fault);
+            largest = worse(largest, off);
+        }
+    }
+    largest
+}
+
+/// How a plane looks at the surface.
+pub(super) struct Looking<'a> {
+    pub(super) smooth: &'a Smooth,
+    pub(super) leg: Axes,
+    pub(super) surface: Axes,
+    pub(super) longitude: f64,
+    pub(super) arrives: bool,
+    pub(super) view: View,
+}
+
+impl Looking<'_> {
+    pub(super) fn new<'a>(
+        smooth: &'a Smooth,
+        legs: &Legs,
+        (_, arrives, view): (&str, bool, View),
+    ) -> Looking<'a> {
+        let (leg, (surface, longitude)) = if arrives {
+            (legs.before, legs.arriving)
+        } else {
+            (legs.after, legs.leaving)
+        };
+        // Light that is turned about the normal has the longitude of where a mirror would send it.
+        let turned = if view == View::Mirrored { -1.0 } else { 1.0 };
+        Looking {
+            smooth,
+            leg,
+            surface,
+            longitude: turned * longitude,
+            arrives,
+            view,
+        }
+    }
+
+    /// How far coordinates, weight and the factor of differential irradiance are from those of the
+    /// ray across the leg.
+    fn off(&self, plane: &VirtualPlane, across: &Crossing, seen: &Crossing, fault: &str) -> f64 {
+        let ray = across.ray;
+        let secant_squared = 1.0 + ray.u * ray.u + ray.v * ray.v;
+        let factor = plane.factor(&seen.ray);
+        if self.view == View::Across {
+            return relative(factor, secant_squared.powi(-2));
+        }
+        let foot = self.leg.point([ray.x, ray.y, 0.0]);
+        let along = unit(self.leg.vector([ray.u, ray.v, 1.0]));
+        let Some(second) = self.seen(foot, along, fault) else {
+            return 1.0;
+        };
+        let [.., u, phi] = second;
+        let cosines = (u + self.longitude).cos() * phi.cos() * phi.cos();
+        let per_flux = if fault == "cosines left out" {
+            1.0
+        } else {
+            cosines
+        };
+        // Flux Φ adds Φ (1 + u² + v²)² across the leg, Φ/(cos θ cos² φ) on the surface.
+        let weight = across.weight / (secant_squared * secant_squared) / per_flux;
+        let TwoPlane { x, y, u, v } = seen.ray;
+        let z = [x, y, u, v].into_iter().zip(second);
+        let z = z.fold(0.0, |most, (a, b)| worse(most, (a - b).abs()));
+        let factors = worse(relative(seen.weight, weight), relative(factor, cosines));
+        worse(z, factors)
+    }
+
+    /// The coordinates of the ray through a point along a unit vector.
+    pub(super) fn seen(&self, foot: Vector, along: Vector, fault: &str) -> Option<[f64; 4]> {
+        if self.view == View::Across {
+            let [x, y, z] = self.leg.coordinates(foot);
+            let [dx, dy, dz] = self.leg.components(along);
+            let [u, v] = [dx / dz, dy / dz];
+            return Some([x - z * u, y - z * v, u, v]);
+        }
+        let (point, normal) = self.met(foot, along, fault)?;
+        let turned = |axis: Vector| match fault {
+            "the central normal" => axis,
+            _ => turned_along(axis, self.surface.d, normal),
+        };
+        let away = times(if self.arrives { -1.0 } else { 1.0 }, along);
+        let axes = [self.surface.x, self.surface.y, self.surface.d];
+        let [t, b, n] = axes.map(|axis| dot(away, turned(axis)));
+        // cos φ (sin θ T + cos θ N) + sin φ B
+        let (mut theta, mut phi) = (t.atan2(n), b.asin());
+        if self.view == View::Mirrored && fault != "not turned about the normal" {
+            (theta, phi) = (-theta, -phi);
+        }
+        if fault == "sign of latitude" {
+            phi = -phi;
+        }
+        let [s, t, _] = self.surface.coordinates(point);
+        Some([s, t, theta - self.longitude, phi])
+    }
+
+    /// Where the line of a ray meets what the plane looks at, nearest to the central hit, and the
+    /// normal there.
+    fn met(&self, foot: Vector, along: Vector, fault: &str) -> Option<(Vector, Vector)> {
+        let n = self.surface.d;
+        let tangent = || {
+            let off = dot(plus(self.surface.origin, -1.0, foot), n) / dot(along, n);
+            plus(foot, off, along)
+        };
+        if self.view == View::Tangent {
+            return Some((tangent(), n));
+        }
+        let hits = self.smooth.hits(foot, along).into_iter();
+        let t = hits.min_by(|a, b| a.abs().total_cmp(&b.abs()))?;
+        let point = plus(foot, t, along);
+        let normal = self.smooth.normal(point);
+        let point = match fault {
+            "foot on the tangent plane" => tangent(),
+            _ => point,
+        };
+        Some((point, normal))
+    }
+}
