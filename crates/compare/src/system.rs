@@ -2,7 +2,7 @@
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Side, Specular, VirtualPlane};
-use etendue_scene::{Event, Hit, Object, Scene};
+use etendue_scene::{Event, Hit, MeshObject, Object, Scene};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Element, Plane, System};
 use etendue_theory::{Observed, scattering};
@@ -32,6 +32,9 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
+                if coarseness(scene, mesh, &hit).is_some() {
+                    return None;
+                }
                 Some(Element {
                     name: mesh.name.clone(),
                     patch: mesh.osculating(&hit)?,
@@ -50,6 +53,31 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
         system,
         plane: in_frame(scene, plane),
     })
+}
+
+/// How far the curvature of a mesh changes from triangle to triangle where the central ray meets it,
+/// as a share, if that is too much for one smooth surface to stand for it.
+pub(crate) fn coarseness(scene: &Scene, mesh: &MeshObject, hit: &Hit) -> Option<f64> {
+    // Slopes are off by twice this share of what curvature makes of them. Meshes as fine as those
+    // of the repository have 10⁻⁴.
+    const MOST: f64 = 0.01;
+    /// Triangles around the hit over which normals even out.
+    const AROUND: f64 = 3.0;
+    let [uneven, reach] = mesh.unevenness(hit)?;
+    // Where light meets many triangles the few around the hit are a small part of it.
+    let lit = [0, 1].map(|axis| scene.light.extent(axis)[1]);
+    let window = |plane: &VirtualPlane| plane.window.x.half_width();
+    let seen = scene
+        .planes
+        .iter()
+        .map(window)
+        .fold(f64::INFINITY, f64::min);
+    let seen = lit
+        .into_iter()
+        .filter(|half| *half > 0.0)
+        .fold(seen, f64::min);
+    let share = (AROUND * reach / seen).powi(2).min(1.0);
+    Some(uneven).filter(|uneven| uneven * share > MOST)
 }
 
 /// An event of a surface whose front is turned to the light.

@@ -4,15 +4,12 @@ use crate::scene::{Hit, MeshObject};
 use etendue_field::{Frame, Patch};
 use glam::DVec3;
 
-/// Longest edges of the triangle hit within which vertices count for the tangent plane.
+/// Longest edges of the triangle hit within which vertices count.
 const EDGES: f64 = 6.0;
-/// And for curvature: normals turn linearly over a few triangles alone.
-const EDGES_OF_NORMALS: f64 = 2.5;
 
 impl MeshObject {
-    /// The paraboloid that stands for the mesh around a hit, by least squares: its tangent plane is that of the vertices, and its curvatures
-    /// are those of their normals, between which light interpolates. Its frame has the principal directions, and it is on the side the light
-    /// comes from. `None` where there are too few vertices, or the mesh is not smooth.
+    /// The paraboloid that lies closest, by least squares, to the vertices around a hit: its frame has the principal directions there, its
+    /// curvatures are the principal ones, and it is on the side the light comes from. `None` where there are too few vertices.
     #[must_use]
     pub fn osculating(&self, hit: &Hit) -> Option<Patch> {
         let [a, b, c] = self.triangles[self.nearest(hit)?];
@@ -28,25 +25,12 @@ impl MeshObject {
             let [_, s, t, ..] = quadric(&frame, &near, edge)?;
             frame = frame.turned_to((frame.d - s * frame.x - t * frame.y).normalize());
         }
-        let [h, ..] = quadric(&frame, &near, edge)?;
-        let side = if self.is_met_on_its_back(hit) {
-            -1.0
-        } else {
-            1.0
-        };
-        let normals = self.smooth.as_ref()?.normals.as_flattened().iter();
-        let near: Vec<(DVec3, DVec3)> = corners
-            .iter()
-            .zip(normals.map(|normal| side * normal))
-            .filter(|(p, _)| p.distance(hit.point) < EDGES_OF_NORMALS * edge)
-            .map(|(p, normal)| (frame.to_local(*p), frame.vector_to_local(normal)))
-            .collect();
-        let [ss, st, tt] = shape(&near, edge)?;
-        // The principal axes of the form ss s² + 2 st s t + tt t².
+        let [h, _, _, ss, st, tt] = quadric(&frame, &near, edge)?;
+        // h = … + ½ (ss s² + 2 st s t + tt t²): the principal axes of that form, turned over, since convex is positive.
         let angle = 0.5 * (2.0 * st).atan2(ss - tt);
         let (sin, cos) = angle.sin_cos();
         let along = cos * frame.x + sin * frame.y;
-        let curvature = |c: f64, s: f64| ss * c * c + 2.0 * st * c * s + tt * s * s;
+        let curvature = |c: f64, s: f64| -(ss * c * c + 2.0 * st * c * s + tt * s * s);
         let far = corners
             .iter()
             .map(|p| p.distance(hit.point))
@@ -56,6 +40,39 @@ impl MeshObject {
             curvature: [curvature(cos, sin), curvature(-sin, cos), 0.0],
             aperture: far,
         })
+    }
+
+    /// How far the curvature of the normals of the triangle hit is from that of the vertices around, as a share of it, and how far its corners
+    /// are from the hit: light turns by the former where it meets one triangle alone. `None` as for [`Self::osculating`].
+    #[must_use]
+    pub fn unevenness(&self, hit: &Hit) -> Option<[f64; 2]> {
+        let patch = self.osculating(hit)?;
+        let corners = self.triangles[self.nearest(hit)?];
+        let reach = corners.map(|corner| corner.distance(hit.point));
+        let reach = reach.into_iter().fold(0.0, f64::max);
+        let [ss, st, tt] = self.shape_within(hit, &patch.frame, 1.001 * reach)?;
+        let [k1, k2, _] = patch.curvature;
+        let apart = (ss - k1).abs().max((tt - k2).abs()).max(st.abs());
+        Some([apart / k1.abs().max(k2.abs()), reach])
+    }
+
+    /// The derivatives of the normals of the vertices within a distance of a hit, by place in a frame there.
+    fn shape_within(&self, hit: &Hit, frame: &Frame, distance: f64) -> Option<[f64; 3]> {
+        let side = if self.is_met_on_its_back(hit) {
+            -1.0
+        } else {
+            1.0
+        };
+        let normals = self.smooth.as_ref()?.normals.as_flattened().iter();
+        let near: Vec<(DVec3, DVec3)> = self
+            .triangles
+            .as_flattened()
+            .iter()
+            .zip(normals)
+            .filter(|(p, _)| p.distance(hit.point) < distance)
+            .map(|(p, normal)| (frame.to_local(*p), side * frame.vector_to_local(*normal)))
+            .collect();
+        shape(&near, distance)
     }
 
     /// Whether light comes to a hit from the side that the mesh's normals point away from.

@@ -79,9 +79,9 @@ fn curvatures_of_a_mesh_are_those_of_what_it_samples() {
     let scene = resolved(&text).unwrap();
     let hit = scene.path.legs[2].leaves.unwrap();
     let patch = scene.meshes[0].osculating(&hit).unwrap();
-    // A sphere of 0.2 m by triangles of 1 cm: the normals of its vertices are off by a share (r/R)² of a triangle, 0.003.
+    // A sphere of 0.2 m by triangles of 1 cm: the fit reaches 6 of them, where (r/R)² is a tenth and a paraboloid leaves the sphere.
     for k in &patch.curvature[..2] {
-        assert!((k / 5.0 - 1.0).abs() < 0.003, "{k}");
+        assert!((k / 5.0 - 1.0).abs() < 0.1, "{k}");
     }
     let outward = (hit.point - scene.meshes[0].center).normalize();
     // Interpolated, to the square of a triangle over the radius.
