@@ -1,4 +1,4 @@
-//! The chain read off the scene: the only code that sees both the scene and theory.
+//! The chain read off the scene: the steps that light meets between parallel planes.
 
 use etendue_field::{Mask, Quantity, Shape, Side, VirtualPlane};
 use etendue_scene::{Object, Scene};

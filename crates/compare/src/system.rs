@@ -55,8 +55,8 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
     })
 }
 
-/// How far the curvature of a mesh changes from triangle to triangle where the central ray meets it,
-/// as a share, if that is too much for one smooth surface to stand for it.
+/// How far the curvature of a mesh changes from triangle to triangle where the central ray meets
+/// it, as a share, if that is too much for one smooth surface to stand for it.
 pub(crate) fn coarseness(scene: &Scene, mesh: &MeshObject, hit: &Hit) -> Option<f64> {
     // Slopes are off by twice this share of what curvature makes of them. Meshes as fine as those
     // of the repository have 10⁻⁴.

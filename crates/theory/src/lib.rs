@@ -1,4 +1,7 @@
-//! Predicted spectra of local light fields, in closed form.
+//! Predicted spectra of local light fields, in closed form or by nets of rays.
+//!
+//! Whatever predicts is a [`Model`]: a [`Chain`] of parallel planes, or what is [`Observed`] of
+//! specular surfaces ([`rays`]) or of a surface with a BRDF ([`scattering`]).
 //!
 //! In goes a [`Chain`]: a light, travel, opaque shapes, half-planes and cosine gratings in planes,
 //! and the cosine and diffuse reflection of a receiver. Out come the values a measurement would

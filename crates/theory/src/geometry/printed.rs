@@ -118,7 +118,8 @@ impl Edition {
         shape.map(|row| row.map(|entry| self.sign() * entry))
     }
 
-    /// The longitude whose cosine Eq. 19 has: 1.
+    /// The longitude whose cosine is in Eq. 19: the print leaves it out, as if the longitude were
+    /// 0.
     fn longitude(self, theta: f64) -> f64 {
         match self {
             Self::Corrected => theta,

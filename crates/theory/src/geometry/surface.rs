@@ -12,8 +12,8 @@ impl Map<2> {
     /// directions are flipped.
     ///
     /// L'(Ωx, Ωθ) = e^(−2πi Ωθ θ₀)/cos θ₀ · L(−Ωx/cos θ₀, Ωθ). Eq. 9 of Durand et al. 2005
-    /// multiplies by the cosine twice, Table 1 in the argument, and both leave 2π out of the phase
-    /// ([`Edition`](super::Edition)).
+    /// has cos θ₀ where 1/cos θ₀ belongs, in the factor and in the argument; Table 1 has it in the
+    /// argument. Both leave 2π out of the phase ([`Edition`](super::Edition)).
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self {
@@ -25,8 +25,8 @@ impl Map<2> {
     /// Curvature, into the frames of the local normals: θ' = θ − k s. k > 0 is convex, |k| = 1/R in
     /// 1/m.
     ///
-    /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 has the sign of
-    /// [`back`](Self::back)).
+    /// L'(Ωx, Ωθ) = L(Ωx − k Ωθ, Ωθ) (Durand et al. 2005, Table 1; its Eq. 11 prints
+    /// + k Ωθ, which belongs to the way back, [`back`](Self::back)).
     #[must_use]
     pub fn curvature(k: f64) -> Self {
         Self::linear([[1.0, 0.0], [-k, 1.0]])
@@ -56,7 +56,7 @@ impl Map<4> {
     /// Light incidence in the plane of (X, D): s_x = −x/cos θ₀, s_y = y, θᵢ = θ + θ₀, φᵢ = −φ.
     ///
     /// Flipping directions turns the latitude over, which section 5.2 of Durand et al. 2005 does
-    /// not say.
+    /// not say. In 2D this is its Eq. 9.
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self::sections(&Map::<2>::incidence(theta0), &Map::mirror())

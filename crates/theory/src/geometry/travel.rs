@@ -7,8 +7,9 @@ use std::array;
 impl<const N: usize> Map<N> {
     /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
-    /// Exact for all slopes between parallel planes; never for angles. L'(Ωx, Ωu) = L(Ωx, Ωu + d
-    /// Ωx) (Durand et al. 2005, Eq. 3, with the slips of Eq. 2 mended: docs/theory.md, section 1).
+    /// Exact where (u, v) are slopes; where they are angles it holds to first order. L'(Ωx, Ωu) =
+    /// L(Ωx, Ωu + d Ωx) (Durand et al. 2005, Eq. 3, with the slips of Eq. 2 mended: docs/theory.md,
+    /// section 1).
     #[must_use]
     pub fn travel(distance: f64) -> Self {
         let (one, half) = (diagonal::<N>([1.0; N]), N / 2);

@@ -73,7 +73,14 @@ impl System {
     }
 }
 
-/// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves a light.
+/// Flux per unit of the emission's coordinates of the ray (x, y, u, v), as it leaves a light:
+///
+/// | light | flux |
+/// |---|---|
+/// | projector | I · image(u, v) · (1 + u² + v²)^(−3/2) du dv |
+/// | point | the same with a white image |
+/// | beam | E · image(x, y) dx dy |
+/// | area light | L₀ (1 + u² + v²)^(−2 − n/2) dx dy du dv |
 pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
     let [x, y, u, v] = ray;
     let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();

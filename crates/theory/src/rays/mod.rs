@@ -9,18 +9,10 @@
 //! chain splits into noise, linearisation and faults.
 //!
 //! All coordinates are in the frame at the light: the central ray starts at the origin along Z, and
-//! (x, y) are along X and Y. A ray carries flux:
-//!
-//! | light | flux |
-//! |---|---|
-//! | projector | I · image(u, v) · (1 + u² + v²)^(−3/2) du dv |
-//! | point | the same with a white image |
-//! | beam | E · image(x, y) dx dy |
-//! | area light | L₀ (1 + u² + v²)^(−2 − n/2) dx dy du dv |
-//!
-//! Flux is kept at every surface. A ray that misses a patch, is totally reflected, or would have to
-//! go back is lost. At a plane across the central ray flux Φ stands for Φ (1 + u² + v²)² in
-//! radiance space, on a surface for Φ/(cos θ cos² φ): docs/theory.md, section 8.
+//! (x, y) are along X and Y. A ray carries flux, that of each light in `emission.rs`. Flux is kept
+//! at every surface. A ray that misses a patch, is totally reflected, or would have to go back is
+//! lost. At a plane across the central ray flux Φ stands for Φ (1 + u² + v²)² in radiance space, on
+//! a surface for Φ/(cos θ cos² φ): docs/theory.md, section 8.
 //!
 //! On a surface itself (`LocalNormals`) the integral is over its area.
 //!
@@ -100,8 +92,8 @@ use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};
 pub struct System {
     /// What shines from the plane z = 0, along Z.
     pub light: Light,
-    /// Masks across the first leg and their distances from the light, metres. Opaque discs have
-    /// edges that rectangles do not fit, and the quadrature converges slowly.
+    /// Masks across the first leg and their distances from the light, metres. Where one is
+    /// opaque, rays are summed over nets and by no rule.
     pub layers: Vec<(f64, Mask)>,
     /// The surfaces, in the order of light.
     pub elements: Vec<Element>,

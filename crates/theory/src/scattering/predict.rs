@@ -13,8 +13,8 @@ use glam::DVec3;
 
 /// The windowed spectrum of what a surface scatters, with the derivatives by what was moved.
 ///
-/// Rays are drawn at the plane, and for each four parts of the light that shines on the point it
-/// leaves (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it tells where
+/// Rays are drawn at the plane, and for each one part or four of the light that shines on the point
+/// it leaves (docs/theory.md (40)). `chain` is that of [`chain`](super::chain()); it tells where
 /// rays are worth drawing. The same bytes on any number of threads.
 ///
 /// What the chain predicts, and the derivatives, are differences of the radiance of the same rays:
@@ -133,7 +133,7 @@ impl<'a> ScatteredField<'a> {
     }
 }
 
-/// What a ray adds over the density with which it was drawn; nothing is nothing over any density.
+/// What a ray adds over the density with which it was drawn; 0/0 counts as 0.
 fn over(radiance: f64, density: f64) -> f64 {
     if radiance == 0.0 {
         0.0

@@ -69,8 +69,8 @@ impl Criterion {
         (self.nearness() * behind + turned) / self.outgoing.cos()
     }
 
-    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as a size: it lacks the 1, which d ≫ 1 does not make
-    /// small (2kd/cos θ₁ ≫ 1 would).
+    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as a size: it drops the 1. That is right
+    /// where 2kd/cos θ₁ ≫ 1, and not, as the paper says, where d ≫ 1.
     #[must_use]
     pub fn printed_environment(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
