@@ -2,7 +2,7 @@
 
 use crate::say;
 use crate::summary::Summary;
-use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, Verdict};
+use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, Verdict, sidak};
 use etendue_field::tidy;
 use std::path::Path;
 
@@ -52,7 +52,7 @@ fn on_chain(plane: &PlaneReport) -> Option<String> {
     match verdict {
         Verdict::Pass => None,
         Verdict::Fail => Some(format!(
-            "{name}: the first-order chain{} has a wrong map: its error does not fall below {} as the neighbourhood shrinks",
+            "{name}: the first-order chain{} has a wrong map: however near to the central ray, its rays stay {} off",
             if chain.as_printed {
                 ", as printed,"
             } else {
@@ -209,12 +209,30 @@ fn verdict_text(summary: &Summary) -> String {
     let alpha = 100.0 * summary.alpha;
     match summary.verdict {
         Verdict::Pass => {
-            format!("pass: no plane disagrees with its prediction (α = {alpha} % over all planes)")
+            let level = sidak(summary.alpha, summary.planes.len());
+            format!(
+                "pass: no plane disagrees with its prediction (α = {alpha} % over all planes: p ≥ {level:.4} at each)"
+            )
         }
-        Verdict::Fail => format!(
-            "fail: measured and predicted disagree at {}",
-            names(&with(Verdict::Fail))
-        ),
+        Verdict::Fail => {
+            let is_exact = |plane: &&PlaneReport| {
+                let chain = plane.first_order.as_ref();
+                chain.is_none_or(|chain| chain.exact == Verdict::Fail)
+            };
+            let (measured, chains): (Vec<_>, Vec<_>) =
+                with(Verdict::Fail).into_iter().partition(is_exact);
+            let said = |what: &str, planes: &[&PlaneReport]| {
+                (!planes.is_empty()).then(|| format!("{what} at {}", names(planes)))
+            };
+            let said = [
+                said("measured and predicted disagree", &measured),
+                said("the first-order chain has a wrong map", &chains),
+            ];
+            format!(
+                "fail: {}",
+                said.into_iter().flatten().collect::<Vec<_>>().join("; ")
+            )
+        }
         Verdict::Undecided => {
             let undecided = with(Verdict::Undecided);
             let reasons = undecided.iter().filter_map(|plane| {

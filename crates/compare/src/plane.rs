@@ -1,7 +1,6 @@
 //! A plane of a measurement held against its prediction.
 
 use crate::agreement::{Agreement, UNSEEN};
-use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
@@ -156,7 +155,7 @@ impl Compared<'_> {
         test: &Test,
     ) -> Option<String> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
-        let needs = photons_needed.map(|needed| format!("; needs {needed:.0e} photons"));
+        let needs = photons_needed.map(|needed| format!("; needs {:.0e} photons", rounded(needed)));
         let needs = needs.unwrap_or_default();
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         let noise = agreement.resolution();
@@ -171,13 +170,10 @@ impl Compared<'_> {
         } else if inside == 0 {
             Some(format!("none of {emitted} photons came into the window"))
         } else if self.is_sparse() {
-            let of = if self.prediction.class == Class::Reference {
-                "photons, or rays of the other tracer,"
-            } else {
-                "photons, or rays of the prediction,"
-            };
+            let batches = self.measurement.batches().len();
             Some(format!(
-                "too few {of} in the window: {inside} photons{needs}"
+                "too few photons in the window, {inside} in {batches} batches, or too few rays of \
+                 the prediction: one batch holds none{needs}"
             ))
         } else if agreement.is_blurred(self.prediction, agrees) {
             let error = percent(self.prediction.systematic_error().unwrap_or_default());
@@ -209,7 +205,9 @@ impl Compared<'_> {
             let empty = self.prediction.replicates.iter().filter(|r| is_dark(r));
             let each = (all / empty.count() as f64).ln();
             let more = (EACH * batches / inside as f64).max(EACH / each);
-            more.is_finite().then(|| (emitted as f64 * more).ceil())
+            let more = more.is_finite().then(|| (emitted as f64 * more).ceil());
+            let less_noise = agreement.photons_needed(emitted, self.prediction, test);
+            more.into_iter().chain(less_noise).max_by(f64::total_cmp)
         } else {
             agreement.photons_needed(emitted, self.prediction, test)
         }
@@ -321,6 +319,13 @@ fn covariance(
         predicted,
         propagated,
     }))
+}
+
+/// Rounded up to one digit, with a tenth to spare: the noise of one run says what another needs.
+fn rounded(photons: f64) -> f64 {
+    let wanted = 1.1 * photons;
+    let unit = 10f64.powf(wanted.max(1.0).log10().floor());
+    (wanted / unit).ceil() * unit
 }
 
 fn is_dark(slices: &Slices) -> bool {

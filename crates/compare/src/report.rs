@@ -118,10 +118,3 @@ pub struct PlaneReport {
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,
 }
-
-/// The level of one of `planes` tests so that all pass together with probability 1 − `alpha` (Šidák
-/// 1967).
-#[must_use]
-pub fn sidak(alpha: f64, planes: usize) -> f64 {
-    1.0 - (1.0 - alpha).powf(1.0 / planes as f64)
-}

@@ -1,6 +1,5 @@
 //! What a comparison comes to.
 
-use crate::report::sidak;
 use etendue_scene::Scene;
 use serde::Serialize;
 
@@ -50,4 +49,11 @@ impl Verdict {
             (Self::Pass, Self::Pass) => Self::Pass,
         }
     }
+}
+
+/// The level of one of `planes` tests so that all pass together with probability 1 − `alpha` (Šidák
+/// 1967).
+#[must_use]
+pub fn sidak(alpha: f64, planes: usize) -> f64 {
+    1.0 - (1.0 - alpha).powf(1.0 / planes as f64)
 }

@@ -168,7 +168,7 @@ fn what_mitsuba_cannot_say_is_refused() {
     assert!(mitsuba(&of(lambertian, "")).is_ok());
     let grating = r#"Grating(name: "bars", center: (0, 1, 0), axis: X, frequency: 5)"#;
     let error = mitsuba(&of(SQUARE, grating)).unwrap_err();
-    assert!(error.to_string().contains("grating \"bars\" cannot"));
+    assert!(error.to_string().contains("\"bars\" cannot"));
     let name = "leaving_floor".to_owned();
     let error = mitsuba(&stored("two_bounces")).unwrap_err();
     assert_eq!(error, NotInMitsuba::Reflections { name, leg: 2 });

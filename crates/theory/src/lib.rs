@@ -57,6 +57,8 @@ mod nets;
 mod numerics;
 mod parallel;
 mod parameter;
+mod plane;
+mod predicted;
 pub mod rays;
 #[cfg(test)]
 mod reference;
@@ -65,12 +67,14 @@ pub mod shading;
 #[cfg(test)]
 mod testing;
 mod words;
+mod work;
 
-pub use model::{Model, Observed, Over, Predicted};
+pub use model::{Model, Observed, Over};
 pub use nets::{Budget, REPLICATES};
 pub use parallel::{
-    Chain, Harmonics, Operator, Source, Work, at, derivative, projection, quadrature_error, slices,
-    work,
+    Chain, Harmonics, Operator, Source, at, derivative, projection, quadrature_error, slices,
 };
 pub use parameter::Parameter;
+pub use predicted::Predicted;
 pub use shading::{g_hat, g_hat_3d};
+pub use work::Work;

@@ -12,9 +12,9 @@ mod sobol;
 pub(crate) use density::{Density, Target};
 pub(crate) use sobol::{DIMENSIONS, Net};
 
-use crate::Work;
 use crate::geometry::Matrix;
-use crate::model::Predicted;
+use crate::predicted::Predicted;
+use crate::work::Work;
 use etendue_field::transform::SliceTransform;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
 use ndarray::{Array2, Array3};

@@ -44,4 +44,4 @@ pub use error::quadrature_error;
 pub use harmonics::Harmonics;
 pub use projection::projection;
 pub use slices::slices;
-pub use work::{Work, work};
+use work::work;

@@ -1,10 +1,12 @@
 //! A chain as a model: its parameters and its prediction.
 
-use crate::model::{Model, Over, Predicted};
+use crate::model::{Model, Over};
 use crate::nets::{Budget, work_of_nets};
 use crate::parallel::{at, derivative, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
-use crate::{Chain, Operator, Source, Work};
+use crate::predicted::Predicted;
+use crate::work::Work;
+use crate::{Chain, Operator, Source};
 use etendue_field::{Light, Mask, Window};
 
 impl Model for Chain {

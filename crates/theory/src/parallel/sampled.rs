@@ -1,8 +1,9 @@
 //! A chain whose closed form takes too long, or does not resolve a pattern: the same light by nets
 //! of rays.
 
-use crate::model::{Model, Moved, Observed, Over, Predicted};
+use crate::model::{Model, Moved, Observed, Over};
 use crate::nets::Budget;
+use crate::predicted::Predicted;
 use crate::rays::Plane;
 use crate::{Chain, Parameter, rays, scattering};
 use etendue_field::{

@@ -12,63 +12,19 @@ use crate::parallel::projection::nodes_of_cells;
 use crate::parallel::slices::fineness;
 use crate::parallel::slope::Slope;
 use crate::parallel::weighted_rectangle::DiscResolution;
+use crate::work::Work;
 use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
-
-/// The work of a prediction.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Work {
-    /// A core does one in about a nanosecond.
-    pub steps: f64,
-    /// Bytes held once.
-    pub bytes: f64,
-    /// Bytes held by each thread.
-    pub bytes_each: f64,
-    /// What most of the steps are made of, in words.
-    pub drivers: String,
-}
-
-impl Work {
-    /// Of what needs no prediction.
-    #[must_use]
-    pub fn none() -> Self {
-        Self {
-            steps: 0.0,
-            bytes: 0.0,
-            bytes_each: 0.0,
-            drivers: String::new(),
-        }
-    }
-
-    /// More than anyone would wait for, so that it was not counted to its end.
-    pub(crate) fn endless(drivers: String) -> Self {
-        Self {
-            steps: f64::INFINITY,
-            drivers,
-            ..Self::none()
-        }
-    }
-
-    /// One after the other.
-    pub(crate) fn then(self, next: Self) -> Self {
-        Self {
-            steps: self.steps + next.steps,
-            bytes: self.bytes.max(next.bytes),
-            bytes_each: self.bytes_each.max(next.bytes_each),
-            drivers: if next.steps > self.steps {
-                next.drivers
-            } else {
-                self.drivers
-            },
-        }
-    }
-}
 
 /// Products of shapes in different planes that are counted; of more the prediction would not end.
 pub(crate) const MOST_PARTS: usize = 500_000;
 
 /// What the slices, their derivatives and the projection of a chain take.
-#[must_use]
-pub fn work(chain: &Chain, window: &Window, grid: &SliceGrid, picture: &ProjectionGrid) -> Work {
+pub(crate) fn work(
+    chain: &Chain,
+    window: &Window,
+    grid: &SliceGrid,
+    picture: &ProjectionGrid,
+) -> Work {
     let path = chain.path();
     let derivatives = chain.parameters().len() as f64;
     if let Some(receiver) = path.receiver() {

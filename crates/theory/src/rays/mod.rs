@@ -80,12 +80,14 @@ pub use chain::{AffineChain, chain};
 pub use defect::defect;
 pub use predict::linear;
 
+pub use crate::plane::Plane;
+
 pub(crate) use central::Incidence;
 pub(crate) use emission::{emitted, point_of};
 pub(crate) use predict::predict;
 pub(crate) use trace::Ray;
 
-use etendue_field::{Frame, Light, Mask, Orientation, Patch, Quantity, Specular};
+use etendue_field::{Light, Mask, Patch, Specular};
 
 /// A light and the specular surfaces its central ray visits, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
@@ -109,23 +111,4 @@ pub struct Element {
     /// What it does. Refraction goes from the side the ray comes from. A thin lens is flat; its
     /// slopes are those in the patch's frame (X, Y and the side light goes to).
     pub event: Specular,
-}
-
-/// Where the light field is looked at, after all elements of a [`System`].
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Plane {
-    /// Its frame in coordinates of the frame at the light: O on the central ray, D along it; on a
-    /// surface T, B and the normal there, on the side to which directions point.
-    pub frame: Frame,
-    /// What its coordinates are counted from.
-    pub orientation: Orientation,
-    /// θ of the central ray on a surface, radians: coordinates are (s, t, θ − longitude, φ) there.
-    pub longitude: f64,
-    /// The surface, for local normals; without it they are all along D.
-    pub patch: Option<Patch>,
-    /// On a surface: light that arrives at it, directions turned around. The surface is then not
-    /// among the elements; else it is the last.
-    pub arriving: bool,
-    /// What is recorded. Differential irradiance on a surface is radiance times cos θ cos² φ.
-    pub quantity: Quantity,
 }

@@ -3,10 +3,11 @@
 
 use super::central::Hit;
 use super::{System, predict};
-use crate::Work;
-use crate::model::{Model, Moved, Observed, Over, Predicted};
+use crate::model::{Model, Moved, Observed, Over};
 use crate::nets::{Budget, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
+use crate::predicted::Predicted;
+use crate::work::Work;
 use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
 use glam::{DQuat, DVec3};
 

@@ -6,8 +6,9 @@ use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
 use crate::geometry::{Map, SpectrumMap};
 use crate::mask::Masks;
-use crate::model::{Moved, Observed, Over, Predicted};
+use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::predicted::Predicted;
 use etendue_field::{Complex, FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 

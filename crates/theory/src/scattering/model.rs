@@ -1,10 +1,11 @@
 //! A surface with a BRDF and a plane behind it as a model: its parameters and its prediction.
 
 use super::{System, chain, predict};
-use crate::Work;
-use crate::model::{Model, Moved, Observed, Over, Predicted};
+use crate::model::{Model, Moved, Observed, Over};
 use crate::nets::{Budget, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
+use crate::predicted::Predicted;
+use crate::work::Work;
 use etendue_field::{Complex, Light, Lobe, Reflectance};
 
 /// Step of a derivative, as a share of the parameter's scale.

@@ -6,8 +6,9 @@ use super::incoming::Part;
 use super::linear::Linear;
 use super::{ReflectionChain, System};
 use crate::mask::Masks;
-use crate::model::{Moved, Observed, Over, Predicted};
+use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::predicted::Predicted;
 use etendue_field::{EnvironmentMap, Light, TwoPlane, Window};
 use glam::DVec3;
 

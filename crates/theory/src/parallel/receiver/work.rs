@@ -5,7 +5,7 @@ use super::kernel::Axis;
 use super::region::ReceiverRegion;
 use super::{Receiver, SlopeProjection, exitant};
 use crate::mask::Barrier;
-use crate::parallel::work::Work;
+use crate::work::Work;
 use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 
 /// Places along each axis at which steps are counted.

@@ -3,7 +3,8 @@ use crate::geometry::{Edition, SpectrumMap};
 use crate::numerics::distance;
 use crate::{Budget, Model, Observed, Predicted};
 use etendue_field::{
-    Complex, FrequencyAxis, Image, Profile, ProjectionGrid, SliceGrid, Slices, Window,
+    Complex, Frame, FrequencyAxis, Image, Orientation, Profile, ProjectionGrid, Quantity,
+    SliceGrid, Slices, Window,
 };
 use glam::DVec3;
 
