@@ -2,7 +2,7 @@
 
 use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Test, compare};
 use etendue_field::PhotonSource;
-use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_scene::{RunFile, Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_trace::{Backward, Tracer};
 
@@ -41,7 +41,7 @@ pub(crate) fn named(name: &str, photons: Option<u64>, seed: Option<u64>) -> Scen
     let text = SUITE.iter().find(|(known, _)| *known == name);
     let (_, text) = text.expect("a scene of the suite");
     let mut file = SceneFile::parse(text).expect("a scene of the suite is a scene file");
-    file.run.photons = photons.unwrap_or(file.run.photons);
+    emit(&mut file.run, photons);
     file.run.seed = seed.unwrap_or(file.run.seed);
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of the suite is sound")
 }
@@ -56,6 +56,14 @@ pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
     let mut scene = fig9b(photons, seed);
     scene.planes.retain(|plane| plane.name == "receiver");
     scene
+}
+
+/// Gives a run so many photons, and the resolution that goes with them: noise falls with their root.
+pub(crate) fn emit(run: &mut RunFile, photons: Option<u64>) {
+    let Some(photons) = photons else { return };
+    let more_noise = (run.photons as f64 / photons as f64).sqrt();
+    run.resolution = (run.resolution * more_noise.max(1.0)).min(1.0);
+    run.photons = photons;
 }
 
 /// Measures a scene with photons from `source`.

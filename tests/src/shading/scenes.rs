@@ -1,5 +1,6 @@
 //! The scenes of shading in 4D.
 
+use crate::scenes::emit;
 use etendue_scene::{Scene, SceneFile, resolve};
 
 macro_rules! scene {
@@ -46,7 +47,7 @@ pub(super) fn changed(name: &str, photons: Option<u64>, texts: &[[&str; 2]]) -> 
         text.replace(old, new)
     });
     let mut file = SceneFile::parse(&text).expect("a scene of shading is a scene file");
-    file.run.photons = photons.unwrap_or(file.run.photons);
+    emit(&mut file.run, photons);
     resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of shading is sound")
 }
 

@@ -1,5 +1,6 @@
 //! The scenes of the table.
 
+use crate::scenes::emit;
 use etendue_scene::{Scene, SceneFile, resolve};
 
 macro_rules! scene {
@@ -44,7 +45,7 @@ const SCENES: &[(&str, &str)] = &[
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {
     let resolved = SCENES.iter().map(|(name, text)| {
         let mut file = SceneFile::parse(text).expect("a scene of the table is a scene file");
-        file.run.photons = photons.unwrap_or(file.run.photons);
+        emit(&mut file.run, photons);
         resolve(name, file, ".".as_ref(), u64::MAX).expect("a scene of the table is sound")
     });
     resolved.collect()
