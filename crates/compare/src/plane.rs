@@ -42,6 +42,9 @@ pub struct PlaneComparison {
 /// closed form is a difference of transforms of that size, and accurate to 10⁻¹⁵ of it.
 const DARK: f64 = 1e-12;
 
+/// Noise above which a handful of photons makes the residuals: they are not symmetric then, as p
+/// takes them to be.
+const FEW: f64 = 0.25;
 /// Photons of a batch with which one in 3,000 batches is empty.
 const EACH: f64 = 8.0;
 
@@ -186,6 +189,11 @@ impl Compared<'_> {
             let resolution = percent(test.resolution);
             Some(format!(
                 "noise is {} of the spectrum, above the resolution of {resolution}{needs}",
+                percent(noise)
+            ))
+        } else if noise > test.resolution.max(FEW) {
+            Some(format!(
+                "noise is {} of the spectrum, of so few photons that p says nothing{needs}",
                 percent(noise)
             ))
         } else {
