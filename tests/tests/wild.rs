@@ -429,3 +429,16 @@ fn a_coarse_mesh_is_decided() {
         &[("p", Class::Reference)],
     );
 }
+
+/// On a thin lens there is no chain of affine maps, beyond it there is; rays are right on both.
+#[test]
+fn a_plane_on_a_lens_is_decided() {
+    let scene = scene("on_a_lens");
+    let measured = photons(&scene);
+    for (plane, has_chain) in [(0, false), (1, true)] {
+        let prediction = by_theory(&scene, &scene.planes[plane]);
+        assert_eq!(prediction.first_order.is_some(), has_chain);
+        let judged = report(&scene, &measured, plane, &prediction);
+        assert_eq!(judged.verdict, Verdict::Pass, "{judged:?}");
+    }
+}

@@ -35,7 +35,8 @@ impl AffineChain {
 }
 
 /// The chain read off the geometry: distances, angles and curvatures where the central ray goes.
-/// `None` where it misses an element or is totally reflected.
+/// `None` where it misses an element or is totally reflected, and on a lens itself, which has no
+/// side to count angles from.
 ///
 /// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and
 /// no lens.
@@ -52,6 +53,10 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
     };
     let mut layers = system.layers.clone();
     let on_last = plane.orientation != Orientation::Orthogonal && !plane.arriving;
+    let is_lens = |element: &Element| matches!(element.event, Specular::ThinLens { .. });
+    if on_last && system.elements.last().is_some_and(is_lens) {
+        return None;
+    }
     let mut travelled = 0.0;
     let mut foci = Vec::new();
     for (i, (element, hit)) in system.elements.iter().zip(&hits).enumerate() {
