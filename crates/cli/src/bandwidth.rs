@@ -186,9 +186,10 @@ fn of(
     point: &[(String, f64)],
     quiet: bool,
 ) -> Result<Vec<Row>, Failure> {
-    let all = scene.planes.iter().enumerate();
+    let theories = Applicability::of_planes(scene);
+    let all = scene.planes.iter().zip(&theories).enumerate();
     let planes: Vec<(usize, Criterion)> = all
-        .filter_map(|(i, plane)| Some((i, criterion(scene, plane)?)))
+        .filter_map(|(i, (plane, theory))| Some((i, criterion(scene, plane, theory)?)))
         .collect();
     let measurement = if args.measure && !planes.is_empty() {
         let batches = 0..scene.run.batches;
@@ -197,7 +198,7 @@ fn of(
         None
     };
     let row = |(i, c): (usize, Criterion)| {
-        let plane = &scene.planes[i];
+        let (plane, theory) = (&scene.planes[i], &theories[i]);
         let edge = |value: f64| c.blocker_distance.map(|_| value);
         let mut row = Row {
             point: point.iter().map(|(_, value)| *value).collect(),
@@ -214,11 +215,11 @@ fn of(
                 edge(c.blocker()),
                 edge(c.printed_blocker()),
             ],
-            warnings: beyond_criteria(scene, plane),
+            warnings: beyond_criteria(plane, theory),
         };
         if let Some(measurement) = &measurement {
             let stage = progress::stage("predicting", quiet);
-            let exact = exact_bandwidth(scene, plane);
+            let exact = exact_bandwidth(scene, plane, theory);
             stage.finish_and_clear();
             let found = measured_bandwidth(measurement, i).map_err(Failure::cannot_run)?;
             let (value, error) = (found.map(|f| f.value), found.map(|f| f.error));
@@ -248,8 +249,8 @@ fn said_at(point: &[(String, f64)], text: String) -> String {
 }
 
 /// What the criteria do not know of.
-fn beyond_criteria(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let Theory::Scattering(view) = Applicability::new(scene, plane).theory else {
+fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<String> {
+    let Theory::Scattering(view) = &applicability.theory else {
         return Vec::new();
     };
     let (name, reflectance) = (&view.system.name, &view.system.reflectance);

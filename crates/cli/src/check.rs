@@ -57,7 +57,7 @@ fn length(scene: &Scene) -> String {
 
 /// Where the rays of the light go, z' = A z, and where parallel ones meet.
 fn rays(chain: &AffineChain) -> Vec<String> {
-    let matrix = chain.rays().matrix;
+    let matrix = chain.map.rays().matrix;
     let row = |(name, row): (&str, &[f64; 4])| {
         let entries = row
             .iter()

@@ -94,10 +94,6 @@ pub(crate) fn conclude(
 /// What is expected is that photons agree with every exact prediction, and that a first-order chain
 /// has a wrong map.
 fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
-    let of_exact = |plane: &PlaneReport| match &plane.first_order {
-        Some(first_order) => first_order.exact,
-        None => plane.verdict,
-    };
     let is_wrong = |plane: &PlaneReport| {
         let chain = plane.first_order.as_ref();
         chain.is_some_and(|chain| chain.verdict == Verdict::Fail)
@@ -105,7 +101,7 @@ fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     let verdict = match expect {
         None => summary.verdict,
         Some(Expect::Disagreement) => {
-            let exact = summary.planes.iter().map(of_exact);
+            let exact = summary.planes.iter().map(PlaneReport::exact_verdict);
             match exact.fold(Verdict::Pass, Verdict::and) {
                 Verdict::Pass if !summary.planes.iter().any(is_wrong) => Verdict::Fail,
                 verdict => verdict,

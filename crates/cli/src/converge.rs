@@ -3,14 +3,15 @@ use crate::failure::Failure;
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{deliver, limits, load, progress, say};
-use etendue_compare::{Applicability, Class, Convergence, converge as shrink};
+use etendue_compare::{Applicability, Convergence, converge as shrink};
 use etendue_scene::Scene;
 
 /// `etendue converge`: returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |_| ())?;
-    limits::check_work(&scene, &Applicability::of_planes(&scene))?;
-    let planes = on_threads(&args.threads, || Ok(shrunk(&scene)))?;
+    let theories = Applicability::of_planes(&scene);
+    limits::check_work(&scene, &theories)?;
+    let planes = on_threads(&args.threads, || Ok(shrunk(&scene, &theories)))?;
     if planes.is_empty() {
         return Err(Failure::bad_input(
             "no plane of this scene lies behind mirrors, interfaces and lenses alone: what BRDFs scatter is not shrunk",
@@ -24,14 +25,12 @@ pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-fn shrunk(scene: &Scene) -> Vec<Convergence> {
+fn shrunk(scene: &Scene, theories: &[Applicability]) -> Vec<Convergence> {
     let stage = progress::stage("predicting", false);
-    let planes = scene.planes.iter();
-    let planes =
-        planes.filter(|plane| Applicability::new(scene, plane).class() == Class::FirstOrder);
-    let found = planes.filter_map(|plane| {
+    let planes = scene.planes.iter().zip(theories);
+    let found = planes.filter_map(|(plane, theory)| {
         stage.set_message(format!("predicting {}", plane.name));
-        shrink(scene, plane)
+        shrink(scene, plane, theory)
     });
     let found = found.collect();
     stage.finish_and_clear();

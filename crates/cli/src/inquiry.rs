@@ -55,19 +55,16 @@ pub(crate) fn inquire(
 
 /// Whether a plane fails against a prediction, and not for its chain of affine maps alone.
 fn disagrees_with_theory(report: &PlaneReport) -> bool {
-    let exact = report.first_order.as_ref().map(|chain| chain.exact);
-    report.class != Class::Reference && exact.unwrap_or(report.verdict) == Verdict::Fail
+    report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }
 
 impl Inquiry {
     fn new(method: Method, tracers: &PlaneReport, theory: &PlaneReport) -> Self {
-        let exact = theory.first_order.as_ref().map(|chain| chain.exact);
-        let theory_verdict = exact.unwrap_or(theory.verdict);
         let [this, other] = match method {
             Method::Photons => ["photons", "backward rays"],
             Method::Backward => ["backward rays", "photons"],
         };
-        let finding = match (tracers.verdict, theory_verdict) {
+        let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
                 format!("{this} and {other} agree, the prediction does not: a finding about theory")
             }
@@ -87,7 +84,7 @@ impl Inquiry {
         Self {
             plane: tracers.name.clone(),
             tracers: (tracers.verdict, tracers.p_value),
-            other: (theory_verdict, theory.p_value),
+            other: (theory.exact_verdict(), theory.p_value),
             finding,
         }
     }

@@ -215,10 +215,7 @@ fn verdict_text(summary: &Summary) -> String {
             )
         }
         Verdict::Fail => {
-            let is_exact = |plane: &&PlaneReport| {
-                let chain = plane.first_order.as_ref();
-                chain.is_none_or(|chain| chain.exact == Verdict::Fail)
-            };
+            let is_exact = |plane: &&PlaneReport| plane.exact_verdict() == Verdict::Fail;
             let (measured, chains): (Vec<_>, Vec<_>) =
                 with(Verdict::Fail).into_iter().partition(is_exact);
             let said = |what: &str, planes: &[&PlaneReport]| {

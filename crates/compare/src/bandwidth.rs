@@ -18,15 +18,19 @@ use etendue_theory::{Model, scattering};
 /// The edge that blocks the light is that of the last blockers. Without blockers it is the light's
 /// own, unless the light is far away.
 #[must_use]
-pub fn criterion(scene: &Scene, plane: &VirtualPlane) -> Option<Criterion> {
-    let Theory::Scattering(view) = Applicability::new(scene, plane).theory else {
+pub fn criterion(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    applicability: &Applicability,
+) -> Option<Criterion> {
+    let Theory::Scattering(view) = &applicability.theory else {
         return None;
     };
     let system = &view.system;
     if plane.orientation != Orientation::Orthogonal {
         return None;
     }
-    let chain = scattering::chain(&view)?;
+    let chain = scattering::chain(view)?;
     let lobe_cutoff = match system.reflectance.brdf.lobe {
         Lobe::Phong { exponent } => cutoff(shading::Lobe::Phong { exponent }),
         Lobe::Beckmann { roughness } => cutoff(shading::Lobe::Beckmann { roughness }),
@@ -58,8 +62,12 @@ fn cutoff(lobe: shading::Lobe) -> f64 {
 /// The bandwidth along ν of the exact prediction of such a plane, by the estimator that is used for
 /// photons.
 #[must_use]
-pub fn exact_bandwidth(scene: &Scene, plane: &VirtualPlane) -> Option<f64> {
-    let Theory::Scattering(view) = Applicability::new(scene, plane).theory else {
+pub fn exact_bandwidth(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    applicability: &Applicability,
+) -> Option<f64> {
+    let Theory::Scattering(view) = &applicability.theory else {
         return None;
     };
     let (window, grid) = (&plane.window, &plane.grid);

@@ -34,8 +34,12 @@ const CLEAR: f64 = 5.0;
 /// Shrinks light and window of a plane behind specular surfaces and widens its frequencies alike.
 /// `None` for any other plane. No photons are traced.
 #[must_use]
-pub fn converge(scene: &Scene, plane: &VirtualPlane) -> Option<Convergence> {
-    let Theory::Specular(whole) = Applicability::new(scene, plane).theory else {
+pub fn converge(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    applicability: &Applicability,
+) -> Option<Convergence> {
+    let Theory::Specular(whole) = &applicability.theory else {
         return None;
     };
     let mut steps = Vec::new();

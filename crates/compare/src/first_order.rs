@@ -83,16 +83,16 @@ impl FirstOrder {
         over: Over<'_>,
         exact: &Predicted,
     ) -> Option<Self> {
+        if exact.slices.is_dark() {
+            return None;
+        }
         let by = |print| {
             let chain = rays::chain(view, print)?;
             let linear = rays::linear(view, over, &chain.map, budget(scene));
             Some((chain, linear))
         };
         let (corrected, mut linear) = by(Edition::Corrected)?;
-        if exact.is_dark() {
-            return None;
-        }
-        let matrix = corrected.rays().matrix;
+        let matrix = corrected.map.rays().matrix;
         let mut chain = FirstOrderChain {
             error: distance(&linear.slices, &exact.slices),
             defect: rays::defect(view, &corrected.map, over.0)?,
@@ -119,7 +119,7 @@ impl FirstOrder {
         view: &Observed<scattering::System>,
         exact: &Predicted,
     ) -> Option<Self> {
-        let chain = scattering::chain(view).filter(|_| !exact.is_dark())?;
+        let chain = scattering::chain(view).filter(|_| !exact.slices.is_dark())?;
         let difference = exact.to_first_order.as_ref()?;
         let near = |slices: &Slices| Slices {
             half: &slices.half + &difference.half,

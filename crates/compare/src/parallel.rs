@@ -11,16 +11,13 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {
         let [before, leg] = legs else { continue };
-        if let Some(Hit { object, normal, .. }) = &leg.leaves {
+        if let Some(hit @ Hit { object, normal, .. }) = &leg.leaves {
             let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
                 .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
             let is_flat = matches!(object, Object::Surface(_));
             if let Object::Mesh(i) = object {
-                let hit = leg
-                    .leaves
-                    .as_ref()
-                    .and_then(|hit| coarseness(scene, &scene.meshes[*i], hit));
-                found.extend(hit.map(|uneven| {
+                let uneven = coarseness(scene, plane, &scene.meshes[*i], hit);
+                found.extend(uneven.map(|uneven| {
                     let (name, percent) = (scene.name_of(*object), 100.0 * uneven);
                     format!("{name}, whose curvature changes by {percent:.0} % between triangles")
                 }));

@@ -117,7 +117,7 @@ impl Compared<'_> {
     fn judged(&self, test: &Test) -> Judged {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
         let p_value = self.residuals.p_value(test.seed);
-        let agrees = if self.is_dark() {
+        let agrees = if self.predicted.is_dark() {
             self.inside() == 0
         } else {
             // Residuals that are all zero have no p.
@@ -162,7 +162,7 @@ impl Compared<'_> {
         let needs = needs.unwrap_or_default();
         let percent = |share: f64| format!("{:.3} %", 100.0 * share);
         let noise = agreement.resolution();
-        if self.is_dark() {
+        if self.predicted.is_dark() {
             // Theory shows why no light comes. That no ray was found is no proof.
             self.prediction.is_statistical().then(|| {
                 format!(
@@ -204,13 +204,13 @@ impl Compared<'_> {
     /// Photons that would decide; `None` where that is not known, or more of them do not help.
     fn photons_needed(&self, agreement: &Agreement, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
-        if self.is_dark() || inside == 0 {
+        if self.predicted.is_dark() || inside == 0 {
             None
         } else if self.is_sparse() {
             let batches = self.measurement.batches().len() as f64;
             // Of n replicates that hold m rays in the mean n e⁻ᵐ are empty.
             let all = self.prediction.replicates.len() as f64;
-            let empty = self.prediction.replicates.iter().filter(|r| is_dark(r));
+            let empty = self.prediction.replicates.iter().filter(|r| r.is_dark());
             let each = (all / empty.count() as f64).ln();
             let more = (EACH * batches / inside as f64).max(EACH / each);
             let more = more.is_finite().then(|| (emitted as f64 * more).ceil());
@@ -225,16 +225,12 @@ impl Compared<'_> {
         self.measurement.tally(self.index).inside
     }
 
-    fn is_dark(&self) -> bool {
-        is_dark(self.predicted)
-    }
-
     /// Whether a batch of photons, or a replicate of the prediction, found no light: so few say
     /// nothing, because their errors are not symmetric.
     fn is_sparse(&self) -> bool {
         let mut batches = self.measurement.at_plane(self.index);
         let mut replicates = self.prediction.replicates.iter();
-        batches.any(|batch| batch.tally.inside == 0) || replicates.any(is_dark)
+        batches.any(|batch| batch.tally.inside == 0) || replicates.any(Slices::is_dark)
     }
 
     fn report(&self, judged: &Judged) -> Result<PlaneReport, TooFewBatches> {
@@ -334,10 +330,6 @@ fn rounded(photons: f64) -> f64 {
     let wanted = 1.1 * photons;
     let unit = 10f64.powf(wanted.max(1.0).log10().floor());
     (wanted / unit).ceil() * unit
-}
-
-fn is_dark(slices: &Slices) -> bool {
-    slices.half.iter().all(|f| f.norm_sqr() <= 0.0)
 }
 
 /// The predicted slices, set to zero where they are the rounding errors of a dark field.

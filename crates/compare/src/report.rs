@@ -118,3 +118,12 @@ pub struct PlaneReport {
     /// Limits of the measurement, in words.
     pub warnings: Vec<String>,
 }
+
+impl PlaneReport {
+    /// The verdict on the exact prediction, whatever becomes of a first-order chain beside it.
+    #[must_use]
+    pub fn exact_verdict(&self) -> Verdict {
+        let chain = self.first_order.as_ref();
+        chain.map_or(self.verdict, |chain| chain.exact)
+    }
+}

@@ -32,7 +32,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
-                if coarseness(scene, mesh, &hit).is_some() {
+                if coarseness(scene, plane, mesh, &hit).is_some() {
                     return None;
                 }
                 Some(Element {
@@ -55,29 +55,32 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
     })
 }
 
-/// How far the curvature of a mesh changes from triangle to triangle where the central ray meets
-/// it, as a share, if that is too much for one smooth surface to stand for it.
-pub(crate) fn coarseness(scene: &Scene, mesh: &MeshObject, hit: &Hit) -> Option<f64> {
-    // Slopes are off by twice this share of what curvature makes of them. Meshes as fine as those
-    // of the repository have 10⁻⁴.
-    const MOST: f64 = 0.01;
-    /// Triangles around the hit over which normals even out.
-    const AROUND: f64 = 3.0;
-    let [uneven, reach] = mesh.unevenness(hit)?;
-    // Where light meets many triangles the few around the hit are a small part of it.
+/// Slopes are off by twice this share of what curvature makes of them. Meshes as fine as those of
+/// the repository have 10⁻⁴.
+const UNEVEN: f64 = 0.01;
+/// Triangles around the hit over which normals even out.
+const AROUND: f64 = 3.0;
+/// Curvature that turns slopes over what is seen by this share of the window counts as this much.
+const FLAT: f64 = 0.1;
+
+/// How far the curvature of a smooth mesh changes from triangle to triangle where the central ray
+/// meets it, as a share, if that is too much for one smooth surface to stand for it.
+pub(crate) fn coarseness(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    mesh: &MeshObject,
+    hit: &Hit,
+) -> Option<f64> {
+    let patch = mesh.osculating(hit)?;
+    let [apart, reach] = mesh.unevenness(hit, &patch)?;
     let lit = [0, 1].map(|axis| scene.light.extent(axis)[1]);
-    let window = |plane: &VirtualPlane| plane.window.x.half_width();
-    let seen = scene
-        .planes
-        .iter()
-        .map(window)
-        .fold(f64::INFINITY, f64::min);
-    let seen = lit
-        .into_iter()
-        .filter(|half| *half > 0.0)
-        .fold(seen, f64::min);
+    let lit = lit.into_iter().filter(|half| *half > 0.0);
+    let seen = lit.fold(plane.window.x.half_width(), f64::min);
+    let [k1, k2, _] = patch.curvature.map(f64::abs);
+    let uneven = apart / k1.max(k2).max(FLAT * plane.window.u.half_width() / seen);
+    // Where light meets many triangles the few around the hit are a small part of it.
     let share = (AROUND * reach / seen).powi(2).min(1.0);
-    Some(uneven).filter(|uneven| uneven * share > MOST)
+    Some(uneven).filter(|uneven| uneven * share > UNEVEN)
 }
 
 /// An event of a surface whose front is turned to the light.

@@ -203,3 +203,26 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
     assert_eq!((wide.class(), wide.dark), (Class::Reference, None));
     assert_eq!(wide.reasons, ["visibility of edge, partly beyond mirror"]);
 }
+
+/// A flat mesh has no curvature that could change from triangle to triangle, only rounding.
+#[test]
+fn a_smooth_mesh_is_flat_or_finely_curved() {
+    let of = |curvature: f64, cells: u32| {
+        let text = format!(
+            r#"(
+                light: {LIGHT},
+                surfaces: [Mesh(name: "sheet", center: (0.1, 0.05, 1), event: Mirror,
+                    mesh: Paraboloid(curvatures: ({curvature}, 0), half: 0.5, cells: {cells}))],
+                path: (direction: (0.1, 0.05, 1), x_axis: (1, 0, 0), visits: ["sheet"]),
+                planes: [(name: "p", at: After("sheet"))],
+                window: (x: Hann(0.1), u: Hann(0.1)), frequencies: (rho: (max: 8), nu: (max: 8)),
+            )"#
+        );
+        let file = SceneFile::parse(&text).unwrap();
+        of(&resolve("scene", file, ".".as_ref(), u64::MAX).unwrap()).class()
+    };
+    assert_eq!(of(0.0, 30), Class::FirstOrder);
+    assert_eq!(of(0.001, 30), Class::FirstOrder);
+    assert_eq!(of(3.0, 100), Class::FirstOrder);
+    assert_eq!(of(3.0, 10), Class::Reference);
+}

@@ -25,6 +25,12 @@ impl Slices {
         }
     }
 
+    /// Whether all are zero: no light.
+    #[must_use]
+    pub fn is_dark(&self) -> bool {
+        self.half.iter().all(|s| s.norm_sqr() <= 0.0)
+    }
+
     /// The value ℓ̂(0) = ∫ L W.
     #[must_use]
     pub fn at_zero(&self) -> f64 {

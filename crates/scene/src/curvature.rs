@@ -42,18 +42,18 @@ impl MeshObject {
         })
     }
 
-    /// How far the curvature of the normals of the triangle hit is from that of the vertices around, as a share of it, and how far its corners
-    /// are from the hit: light turns by the former where it meets one triangle alone. `None` as for [`Self::osculating`].
+    /// How far the curvature of the normals of the triangle hit is from that of its osculating
+    /// patch, per metre, and how far its corners are from the hit: light turns by the former where
+    /// it meets one triangle alone. `None` where normals do not tell.
     #[must_use]
-    pub fn unevenness(&self, hit: &Hit) -> Option<[f64; 2]> {
-        let patch = self.osculating(hit)?;
+    pub fn unevenness(&self, hit: &Hit, patch: &Patch) -> Option<[f64; 2]> {
         let corners = self.triangles[self.nearest(hit)?];
         let reach = corners.map(|corner| corner.distance(hit.point));
         let reach = reach.into_iter().fold(0.0, f64::max);
         let [ss, st, tt] = self.shape_within(hit, &patch.frame, 1.001 * reach)?;
         let [k1, k2, _] = patch.curvature;
         let apart = (ss - k1).abs().max((tt - k2).abs()).max(st.abs());
-        Some([apart / k1.abs().max(k2.abs()), reach])
+        Some([apart, reach])
     }
 
     /// The derivatives of the normals of the vertices within a distance of a hit, by place in a frame there.

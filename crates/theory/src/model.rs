@@ -73,6 +73,17 @@ pub(crate) struct Moved<M> {
     pub(crate) sides: [M; 2],
 }
 
+/// Step of a derivative, as a share of the parameter's scale.
+const STEP: f64 = 1e-3;
+
+impl<M: Model> Moved<M> {
+    /// A model moved by a small step to both sides.
+    pub(crate) fn nearby(model: &M, parameter: Parameter) -> Option<Self> {
+        let step = STEP * parameter.scale(model.value(parameter)?);
+        Self::new(model, parameter, step, |moved| moved)
+    }
+}
+
 impl<M> Moved<M> {
     /// A model moved by a step to both sides, each made into another.
     pub(crate) fn new<A: Model>(

@@ -28,11 +28,3 @@ pub struct Predicted {
     /// What the first-order chain of a reflection predicts, less the slices, over the same rays.
     pub to_first_order: Option<Slices>,
 }
-
-impl Predicted {
-    /// Whether no light was found.
-    #[must_use]
-    pub fn is_dark(&self) -> bool {
-        self.slices.half.iter().all(|f| f.norm_sqr() <= 0.0)
-    }
-}

@@ -93,8 +93,6 @@ pub(crate) fn hostile(options: &Options) -> io::Result<Section> {
         Some(case) => case..case + 1,
         None => 0..options.count,
     };
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = options.threads.unwrap_or(cores).max(1);
     let bar = progress(cases.end - cases.start, "cases");
     let next = AtomicU64::new(cases.start);
     let tallies = Mutex::new(Tallies::default());
@@ -118,18 +116,28 @@ pub(crate) fn hostile(options: &Options) -> io::Result<Section> {
             bar.inc(1);
         }
     };
+    on_threads(options.threads, worker)?;
+    bar.finish_and_clear();
+    let tallies = tallies.into_inner().unwrap_or_default();
+    Ok(tallies.section(options.seed))
+}
+
+/// Runs `worker(0)`, `worker(1)`, ... on so many threads, or one for each core.
+pub(crate) fn on_threads(
+    threads: Option<usize>,
+    worker: impl Fn(usize) -> io::Result<()> + Sync,
+) -> io::Result<()> {
+    let cores = std::thread::available_parallelism().map_or(1, usize::from);
+    let worker = &worker;
     std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads)
+        let workers: Vec<_> = (0..threads.unwrap_or(cores).max(1))
             .map(|i| scope.spawn(move || worker(i)))
             .collect();
         workers.into_iter().try_for_each(|worker| {
             let joined = worker.join();
             joined.unwrap_or_else(|_| Err(io::Error::other("a thread has panicked")))
         })
-    })?;
-    bar.finish_and_clear();
-    let tallies = tallies.into_inner().unwrap_or_default();
-    Ok(tallies.section(options.seed))
+    })
 }
 
 /// How many are done, and the time left.

@@ -172,7 +172,7 @@ fn at_mirror(dice: &mut Dice, fault: &str) -> f64 {
     let Some(chain) = rays::chain(&Observed { system, plane }, Edition::Corrected) else {
         return f64::NAN;
     };
-    apart(&chain.rays(), [0.0; 4], |z| {
+    apart(&chain.map.rays(), [0.0; 4], |z| {
         let (start, along) = met.emitted(z);
         if looking.arrives {
             return looking.seen(start, along, fault);

@@ -2,7 +2,7 @@
 
 use super::verdict;
 use crate::report::Section;
-use etendue_compare::{criterion, exact_bandwidth, measured_bandwidth};
+use etendue_compare::{Applicability, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Quantity};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
@@ -157,7 +157,9 @@ impl Bench {
     /// When the plane has none.
     fn criterion(&self) -> Criterion {
         let scene = self.scene(&ANY, 1000, 1);
-        criterion(&scene, &scene.planes[0]).expect("across a ray that left a glossy surface")
+        let plane = &scene.planes[0];
+        let found = criterion(&scene, plane, &Applicability::new(&scene, plane));
+        found.expect("across a ray that left a glossy surface")
     }
 
     /// Bandwidth corrected and as printed.
@@ -347,7 +349,8 @@ pub(crate) fn glossy(photons: Option<u64>) -> (Section, Curves) {
             // One for each point, so that they are independent.
             let scene = bench.scene(&windows, photons, count.unsigned_abs().into());
             let plane = &scene.planes[0];
-            let exact = exact_bandwidth(&scene, plane).expect("light comes");
+            let theory = Applicability::new(&scene, plane);
+            let exact = exact_bandwidth(&scene, plane, &theory).expect("light comes");
             let measurement = measure(
                 &Tracer::new(&scene),
                 &scene.planes,

@@ -36,7 +36,7 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
         let Observed { system, plane } = &view;
         let ratio = index_ratio(system);
         let chain = rays::chain(&view, Edition::Corrected);
-        let linear = chain.map_or(f64::NAN, |c| c.rays().symplectic_defect(ratio));
+        let linear = chain.map_or(f64::NAN, |c| c.map.rays().symplectic_defect(ratio));
         let mut most = [0.0_f64; 3];
         for at in bundle() {
             let defects = defects(system, &plane.frame, at, ratio);

@@ -17,7 +17,7 @@ mod straight;
 mod surfaces;
 mod tally;
 
-use crate::hostile::{child, progress};
+use crate::hostile::{child, on_threads, progress};
 use crate::report::Section;
 use judge::{Judged, judge};
 use run::{Runner, text};
@@ -90,17 +90,7 @@ pub(crate) fn wild(options: &Options) -> io::Result<Section> {
             bar.inc(1);
         }
     };
-    let cores = std::thread::available_parallelism().map_or(1, usize::from);
-    let threads = options.threads.unwrap_or(cores).max(1);
-    std::thread::scope(|scope| {
-        let workers: Vec<_> = (0..threads)
-            .map(|i| scope.spawn(move || worker(i)))
-            .collect();
-        workers.into_iter().try_for_each(|worker| {
-            let joined = worker.join();
-            joined.unwrap_or_else(|_| Err(io::Error::other("a thread has panicked")))
-        })
-    })?;
+    on_threads(options.threads, worker)?;
     bar.finish_and_clear();
     let tally = tally.into_inner().unwrap_or_default();
     Ok(tally.section(options.seed))

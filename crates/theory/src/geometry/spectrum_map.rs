@@ -1,10 +1,11 @@
+use super::Map;
 use super::matrix::{Matrix, dot, plus, product, sections, times, transpose};
 use etendue_field::Complex;
 use std::f64::consts::TAU;
 
 /// What a step does to spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
 ///
-/// A [`Map`](super::Map) has one, with factor |det A|, matrix Aᵀ and phase t. One that was printed
+/// A [`Map`] has one, with factor |det A|, matrix Aᵀ and phase t. One that was printed
 /// wrong need not be that of any map of rays, which is why it has a type of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumMap<const N: usize> {
@@ -24,6 +25,15 @@ impl<const N: usize> SpectrumMap<N> {
             factor: self.factor * next.factor,
             matrix: product(&self.matrix, &next.matrix),
             phase: plus(&next.phase, &times(&transpose(&next.matrix), &self.phase)),
+        }
+    }
+
+    /// What it does to rays, z' = A z + t: A is the transpose of its matrix, t its phase.
+    #[must_use]
+    pub fn rays(&self) -> Map<N> {
+        Map {
+            matrix: transpose(&self.matrix),
+            offset: self.phase,
         }
     }
 

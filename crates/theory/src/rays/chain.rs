@@ -23,17 +23,6 @@ pub struct AffineChain {
     pub foci: Vec<f64>,
 }
 
-impl AffineChain {
-    /// A of the rays, z' = A z + t: the transpose of the map's matrix.
-    #[must_use]
-    pub fn rays(&self) -> Map<4> {
-        Map {
-            matrix: crate::geometry::transpose(&self.map.matrix),
-            offset: self.map.phase,
-        }
-    }
-}
-
 /// The chain read off the geometry: distances, angles and curvatures where the central ray goes.
 /// `None` where it misses an element or is totally reflected, and on a lens itself, which has no
 /// side to count angles from.

@@ -13,8 +13,6 @@ use glam::{DQuat, DVec3};
 
 /// Metres, and whatever else parameters are in, that rounding leaves of zero.
 const NOTHING: f64 = 1e-9;
-/// Step of a derivative, as a share of the parameter's scale.
-const STEP: f64 = 1e-3;
 
 impl Model for Observed<System> {
     fn light(&self) -> &Light {
@@ -44,7 +42,8 @@ impl Model for Observed<System> {
         }
         let is_there = |parameter: &Parameter| {
             let value = self.value(*parameter);
-            value.is_some_and(|value| value.abs() > NOTHING) && self.moved(*parameter).is_some()
+            value.is_some_and(|value| value.abs() > NOTHING)
+                && Moved::nearby(self, *parameter).is_some()
         };
         all.retain(is_there);
         all
@@ -94,7 +93,8 @@ impl Model for Observed<System> {
     }
 
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
-        let moved = parameters.iter().map(|parameter| self.moved(*parameter));
+        let moved = parameters.iter();
+        let moved = moved.map(|parameter| Moved::nearby(self, *parameter));
         let moved: Option<Vec<_>> = moved.collect();
         predict(
             self,
@@ -110,11 +110,6 @@ impl Model for Observed<System> {
 }
 
 impl Observed<System> {
-    fn moved(&self, parameter: Parameter) -> Option<Moved<Self>> {
-        let step = STEP * parameter.scale(self.value(parameter)?);
-        Moved::new(self, parameter, step, |moved| moved)
-    }
-
     /// Gives a leg a new length: all that comes later moves.
     fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
         let (from, along) = self.system.leg(leg)?;

@@ -4,7 +4,7 @@ use super::System;
 use super::draw::{Draw, RayStrategy};
 use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
-use crate::geometry::{Map, SpectrumMap};
+use crate::geometry::SpectrumMap;
 use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
@@ -61,7 +61,7 @@ pub fn linear(
 ) -> Predicted {
     let system = &view.system;
     let masks = Masks::new(&system.layers);
-    let rays = rays(map);
+    let rays = map.rays();
     let lands = (rays.offset, rays.matrix);
     let field = linear_field(view, &masks, map);
     let way = best(&field, system, &lands, over).map(|strategy| (lands, strategy));
@@ -124,20 +124,12 @@ fn linear_field<'a>(
     map: &'a SpectrumMap<4>,
 ) -> impl RayField + 'a {
     let Observed { system, plane } = view;
-    let rays = rays(map);
+    let rays = map.rays();
     move |ray: [f64; 4]| {
         let [.., u, v] = ray;
         let radiance = flux(system, masks, ray) * (1.0 + u * u + v * v).powi(2);
         let z = rays.apply(ray);
         Some((z, map.factor * radiance * plane.factor(z)))
-    }
-}
-
-/// What a map of spectra does to rays.
-fn rays(map: &SpectrumMap<4>) -> Map<4> {
-    Map {
-        matrix: crate::geometry::transpose(&map.matrix),
-        offset: map.phase,
     }
 }
 
@@ -185,7 +177,7 @@ fn summed(
     };
     let by_rule = is_smooth.then(|| finder.slices(grid)).flatten();
     // A rule that meets no light is no proof that there is none.
-    let by_rule = by_rule.filter(|(slices, _)| slices.half.iter().any(|f| f.norm_sqr() > 0.0));
+    let by_rule = by_rule.filter(|(slices, _)| !slices.is_dark());
     let by_nets = |grid, budget| nets::sums(&drawn[..], (window, grid), picture.bins, budget);
     match by_rule {
         Some((slices, error)) => Predicted {

@@ -8,9 +8,6 @@ use crate::predicted::Predicted;
 use crate::work::Work;
 use etendue_field::{Complex, Light, Lobe, Reflectance};
 
-/// Step of a derivative, as a share of the parameter's scale.
-const STEP: f64 = 1e-3;
-
 impl Model for Observed<System> {
     fn light(&self) -> &Light {
         &self.system.light
@@ -78,12 +75,8 @@ impl Model for Observed<System> {
         let is_factor = |parameter: &Parameter| {
             *parameter == Parameter::Albedo && blend.is_none() && brdf.albedo > 0.0
         };
-        let moved = |parameter: &Parameter| {
-            let step = STEP * parameter.scale(self.value(*parameter)?);
-            Moved::new(self, *parameter, step, |moved| moved)
-        };
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
-        let moved: Option<Vec<_>> = others.map(moved).collect();
+        let moved: Option<Vec<_>> = others.map(|other| Moved::nearby(self, *other)).collect();
         let moved = moved.expect("parameters of the surface");
         let mut found = predict(self, chain(self).as_ref(), &moved, over, budget);
         if let Some(i) = parameters.iter().position(is_factor) {

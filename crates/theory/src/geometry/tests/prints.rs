@@ -11,14 +11,6 @@ use std::f64::consts::TAU;
 const THETA0: f64 = 0.6;
 const K: f64 = 0.5;
 
-/// The map of rays that moves content as a step on spectra does: A is the transpose of its matrix.
-fn rays<const N: usize>(step: &SpectrumMap<N>) -> Map<N> {
-    Map {
-        matrix: crate::geometry::matrix::transpose(&step.matrix),
-        offset: step.phase,
-    }
-}
-
 /// With the 2π that is missing in print.
 fn with_two_pi(mut step: SpectrumMap<2>) -> SpectrumMap<2> {
     step.phase = step.phase.map(|t| TAU * t);
@@ -46,7 +38,7 @@ fn corrected_is_the_map() {
     let map = Map::<4>::mirror_reflection(THETA0, SHAPE).spectrum_map();
     let got = print.mirror_reflection_4d(THETA0, SHAPE);
     assert!((got.factor - map.factor).abs() < 1e-15); // rounding
-    assert!(apart(&rays(&got), &rays(&map)) < 1e-15); // rounding
+    assert!(apart(&got.rays(), &map.rays()) < 1e-15); // rounding
 }
 
 #[test]
@@ -77,10 +69,10 @@ fn no_misprint_follows_the_rays() {
         ),
     ];
     let traced = |z| circle(K, THETA0, z);
-    let (error, order) = error_and_order(&rays(&mirror(&right[0], Corrected, &right[1])), traced);
+    let (error, order) = error_and_order(&mirror(&right[0], Corrected, &right[1]).rays(), traced);
     assert!(error < 0.01 && order > 0.9, "{error:e}, order {order}");
     for (what, chain) in chains {
-        let (error, order) = error_and_order(&rays(&chain), traced);
+        let (error, order) = error_and_order(&chain.rays(), traced);
         assert!(
             error > 0.1 && order.abs() < 0.1,
             "{what}: {error:e}, {order}"
@@ -89,7 +81,7 @@ fn no_misprint_follows_the_rays() {
     // Two phases of a mirror cancel; alone, an angle that is off does not get smaller with the
     // neighbourhood.
     let alone = mirror(&phase[0], Corrected, &right[1]);
-    let (error, order) = error_and_order(&rays(&alone), traced);
+    let (error, order) = error_and_order(&alone.rays(), traced);
     assert!(error > 100.0 && order < -0.9, "phase: {error:e}, {order}");
 }
 
@@ -104,12 +96,15 @@ fn eq_19_has_no_cosine() {
             .then(&print.back_4d(SHAPE, -THETA0))
             .then(&right.outgoing_4d(-THETA0));
         let traced = |z| reflected(Surface::graph(SHAPE), THETA0, z);
-        let (error, order) = error_and_order(&rays(&chain), traced);
+        let (error, order) = error_and_order(&chain.rays(), traced);
         assert!(error > 0.05 && order.abs() < 0.1, "{error:e}, {order}");
-        assert!(rays(&chain).symplectic_defect(1.0) > 0.05);
+        assert!(chain.rays().symplectic_defect(1.0) > 0.05);
     }
     let sphere = [[-0.5, 0.0], [0.0, -0.5]];
-    let map = rays(&Edition::Table.mirror_reflection_4d(0.7, sphere)).matrix;
+    let map = Edition::Table
+        .mirror_reflection_4d(0.7, sphere)
+        .rays()
+        .matrix;
     assert!((map[1][1] / map[3][1] + 1.0).abs() < 1e-15); // the sagittal focus R/2: rounding
 }
 

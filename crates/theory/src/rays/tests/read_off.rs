@@ -30,7 +30,7 @@ fn traced(system: &System, plane: &Plane) -> [[f64; 4]; 4] {
 fn off(system: &System, plane: &Plane, print: Edition) -> f64 {
     let first = chain(&view(system, plane), print).unwrap();
     let center = lands(system, plane, [0.0; 4]).unwrap();
-    let rays = first.rays();
+    let rays = first.map.rays();
     let offsets = rays.offset.iter().zip(center).map(|(a, b)| (a - b).abs());
     let traced = traced(system, plane);
     let entries = (0..16).map(|i| (rays.matrix[i / 4][i % 4] - traced[i / 4][i % 4]).abs());

@@ -13,6 +13,7 @@ fn covariance_of_a_gaussian_beam() {
     let got = got.covariance.unwrap();
     let map = chain(&view(&oblique, &plane), Edition::Corrected)
         .unwrap()
+        .map
         .rays();
     let variance = w * w / std::f64::consts::TAU;
     let mut before = [[0.0; 4]; 4];
