@@ -13,6 +13,8 @@ pub enum Stream {
     Flip,
     /// Backward ray `index`.
     Backward,
+    /// The life of photon `index` of emission that is not aimed, to judge photons of aimed emission.
+    Even,
 }
 
 /// Four random words for `block` of item `index` in a stream of `seed`.

@@ -1,3 +1,4 @@
+mod connected;
 mod reflected;
 
 use crate::bounce::at;
@@ -10,6 +11,8 @@ use crate::shares::Shares;
 use crate::sky::Sky;
 use crate::station::Station;
 use crate::tracer::rounding;
+use connected::connection;
+pub use connected::finds;
 use etendue_field::random::{self, Stream};
 use etendue_field::{
     Crossing, Frame, Ledger, Light, Orientation, Patch, PhotonSource, Reflectance, Shape, Side,
@@ -40,6 +43,8 @@ enum Source {
     Area { light: Light, shape: Shape },
     /// Light from far away.
     Sky(Sky),
+    /// A point, a projector or a beam, towards which rays are drawn.
+    Narrow(Light),
 }
 
 /// A leg of the path, looked along from its end.
@@ -78,10 +83,15 @@ enum How {
     Turned { lens: Frame, event: Specular },
 }
 
-/// A backward ray has no chance to hit a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no backward ray hits a point light or a beam: they have no radiance that one could find")]
-pub struct PointLight;
+/// A plane to which something turns the light of a point: no backward ray finds it.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error(
+    "no ray traced back from {plane} finds the light, a point or a beam behind a mirror, an \
+     interface or a lens: measure it by photons"
+)]
+pub struct LightNotFound {
+    plane: String,
+}
 
 /// How rays of one plane are drawn.
 #[derive(Clone, Copy, Debug)]
@@ -98,15 +108,21 @@ impl Backward {
     /// The backward tracer of a scene.
     ///
     /// # Errors
-    /// When the light is a point, a projector or a beam.
-    pub fn new(scene: &Scene) -> Result<Self, PointLight> {
+    /// When rays from a plane cannot find the light (see [`finds`]).
+    pub fn new(scene: &Scene) -> Result<Self, LightNotFound> {
+        if let Some(plane) = scene.planes.iter().find(|plane| !finds(scene, plane)) {
+            let plane = plane.name.clone();
+            return Err(LightNotFound { plane });
+        }
         let light = match &scene.light {
             Light::Area { shape, .. } => Source::Area {
                 light: scene.light.clone(),
                 shape: *shape,
             },
             Light::Environment { environment } => Source::Sky(Sky::new(environment)),
-            _ => return Err(PointLight),
+            Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => {
+                Source::Narrow(scene.light.clone())
+            }
         };
         let planes = scene.planes.iter().enumerate();
         let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &light));
@@ -133,6 +149,15 @@ impl Backward {
         let r = words(0);
         let [x, y] = [0, 1].map(|axis| looker.position[axis].quantile(r[axis]));
         let mut density = looker.position[0].density(x) * looker.position[1].density(y);
+        if let (Source::Narrow(light), 0) = (&self.light, looker.leg) {
+            let (u, v) = (0.0, 0.0);
+            let dark = Crossing {
+                ray: TwoPlane { x, y, u, v },
+                weight: 0.0,
+            };
+            let seen = self.look_at_light(looker, light, [x, y], density);
+            return seen.unwrap_or(dark);
+        }
         let by_window = |[u, v]: [f64; 2]| looker.slope[0].density(u) * looker.slope[1].density(v);
         let in_window = |r: [f64; 2]| [0, 1].map(|axis| looker.slope[axis].quantile(r[axis]));
         let [u, v] = match &self.light {
@@ -311,6 +336,13 @@ impl Backward {
                 let [x, y] = self::point(shape, [r[0], r[1]]);
                 (DVec3::new(x, y, 0.0), DVec3::Z, shape.area())
             }
+            (None, Source::Narrow(light)) => {
+                return connection(light, point).map_or(0.0, |(ray, irradiance)| {
+                    let cosine = -direction(&ray).normalize().dot(normal);
+                    let found = self.arriving(leg, &ray, point.z, block + 1, words);
+                    cosine.max(0.0) * irradiance * found
+                });
+            }
             (None, Source::Sky(sky)) => {
                 return sky.irradiance(point, normal, r, |ray, end| {
                     self.arriving(leg, ray, end, block + 1, words)
@@ -456,10 +488,11 @@ impl Leaves {
 }
 
 impl Source {
-    /// Radiance along a ray that nothing stands in the way of.
+    /// Radiance along a ray that nothing stands in the way of; of light without extent per du dv or
+    /// dx dy.
     fn radiance(&self, ray: &TwoPlane) -> f64 {
         match self {
-            Self::Area { light, .. } => radiance(light, ray),
+            Self::Area { light, .. } | Self::Narrow(light) => radiance(light, ray),
             Self::Sky(sky) => sky.radiance(ray),
         }
     }
@@ -475,6 +508,7 @@ impl Looker {
                 slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width()
             }
             Source::Sky(_) => true,
+            Source::Narrow(_) => false,
         };
         Self {
             leg: plane.leg,

@@ -1,6 +1,6 @@
 use crate::aim::FromSky;
 use crate::proposal::{Follower, Proposal};
-use crate::reach::{looks_at_surface, reach};
+use crate::reach::{looks_at_surface, outline, reach};
 use crate::sky;
 use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
@@ -16,6 +16,9 @@ pub struct Emitter {
     proposals: Vec<[Proposal; 2]>,
     /// Those of light from far away.
     sky: Option<FromSky>,
+    /// What light without extent is drawn evenly from, in place of all these: lowest and highest slope along
+    /// x and y, or position of a beam.
+    even: Option<[[f64; 2]; 2]>,
 }
 
 impl Emitter {
@@ -70,6 +73,19 @@ impl Emitter {
             light,
             proposals,
             sky,
+            even: None,
+        }
+    }
+
+    /// The emitter of a scene with light without extent that shines evenly at all of the first surface,
+    /// whatever planes look at.
+    ///
+    /// For any other light, and where the surface reaches back to the light, it is that of [`Self::new`].
+    #[must_use]
+    pub fn evenly(scene: &Scene) -> Self {
+        Self {
+            even: even(scene),
+            ..Self::new(scene)
         }
     }
 
@@ -81,6 +97,15 @@ impl Emitter {
             return sky.sample([words(0), words(1)]);
         }
         let r = words(0).map(random::unit);
+        if let Some(even) = &self.even {
+            let [a, b] = [0, 1].map(|i| even[i][0] + r[i] * (even[i][1] - even[i][0]));
+            let [x, y, u, v] = if self.light.is_distant() {
+                [a, b, 0.0, 0.0]
+            } else {
+                [0.0, 0.0, a, b]
+            };
+            return Some(TwoPlane { x, y, u, v });
+        }
         let [along_x, along_y] = match self.proposals.as_slice() {
             [] => return Some(self.plain(r)),
             [only] => only,
@@ -145,6 +170,9 @@ impl Emitter {
     pub fn density(&self, ray: &TwoPlane) -> f64 {
         if let Some(sky) = &self.sky {
             return sky.density(ray);
+        }
+        if let Some([[left, right], [low, high]]) = self.even {
+            return 1.0 / ((right - left) * (high - low));
         }
         if self.proposals.is_empty() {
             let secant_squared = ray.secant_squared();
@@ -211,6 +239,29 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
         Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
         Light::Environment { environment } => sky::radiance(environment, ray),
     }
+}
+
+/// The slopes of a point or a projector, or positions of a beam, with which light meets the first surface.
+fn even(scene: &Scene) -> Option<[[f64; 2]; 2]> {
+    let light = &scene.light;
+    let corners = outline(scene, scene.path.ends_at(0)?.object);
+    if light.has_extent() || corners.iter().any(|corner| corner.z <= 0.0) {
+        return None;
+    }
+    let bounds = |axis: usize| {
+        let at = |corner: &DVec3| corner[axis] / if light.is_distant() { 1.0 } else { corner.z };
+        let met = corners.iter().map(at);
+        let [low, high] = if light.is_distant() {
+            light.extent(axis)
+        } else {
+            [-1.0, 1.0].map(|side| side * light.steepest(axis))
+        };
+        [
+            met.clone().fold(f64::INFINITY, f64::min).max(low),
+            met.fold(f64::NEG_INFINITY, f64::max).min(high),
+        ]
+    };
+    Some([bounds(0), bounds(1)]).filter(|bounds| bounds.iter().all(|[low, high]| low < high))
 }
 
 /// The envelope of a picture, with an integral of 1.

@@ -24,6 +24,6 @@ mod sky;
 mod station;
 mod tracer;
 
-pub use backward::{Backward, PointLight};
+pub use backward::{Backward, LightNotFound, finds};
 pub use emit::Emitter;
 pub use tracer::Tracer;

@@ -52,6 +52,16 @@ impl Station {
         }
     }
 
+    /// A point of the plane by its coordinates, in the frame of the leg, with the normal there and dA over
+    /// dx dy; `None` where the surface has none.
+    pub(crate) fn point(&self, at: [f64; 2]) -> Option<(DVec3, DVec3, f64)> {
+        let Some(view) = &self.surface else {
+            return Some((DVec3::new(at[0], at[1], self.distance), DVec3::Z, 1.0));
+        };
+        let (point, frame) = view.point(at)?;
+        Some((point, frame.d, 1.0 / frame.d.dot(view.frame.d)))
+    }
+
     /// How it looks at the surface it is on; `None` across the leg.
     pub(crate) fn view(&self) -> Option<View> {
         self.surface
@@ -105,16 +115,21 @@ impl View {
             .turned_to(normal.dot(self.frame.d).signum() * normal)
     }
 
-    /// The inverse of [`Self::look`].
-    fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
-        let foot = self.frame.to_world(DVec3::new(seen.x, seen.y, 0.0));
-        let (point, frame) = match &self.patch {
-            None => (foot, self.frame),
+    /// The point of the surface at (x, y), and the frame of its normal.
+    fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, Frame)> {
+        let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
+        match &self.patch {
+            None => Some((foot, self.frame)),
             Some(patch) => {
                 let point = nearest(patch, foot, self.frame.d, foot)?;
-                (point, self.local(patch, point))
+                Some((point, self.local(patch, point)))
             }
-        };
+        }
+    }
+
+    /// The inverse of [`Self::look`].
+    fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
+        let (point, frame) = self.point([seen.x, seen.y])?;
         let away = self.away(&frame, [seen.u, seen.v])?;
         let ray = ray_through(point, if self.arriving { -away } else { away })?;
         Some((ray, 1.0 / frame.d.dot(self.frame.d)))

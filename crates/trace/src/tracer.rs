@@ -24,6 +24,7 @@ pub struct Tracer {
     planes: usize,
     shares: Shares,
     seed: u64,
+    stream: Stream,
 }
 
 /// A leg of the path, as photons see it.
@@ -81,13 +82,28 @@ impl Tracer {
             planes: scene.planes.len(),
             shares: Shares::new(&scene.run),
             seed: scene.run.seed,
+            stream: Stream::Photon,
+        }
+    }
+
+    /// A second tracer of photons, for light without extent that no backward ray finds: it shares no random number and no
+    /// aim of the emission with that of [`Self::new`].
+    ///
+    /// It sends light evenly at all of the first surface. How photons are followed, and how scattered light is aimed, is the
+    /// same.
+    #[must_use]
+    pub fn evenly(scene: &Scene) -> Self {
+        Self {
+            emitter: Emitter::evenly(scene),
+            stream: Stream::Even,
+            ..Self::new(scene)
         }
     }
 
     /// The life of one photon.
     #[inline]
     fn photon(&self, index: u64, crossings: &mut [Vec<Crossing>], ledger: &mut Ledger) {
-        let words = |block| random::words(self.seed, Stream::Photon, index, block);
+        let words = |block| random::words(self.seed, self.stream, index, block);
         let Some(ray) = self.emitter.sample(words) else {
             return;
         };

@@ -1,9 +1,9 @@
 //! Light that a surface with a BRDF reflects, from one direction it may have come from.
 
-use super::{Backward, Source};
+use super::{Backward, Source, connection};
 use crate::brdf;
 use crate::emit::point;
-use crate::obstacles::ray_through;
+use crate::obstacles::{direction, ray_through};
 use etendue_field::{Brdf, Frame};
 use glam::DVec3;
 
@@ -34,12 +34,21 @@ impl Backward {
         } = at;
         let this = &self.legs[leg];
         let sees_light = this.leaves.is_none();
+        if let (Source::Narrow(light), true) = (&self.light, sees_light) {
+            return connection(light, at.point).map_or(0.0, |(ray, irradiance)| {
+                let from = frame.vector_to_local(-direction(&ray).normalize());
+                let carried = brdf::value(brdf, from, *to) * from.z.max(0.0);
+                let found = self.arriving(leg, &ray, at.point.z, block + 1, words);
+                carried * irradiance * found
+            });
+        }
         let from = if sees_light && r[2] < 0.5 {
             let towards = match &self.light {
                 Source::Area { shape, .. } => {
                     let [x, y] = point(shape, [r[0], r[1]]);
                     DVec3::new(x, y, 0.0) - at.point
                 }
+                Source::Narrow(_) => return 0.0,
                 Source::Sky(sky) => -sky.sample([r[0], r[1], 2.0 * r[2], r[3]]),
             };
             frame.vector_to_local(towards).normalize()
@@ -69,6 +78,7 @@ impl Source {
         let shape = match self {
             Self::Sky(sky) => return sky.density(-towards),
             Self::Area { shape, .. } => shape,
+            Self::Narrow(_) => return 0.0,
         };
         let way = -point.z / towards.z;
         let on = point + way * towards;

@@ -1,0 +1,75 @@
+//! Light without extent, which no ray finds by chance: points, projectors and beams.
+//!
+//! From a point the way to such a light is known, so it is looked for there and nowhere else.
+
+use super::{Backward, Looker};
+use etendue_field::{Crossing, Light, TwoPlane, VirtualPlane};
+use etendue_scene::{Event, Object, Scene};
+use glam::DVec3;
+
+/// Whether rays that are traced back from a plane find the light: light without extent only where
+/// nothing turns it before the plane, or before the first surface that scatters it.
+#[must_use]
+pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
+    let first = scene.path.legs.get(1).and_then(|leg| leg.leaves.as_ref());
+    let turns = first.is_some_and(|hit| match hit.object {
+        Object::Surface(_) => false,
+        Object::Mesh(i) => scene.meshes[i].smooth.is_some(),
+        Object::Patch(i) => matches!(scene.patches[i].event, Event::Specular(_)),
+    });
+    scene.light.has_extent() || plane.leg == 0 || !turns
+}
+
+/// The ray, given at the light, that goes from a light without extent to a point in the frame at the
+/// light; and the irradiance there across it, over what the ray carries per du dv or dx dy.
+pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
+    if point.z <= 0.0 {
+        return None;
+    }
+    let [x, y] = [point.x, point.y];
+    if light.is_distant() {
+        let (u, v) = (0.0, 0.0);
+        return Some((TwoPlane { x, y, u, v }, 1.0));
+    }
+    let [u, v] = [x / point.z, y / point.z];
+    let (x, y) = (0.0, 0.0);
+    let ray = TwoPlane { x, y, u, v };
+    // dω = du dv / (1 + u² + v²)^(3/2), and r² = z² (1 + u² + v²); what the ray carries has one of
+    // these roots already.
+    let secant_squared = ray.secant_squared();
+    let spread = point.z * point.z * secant_squared * secant_squared.sqrt();
+    Some((ray, 1.0 / spread))
+}
+
+impl Backward {
+    /// What a plane on the first leg sees of a light without extent: from a point drawn in its
+    /// window, where the light comes from is known.
+    pub(super) fn look_at_light(
+        &self,
+        looker: &Looker,
+        light: &Light,
+        [x, y]: [f64; 2],
+        density: f64,
+    ) -> Option<Crossing> {
+        let station = &looker.station;
+        let (point, normal, area) = station.point([x, y])?;
+        let (at_light, _) = connection(light, point)?;
+        let along = DVec3::new(at_light.u, at_light.v, 1.0);
+        // dA over du dv of the light, or over its dx dy.
+        let cosine = along.dot(normal).abs();
+        let per_ray = if light.is_distant() {
+            cosine
+        } else {
+            cosine / (point.z * point.z)
+        };
+        let nothing = |_| [0.0; 4];
+        let found = if station.view().is_some() {
+            self.arriving(0, &at_light, point.z, 1, &nothing)
+        } else {
+            self.incident(0, &at_light, point.z, station.side, 1, &nothing)
+        };
+        let weight = found * per_ray * area / density;
+        let (ray, weight) = station.look(&at_light, weight)?;
+        Some(Crossing { ray, weight })
+    }
+}
