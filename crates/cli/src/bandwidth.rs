@@ -37,7 +37,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     if args.measure {
         for scene in &scenes {
             let theories = Applicability::of_planes(scene);
-            method::check(scene, &theories, args.photons.method)?;
+            method::check(scene, args.photons.method)?;
             limits::check_work(scene, &theories)?;
         }
     }

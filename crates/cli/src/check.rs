@@ -1,8 +1,9 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
+use crate::method::Method;
 use crate::output::OutputFile;
 use crate::{deliver, limits, load, pictures, say, warnings};
-use etendue_compare::{Applicability, Memory, seconds};
+use etendue_compare::{Applicability, Class, Memory, seconds};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
 use etendue_theory::rays::AffineChain;
@@ -105,6 +106,9 @@ fn description(scene: &Scene, theories: &[Applicability]) -> String {
                 .iter()
                 .map(|step| format!("  {step}")),
         );
+        if applicability.class() == Class::Reference {
+            lines.push(format!("  {}", Method::Photons.judge(scene, plane).step()));
+        }
         let assumptions = applicability.theory.assumptions().iter();
         lines.extend(assumptions.map(|assumption| format!("  assumes  {assumption}")));
         if let Some(chain) = applicability.affine_chain(scene) {

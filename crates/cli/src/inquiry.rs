@@ -1,15 +1,14 @@
-//! What the other tracer says of planes that fail.
+//! What another tracer says of planes that fail.
 
 use crate::conclude::Case;
 use crate::failure::Failure;
-use crate::measure::measured;
+use crate::judge::Judge;
 use crate::method::Method;
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare};
-use etendue_scene::Scene;
 use etendue_spectrum::estimate::TooFewBatches;
 use serde::Serialize;
 
-/// Who of three agrees on a plane that fails: photons, backward rays and the prediction.
+/// Who of three agrees on a plane that fails: photons, another tracer and the prediction.
 #[derive(Debug, Serialize)]
 pub(crate) struct Inquiry {
     pub(crate) plane: String,
@@ -30,27 +29,13 @@ pub(crate) fn inquire(
     let failed: Vec<usize> = (0..planes.len())
         .filter(|i| disagrees_with_theory(&planes[*i].report))
         .collect();
-    // No backward ray finds a light without extent.
-    if failed.is_empty() || !case.scene.light.has_extent() {
-        return Ok(Vec::new());
-    }
-    let scene = Scene {
-        planes: failed
-            .iter()
-            .map(|i| case.scene.planes[*i].clone())
-            .collect(),
-        ..case.scene.clone()
-    };
-    let other = measured(&scene, case.method.other(), 0..scene.run.batches, quiet)?;
+    let judges = Judge::all(&case.scene, &failed, case.method, quiet)?;
     let test = Test::of(&case.scene);
-    let judged = |(at, i): (usize, usize)| {
-        let reference = Prediction::reference(&scene, at, &case.theories[i], &other, at)?;
-        let tracers = compare(&case.measurement, i, &reference, &test)?.report;
-        let theory = compare(&other, at, &case.predictions[i], &test)?.report;
-        Ok::<_, TooFewBatches>(Inquiry::new(case.method, &tracers, &theory))
+    let judged = |i: usize| {
+        let (judge, at) = Judge::of(&judges, i)?;
+        Some(Inquiry::of(case, i, (judge, at), &test).map_err(Failure::cannot_run))
     };
-    let all = failed.into_iter().enumerate().map(judged);
-    all.collect::<Result<_, _>>().map_err(Failure::cannot_run)
+    failed.into_iter().filter_map(judged).collect()
 }
 
 /// Whether a plane fails against a prediction, and not for its chain of affine maps alone.
@@ -59,11 +44,22 @@ fn disagrees_with_theory(report: &PlaneReport) -> bool {
 }
 
 impl Inquiry {
-    fn new(method: Method, tracers: &PlaneReport, theory: &PlaneReport) -> Self {
-        let [this, other] = match method {
-            Method::Photons => ["photons", "backward rays"],
-            Method::Backward => ["backward rays", "photons"],
-        };
+    /// Compares a judge of plane `i`, which has it at number `at`, with photons and with theory.
+    fn of(
+        case: &Case,
+        i: usize,
+        (judge, at): (&Judge, usize),
+        test: &Test,
+    ) -> Result<Self, TooFewBatches> {
+        let measured = &judge.measurement;
+        let reference = Prediction::reference(&case.scene, i, &case.theories[i], measured, at)?;
+        let tracers = compare(&case.measurement, i, &reference, test)?.report;
+        let theory = compare(measured, at, &case.predictions[i], test)?.report;
+        Ok(Self::new([case.method, judge.method], &tracers, &theory))
+    }
+
+    fn new(methods: [Method; 2], tracers: &PlaneReport, theory: &PlaneReport) -> Self {
+        let [this, other] = methods.map(Method::words);
         let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
                 format!("{this} and {other} agree, the prediction does not: a finding about theory")
@@ -94,8 +90,9 @@ impl Inquiry {
 #[allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 mod tests {
     use super::*;
+    use crate::measure::measured;
     use etendue_compare::Applicability;
-    use etendue_scene::{SceneFile, resolve};
+    use etendue_scene::{Scene, SceneFile, resolve};
 
     fn scene(radiance: f64) -> Scene {
         let text = format!(

@@ -17,6 +17,7 @@ mod field;
 mod files;
 mod inquiry;
 mod interrupt;
+mod judge;
 mod limits;
 mod load;
 mod lock;

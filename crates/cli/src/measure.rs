@@ -16,7 +16,7 @@ use std::ops::Range;
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
-    method::check(&scene, &theories, args.photons.method)?;
+    method::check(&scene, args.photons.method)?;
     let all = 0..scene.run.batches;
     let batches = args.batches.clone().unwrap_or(all.clone());
     if batches.end > all.end {

@@ -1,6 +1,6 @@
 use crate::args::PredictArgs;
 use crate::failure::Failure;
-use crate::measure::measured;
+use crate::judge::Judge;
 use crate::method::Method;
 use crate::results::PREDICTION;
 use crate::stored::Index;
@@ -13,7 +13,7 @@ use etendue_scene::Scene;
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
-    method::check(&scene, &theories, args.photons.method)?;
+    method::check(&scene, args.photons.method)?;
     let (results, content) = on_threads(&args.threads, || {
         warnings::tell(&scene, args.quiet);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
@@ -41,7 +41,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Predicts all planes of a scene for a measurement by `method`; where theory has no word, the other method's
+/// Predicts all planes of a scene for a measurement by `method`; where theory has no word, another method's
 /// measurement takes its place.
 pub(crate) fn predicted(
     scene: &Scene,
@@ -49,28 +49,24 @@ pub(crate) fn predicted(
     method: Method,
     quiet: bool,
 ) -> Result<Vec<Prediction>, Failure> {
-    let mut referred = scene.clone();
-    let mut classes = theories.iter().map(Applicability::class);
-    referred
-        .planes
-        .retain(|_| classes.next() == Some(Class::Reference));
-    let reference = if referred.planes.is_empty() {
-        None
-    } else {
-        let all = 0..scene.run.batches;
-        Some(measured(&referred, method.other(), all, quiet)?)
-    };
+    let classes = theories.iter().map(Applicability::class).enumerate();
+    let referred = classes.filter(|(_, class)| *class == Class::Reference);
+    let referred: Vec<usize> = referred.map(|(i, _)| i).collect();
+    let judges = Judge::all(scene, &referred, method, quiet)?;
     let bar = progress::steps("predicting", scene.planes.len(), "planes", quiet);
-    let mut at = 0..;
     let planes = scene.planes.iter().zip(theories).enumerate();
     let predictions = planes.map(|(i, (plane, theory))| {
         bar.set_message(plane.name.clone());
-        let prediction = match (theory.class(), &reference) {
-            (Class::Reference, Some(reference)) => {
-                let at = at.next().unwrap_or_default();
-                Prediction::reference(scene, i, theory, reference, at).map_err(Failure::cannot_run)
+        let prediction = match Judge::of(&judges, i) {
+            Some((judge, at)) => {
+                let reference = Prediction::reference(scene, i, theory, &judge.measurement, at);
+                let reference = reference.map(|mut prediction| {
+                    prediction.steps.push(judge.method.step());
+                    prediction
+                });
+                reference.map_err(Failure::cannot_run)
             }
-            _ => Ok(Prediction::new(scene, plane, theory)),
+            None => Ok(Prediction::new(scene, plane, theory)),
         };
         bar.inc(1);
         prediction

@@ -16,7 +16,7 @@ use std::path::Path;
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
-    method::check(&scene, &theories, args.photons.method)?;
+    method::check(&scene, args.photons.method)?;
     let folder = args
         .out
         .clone()

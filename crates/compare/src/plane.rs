@@ -178,7 +178,8 @@ impl Compared<'_> {
                 "too few photons in the window, {inside} in {batches} batches, or too few rays of \
                  the prediction: one batch holds none{needs}"
             ))
-        } else if agreement.is_blurred(self.prediction, agrees) {
+        } else if agreement.is_blurred(self.prediction, agrees) || !agrees && self.is_excused(test)
+        {
             let error = percent(self.prediction.systematic_error().unwrap_or_default());
             Some(format!(
                 "the quadrature of the prediction may be off by {error}, noise is {}; more photons \
@@ -199,6 +200,16 @@ impl Compared<'_> {
         } else {
             None
         }
+    }
+
+    /// Whether what a quadrature may be off by is all that photons disagree with, such as where they
+    /// have next to no noise.
+    fn is_excused(&self, test: &Test) -> bool {
+        self.prediction.systematic_error().is_some_and(|error| {
+            let forgiving = self.residuals.forgiving(self.predicted, error);
+            let p = forgiving.p_value(test.seed);
+            p.is_none_or(|p| p >= test.level)
+        })
     }
 
     /// Photons that would decide; `None` where that is not known, or more of them do not help.

@@ -83,6 +83,23 @@ impl Residuals {
         Self { grid, parts }
     }
 
+    /// The residuals from the prediction nearest to the measurement of those that are off by no more
+    /// than `error`|F| at each frequency.
+    pub(crate) fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
+        let mut moved = self.mean();
+        moved.zip_mut_with(&prediction.half, |mean, f| {
+            let distance = mean.norm();
+            if distance > 0.0 {
+                *mean *= (error * f.norm() / distance).min(1.0);
+            }
+        });
+        let parts = self.parts.iter().map(|part| part - &moved);
+        Self {
+            grid: self.grid,
+            parts: parts.collect(),
+        }
+    }
+
     /// The number of residuals R.
     #[must_use]
     pub fn count(&self) -> usize {

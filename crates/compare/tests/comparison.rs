@@ -75,16 +75,21 @@ fn noise(seed: u64, index: u64) -> Complex {
 
 /// Batches around `truth` with noise of the given size on each.
 fn measurement(truth: &Slices, size: f64, seed: u64) -> Measurement {
+    noisy(truth, seed, |_| size)
+}
+
+/// A measurement with noise of this size in each cell.
+fn noisy(truth: &Slices, seed: u64, size: impl Fn(usize) -> f64) -> Measurement {
     let plane = plane();
     let mut measurement = Measurement::new(vec![plane.clone()]);
     for index in 0..BATCHES {
         let mut slices = truth.clone();
         for (cell, value) in slices.half.iter_mut().enumerate() {
-            *value += noise(seed, u64::from(index) << 32 | cell as u64) * size;
+            *value += noise(seed, u64::from(index) << 32 | cell as u64) * size(cell);
         }
         let grid = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
         let values = ndarray::Array2::zeros((grid.bins, grid.bins));
-        let inside = if size > 0.0 { 100 } else { 0 };
+        let inside = if size(1) > 0.0 { 100 } else { 0 };
         let batch = PlaneBatch {
             tally: PlaneTally {
                 crossed: 100,
@@ -359,6 +364,27 @@ fn a_coarse_quadrature_decides_nothing() {
         assert_eq!(report.verdict, verdict, "{truth} {share}: {report:?}");
         assert_eq!(report.photons_needed, None);
     }
+}
+
+/// The total of photons that all weigh the same has no noise: a quadrature is never as exact, and its
+/// error there is no disagreement.
+#[test]
+fn a_quadrature_is_excused_where_photons_have_no_noise() {
+    let [truth, _] = spectrum(1.0);
+    let nu = truth.grid.nu.half;
+    // The first azimuth and frequency have the first cells.
+    let measurement = noisy(&truth, 2, |cell| if cell == nu { 1e-9 } else { 0.02 });
+    let compared = |off: f64, quadrature_error| {
+        let mut expected = prediction(1.0);
+        expected.quadrature_error = quadrature_error;
+        expected.slices.half[[0, 0, nu]] *= 1.0 + off;
+        compare(&measurement, 0, &expected, &TEST).unwrap().report
+    };
+    let stated = compared(1e-4, None).noise_limit.map(|noise| 0.1 * noise);
+    assert!(stated.unwrap() > 2e-4, "{stated:?}");
+    assert_eq!(compared(1e-4, None).verdict, Verdict::Fail);
+    assert_eq!(compared(1e-4, stated).verdict, Verdict::Undecided);
+    assert_eq!(compared(0.01, stated).verdict, Verdict::Fail);
 }
 
 /// Where noise drowns the spectrum nothing is decided, however p falls.

@@ -2,6 +2,7 @@ use crate::aim::FromSky;
 use crate::proposal::{Follower, Proposal};
 use crate::reach::{looks_at_surface, outline, reach};
 use crate::sky;
+use crate::station::Station;
 use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
@@ -38,12 +39,15 @@ impl Emitter {
         let [[left, right], [low, high]] = extent;
         let corners = [[left, low], [right, low], [left, high], [right, high]];
         let corners = corners.map(|[x, y]| DVec3::new(x, y, 0.0));
-        let proposal = |plane: &VirtualPlane| {
+        let proposal = |(i, plane): (usize, &VirtualPlane)| {
             let w = &plane.window;
             let is_window = plane.leg == 0 && !looks_at_surface(plane);
             let half = (!is_window)
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
+            // A plane on what ends the leg looks at some slopes, a plane beyond at any.
+            let slopes = Station::new(scene, i, plane).slopes(w);
+            let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {
                 if is_window {
                     let (space, slope) = (Follower::new(space), Follower::new(slope));
@@ -52,7 +56,9 @@ impl Emitter {
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
                 // The slopes of all rays from the light to there.
                 let [low, high] = extent[axis].map(f64::abs);
-                let slope = Follower::cosine((half + low.max(high)) / length);
+                let steepest = (half + low.max(high)) / length;
+                let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
+                let slope = Follower::cosine(steepest.min(seen));
                 let space = Follower::new(&Profile::Box(half));
                 Proposal::new(length, extent[axis], space, slope)
             };
@@ -65,7 +71,8 @@ impl Emitter {
         // Pictures have their own proposal.
         let proposals = match scene.run.emission {
             Emission::Aimed if !light.is_picture() && sky.is_none() => {
-                scene.planes.iter().filter_map(proposal).collect()
+                let planes = scene.planes.iter().enumerate();
+                planes.filter_map(proposal).collect()
             }
             Emission::Aimed | Emission::Plain => Vec::new(),
         };

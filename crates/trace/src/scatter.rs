@@ -146,9 +146,12 @@ impl Scatterer {
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
-                let slope = Follower::cosine(ANY_SLOPE);
-                Some(Way::Window(half.map(|half| {
-                    Aim::new(this.length, &Profile::Box(half), slope)
+                // A plane on what ends the leg looks at some slopes, a plane beyond at any.
+                let slopes = station.slopes(w).filter(|_| plane.leg == leg);
+                let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(Follower::cosine);
+                Some(Way::Window([0, 1].map(|axis| {
+                    let space = Profile::Box(half[axis]);
+                    Aim::new(this.length, &space, slopes[axis])
                 })))
             }
         };

@@ -1,5 +1,5 @@
 use crate::obstacles::{direction, ray_through, start};
-use etendue_field::{Frame, Orientation, Patch, Side, TwoPlane, VirtualPlane};
+use etendue_field::{Frame, Orientation, Patch, Side, TwoPlane, VirtualPlane, Window};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
 
@@ -27,6 +27,13 @@ pub(crate) struct View {
     /// The surface itself, in the frame of the leg, where rays are counted from its local normals.
     patch: Option<Patch>,
 }
+
+/// Angles of a window at which its slopes are looked up, along each side.
+const SIDE: u32 = 9;
+/// Between these, slopes may be larger by less than this.
+const MARGIN: f64 = 1.1;
+/// Light that comes at larger angles to the central ray, in radians, is not aimed by its slopes.
+const WIDE: f64 = 0.8;
 
 /// The point of a line on a patch that is nearest to another point.
 fn nearest(patch: &Patch, start: DVec3, along: DVec3, to: DVec3) -> Option<DVec3> {
@@ -95,6 +102,12 @@ impl Station {
             side: plane.side,
             surface,
         }
+    }
+
+    /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the window of a plane; `None` across
+    /// the leg, and where they have no bound worth aiming at.
+    pub(crate) fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
+        self.surface.as_ref()?.slopes(window)
     }
 
     /// A ray of the leg as the plane has it, with what it adds there; `None` when it does not meet the surface.
@@ -179,6 +192,26 @@ impl View {
         let (up, across) = (turned * v).sin_cos();
         (across > 0.0 && cos > 0.0)
             .then(|| frame.vector_to_world(DVec3::new(across * sin, up, across * cos)))
+    }
+
+    fn slopes(&self, window: &Window) -> Option<[f64; 2]> {
+        let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
+        // The normals of the patch turn by less than this within the window.
+        let turns = self.patch.map_or(0.0, |patch| {
+            patch.curvature.map(f64::abs).iter().sum::<f64>() * x.hypot(y)
+        });
+        let mut widest = [0.0_f64; 2];
+        for i in 0..SIDE * SIDE {
+            let [s, t] =
+                [i % SIDE, i / SIDE].map(|n| 2.0 * f64::from(n) / f64::from(SIDE - 1) - 1.0);
+            let away = self.away(&self.frame, [s * u, t * v])?;
+            let along = if self.arriving { -away } else { away };
+            for (widest, across) in widest.iter_mut().zip([along.x, along.y]) {
+                *widest = widest.max(across.atan2(along.z).abs());
+            }
+        }
+        let widest = widest.map(|angle| MARGIN * angle + 2.0 * turns);
+        (widest[0].max(widest[1]) < WIDE).then(|| widest.map(f64::tan))
     }
 
     /// Whether it looks at light that arrives.

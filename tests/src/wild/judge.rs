@@ -3,9 +3,9 @@
 use super::run::{Ending, PlaneSummary, Runner};
 use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
 use etendue_field::PhotonSource;
-use etendue_scene::{LightFile, SceneFile, resolve};
+use etendue_scene::{SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
-use etendue_trace::{Backward, Tracer};
+use etendue_trace::{Backward, Tracer, finds};
 use std::io;
 use std::path::Path;
 
@@ -89,7 +89,7 @@ pub(super) fn judge(runner: &Runner, file: &SceneFile) -> io::Result<Judged> {
         .collect();
     judged.count(runner, file, &planes, false)?;
     let open = |p: &PlaneSummary| p.is_undecided() && !p.is_reference();
-    if planes.iter().any(open) && has_backward(file) {
+    if planes.iter().any(open) {
         match runner.run(file, FIRST, true)? {
             Ending::Done(planes) => judged.count(runner, file, &planes, true)?,
             other => judged.troubles.extend(trouble(&other)),
@@ -106,14 +106,6 @@ fn trouble(ending: &Ending) -> Option<(Trouble, String)> {
         Ending::Killed(how) => Some((Trouble::Killed, how.clone())),
         Ending::Done(_) | Ending::Refused(_) => None,
     }
-}
-
-/// Whether rays can be traced back to the light.
-fn has_backward(file: &SceneFile) -> bool {
-    !matches!(
-        file.light,
-        LightFile::Point { .. } | LightFile::Projector { .. } | LightFile::Beam { .. }
-    )
 }
 
 impl Judged {
@@ -180,14 +172,6 @@ fn who(
     plane: &PlaneSummary,
     backward: bool,
 ) -> io::Result<(Culprit, String)> {
-    if !has_backward(file) {
-        let culprit = if plane.in_window < HANDFUL {
-            Culprit::Handful
-        } else {
-            Culprit::Unknown
-        };
-        return Ok((culprit, "no backward rays in this light".into()));
-    }
     let (folder, copy, name) = (runner.folder.clone(), file.clone(), plane.name.clone());
     let tracers = std::thread::spawn(move || of_tracers(&copy, &folder, &name));
     let Some(tracers) = tracers.join().unwrap_or(None) else {
@@ -228,7 +212,7 @@ fn who(
     ))
 }
 
-/// Photons and backward rays of one plane.
+/// Photons of one plane, and backward rays or what takes their place.
 struct Tracers {
     verdict: Verdict,
     p: Option<f64>,
@@ -236,19 +220,24 @@ struct Tracers {
     inside: [u64; 2],
 }
 
-/// Photons compared with backward rays.
+/// Photons compared with backward rays, or with photons sent evenly where these find no light.
 fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
-    let scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
-    let i = scene.planes.iter().position(|plane| plane.name == name)?;
+    let mut scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
+    scene.planes.retain(|plane| plane.name == name);
+    let plane = scene.planes.first()?;
     let measured = |source: &dyn PhotonSource| -> Measurement {
         measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
     };
     let photons = measured(&Tracer::new(&scene));
-    let rays = measured(&Backward::new(&scene).ok()?);
-    let inside = [&photons, &rays].map(|measured| measured.tally(i).inside);
-    let theory = Applicability::new(&scene, &scene.planes[i]);
-    let reference = Prediction::reference(&scene, i, &theory, &rays, i).ok()?;
-    let compared = compare(&photons, i, &reference, &Test::of(&scene)).ok()?;
+    let rays = if finds(&scene, plane) {
+        measured(&Backward::new(&scene).ok()?)
+    } else {
+        measured(&Tracer::evenly(&scene))
+    };
+    let inside = [&photons, &rays].map(|measured| measured.tally(0).inside);
+    let theory = Applicability::new(&scene, plane);
+    let reference = Prediction::reference(&scene, 0, &theory, &rays, 0).ok()?;
+    let compared = compare(&photons, 0, &reference, &Test::of(&scene)).ok()?;
     Some(Tracers {
         verdict: compared.report.verdict,
         p: compared.report.p_value,

@@ -51,8 +51,6 @@ pub(super) struct PlaneSummary {
     pub(super) verdict: String,
     /// Of the prediction as it is, and of the chain of affine maps where there is one.
     pub(super) p: [Option<f64>; 2],
-    /// Rays in its window.
-    pub(super) in_window: u64,
     /// Relative error, noise limit, error of the prediction.
     pub(super) errors: [Option<f64>; 3],
 }
@@ -66,7 +64,6 @@ impl PlaneSummary {
             class: text("class"),
             verdict: text("verdict"),
             p: [number("p_value"), plane["first_order"]["p_value"].as_f64()],
-            in_window: plane["in_window"].as_u64().unwrap_or(0),
             errors: ["relative_error", "noise_limit", "quadrature_error"].map(number),
         }
     }

@@ -6,8 +6,8 @@ use super::surfaces::{passed, surface};
 use super::{blockers, light};
 use etendue_field::{Frame, Orientation, Quantity};
 use etendue_scene::{
-    CentralRay, Emission, EventFile, LightFile, PathFile, Place, PlaneFile, RunFile, SceneFile,
-    SurfaceFile, resolve,
+    CentralRay, Emission, EventFile, PathFile, Place, PlaneFile, RunFile, SceneFile, SurfaceFile,
+    resolve,
 };
 use glam::DVec3;
 use std::io;
@@ -78,17 +78,7 @@ fn empty(draw: &mut Draw, photons: u64) -> io::Result<SceneFile> {
 
 /// Puts one to three surfaces on the way; returns it.
 fn surfaces(draw: &mut Draw, file: &mut SceneFile) -> io::Result<CentralRay> {
-    // Light of a picture that no theory follows has no backward rays either: most of it goes one
-    // way that theory knows.
-    let picture = matches!(
-        file.light,
-        LightFile::Point { .. } | LightFile::Projector { .. } | LightFile::Beam { .. }
-    );
-    let count = if picture && !draw.one_in(4) {
-        1
-    } else {
-        *draw.pick(&[1, 1, 1, 1, 2, 2, 3])
-    };
+    let count = *draw.pick(&[1, 1, 1, 1, 2, 2, 3]);
     let mut leg = Frame::IDENTITY;
     let mut path = CentralRay {
         frame: draw.frame,

@@ -4,12 +4,21 @@ use etendue_field::{EnvironmentMap, Frame, Light, Patch, Shape};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Rays followed for a plane.
-pub(super) const RAYS: u32 = 6000;
+/// Rays with light in the window that are followed for a plane.
+const LIT: usize = 3000;
+/// Rays tried for these.
+const TRIED: u32 = 60_000;
 
 /// Light of less than this share of the strongest that is possible in the window changes no
 /// verdict.
 pub(super) const DARK: f64 = 1e-5;
+
+/// What rays meet that carry light into the window: `check` says it of ray number `index`, or that it
+/// carries none.
+pub(super) fn met<M>(check: impl Fn(u32) -> Option<Option<M>>) -> Vec<M> {
+    let lit = (0..TRIED).filter_map(check).take(LIT);
+    lit.flatten().collect()
+}
 
 /// A straight leg of a ray, in the frame at the light.
 #[derive(Clone, Copy, Debug)]

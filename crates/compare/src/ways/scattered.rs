@@ -2,13 +2,14 @@
 //! looks.
 
 use super::coordinates::{coordinates, direction};
-use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
+use super::rays::{DARK, Ray, lattice, met, point_on, ray_to};
 use super::surroundings::{Meets, Surroundings, in_words};
-use etendue_field::{Profile, VirtualPlane};
+use etendue_field::{Orientation, Profile, VirtualPlane, Window};
 use etendue_scene::{Hit, Scene};
 use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::System;
+use glam::DVec3;
 
 /// What light for a plane meets before or behind a surface with a BRDF that theory does not know
 /// of, in words.
@@ -28,8 +29,7 @@ pub(crate) fn unforeseen_by_scattering(
         hit,
         around: Surroundings::new(scene, plane),
     };
-    let rays = (0..RAYS).filter_map(|index| scatterer.check(index));
-    in_words(rays.collect(), scene)
+    in_words(met(|index| scatterer.check(index)), scene)
 }
 
 struct Scatterer<'a> {
@@ -42,18 +42,14 @@ struct Scatterer<'a> {
 }
 
 impl Scatterer<'_> {
-    /// What light number `index` meets on its way that theory does not know of, if it comes into
-    /// the window then.
-    fn check(&self, index: u32) -> Option<Meets> {
+    /// What light number `index` meets on its way that theory does not know of, if anything; `None`
+    /// if it does not come into the window.
+    fn check(&self, index: u32) -> Option<Option<Meets>> {
         let r = lattice(index);
-        let patch = &self.system.patch;
-        let point = point_on(patch, self.hit.point, index, [r[0], r[1]])?;
-        let normal = patch.normal(point);
+        let leaving = self.leaving(index, [r[0], r[1], r[2], r[3]])?;
+        let Ray { point, direction } = leaving;
+        let normal = self.system.patch.normal(point);
         let window = &self.plane.window;
-        let within = |profile: &Profile, r: f64| (2.0 * r - 1.0) * profile.half_width();
-        let angles = [within(&window.u, r[2]), within(&window.v, r[3])];
-        let direction = direction(self.at, normal, angles);
-        let leaving = Ray { point, direction };
         let z = coordinates(self.at, &leaving, Some([point, normal]))?;
         let (arriving, emitted) = ray_to(&self.system.light, point, index, [r[4], r[5]])?;
         let faces = arriving.direction.dot(normal) < 0.0 && direction.dot(normal) > 0.0;
@@ -69,7 +65,39 @@ impl Scatterer<'_> {
             .or_else(|| self.beyond(&leaving));
         let clear = meets.is_none();
         let itself = Meets::Itself(self.hit.object);
-        (clear != self.looks_at(&leaving)).then(|| meets.unwrap_or(itself))
+        Some((clear != self.looks_at(&leaving)).then(|| meets.unwrap_or(itself)))
+    }
+
+    /// A ray that leaves the surface: from a point of it, or, every other one across the leg, as it
+    /// comes through the window.
+    fn leaving(&self, index: u32, r: [f64; 4]) -> Option<Ray> {
+        let Window { x, y, u, v } = &self.plane.window;
+        let within = |profile: &Profile, r: f64| (2.0 * r - 1.0) * profile.half_width();
+        let slopes = [within(u, r[2]), within(v, r[3])];
+        let patch = &self.system.patch;
+        if self.at.orientation == Orientation::Orthogonal && index % 4 < 2 {
+            let foot = DVec3::new(within(x, r[0]), within(y, r[1]), 0.0);
+            let seen = Ray {
+                point: self.at.frame.to_world(foot),
+                direction: direction(self.at, self.at.frame.d, slopes),
+            };
+            let back = self.back(&seen);
+            let point = back.at(back.theory_hit(patch)?);
+            return Some(Ray { point, ..seen });
+        }
+        let point = point_on(patch, self.hit.point, index, [r[0], r[1]])?;
+        let direction = direction(self.at, patch.normal(point), slopes);
+        Some(Ray { point, direction })
+    }
+
+    /// A ray back along another, from far beyond the surface.
+    fn back(&self, ray: &Ray) -> Ray {
+        let patch = &self.system.patch;
+        let far = 4.0 * patch.aperture + (ray.point - patch.frame.origin).length();
+        Ray {
+            point: ray.at(far),
+            direction: -ray.direction,
+        }
     }
 
     /// What stands between the light and a point of the surface.
@@ -105,13 +133,9 @@ impl Scatterer<'_> {
     /// Whether it is from this point that theory has the ray leave: it looks from far out back
     /// along it.
     fn looks_at(&self, leaving: &Ray) -> bool {
-        let patch = &self.system.patch;
-        let far = 4.0 * patch.aperture + (leaving.point - patch.frame.origin).length();
-        let back = Ray {
-            point: leaving.at(far),
-            direction: -leaving.direction,
-        };
-        let found = back.theory_hit(patch);
+        let back = self.back(leaving);
+        let far = (back.point - leaving.point).length();
+        let found = back.theory_hit(&self.system.patch);
         found.is_some_and(|t| (t - far).abs() < 1e-6 * far)
     }
 }

@@ -1,7 +1,7 @@
 //! Rays through specular surfaces: what photons meet, and where theory looks.
 
 use super::coordinates::coordinates;
-use super::rays::{DARK, RAYS, Ray, lattice, point_on, ray_to};
+use super::rays::{DARK, Ray, lattice, met, point_on, ray_to};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
@@ -23,8 +23,7 @@ pub(crate) fn unforeseen_by_rays(
         at: &view.plane,
         around: Surroundings::new(scene, plane),
     };
-    let rays = (0..RAYS).filter_map(|index| follower.check(index));
-    in_words(rays.collect(), scene)
+    in_words(met(|index| follower.check(index)), scene)
 }
 
 struct Follower<'a> {
@@ -42,9 +41,9 @@ type Arrival = Option<(TwoPlane, f64)>;
 const SAME: f64 = 1e-6;
 
 impl Follower<'_> {
-    /// What ray number `index` meets on its way that theory does not know of, if light comes into
-    /// the window then.
-    fn check(&self, index: u32) -> Option<Meets> {
+    /// What ray number `index` meets on its way that theory does not know of, if anything; `None` if
+    /// it brings no light into the window.
+    fn check(&self, index: u32) -> Option<Option<Meets>> {
         let r = lattice(index);
         let hit = self.scene.path.ends_at(0)?;
         let patch = match (self.system.elements.first(), hit.object) {
@@ -56,7 +55,6 @@ impl Follower<'_> {
         let target = point_on(&patch, hit.point, index, [r[0], r[1]])?;
         let (ray, emitted) = ray_to(&self.system.light, target, index, [r[2], r[3]])?;
         let (arrival, meets) = self.photon(ray);
-        let meets = meets?;
         let lit = |arrival: Arrival| {
             arrival.is_some_and(|(z, share)| emitted * share * self.plane.window.value(&z) > DARK)
         };

@@ -151,7 +151,7 @@ impl Resolver<'_> {
                 Some(OnPath {
                     distance: match stop.ends {
                         Some(leg) => path.legs[leg + 1].start,
-                        None => stop.extent[0],
+                        None => self.beyond_light(of, place, stop.extent[0]),
                     },
                     side: Side::Before,
                     leg: stop.ends.unwrap_or(0),
@@ -169,7 +169,7 @@ impl Resolver<'_> {
                     distance: if leg > 0 {
                         path.legs[leg].start
                     } else {
-                        stop.extent[1]
+                        self.beyond_light(of, place, stop.extent[1])
                     },
                     side: Side::After,
                     leg,
@@ -209,6 +209,18 @@ impl Resolver<'_> {
             self.faults.add_on_path(of, show(place), allowed);
         }
         Some(stop)
+    }
+
+    /// A distance of a place beside the path, which must not lie behind the light.
+    fn beyond_light(&mut self, of: &str, place: &Place, distance: f64) -> f64 {
+        if distance < 0.0 {
+            let allowed = format!(
+                "a place on the path, which begins at the light; this one lies {} m behind it",
+                tidy(-distance)
+            );
+            self.faults.add_on_path(of, show(place), allowed);
+        }
+        distance
     }
 
     /// On the leg that holds this distance along the path.

@@ -1,0 +1,56 @@
+//! Measurements that judge another one, plane by plane.
+
+use crate::failure::Failure;
+use crate::measure::measured;
+use crate::method::Method;
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+
+/// A measurement of some planes of a scene by one method.
+#[derive(Debug)]
+pub(crate) struct Judge {
+    pub(crate) method: Method,
+    pub(crate) measurement: Measurement,
+    /// The numbers of its planes in the scene, ascending.
+    planes: Vec<usize>,
+}
+
+impl Judge {
+    /// Measures some planes of a scene by the methods that judge `method` there, a measurement for each
+    /// method.
+    pub(crate) fn all(
+        scene: &Scene,
+        planes: &[usize],
+        method: Method,
+        quiet: bool,
+    ) -> Result<Vec<Self>, Failure> {
+        let methods = [Method::Photons, Method::Backward, Method::Even];
+        let judged = methods.map(|judge| {
+            let is_judge = |i: &usize| method.judge(scene, &scene.planes[*i]) == judge;
+            (judge, planes.iter().copied().filter(is_judge).collect())
+        });
+        let judged = judged.into_iter();
+        let judged = judged.filter(|(_, planes): &(_, Vec<usize>)| !planes.is_empty());
+        let measured = |(method, planes): (Method, Vec<usize>)| {
+            let scene = Scene {
+                planes: planes.iter().map(|i| scene.planes[*i].clone()).collect(),
+                ..scene.clone()
+            };
+            let measurement = measured(&scene, method, 0..scene.run.batches, quiet)?;
+            Ok(Self {
+                method,
+                measurement,
+                planes,
+            })
+        };
+        judged.map(measured).collect()
+    }
+
+    /// The judge of a plane of the scene, and the plane's number in its measurement.
+    pub(crate) fn of(all: &[Self], plane: usize) -> Option<(&Self, usize)> {
+        all.iter().find_map(|judge| {
+            let at = judge.planes.binary_search(&plane).ok()?;
+            Some((judge, at))
+        })
+    }
+}
