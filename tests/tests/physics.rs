@@ -1,8 +1,12 @@
 //! Scenes that must pass and scenes that must not, end to end: from scene text to verdict.
 
-use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare};
+use etendue_compare::{
+    Applicability, Class, FirstOrderChain, Prediction, Test, Theory, Verdict, compare,
+};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::measure;
+use etendue_theory::geometry::SpectrumMap;
+use etendue_theory::rays;
 use etendue_trace::Tracer;
 
 const FIG9B: &str = include_str!("../../scenes/fig9b.ron");
@@ -166,4 +170,82 @@ fn the_edge_of_the_receiver_is_left_to_the_reference() {
 fn a_black_receiver_is_dark() {
     let black = scene(&[("albedo: 0.5", "albedo: 0")]);
     assert_eq!(verdicts(&black, &black), [Verdict::Pass; 5]);
+}
+
+/// Every scene file of the repository whose planes lie behind smooth surfaces.
+fn scene_files() -> Vec<Scene> {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
+    let read = |folder: &str| {
+        let entries = std::fs::read_dir(folder).expect("the folder of scenes");
+        let paths = entries.map(|entry| entry.expect("an entry").path());
+        let scenes = paths.filter(|path| path.extension().is_some_and(|e| e == "ron"));
+        let mut scenes: Vec<_> = scenes.collect();
+        scenes.sort();
+        scenes
+    };
+    let paths = ["", "/table1", "/wild"].map(|sub| read(&format!("{folder}{sub}")));
+    let resolved = paths.concat().into_iter().filter_map(|path| {
+        let text = std::fs::read_to_string(&path).expect("a scene file");
+        let mut file = SceneFile::parse(&text).expect("a scene file");
+        file.as_printed = false;
+        let folder = path.parent().expect("a folder");
+        resolve("scene", file, folder, u64::MAX).ok()
+    });
+    resolved.collect()
+}
+
+/// A first-order chain in which a step is left out or doubled fails, wherever that
+/// changes it.
+#[test]
+fn every_step_of_a_chain_counts() {
+    let (mut steps, mut changed) = (0, 0);
+    for scene in scene_files() {
+        for (plane, theory) in scene.planes.iter().zip(Applicability::of_planes(&scene)) {
+            let Theory::Specular(view) = &theory.theory else {
+                continue;
+            };
+            let Some(chain) = theory.affine_chain(&scene) else {
+                continue;
+            };
+            let verdict = |maps: &[SpectrumMap<4>]| {
+                let (first, others) = maps.split_first().expect("travel at least");
+                let map = others.iter().fold(*first, |map, next| map.then(next));
+                let defect = rays::defect(view, &map, &plane.window).expect("light arrives");
+                let numbers = |map: &SpectrumMap<4>| {
+                    let factor = map.factor / chain.map.factor;
+                    [map.matrix.as_flattened(), &map.phase, &[factor]].concat()
+                };
+                let pairs = numbers(&map).into_iter().zip(numbers(&chain.map));
+                let same = pairs.into_iter().all(|(a, b)| (a - b).abs() < 1e-9); // rounding
+                let tried = FirstOrderChain {
+                    error: 0.0,
+                    defect,
+                    matrix: map.rays().matrix,
+                    covariance: [None; 2],
+                    foci: Vec::new(),
+                    as_printed: false,
+                };
+                (tried.verdict(), same)
+            };
+            let maps = &chain.maps;
+            assert_eq!(verdict(maps), (Verdict::Pass, true), "{}", scene.name);
+            for i in 0..maps.len() {
+                let without = [&maps[..i], &maps[i + 1..]].concat();
+                let doubled = [&maps[..=i], &maps[i..]].concat();
+                for wrong in [without, doubled] {
+                    if wrong.is_empty() {
+                        continue;
+                    }
+                    steps += 1;
+                    let (verdict, same) = verdict(&wrong);
+                    if !same {
+                        changed += 1;
+                        assert_eq!(verdict, Verdict::Fail, "{}, step {i}", plane.name);
+                    }
+                }
+            }
+        }
+    }
+    println!("{steps} steps left out or doubled, {changed} of them change the chain: all fail");
+    assert!(changed > 300, "{changed} of {steps}");
 }

@@ -63,8 +63,7 @@ pub struct FirstOrderReport {
     pub p_value: Option<f64>,
     /// The verdict on the exact prediction by rays, beside which the chain stands.
     pub exact: Verdict,
-    /// The verdict on the chain: it fails if a map is wrong, and is undecided where its error is so
-    /// large that it says nothing.
+    /// The verdict on the chain.
     pub verdict: Verdict,
 }
 
@@ -75,6 +74,21 @@ const DEFECT: f64 = 1e-5;
 const LARGEST: f64 = 0.5;
 /// The one-sided 95 % quantile of the normal distribution.
 const NINETY_FIVE: f64 = 1.645;
+
+impl FirstOrderChain {
+    /// It fails if a map is wrong, and is undecided where its error is so large that it says
+    /// nothing.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        if self.defect > DEFECT {
+            Verdict::Fail
+        } else if self.error > LARGEST {
+            Verdict::Undecided
+        } else {
+            Verdict::Pass
+        }
+    }
+}
 
 impl FirstOrder {
     pub(crate) fn new(
@@ -165,13 +179,7 @@ impl FirstOrder {
             resolvable: root(NINETY_FIVE * exact.squared_error()),
             p_value: residuals.p_value(seed),
             exact: verdict,
-            verdict: if self.chain.defect > DEFECT {
-                Verdict::Fail
-            } else if self.chain.error > LARGEST {
-                Verdict::Undecided
-            } else {
-                Verdict::Pass
-            },
+            verdict: self.chain.verdict(),
         }
     }
 }

@@ -14,6 +14,8 @@ pub struct AffineChain {
     /// What it does to spectra of radiance. Beside the |det A| of its maps its factor has (n₂/n₁)²
     /// of each refraction, by which radiance grows.
     pub map: SpectrumMap<4>,
+    /// The maps of which it is made, in the order of light.
+    pub maps: Vec<SpectrumMap<4>>,
     /// The steps in words, in the order of light; what is within the plane's surface or the light
     /// is not among them.
     pub steps: Vec<String>,
@@ -35,7 +37,7 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
     let hits = system.hits()?;
     let mut walk = Walk {
         print,
-        map: identity(),
+        maps: Vec::new(),
         steps: Vec::new(),
         frame: Frame::IDENTITY,
         at: "light".into(),
@@ -80,7 +82,8 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
         }
     }
     Some(AffineChain {
-        map: walk.map,
+        map: walk.map(),
+        maps: walk.maps,
         steps: walk.steps,
         foci,
     })
@@ -90,7 +93,7 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
 #[derive(Clone)]
 struct Walk {
     print: Edition,
-    map: SpectrumMap<4>,
+    maps: Vec<SpectrumMap<4>>,
     steps: Vec<String>,
     /// Of the leg, at its start, or where light is.
     frame: Frame,
@@ -99,8 +102,13 @@ struct Walk {
 }
 
 impl Walk {
+    fn map(&self) -> SpectrumMap<4> {
+        let all = self.maps.iter();
+        all.fold(identity(), |map, next| map.then(next))
+    }
+
     fn step(&mut self, map: &SpectrumMap<4>, words: String) {
-        self.map = self.map.then(map);
+        self.maps.push(*map);
         self.steps.push(words);
     }
 
@@ -279,7 +287,8 @@ impl Walk {
 
     /// d with det(P + d Q) = 0, x = P x₀ and u = Q x₀ being a parallel bundle.
     fn foci(&self) -> Vec<f64> {
-        let at = |i: usize, j: usize| self.map.matrix[j][i];
+        let map = self.map();
+        let at = |i: usize, j: usize| map.matrix[j][i];
         let p = [[at(0, 0), at(0, 1)], [at(1, 0), at(1, 1)]];
         let q = [[at(2, 0), at(2, 1)], [at(3, 0), at(3, 1)]];
         let det = |m: [[f64; 2]; 2]| m[0][0] * m[1][1] - m[0][1] * m[1][0];
