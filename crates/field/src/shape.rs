@@ -77,7 +77,12 @@ pub fn triangle_distance(corners: &[DVec3; 3], ray: &TwoPlane) -> Option<f64> {
     let inside = weights.iter().all(|w| *w >= 0.0) || weights.iter().all(|w| *w <= 0.0);
     let sum: f64 = weights.iter().sum();
     let depth: f64 = weights.iter().zip(corners).map(|(w, p)| w * p.z).sum();
-    (inside && sum != 0.0).then(|| depth / sum)
+    (inside && sum != 0.0).then(|| {
+        // Rounding must not put a hit before the triangle begins, where a plane may be.
+        let [a, b, c] = corners.map(|p| p.z);
+        let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+        (depth / sum).max(low).min(high)
+    })
 }
 
 /// The unit normal at a point of a triangle, interpolated between those at its corners.

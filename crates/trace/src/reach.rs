@@ -111,15 +111,18 @@ fn seen(scene: &Scene, plane: &VirtualPlane) -> Vec<DVec3> {
         Object::Patch(_) | Object::Mesh(_) => return all,
     };
     let surface = &scene.surfaces[i];
-    // Edges of the tube of rays that cross the window meet the surface at the corners of what is seen of it.
-    let tube = tube(plane, scene.path.along(plane), leg);
-    let side = leg.frame.d.dot(surface.frame.d).signum();
-    let met = tube
-        .iter()
-        .map(|[from, to]| meets(*from, *to, &surface.frame, side));
-    let Some(met) = met.collect::<Option<Vec<DVec3>>>() else {
-        return all;
+    let met: Option<Vec<DVec3>> = if plane.orientation == Orientation::Orthogonal {
+        // Edges of the tube of rays that cross the window meet the surface at the corners of what is seen of it.
+        let tube = tube(plane, scene.path.along(plane), leg);
+        let side = leg.frame.d.dot(surface.frame.d).signum();
+        let met = tube.iter();
+        met.map(|[from, to]| meets(*from, *to, &surface.frame, side))
+            .collect()
+    } else {
+        let corners = corners(scene, plane).into_iter();
+        Some(corners.map(|p| surface.frame.to_local(p)).collect())
     };
+    let Some(met) = met else { return all };
     let mut points = Vec::new();
     let extent = |axis: usize| {
         let along = met.iter().map(|p| p[axis]);

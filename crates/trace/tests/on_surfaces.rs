@@ -23,6 +23,11 @@ fn agree(surface: &str, planes: &[&str]) {
 }
 
 fn agree_along(visits: &str, surface: &str, planes: &[&str]) {
+    let window = "(x: Hann(0.15), y: Box(0.1), u: Hann(0.3), v: Hann(0.2))";
+    agree_in(window, visits, surface, planes);
+}
+
+fn agree_in(window: &str, visits: &str, surface: &str, planes: &[&str]) {
     let planes: Vec<String> = planes.iter().enumerate().map(named).collect();
     let text = format!(
         r#"(
@@ -30,7 +35,7 @@ fn agree_along(visits: &str, surface: &str, planes: &[&str]) {
             surfaces: [{surface}],
             path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [{visits}]),
             planes: [{}],
-            window: (x: Hann(0.15), y: Box(0.1), u: Hann(0.3), v: Hann(0.2)),
+            window: {window},
             frequencies: (rho: (max: 4), nu: (max: 4)),
             run: (photons: 1_000_000),
         )"#,
@@ -45,7 +50,7 @@ fn agree_along(visits: &str, surface: &str, planes: &[&str]) {
         assert!(a[0][1] < 0.02 * b[0][0], "{surface}, {plane}: {a:?}");
         for (a, b) in a.iter().zip(b) {
             let z = (a[0] - b[0]) / a[1].hypot(b[1]);
-            // Some 40 tests: 4.5 standard errors are passed in one run of 4,000.
+            // Some 70 tests: 4.5 standard errors are passed in one run of 2,000.
             assert!(z.abs() < 4.5, "{surface}, {plane}: {a:?} and {b:?}");
         }
     }
@@ -85,7 +90,30 @@ fn arriving_beside() {
 fn leaving() {
     let wall =
         format!(r#"Rectangle(name: "s", center: (0, 0, 1), size: (3, 3), facing: {FACING})"#);
-    agree(&wall, &[r#"at: After("s"), orientation: Tangent"#]);
+    let after = r#"at: After("s"), orientation: Tangent"#;
+    agree(&wall, &[after]);
+    // The wall's axes are not those of the leg.
+    agree_in(
+        "(x: Hann(0.4), y: Box(0.05), u: Hann(0.3))",
+        "\"s\"",
+        &wall,
+        &[after],
+    );
+}
+
+/// Narrow slopes, too, are found from all of a wide light.
+#[test]
+fn narrow_slopes() {
+    let window = "(x: Hann(0.1), u: Box(0.001))";
+    for event in ["Mirror", "Reflects(brdf: (lobe: Lambertian))"] {
+        for orientation in ["Tangent", "LocalNormals"] {
+            let plane = format!(r#"at: Before("s"), orientation: {orientation}"#);
+            let flat = smooth(event).replace("Sphere(0.2)", "Plane");
+            agree_in(window, "\"s\"", &flat, &[&plane]);
+            let wide = "(x: Hann(0.1), u: Box(0.05))";
+            agree_in(wide, "\"s\"", &smooth(event), &[&plane]);
+        }
+    }
 }
 
 /// Light for a plane on the second surface comes from all of the first.
