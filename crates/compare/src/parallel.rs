@@ -1,6 +1,5 @@
 //! What keeps a plane from the theory of light between parallel planes.
 
-use crate::system::coarseness;
 use etendue_field::{Frame, Light, Orientation, Profile, Quantity, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
@@ -15,16 +14,6 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
             let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
                 .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
             let is_flat = matches!(object, Object::Surface(_));
-            if let Object::Mesh(i) = object {
-                let hit = leg
-                    .leaves
-                    .as_ref()
-                    .and_then(|hit| coarseness(scene, &scene.meshes[*i], hit));
-                found.extend(hit.map(|uneven| {
-                    let (name, percent) = (scene.name_of(*object), 100.0 * uneven);
-                    format!("{name}, whose curvature changes by {percent:.0} % between triangles")
-                }));
-            }
             if outgoing > ROUNDING || incidence > ROUNDING || !is_flat {
                 let name = scene.name_of(*object);
                 found.push(format!(
