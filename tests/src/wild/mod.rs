@@ -17,6 +17,9 @@ mod straight;
 mod surfaces;
 mod tally;
 
+pub(crate) use judge::HANDFUL;
+pub(crate) use scene::scene;
+
 use crate::hostile::{child, progress};
 use crate::report::Section;
 use judge::{Judged, judge};
@@ -128,7 +131,7 @@ fn one(
     };
     fs::create_dir_all(&runner.folder)?;
     fs::create_dir_all(&runner.scratch)?;
-    let Ok(file) = scene::scene(options.seed, number, options.photons, &runner.folder) else {
+    let Ok(file) = scene(options.seed, number, options.photons, &runner.folder) else {
         return Ok(None);
     };
     if options.draw {
