@@ -112,6 +112,20 @@ fn a_mirror_that_is_met_out_of_turn() {
     });
 }
 
+/// No ray is followed past a surface that the path does not visit.
+#[test]
+fn a_surface_that_the_path_does_not_visit() {
+    let surfaces = format!(
+        r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.3, event: Mirror),
+           Rectangle(name: "beside", center: (3, 0, 0.5), size: (1, 1))"#
+    );
+    let at = r#"After("mirror")"#;
+    let found = of(&scene(LIGHT, "", &surfaces, r#""mirror""#, at, 0.1));
+    let reason = "visibility of beside, which the path does not visit";
+    assert_eq!(found.reasons, [reason]);
+}
+
 /// What leaves no way open is dark, whatever the light and the surface, and keeps its class.
 #[test]
 fn darkness_has_a_reason() {

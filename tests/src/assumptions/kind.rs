@@ -39,7 +39,7 @@ const PHRASES: [(&str, &str); 17] = [
 
 const ACROSS: &str = "the plane is across the path";
 
-/// That some light comes: the other thing a check decides. Theory is right without it.
+/// What a check decides besides: where it does not hold, theory is right, and takes longer.
 pub(super) const DARK: &str = "some light comes";
 
 /// What a reason is of whose words are new, and a check that panics.

@@ -125,19 +125,20 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> En
     }
 }
 
-/// Whether a theory has words for what the central ray meets. Between parallel planes these are
-/// Lambertian surfaces in the light of a lamp.
+/// Whether a theory has words for what the central ray meets. Between parallel planes that is
+/// one Lambertian surface in the light of a lamp.
 fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
     let Theory::Parallel(_) = theory else {
         return true;
     };
     let mut hits = scene.path.legs[..=plane.leg].iter();
     let lamp = !scene.light.is_picture() && !matches!(scene.light, Light::Environment { .. });
-    lamp && hits.all(|leg| match leg.leaves.map(|hit| hit.object) {
-        Some(Object::Patch(_)) => false,
-        Some(Object::Mesh(i)) => scene.meshes[i].albedo.is_some(),
-        Some(Object::Surface(_)) | None => true,
-    })
+    lamp && plane.leg < 2
+        && hits.all(|leg| match leg.leaves.map(|hit| hit.object) {
+            Some(Object::Patch(_)) => false,
+            Some(Object::Mesh(i)) => scene.meshes[i].albedo.is_some(),
+            Some(Object::Surface(_)) | None => true,
+        })
 }
 
 /// What a theory says of a plane, without derivatives.
