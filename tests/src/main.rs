@@ -44,7 +44,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- wild         100 random scenes, for etendue beside it
-  cargo run --release -p etendue-validation -- assumptions  a quarter of an hour; what checks are good for
+  cargo run --release -p etendue-validation -- assumptions  minutes; checks of theory switched off, on random scenes
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use etendue_compare::{Applicability, Class, Prediction};
+use etendue_field::Profile;
 use etendue_scene::{Scene, SceneFile, resolve};
 
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
@@ -187,6 +188,22 @@ fn darkness_has_a_reason() {
                 assert_eq!(of(&built(blockers)).dark, None, "{surface} {light}");
             }
         }
+    }
+}
+
+/// A light of kilometres shines past a half-plane that would cover the middle of it.
+#[test]
+fn a_huge_light_is_not_taken_for_dark() {
+    let light = "Rectangle(center: (0, 0, 0), size: (5_000, 5_000))";
+    let edge = half_planes("HalfPlane(axis: X, edge: 1_500, opaque: Below)");
+    let floor = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (10_000, 10_000))"#;
+    for half in [1_000.0, 2_000.0] {
+        let at = r#"Before("floor")"#;
+        let mut scene = scene(light, &edge, floor, r#""floor""#, at, half);
+        scene.planes[0].window.u = Profile::Hann(0.3);
+        let found = of(&scene);
+        assert!(found.reasons.is_empty(), "{:?}", found.reasons);
+        assert_eq!(found.dark.is_some(), half < 1_500.0, "{half}");
     }
 }
 
