@@ -25,7 +25,7 @@ pub(super) struct Trial {
 /// What comes of a prediction that is not checked.
 #[derive(Debug)]
 pub(super) enum Ending {
-    /// Photons were held against it, so many in the window of the first seed.
+    /// Photons were held against it, so many of them in the window.
     Judged { verdict: Verdict, inside: u64 },
     /// No theory has words for what the central ray meets.
     Speechless,
