@@ -127,6 +127,25 @@ fn a_surface_that_the_path_does_not_visit() {
     assert_eq!(found.reasons, [reason]);
 }
 
+/// A wall that leans away from the first leg is not in the way, but the box around it is; one that
+/// leans over it is.
+#[test]
+fn a_wall_that_leans_away() {
+    for (facing, reasons) in [
+        ("(-1, 0, -1)", vec![]),
+        ("(-1, 0, 1)", vec!["visibility of wall".to_owned()]),
+    ] {
+        let surfaces = format!(
+            r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                    form: Plane, aperture: 0.3, event: Mirror),
+               Rectangle(name: "wall", center: (1.05, 0, 1), size: (3.2, 3.2), facing: {facing})"#
+        );
+        let visits = r#""mirror", "wall""#;
+        let found = of(&scene(LIGHT, "", &surfaces, visits, "Distance(0.5)", 0.3));
+        assert_eq!(found.reasons, reasons, "{facing}");
+    }
+}
+
 /// What leaves no way open is dark, whatever the light and the surface, and keeps its class.
 #[test]
 fn darkness_has_a_reason() {
