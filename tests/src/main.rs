@@ -5,7 +5,9 @@
 //! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
 //! `second` holds what theory and the tracers share against a second implementation.
 //! `hostile` and `kills` attack the program `etendue` from outside; `wild` hunts for scenes on which it is wrong.
+//! `assumptions` switches off what is checked of a scene before theory is believed.
 
+mod assumptions;
 mod bandwidth;
 mod calibration;
 mod faults;
@@ -42,6 +44,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- wild         100 random scenes, for etendue beside it
+  cargo run --release -p etendue-validation -- assumptions  minutes; checks of theory switched off, on random scenes
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
     #[command(subcommand)]
@@ -107,6 +110,8 @@ enum Command {
     Kills(kills::Options),
     /// Random scenes of the whole vocabulary; exit code 1 after a panic, a hang or a wrong verdict.
     Wild(wild::Options),
+    /// Random scenes that break one assumption of theory, predicted all the same; exit code 1 if photons never reject one.
+    Assumptions(assumptions::Options),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
     /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
@@ -137,6 +142,9 @@ fn main() -> ExitCode {
     }
     if let Command::Wild(options) = &command {
         return printed(wild::wild(options));
+    }
+    if let Command::Assumptions(options) = &command {
+        return printed(assumptions::assumptions(options));
     }
     if matches!(command, Command::Second) {
         return printed(second::second());
@@ -281,7 +289,8 @@ fn sections(command: &Command) -> Vec<Section> {
         | Command::Second
         | Command::Hostile(_)
         | Command::Kills(_)
-        | Command::Wild(_) => Vec::new(),
+        | Command::Wild(_)
+        | Command::Assumptions(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);

@@ -246,6 +246,9 @@ fn every_step_of_a_chain_counts() {
             }
         }
     }
-    println!("{steps} steps left out or doubled, {changed} of them change the chain: all fail");
-    assert!(changed > 300, "{changed} of {steps}");
+    // The others are identities, such as a turn by nothing.
+    assert!(
+        changed > 1000 && changed > steps * 9 / 10,
+        "{changed} of {steps}"
+    );
 }

@@ -374,7 +374,18 @@ fn irradiance_after_a_floor_is_decided() {
 /// A wall that light visits later stands beside its first leg.
 #[test]
 fn a_wall_in_the_way_is_decided() {
-    let scene = scene("wall_in_the_way");
+    decided_against_chain("wall_in_the_way");
+}
+
+/// The chain after a floor has the coordinates of the path, not those of the wall it leads to.
+#[test]
+fn a_plane_on_the_next_wall_is_decided() {
+    decided_against_chain("on_the_next_wall");
+}
+
+/// The other tracer decides the only plane, and the chain between parallel planes is wrong.
+fn decided_against_chain(name: &str) {
+    let scene = scene(name);
     holds_in(&scene, &[("p", Class::Reference)]);
     decided_by_reference(&scene, 0, |scene, reference| {
         let plane = &scene.planes[0];

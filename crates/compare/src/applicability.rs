@@ -4,7 +4,7 @@ use crate::chain::chain;
 use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
-use crate::system::{print, scattered, system};
+use crate::system::{coarse_meshes, print, scattered, system, unvisited};
 use crate::ways::{unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -35,6 +35,32 @@ pub enum Theory {
 }
 
 impl Theory {
+    /// The theory that has words for what the central ray meets on its way to a plane, whether or
+    /// not what it takes for granted is so.
+    #[must_use]
+    pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
+        if let Some(view) = followed(scene, plane) {
+            Self::Specular(Box::new(view))
+        } else if let Some(view) = scattered(scene, plane) {
+            Self::Scattering(Box::new(view))
+        } else {
+            Self::Parallel(chain(scene, plane))
+        }
+    }
+
+    /// What of a scene is not as the theory takes it to be, in words.
+    fn obstacles(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+        let mut found = match self {
+            Self::Specular(view) => unforeseen_by_rays(scene, plane, view),
+            Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),
+            Self::Parallel(_) => return obstacles_to_theory(scene, plane),
+            Self::None => return Vec::new(),
+        };
+        found.extend(unvisited(scene));
+        found.extend(coarse_meshes(scene, plane));
+        found
+    }
+
     /// What the theory takes for granted of a scene, each checked where it applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
@@ -85,16 +111,8 @@ impl Applicability {
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let (theory, reasons) = if let Some(view) = Self::followed(scene, plane) {
-            let reasons = unforeseen_by_rays(scene, plane, &view);
-            (Theory::Specular(Box::new(view)), reasons)
-        } else if let Some(view) = scattered(scene, plane) {
-            let reasons = unforeseen_by_scattering(scene, plane, &view);
-            (Theory::Scattering(Box::new(view)), reasons)
-        } else {
-            let reasons = obstacles_to_theory(scene, plane);
-            (Theory::Parallel(chain(scene, plane)), reasons)
-        };
+        let theory = Theory::of(scene, plane);
+        let reasons = theory.obstacles(scene, plane);
         if !reasons.is_empty() {
             return Self {
                 theory: Theory::None,
@@ -109,16 +127,6 @@ impl Applicability {
             reasons,
             dark,
         }
-    }
-
-    /// The system of specular surfaces that leads to a plane behind one or on one, or of light that
-    /// goes through pictures.
-    fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::System>> {
-        let across = plane.orientation == Orientation::Orthogonal;
-        if !scene.light.is_picture() && plane.leg == 0 && across {
-            return None;
-        }
-        system(scene, plane)
     }
 
     /// The kind of prediction.
@@ -153,10 +161,11 @@ impl Applicability {
                 let chain = scattering::chain(view);
                 Some(chain.map(|chain| chain.steps).unwrap_or_default())
             }
-            Theory::Parallel(_) | Theory::None => None,
+            Theory::None => Some(Vec::new()),
+            Theory::Parallel(_) => None,
         };
         if let Some(maps) = maps {
-            // What shines is described alike; how it travels, by the maps.
+            // What shines is described alike; how it travels, by the maps, or by none.
             steps.truncate(1);
             steps.extend(maps);
         }
@@ -168,4 +177,14 @@ impl Applicability {
         ));
         steps
     }
+}
+
+/// The system of specular surfaces that leads to a plane behind one or on one, or of light that
+/// goes through pictures.
+fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::System>> {
+    let across = plane.orientation == Orientation::Orthogonal;
+    if !scene.light.is_picture() && plane.leg == 0 && across {
+        return None;
+    }
+    system(scene, plane)
 }

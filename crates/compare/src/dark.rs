@@ -7,7 +7,7 @@ use etendue_scene::{BlockerLayer, Object, Scene};
 /// Lowest and highest coordinate along two axes.
 type Extent = [[f64; 2]; 2];
 
-/// Slopes, and metres, that no light exceeds.
+/// Slopes that no light exceeds.
 const FAR: f64 = 1e3;
 /// Share of the rays of a section that rounding may leave.
 const ROUNDING: f64 = 1e-12;
@@ -57,14 +57,17 @@ struct RaySection(Vec<[f64; 2]>);
 
 impl RaySection {
     fn new(scene: &Scene, plane: &VirtualPlane, axis: usize) -> Self {
-        let [low, high] = scene.light.extent(axis).map(|x| x.clamp(-FAR, FAR));
+        let window = &plane.window;
+        let [position, slope] =
+            [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
+        // What has no end shines from beyond this by steeper slopes only.
+        let far = FAR * (plane.distance + position);
+        let ends = scene.light.extent(axis);
+        let [low, high] = ends.map(|x| if x.is_finite() { x } else { far.copysign(x) });
         let most = scene.light.steepest(axis).min(FAR);
         let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
         if plane.leg == 0 {
-            let window = &plane.window;
-            let [position, slope] =
-                [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
             for side in [-1.0, 1.0] {
                 section.clip([side, side * plane.distance, position]);
                 section.clip([0.0, side, slope]);

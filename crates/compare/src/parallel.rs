@@ -1,6 +1,5 @@
 //! What keeps a plane from the theory of light between parallel planes.
 
-use crate::system::coarseness;
 use etendue_field::{Frame, Light, Orientation, Profile, Quantity, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
@@ -11,17 +10,10 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
     let mut found = Vec::new();
     for legs in scene.path.legs[..=plane.leg].windows(2) {
         let [before, leg] = legs else { continue };
-        if let Some(hit @ Hit { object, normal, .. }) = &leg.leaves {
+        if let Some(Hit { object, normal, .. }) = &leg.leaves {
             let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
                 .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
             let is_flat = matches!(object, Object::Surface(_));
-            if let Object::Mesh(i) = object {
-                let uneven = coarseness(scene, plane, &scene.meshes[*i], hit);
-                found.extend(uneven.map(|uneven| {
-                    let (name, percent) = (scene.name_of(*object), 100.0 * uneven);
-                    format!("{name}, whose curvature changes by {percent:.0} % between triangles")
-                }));
-            }
             if outgoing > ROUNDING || incidence > ROUNDING || !is_flat {
                 let name = scene.name_of(*object);
                 found.push(format!(
@@ -109,7 +101,8 @@ fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bo
         } else {
             (seen, window, along)
         };
-        overlaps(points, &legs[leg].frame, from, to, end)
+        let frame = &legs[leg].frame;
+        overlaps(points, frame, from, to, end) && !is_beside(points, frame, from, to, end)
     };
     // Reflected in a row there is no tube any more, and no theory either.
     let first = usize::from(on_way_back);
@@ -132,6 +125,21 @@ fn overlaps(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: 
         let half = half[0].max(half[1]);
         low[axis] < half && high[axis] > -half
     })
+}
+
+/// Whether four points of a plane lie in one that a tube, as for [`overlaps`], does not cross.
+fn is_beside(points: &[DVec3], frame: &Frame, from: [f64; 2], to: [f64; 2], end: f64) -> bool {
+    let [a, b, c, d] = points else { return false };
+    let normal = (b - a).cross(c - a);
+    if (d - a).dot(normal).abs() > 1e-9 * normal.length() * (d - a).length() {
+        return false;
+    }
+    let corners = [(from, 0.0), (to, end)].into_iter().flat_map(|(half, z)| {
+        [[-1.0, -1.0], [-1.0, 1.0], [1.0, -1.0], [1.0, 1.0]]
+            .map(|[x, y]| frame.to_world(DVec3::new(x * half[0], y * half[1], z)))
+    });
+    let sides: Vec<f64> = corners.map(|corner| (corner - *a).dot(normal)).collect();
+    sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0)
 }
 
 /// The surface whose edge lies within the view of a plane after a reflection. Theory takes it to be

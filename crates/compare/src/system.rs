@@ -8,8 +8,7 @@ use etendue_theory::rays::{Element, Plane, System};
 use etendue_theory::{Observed, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
-/// where light comes from an environment, where a surface is not specular, and where the scene
-/// holds an object off the path.
+/// where light comes from an environment, and where a surface is not specular.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
     if matches!(scene.light, Light::Environment { .. }) {
@@ -32,9 +31,6 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
-                if coarseness(scene, plane, mesh, &hit).is_some() {
-                    return None;
-                }
                 Some(Element {
                     name: mesh.name.clone(),
                     patch: mesh.osculating(&hit)?,
@@ -49,10 +45,27 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
         layers: layers_before(scene, plane),
         elements: elements?,
     };
-    is_free(scene).then(|| Observed {
+    Some(Observed {
         system,
         plane: in_frame(scene, plane),
     })
+}
+
+/// The meshes before a plane whose curvature changes too much from triangle to triangle for one
+/// smooth surface to stand for them, in words.
+pub(crate) fn coarse_meshes(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+    let hits = scene.path.legs[..=plane.leg].iter();
+    let coarse = |hit: Hit| {
+        let Object::Mesh(i) = hit.object else {
+            return None;
+        };
+        let percent = 100.0 * coarseness(scene, plane, &scene.meshes[i], &hit)?;
+        let name = &scene.meshes[i].name;
+        Some(format!(
+            "{name}, whose curvature changes by {percent:.0} % between triangles"
+        ))
+    };
+    hits.filter_map(|leg| leg.leaves.and_then(coarse)).collect()
 }
 
 /// Slopes are off by twice this share of what curvature makes of them. Meshes as fine as those of
@@ -65,12 +78,8 @@ const FLAT: f64 = 0.1;
 
 /// How far the curvature of a smooth mesh changes from triangle to triangle where the central ray
 /// meets it, as a share, if that is too much for one smooth surface to stand for it.
-pub(crate) fn coarseness(
-    scene: &Scene,
-    plane: &VirtualPlane,
-    mesh: &MeshObject,
-    hit: &Hit,
-) -> Option<f64> {
+fn coarseness(scene: &Scene, plane: &VirtualPlane, mesh: &MeshObject, hit: &Hit) -> Option<f64> {
+    mesh.smooth.as_ref()?;
     let patch = mesh.osculating(hit)?;
     let [apart, reach] = mesh.unevenness(hit, &patch)?;
     let lit = [0, 1].map(|axis| scene.light.extent(axis)[1]);
@@ -98,13 +107,12 @@ fn seen_from(event: Specular, back: bool) -> Specular {
 }
 
 /// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
-/// plane is not on the second leg, where the first surface has no BRDF, and where the scene holds
-/// an object off the path.
+/// plane is not on the second leg, and where the first surface has no BRDF.
 #[must_use]
 pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scattering::System>> {
     // A plane on the next surface has that one's coordinates.
     let is_on_next = plane.side == Side::Before && plane.orientation != Orientation::Orthogonal;
-    if plane.leg != 1 || is_on_next || !is_free(scene) {
+    if plane.leg != 1 || is_on_next {
         return None;
     }
     let Object::Patch(i) = scene.path.legs[1].leaves?.object else {
@@ -168,11 +176,16 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     }
 }
 
-/// Whether the path visits every object of the scene.
-fn is_free(scene: &Scene) -> bool {
-    let visited = |object| scene.path.visits(object);
-    let surfaces = (0..scene.surfaces.len()).all(|i| visited(Object::Surface(i)));
-    let patches = (0..scene.patches.len()).all(|i| visited(Object::Patch(i)));
-    let meshes = (0..scene.meshes.len()).all(|i| visited(Object::Mesh(i)));
-    surfaces && patches && meshes
+/// The objects of the scene that the path does not visit, in words: no ray is followed past them.
+pub(crate) fn unvisited(scene: &Scene) -> Vec<String> {
+    let surfaces = (0..scene.surfaces.len()).map(Object::Surface);
+    let patches = (0..scene.patches.len()).map(Object::Patch);
+    let meshes = (0..scene.meshes.len()).map(Object::Mesh);
+    let all = surfaces.chain(patches).chain(meshes);
+    all.filter(|object| !scene.path.visits(*object))
+        .map(|object| {
+            let name = scene.name_of(object);
+            format!("visibility of {name}, which the path does not visit")
+        })
+        .collect()
 }

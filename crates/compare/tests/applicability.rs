@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use etendue_compare::{Applicability, Class, Prediction};
+use etendue_field::Profile;
 use etendue_scene::{Scene, SceneFile, resolve};
 
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
@@ -112,6 +113,39 @@ fn a_mirror_that_is_met_out_of_turn() {
     });
 }
 
+/// No ray is followed past a surface that the path does not visit.
+#[test]
+fn a_surface_that_the_path_does_not_visit() {
+    let surfaces = format!(
+        r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                form: Plane, aperture: 0.3, event: Mirror),
+           Rectangle(name: "beside", center: (3, 0, 0.5), size: (1, 1))"#
+    );
+    let at = r#"After("mirror")"#;
+    let found = of(&scene(LIGHT, "", &surfaces, r#""mirror""#, at, 0.1));
+    let reason = "visibility of beside, which the path does not visit";
+    assert_eq!(found.reasons, [reason]);
+}
+
+/// A wall that leans away from the first leg is not in the way, but the box around it is; one that
+/// leans over it is.
+#[test]
+fn a_wall_that_leans_away() {
+    for (facing, reasons) in [
+        ("(-1, 0, -1)", vec![]),
+        ("(-1, 0, 1)", vec!["visibility of wall".to_owned()]),
+    ] {
+        let surfaces = format!(
+            r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
+                    form: Plane, aperture: 0.3, event: Mirror),
+               Rectangle(name: "wall", center: (1.05, 0, 1), size: (3.2, 3.2), facing: {facing})"#
+        );
+        let visits = r#""mirror", "wall""#;
+        let found = of(&scene(LIGHT, "", &surfaces, visits, "Distance(0.5)", 0.3));
+        assert_eq!(found.reasons, reasons, "{facing}");
+    }
+}
+
 /// What leaves no way open is dark, whatever the light and the surface, and keeps its class.
 #[test]
 fn darkness_has_a_reason() {
@@ -173,6 +207,22 @@ fn darkness_has_a_reason() {
                 assert_eq!(of(&built(blockers)).dark, None, "{surface} {light}");
             }
         }
+    }
+}
+
+/// A light of kilometres shines past a half-plane that would cover the middle of it.
+#[test]
+fn a_huge_light_is_not_taken_for_dark() {
+    let light = "Rectangle(center: (0, 0, 0), size: (5_000, 5_000))";
+    let edge = half_planes("HalfPlane(axis: X, edge: 1_500, opaque: Below)");
+    let floor = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (10_000, 10_000))"#;
+    for half in [1_000.0, 2_000.0] {
+        let at = r#"Before("floor")"#;
+        let mut scene = scene(light, &edge, floor, r#""floor""#, at, half);
+        scene.planes[0].window.u = Profile::Hann(0.3);
+        let found = of(&scene);
+        assert!(found.reasons.is_empty(), "{:?}", found.reasons);
+        assert_eq!(found.dark.is_some(), half < 1_500.0, "{half}");
     }
 }
 

@@ -63,7 +63,7 @@ pub(super) struct Judged {
 }
 
 /// Fewer rays than this in the window are too few for the spread of 64 batches: about ten in each.
-const HANDFUL: u64 = 640;
+pub(crate) const HANDFUL: u64 = 640;
 
 /// The seed of the first run, and others.
 const FIRST: u64 = 1;

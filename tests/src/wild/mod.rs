@@ -17,6 +17,9 @@ mod straight;
 mod surfaces;
 mod tally;
 
+pub(crate) use judge::HANDFUL;
+pub(crate) use scene::scene;
+
 use crate::hostile::{child, on_threads, progress};
 use crate::report::Section;
 use judge::{Judged, judge};
@@ -118,7 +121,7 @@ fn one(
     };
     fs::create_dir_all(&runner.folder)?;
     fs::create_dir_all(&runner.scratch)?;
-    let Ok(file) = scene::scene(options.seed, number, options.photons, &runner.folder) else {
+    let Ok(file) = scene(options.seed, number, options.photons, &runner.folder) else {
         return Ok(None);
     };
     if options.draw {

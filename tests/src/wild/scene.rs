@@ -17,7 +17,7 @@ use std::path::Path;
 const TRIES: usize = 8;
 
 /// The scene of a seed with this number. Pictures and meshes it names are written to the folder.
-pub(super) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
+pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::Result<SceneFile> {
     let mut draw = Draw::new(seed, index, folder);
     let mut file = empty(&mut draw, photons)?;
     let path = surfaces(&mut draw, &mut file)?;

@@ -1,0 +1,134 @@
+//! What all trials come to, a row for each assumption.
+
+use super::kind::{DARK, UNKNOWN, assumptions};
+use super::trial::Ending;
+use super::{Options, Tried};
+use crate::report::Section;
+use etendue_compare::Verdict;
+
+/// Scenes of a list that are named.
+const NAMED: usize = 4;
+
+/// What came of the planes of which an assumption does not hold.
+#[derive(Default)]
+struct Row {
+    planes: usize,
+    /// Of which nothing else is broken.
+    alone: usize,
+    speechless: usize,
+    skipped: usize,
+    panics: usize,
+    /// The scenes of the planes that fail.
+    fails: Vec<String>,
+    undecided: usize,
+    passes: usize,
+    /// Planes that photons came to.
+    lit: usize,
+}
+
+impl Row {
+    fn new(says: &str, tried: &[Tried]) -> Self {
+        let mut row = Self::default();
+        for (scene, trials) in tried {
+            let broken = trials.iter().flatten();
+            for trial in broken.filter(|trial| trial.broken.contains(says)) {
+                row.planes += 1;
+                row.alone += usize::from(trial.ending.is_some());
+                row.count(scene, trial.ending.as_ref());
+            }
+        }
+        row
+    }
+
+    fn count(&mut self, scene: &str, ending: Option<&Ending>) {
+        match ending {
+            None => {}
+            Some(Ending::Panicked(_)) => self.panics += 1,
+            Some(Ending::Speechless) => self.speechless += 1,
+            Some(Ending::Skipped) => self.skipped += 1,
+            Some(Ending::Judged { verdict, inside }) => {
+                self.lit += usize::from(*inside > 0);
+                match verdict {
+                    Verdict::Fail => self.fails.push(scene.to_owned()),
+                    Verdict::Undecided => self.undecided += 1,
+                    Verdict::Pass => self.passes += 1,
+                }
+            }
+        }
+    }
+
+    fn judged(&self) -> usize {
+        self.fails.len() + self.undecided + self.passes
+    }
+
+    /// How many fail of those judged, and the first of them.
+    fn caught(&self) -> String {
+        let mut named = self.fails.clone();
+        named.dedup();
+        named.truncate(NAMED);
+        match (self.judged(), named.is_empty()) {
+            (0, _) => "–".to_owned(),
+            (judged, true) => format!("0 of {judged}"),
+            (judged, false) => {
+                format!("{} of {judged}: {}", self.fails.len(), named.join(", "))
+            }
+        }
+    }
+}
+
+/// The table, and whether each assumption is caught that is tried.
+pub(super) fn section(options: &Options, random: &[Tried], kept: &[Tried]) -> Section {
+    let mut rows = Vec::new();
+    let mut passed = true;
+    let (mut skipped, mut panics) = (0, 0);
+    for says in assumptions() {
+        let [row, other] = [random, kept].map(|tried| Row::new(says, tried));
+        skipped += row.skipped + other.skipped;
+        panics += row.panics + other.panics;
+        let lit = row.lit + other.lit;
+        let judged = row.judged() + other.judged();
+        passed &= match says {
+            DARK => lit == 0,
+            _ => judged == 0 || row.fails.len() + other.fails.len() > 0,
+        };
+        if says == UNKNOWN && row.planes + other.planes == 0 {
+            continue;
+        }
+        passed &= says != UNKNOWN;
+        let mut cells = vec![says.to_owned()];
+        cells.extend([row.planes, row.alone, row.speechless].map(|count| count.to_string()));
+        let [first, second] = if says == DARK {
+            [format!("{lit} of {judged} have photons"), "–".to_owned()]
+        } else {
+            [row.caught(), other.caught()]
+        };
+        cells.push(first);
+        cells.extend([row.undecided, row.passes].map(|count| count.to_string()));
+        cells.push(second);
+        rows.push(cells);
+    }
+    let drawn = random.iter().filter(|(_, trials)| trials.is_some()).count();
+    Section {
+        title: format!("Assumptions, seed {}", options.seed),
+        text: format!(
+            "{drawn} random scenes and {} of the repository, {} photons for each plane; {skipped} \
+             planes were left out since their predictions take more than a minute, and {panics} \
+             panicked. Required: each assumption that is tried is caught, no panic, and no photon \
+             where it is said to be dark.",
+            kept.len(),
+            options.photons
+        ),
+        header: vec![
+            "assumption",
+            "planes that break it",
+            "and nothing else",
+            "no theory to try",
+            "caught, in scenes",
+            "undecided",
+            "pass all the same",
+            "caught, of the repository",
+        ],
+        rows,
+        passed: passed && panics == 0,
+    }
+}

@@ -1,0 +1,169 @@
+//! A plane predicted as if what theory takes for granted were so, and held against photons.
+
+use super::kind::{DARK, UNKNOWN, assumption};
+use crate::scenes::traced;
+use crate::wild::HANDFUL;
+use etendue_compare::{
+    Applicability, Prediction, Test, Theory, Verdict, compare, seconds, too_much_work,
+};
+use etendue_field::{Light, ProjectionGrid, VirtualPlane};
+use etendue_scene::{Object, Scene};
+use etendue_theory::{Budget, Model, Predicted};
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// A plane of which a check says that theory does not hold, or that it is dark.
+pub(super) struct Trial {
+    pub(super) plane: String,
+    /// What does not hold, each once.
+    pub(super) broken: BTreeSet<&'static str>,
+    /// What comes of theory without the check; `None` where more than one assumption is broken,
+    /// so that nothing would be learnt of any.
+    pub(super) ending: Option<Ending>,
+}
+
+/// What comes of a prediction that is not checked.
+#[derive(Debug)]
+pub(super) enum Ending {
+    /// Photons were held against it, so many of them in the window.
+    Judged { verdict: Verdict, inside: u64 },
+    /// No theory has words for what the central ray meets.
+    Speechless,
+    /// It would take too long.
+    Skipped,
+    /// It panicked, and said this.
+    Panicked(#[expect(dead_code, reason = "what it said is printed")] String),
+}
+
+/// Both must find the same fault: one true plane in a hundred fails with one of them.
+const SEEDS: [u64; 2] = [1, 2];
+/// Seconds of one core that a prediction may take at most, with its derivatives.
+const LONGEST: f64 = 60.0;
+/// As for 2·10⁵ photons of a run.
+const BUDGET: Budget = Budget {
+    nodes: 1.1e6,
+    error: 3e-3,
+};
+
+/// Tries the planes of a scene for which a check has a reason, each as if it were alone.
+pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
+    let planes = scene.planes.iter();
+    let alone = planes.map(|plane| Scene {
+        planes: vec![plane.clone()],
+        ..scene.clone()
+    });
+    alone.filter_map(|scene| trial(&scene)).collect()
+}
+
+fn trial(scene: &Scene) -> Option<Trial> {
+    let plane = &scene.planes[0];
+    let trial = |broken: BTreeSet<&'static str>, ending| {
+        Some(Trial {
+            plane: plane.name.clone(),
+            broken,
+            ending,
+        })
+    };
+    let checked = match caught(|| Applicability::new(scene, plane)) {
+        Ok(checked) => checked,
+        Err(says) => return trial([UNKNOWN].into(), Some(Ending::Panicked(says))),
+    };
+    let name = |reason: &String| assumption(reason).unwrap_or(UNKNOWN);
+    let mut broken: BTreeSet<_> = checked.reasons.iter().map(name).collect();
+    broken.extend(checked.dark.is_some().then_some(DARK));
+    let tried = (broken.len() == 1).then(|| {
+        let ending = caught(|| unchecked(scene, plane, &checked));
+        ending.unwrap_or_else(Ending::Panicked)
+    });
+    if broken.is_empty() {
+        None
+    } else {
+        trial(broken, tried)
+    }
+}
+
+/// What `work` returns, or says in panic.
+fn caught<T>(work: impl FnOnce() -> T) -> Result<T, String> {
+    // Nothing that is changed on the way is looked at afterwards.
+    catch_unwind(AssertUnwindSafe(work)).map_err(|panic| {
+        let text = panic.downcast_ref::<&str>().map(ToString::to_string);
+        let text = text.or_else(|| panic.downcast_ref::<String>().cloned());
+        text.unwrap_or_default()
+    })
+}
+
+/// Predicts without the check, and judges by photons.
+fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> Ending {
+    let theory = Theory::of(scene, plane);
+    if !has_words(scene, plane, &theory) {
+        return Ending::Speechless;
+    }
+    let regardless = [Applicability {
+        theory,
+        reasons: Vec::new(),
+        dark: None,
+    }];
+    let [_, longest] = seconds(scene, &regardless);
+    if longest > LONGEST || too_much_work(scene, &regardless).is_some() {
+        return Ending::Skipped;
+    }
+    let found = predicted(plane, &regardless[0].theory);
+    // What is left out is the chain of affine maps, which has a verdict of its own.
+    let prediction = Prediction {
+        slices: found.slices,
+        replicates: found.replicates,
+        quadrature_error: found.error,
+        unblocked: found.unblocked,
+        ..Prediction::new(scene, plane, checked)
+    };
+    match judged(scene, SEEDS[0], &prediction) {
+        Ending::Judged {
+            verdict: Verdict::Fail,
+            ..
+        } => judged(scene, SEEDS[1], &prediction),
+        other => other,
+    }
+}
+
+/// Whether a theory has words for what the central ray meets. Between parallel planes that is
+/// one Lambertian surface in the light of a lamp.
+fn has_words(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> bool {
+    let Theory::Parallel(_) = theory else {
+        return true;
+    };
+    let mut hits = scene.path.legs[..=plane.leg].iter();
+    let lamp = !scene.light.is_picture() && !matches!(scene.light, Light::Environment { .. });
+    lamp && plane.leg < 2
+        && hits.all(|leg| match leg.leaves.map(|hit| hit.object) {
+            Some(Object::Patch(_)) => false,
+            Some(Object::Mesh(i)) => scene.meshes[i].albedo.is_some(),
+            Some(Object::Surface(_)) | None => true,
+        })
+}
+
+/// What a theory says of a plane, without derivatives.
+fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    let over = (&plane.window, &plane.grid, &picture);
+    match theory {
+        Theory::Parallel(chain) => chain.predict(&[], over, BUDGET),
+        Theory::Specular(view) => view.predict(&[], over, BUDGET),
+        Theory::Scattering(view) => view.predict(&[], over, BUDGET),
+        Theory::None => unreachable!("a plane has some theory if nothing is checked"),
+    }
+}
+
+/// What photons with this seed say of the prediction of the only plane.
+fn judged(scene: &Scene, seed: u64, prediction: &Prediction) -> Ending {
+    let mut scene = scene.clone();
+    scene.run.seed = seed;
+    let photons = traced(&scene);
+    let inside = photons.tally(0).inside;
+    let compared = compare(&photons, 0, prediction, &Test::of(&scene));
+    let verdict = compared.map_or(Verdict::Undecided, |compared| compared.report.verdict);
+    let few = verdict == Verdict::Fail && inside < HANDFUL;
+    Ending::Judged {
+        verdict: if few { Verdict::Undecided } else { verdict },
+        inside,
+    }
+}
