@@ -365,6 +365,19 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
+/// Blockers, or a mesh that light visits later, stand where only few rays of the window meet them.
+#[test]
+fn what_stands_in_the_way_of_a_brdf_is_decided() {
+    for name in ["squares_on_the_way_back", "later_mesh"] {
+        let scene = scene(name);
+        holds_in(&scene, &[("p", Class::Reference)]);
+        decided_by_reference(&scene, 0, |scene, reference| {
+            let view = scattered(scene, &scene.planes[0]).unwrap();
+            by_scattering(scene, &view, reference)
+        });
+    }
+}
+
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {

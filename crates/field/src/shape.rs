@@ -185,3 +185,22 @@ impl Mask {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A plane lies just before a mesh, and may touch a triangle that is across the path.
+    #[test]
+    fn rounding_puts_no_hit_beside_its_triangle() {
+        let z = 0.728_987_365_116_f64;
+        let corners = [(-0.1, -0.1), (0.3, -0.2), (0.05, 0.3)].map(|(x, y)| DVec3::new(x, y, z));
+        for i in 0..1000 {
+            let u = f64::from(i) / 1001.0 - 0.5;
+            let (x, y) = (0.05 - u * z, 0.02 + 0.7 * u * z);
+            let v = -0.7 * u;
+            let found = triangle_distance(&corners, &TwoPlane { x, y, u, v });
+            assert_eq!(found.map(f64::to_bits), Some(z.to_bits()));
+        }
+    }
+}

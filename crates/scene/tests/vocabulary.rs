@@ -190,6 +190,8 @@ const BAD_PATHS: &[(&str, &str, &str)] = &[
     ("Distance(4)", "Distance(5)", "planes[5].at"),
     ("Distance(4)", "Distance(3.5)", "planes[5].at"),
     ("After(\"wall\")", "After(\"roof\")", "planes[1].at"),
+    // A floor behind the light, which is not visited.
+    (FLOOR, BEHIND, "planes[3].at"),
 ];
 const TWO_BOUNCES: &str = include_str!("../../../scenes/two_bounces.ron");
 const FACING: &str = "facing: (1, 0, -1)";
@@ -200,6 +202,12 @@ const LEAVES: [&str; 4] = [
     "visits: [\"wall\", \"floor\"], leaves: (0, 0, 0)",
     "visits: [\"wall\", \"floor\"], leaves: (-1, 0, inf)",
 ];
+const FLOOR: &str = r#"(1.5, 0, 2), size: (3, 3), facing: (-1, 0, 0), albedo: 0.5),
+    ],
+    path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["wall", "floor"]),"#;
+const BEHIND: &str = r#"(0, 0, -0.5), size: (3, 3), facing: (0, 0, 1), albedo: 0.5),
+    ],
+    path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["wall"]),"#;
 const CARD: &str =
     r#"surfaces: [Rectangle(name: "card", center: (0.7, 0, 2), size: (1, 1), facing: (-1, 0, 0)),"#;
 

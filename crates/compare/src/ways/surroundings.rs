@@ -3,6 +3,7 @@
 use super::rays::Ray;
 use etendue_field::{Patch, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
+use glam::DVec3;
 
 /// What a ray meets that theory does not know of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,21 +68,37 @@ pub(super) struct Surroundings<'a> {
 enum Form<'a> {
     Smooth(Patch),
     Flat(&'a Surface),
+    /// A box around a mesh, its lowest and highest corner.
+    Around([DVec3; 2]),
+}
+
+/// The lowest and highest corner of a box around points.
+fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
+    let corner = |of: fn(DVec3, DVec3) -> DVec3| points.iter().copied().reduce(of);
+    let none = DVec3::INFINITY;
+    [
+        corner(DVec3::min).unwrap_or(none),
+        corner(DVec3::max).unwrap_or(-none),
+    ]
 }
 
 /// Share of a distance that rounding may make.
 const ROUNDING: f64 = 1e-9;
 
 impl<'a> Surroundings<'a> {
-    /// Meshes are left out: theory knows them by the surface that osculates them where the central
-    /// ray hits.
+    /// Meshes that the plane's light has left are not among them: theory knows them by the surface
+    /// that osculates them where the central ray hits.
     pub(super) fn new(scene: &'a Scene, plane: &'a VirtualPlane) -> Self {
         let mut objects: Vec<(Object, Form<'a>)> = Vec::new();
-        for hit in scene.path.legs.iter().filter_map(|leg| leg.leaves) {
+        for (leg, hit) in scene.path.legs.iter().map(|leg| leg.leaves).enumerate() {
+            let Some(hit) = hit else { continue };
             let form = match hit.object {
                 Object::Patch(i) => Form::Smooth(scene.patches[i].patch),
                 Object::Surface(i) => Form::Flat(&scene.surfaces[i]),
-                Object::Mesh(_) => continue,
+                Object::Mesh(_) if leg <= plane.leg => continue,
+                Object::Mesh(i) => {
+                    Form::Around(enclosing(scene.meshes[i].triangles.as_flattened()))
+                }
             };
             if objects.iter().all(|(object, _)| *object != hit.object) {
                 objects.push((hit.object, form));
@@ -169,6 +186,15 @@ impl Form<'_> {
     /// Where a ray meets it; NaN for nowhere.
     fn hits(&self, ray: &Ray) -> [f64; 2] {
         match self {
+            Self::Around([low, high]) => {
+                let [a, b] = [*low, *high].map(|corner| (corner - ray.point) / ray.direction);
+                let [first, last] = [a.min(b).max_element(), a.max(b).min_element()];
+                if first <= last {
+                    [first, last]
+                } else {
+                    [f64::NAN; 2]
+                }
+            }
             Self::Smooth(patch) => {
                 let local = ray.seen_from(&patch.frame);
                 patch.hits(local.point, local.direction)
