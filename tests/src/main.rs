@@ -57,9 +57,12 @@ enum Command {
     Short,
     /// p uniform, χ²/dof = 1 and unit pulls over many seeds.
     Calibration {
-        /// Seeds 1 to N.
+        /// How many seeds.
         #[arg(long, default_value_t = 1000)]
         seeds: u64,
+        /// The first of them. Faults are planted with the first thousand alone.
+        #[arg(long, default_value_t = 1)]
+        first: u64,
         /// Photons for each.
         #[arg(long, default_value_t = 100_000)]
         photons: u64,
@@ -265,13 +268,17 @@ fn with_part(page: &str, title: &str, part: &str) -> String {
 fn sections(command: &Command) -> Vec<Section> {
     match *command {
         Command::Short => {
-            let mut sections = calibration::calibration(100, 20_000);
+            let mut sections = calibration::calibration(1..101, 20_000);
             sections.push(faults::planted(3_000_000, SEED));
             sections.push(noise::floor(&[100_000, 1_000_000], SEED));
             sections.extend(suite::suite(Some(200_000)));
             sections
         }
-        Command::Calibration { seeds, photons } => calibration::calibration(seeds, photons),
+        Command::Calibration {
+            seeds,
+            first,
+            photons,
+        } => calibration::calibration(first..first + seeds, photons),
         Command::Faults { photons } => vec![faults::planted(photons, SEED)],
         Command::Suite { photons } => {
             let mut sections = suite::suite(photons);
@@ -294,7 +301,7 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
             let mut sections = noise(1_000_000_000);
-            sections.extend(calibration::calibration(1000, 100_000));
+            sections.extend(calibration::calibration(1..1001, 100_000));
             sections.push(faults::planted(10_000_000, SEED));
             sections
         }

@@ -2,6 +2,7 @@
 
 use crate::model::{Model, Over};
 use crate::nets::{Budget, work_of_nets};
+use crate::parallel::weighted_rectangle::DiscResolution;
 use crate::parallel::{at, derivative, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
 use crate::predicted::Predicted;
@@ -128,7 +129,10 @@ impl Chain {
         } else {
             OF_CLOSED_FORMS
         };
-        let is_resolved = path.receiver().is_none_or(|r| r.is_resolved(window));
+        let is_resolved = match path.receiver() {
+            Some(receiver) => receiver.is_resolved(window),
+            None => DiscResolution::is_enough(&path, window, [grid.rho.max(), grid.nu.max()]),
+        };
         !is_resolved || work.steps > accepted || work.bytes + work.bytes_each > BYTES
     }
 

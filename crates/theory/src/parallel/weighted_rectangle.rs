@@ -59,16 +59,32 @@ pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 impl DiscResolution {
     /// For spectra up to `frequency`, along position and slope (docs/theory.md, after Eq. 5b).
     pub(crate) fn for_spectrum(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
-        let rates = EdgeBandwidth::new(path, window, frequency);
-        let nodes = Self::of(path, |radius, plane| {
-            let nodes = (PI * radius * rates.at(plane)).ceil() + SPARE_NODES;
-            Discs::Rule(whole(nodes.min(MOST_NODES)))
-        });
+        let nodes = Self::wanted(path, window, frequency);
         if path.has_discs() {
             nodes.affordable(path, window)
         } else {
             nodes
         }
+    }
+
+    /// Whether discs may be taken apart about as finely as spectra up to `frequency` need it. A wide
+    /// one behind a narrow window is not, and finer rules tell nothing of the error then.
+    pub(crate) fn is_enough(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> bool {
+        let wanted = Self::wanted(path, window, frequency);
+        let affordable = wanted.clone().affordable(path, window);
+        let mut both = wanted.0.iter().zip(&affordable.0);
+        let is_enough = |(wanted, affordable): (&Discs, &Discs)| {
+            wanted.count() < whole(MOST_NODES) && wanted.count() <= 2 * affordable.count()
+        };
+        !path.has_discs() || both.all(is_enough)
+    }
+
+    fn wanted(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+        let rates = EdgeBandwidth::new(path, window, frequency);
+        Self::of(path, |radius, plane| {
+            let nodes = (PI * radius * rates.at(plane)).ceil() + SPARE_NODES;
+            Discs::Rule(whole(nodes.min(MOST_NODES)))
+        })
     }
 
     /// Discs as one patch each.
