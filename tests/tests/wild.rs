@@ -365,6 +365,29 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
+/// Rays do not go on from the triangles of a mesh as they do from the patch that osculates it: one
+/// is met again, the other is round.
+#[test]
+fn meshes_unlike_their_patches_are_decided() {
+    let glass = scene("glass_star");
+    let theory = Applicability::new(&glass, &glass.planes[0]);
+    assert_eq!(theory.class(), Class::Reference, "{:?}", theory.reasons);
+    assert_eq!(photons(&glass).tally(0).inside, 0);
+
+    let ball = scene("ball_beyond_its_patch");
+    let theory = Applicability::new(&ball, &ball.planes[0]);
+    assert_eq!(theory.class(), Class::Reference, "{:?}", theory.reasons);
+    let measured = photons(&ball);
+    let reference = by_reference(&ball, 0, &self::measured(&ball, &Tracer::evenly(&ball)));
+    let judged = report(&ball, &measured, 0, &reference);
+    assert_eq!(judged.verdict, Verdict::Pass);
+    let regardless = by_specular(&ball, 0, reference);
+    assert_eq!(
+        report(&ball, &measured, 0, &regardless).verdict,
+        Verdict::Fail
+    );
+}
+
 /// Blockers, or a mesh that light visits later, stand where only few rays of the window meet them.
 #[test]
 fn what_stands_in_the_way_of_a_brdf_is_decided() {

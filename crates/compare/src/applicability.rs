@@ -4,7 +4,7 @@ use crate::chain::chain;
 use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
-use crate::system::{coarse_meshes, print, scattered, system, unvisited};
+use crate::system::{print, scattered, system, unvisited};
 use crate::ways::{unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -57,7 +57,6 @@ impl Theory {
             Self::None => return Vec::new(),
         };
         found.extend(unvisited(scene));
-        found.extend(coarse_meshes(scene, plane));
         found
     }
 

@@ -2,7 +2,7 @@
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Side, Specular, VirtualPlane};
-use etendue_scene::{Event, Hit, MeshObject, Object, Scene};
+use etendue_scene::{Event, Hit, Object, Scene};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Element, Plane, System};
 use etendue_theory::{Observed, scattering};
@@ -49,47 +49,6 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
         system,
         plane: in_frame(scene, plane),
     })
-}
-
-/// The meshes before a plane whose curvature changes too much from triangle to triangle for one
-/// smooth surface to stand for them, in words.
-pub(crate) fn coarse_meshes(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
-    let hits = scene.path.legs[..=plane.leg].iter();
-    let coarse = |hit: Hit| {
-        let Object::Mesh(i) = hit.object else {
-            return None;
-        };
-        let percent = 100.0 * coarseness(scene, plane, &scene.meshes[i], &hit)?;
-        let name = &scene.meshes[i].name;
-        Some(format!(
-            "{name}, whose curvature changes by {percent:.0} % between triangles"
-        ))
-    };
-    hits.filter_map(|leg| leg.leaves.and_then(coarse)).collect()
-}
-
-/// Slopes are off by twice this share of what curvature makes of them. Meshes as fine as those of
-/// the repository have 10⁻⁴.
-const UNEVEN: f64 = 0.01;
-/// Triangles around the hit over which normals even out.
-const AROUND: f64 = 3.0;
-/// Curvature that turns slopes over what is seen by this share of the window counts as this much.
-const FLAT: f64 = 0.1;
-
-/// How far the curvature of a smooth mesh changes from triangle to triangle where the central ray
-/// meets it, as a share, if that is too much for one smooth surface to stand for it.
-fn coarseness(scene: &Scene, plane: &VirtualPlane, mesh: &MeshObject, hit: &Hit) -> Option<f64> {
-    mesh.smooth.as_ref()?;
-    let patch = mesh.osculating(hit)?;
-    let [apart, reach] = mesh.unevenness(hit, &patch)?;
-    let lit = [0, 1].map(|axis| scene.light.extent(axis)[1]);
-    let lit = lit.into_iter().filter(|half| *half > 0.0);
-    let seen = lit.fold(plane.window.x.half_width(), f64::min);
-    let [k1, k2, _] = patch.curvature.map(f64::abs);
-    let uneven = apart / k1.max(k2).max(FLAT * plane.window.u.half_width() / seen);
-    // Where light meets many triangles the few around the hit are a small part of it.
-    let share = (AROUND * reach / seen).powi(2).min(1.0);
-    Some(uneven).filter(|uneven| uneven * share > UNEVEN)
 }
 
 /// An event of a surface whose front is turned to the light.

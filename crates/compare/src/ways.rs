@@ -7,6 +7,7 @@
 //! the central one, down to a thousandth of the surface, so that windows of any size hold many.
 
 mod coordinates;
+mod meshes;
 mod rays;
 mod scattered;
 mod specular;

@@ -42,39 +42,6 @@ impl MeshObject {
         })
     }
 
-    /// How far the curvature of the normals of the triangle hit is from that of its osculating
-    /// patch, per metre, and how far its corners are from the hit: light turns by the former where
-    /// it meets one triangle alone. `None` where normals do not tell.
-    #[must_use]
-    pub fn unevenness(&self, hit: &Hit, patch: &Patch) -> Option<[f64; 2]> {
-        let corners = self.triangles[self.nearest(hit)?];
-        let reach = corners.map(|corner| corner.distance(hit.point));
-        let reach = reach.into_iter().fold(0.0, f64::max);
-        let [ss, st, tt] = self.shape_within(hit, &patch.frame, 1.001 * reach)?;
-        let [k1, k2, _] = patch.curvature;
-        let apart = (ss - k1).abs().max((tt - k2).abs()).max(st.abs());
-        Some([apart, reach])
-    }
-
-    /// The derivatives of the normals of the vertices within a distance of a hit, by place in a frame there.
-    fn shape_within(&self, hit: &Hit, frame: &Frame, distance: f64) -> Option<[f64; 3]> {
-        let side = if self.is_met_on_its_back(hit) {
-            -1.0
-        } else {
-            1.0
-        };
-        let normals = self.smooth.as_ref()?.normals.as_flattened().iter();
-        let near: Vec<(DVec3, DVec3)> = self
-            .triangles
-            .as_flattened()
-            .iter()
-            .zip(normals)
-            .filter(|(p, _)| p.distance(hit.point) < distance)
-            .map(|(p, normal)| (frame.to_local(*p), side * frame.vector_to_local(*normal)))
-            .collect();
-        shape(&near, distance)
-    }
-
     /// Whether light comes to a hit from the side that the mesh's normals point away from.
     #[must_use]
     pub fn is_met_on_its_back(&self, hit: &Hit) -> bool {
@@ -90,19 +57,6 @@ impl MeshObject {
         };
         (0..self.triangles.len()).min_by(|a, b| distance(a).total_cmp(&distance(b)))
     }
-}
-
-/// The derivatives of normals by place, n = n₀ + S (s, t) by least squares, S symmetric: ss, st and tt, per metre, convex positive.
-fn shape(points: &[(DVec3, DVec3)], unit: f64) -> Option<[f64; 3]> {
-    let rows = points.iter().flat_map(|(at, normal)| {
-        let DVec3 { x, y, .. } = *at / unit;
-        [
-            [1.0, 0.0, x, y, 0.0, normal.x],
-            [0.0, 1.0, 0.0, x, y, normal.y],
-        ]
-    });
-    let [_, _, ss, st, tt] = least_squares(rows)?;
-    Some([ss, st, tt].map(|entry| entry / unit))
 }
 
 /// h, ∂h/∂s, ∂h/∂t, ∂²h/∂s², ∂²h/∂s∂t and ∂²h/∂t² at the origin of a frame, of the quadratic in (s, t) closest to points (s, t, h).

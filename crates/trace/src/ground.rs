@@ -50,10 +50,10 @@ impl Ground {
                 let pieces = mesh.triangles.iter();
                 let pieces = pieces.map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
                 let pieces = Pieces::new(pieces.collect());
-                (
-                    around.mesh(mesh).map(target).collect(),
-                    Points::Flat(pieces),
-                )
+                // As they are, whatever normals they have between them.
+                let triangles = mesh.triangles.iter();
+                let triangles = triangles.map(|corners| target(Form::Triangle(*corners)));
+                (triangles.collect(), Points::Flat(pieces))
             }
             Object::Patch(i) => {
                 let patch = scene.patches[i].patch;

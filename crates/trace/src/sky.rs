@@ -2,6 +2,7 @@
 
 use crate::emit::LAMBERTIAN;
 use crate::obstacles::{direction, ray_through};
+use etendue_field::random::{self, Stream};
 use etendue_field::{Environment, EnvironmentMap, Frame, SphericalGaussian, TwoPlane};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -11,6 +12,9 @@ use std::f64::consts::{PI, TAU};
 pub(crate) struct Sky {
     environment: Environment,
     choice: Choice,
+    /// The share of slopes that are drawn by the cosine instead: where most light goes back, what is
+    /// left goes forward too seldom.
+    by_cosine: f64,
 }
 
 /// Running sums of what is chosen from.
@@ -24,6 +28,11 @@ enum Choice {
         columns: Vec<Vec<f64>>,
     },
 }
+
+/// Directions drawn to see how many go forward.
+const TRIED: u64 = 1000;
+/// Some are always drawn by the light.
+const MOST_BY_COSINE: f64 = 0.9;
 
 /// Running sums of numbers.
 fn running(values: impl Iterator<Item = f64>) -> Vec<f64> {
@@ -79,10 +88,16 @@ impl Sky {
                 Choice::Map { rows, columns }
             }
         };
-        Self {
+        let mut sky = Self {
             environment: environment.clone(),
             choice,
-        }
+            by_cosine: 0.0,
+        };
+        let tried = (0..TRIED).map(|i| random::words(0, Stream::Even, i, 0).map(random::unit));
+        let forward = tried.filter(|r| sky.sample(*r).z > FORWARD).count();
+        let share = forward as f64 / TRIED as f64;
+        sky.by_cosine = (1.0 - 2.0 * share).clamp(0.0, MOST_BY_COSINE);
+        sky
     }
 
     /// A direction in which light travels, of unit length, in the frame at the light; from four numbers in (0, 1).
@@ -139,14 +154,24 @@ impl Sky {
 
     /// The slopes of a direction; `None` when it does not go forward.
     pub(crate) fn slopes(&self, r: [f64; 4]) -> Option<[f64; 2]> {
-        let along = self.sample(r);
+        let along = if r[0] < self.by_cosine {
+            let (sin, cos) = (TAU * r[1]).sin_cos();
+            DVec3::new(r[2].sqrt() * cos, r[2].sqrt() * sin, (1.0 - r[2]).sqrt())
+        } else {
+            let first = (r[0] - self.by_cosine) / (1.0 - self.by_cosine);
+            self.sample([first, r[1], r[2], r[3]])
+        };
         (along.z > FORWARD).then(|| [along.x / along.z, along.y / along.z])
     }
 
     /// The density of [`Self::slopes`] with respect to du dv.
     #[inline]
     pub(crate) fn slope_density(&self, ray: &TwoPlane) -> f64 {
-        self.density(direction(ray)) * ray.secant_squared().powf(-1.5)
+        let secant_squared = ray.secant_squared();
+        let by_cosine = 1.0 / (LAMBERTIAN * secant_squared.sqrt());
+        let by_light = self.density(direction(ray));
+        let density = self.by_cosine * by_cosine + (1.0 - self.by_cosine) * by_light;
+        density * secant_squared.powf(-1.5)
     }
 
     /// Radiance along a ray, in the frame at the light.

@@ -15,6 +15,8 @@ use std::path::Path;
 const BLOB: &str = "Environment(center: (0, 0, 0), map: Lobes([(from: (0.05, 0.02, -1), width: 0.15, radiance: 3)]))";
 const ASIDE: &str = "Environment(center: (0, 0, 0), map: Lobes([
     (from: (0.5, 0.2, -1), width: 0.2, radiance: 3), (from: (-0.2, 0.1, -1), width: 0.4)]))";
+const BEHIND: &str =
+    "Environment(center: (0, 0, 0), map: Lobes([(from: (0, 0.1, 1), width: 0.4, radiance: 3)]))";
 const WALL: &str = r#"Rectangle(name: "wall", center: (0, 0, 2), size: (2.4, 2), albedo: 0.7)"#;
 const TILTED: &str = r#"Rectangle(name: "wall", center: (0, 0, 2), size: (2.4, 2), facing: (0.5, 0.2, -1), albedo: 0.7)"#;
 const PLANES: &str = r#"(name: "start", at: Emission), (name: "middle", at: Distance(0.8)), (name: "arrival", at: Before("wall")),
@@ -157,6 +159,7 @@ fn all_ways_agree() {
     let blockers = r#"Shapes(name: "half", center: (0, 0, 1), shapes: [HalfPlane(axis: X, edge: -0.1, opaque: Below)]),
         Grating(name: "grating", center: (0, 0, 1.5), axis: Y, frequency: 2, modulation: 0.8)"#;
     let mirror = r#"Smooth(name: "mirror", center: (0, 0, 1.5), facing: (0.3, 0.1, -1), form: Sphere(-0.5), aperture: 0.5, event: Mirror)"#;
+    let mesh = r#"Mesh(name: "mirror", center: (0.1, 0, 1.5), mesh: Paraboloid(curvatures: (-0.3, 0.2), half: 0.7, cells: 7), event: Mirror)"#;
     let off_mirror = r#"(name: "before", at: Before("mirror"), orientation: LocalNormals), (name: "tangent", at: Before("mirror"), orientation: Tangent),
         (name: "after", at: After("mirror")), (name: "on", at: After("mirror"), orientation: LocalNormals), (name: "beyond", at: Distance(2.2))"#;
     let star = r#"Mesh(name: "wall", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
@@ -180,6 +183,16 @@ fn all_ways_agree() {
             Bench {
                 light: ASIDE,
                 blockers,
+                ..default()
+            },
+        ),
+        (
+            "what is left of light that goes back, by a mesh",
+            Bench {
+                light: BEHIND,
+                surfaces: mesh,
+                visits: &["mirror"],
+                planes: "(name: \"after\", at: After(\"mirror\"))",
                 ..default()
             },
         ),

@@ -13,7 +13,10 @@ const PHRASES: [(&str, &str); 17] = [
         "a surface is met once, and not in its own shadow",
         "in its own shadow",
     ),
-    ("a smooth mesh is one smooth surface", "between triangles"),
+    (
+        "a smooth mesh is one smooth surface",
+        "its osculating patch",
+    ),
     (
         "the path visits all surfaces",
         "which the path does not visit",

@@ -41,6 +41,18 @@ impl Ray {
         }
     }
 
+    /// How far along it meets a triangle (Möller and Trumbore 1997).
+    pub(super) fn meets_triangle(&self, [a, b, c]: &[DVec3; 3]) -> Option<f64> {
+        let [side, other, from] = [*b - *a, *c - *a, self.point - *a];
+        let across = self.direction.cross(other);
+        let whole = side.dot(across);
+        let s = from.dot(across) / whole;
+        let turned = from.cross(side);
+        let t = self.direction.dot(turned) / whole;
+        let at = other.dot(turned) / whole;
+        (s >= 0.0 && t >= 0.0 && s + t <= 1.0).then_some(at)
+    }
+
     /// Where theory meets a surface: on the side of the quadric's extremum along the ray on which
     /// it crosses the tangent plane at the vertex (`etendue_theory::rays`, by Newton's method from
     /// there).

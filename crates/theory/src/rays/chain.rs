@@ -73,7 +73,11 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
         travelled = distance;
     }
     if !on_last {
-        let distance = (plane.frame.origin - walk.frame.origin).dot(walk.frame.d);
+        let to = plane.frame.origin - walk.frame.origin;
+        let distance = match plane.orientation {
+            Orientation::Orthogonal => to.dot(plane.frame.d) / walk.frame.d.dot(plane.frame.d),
+            _ => to.dot(walk.frame.d),
+        };
         walk.travel(distance - travelled, "plane");
         walk.frame = walk.frame.travelled(distance);
         match plane.orientation {
@@ -269,12 +273,18 @@ impl Walk {
     }
 
     /// From the leg's frame to that of a plane across it, which may be turned about D and moved
-    /// across.
+    /// across. Behind a mesh it leans a little: normals between vertices are not those of the patch
+    /// that stands for it.
     fn reach_frame(&mut self, plane: &Frame) {
-        debug_assert!(
-            (plane.d - self.frame.d).length() < 1e-9,
-            "a plane lies across the central ray"
-        );
+        let towards = plane.vector_to_local(self.frame.d);
+        if towards.x.hypot(towards.y) > 1e-9 {
+            let mut map = Map::linear(seen_across(plane, &self.frame));
+            let [u, v] = [towards.x, towards.y].map(|t| t / towards.z);
+            let moved = plane.to_local(self.frame.origin);
+            map.offset = [moved.x, moved.y, u, v];
+            self.step(&map.spectrum_map(), "map  frame of the plane".into());
+            return;
+        }
         let turn = plane.x.dot(self.frame.y).atan2(plane.x.dot(self.frame.x));
         self.turn(turn, "the plane's axes");
         let moved = plane.to_local(self.frame.origin);
@@ -314,21 +324,22 @@ impl Walk {
 /// In the lens's own frame positions stay and slopes fall by position over focal length; at its
 /// centre along its axis that is [`Map::thin_lens`].
 fn lens(frame: &Frame, hit: &Hit, focal_length: f64) -> Option<Map<4>> {
-    let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| on_lens(frame, leg));
+    let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| seen_across(frame, leg));
     let power = Map::<4>::thin_lens(focal_length);
     let map = Map::linear(before).then(&power);
     Some(map.then(&Map::linear(after).inverse()?))
 }
 
-/// How positions and slopes on a flat lens change with those in the frame of a leg there.
-fn on_lens(lens: &Frame, leg: &Frame) -> Matrix<4> {
-    let towards = lens.vector_to_local(leg.d);
-    let axes = [leg.x, leg.y].map(|axis| lens.vector_to_local(axis));
+/// How positions and slopes in a plane change with those in the frame of a leg that meets it
+/// aslant.
+fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
+    let towards = plane.vector_to_local(leg.d);
+    let axes = [leg.x, leg.y].map(|axis| plane.vector_to_local(axis));
     let slopes = [towards.x, towards.y].map(|s| s / towards.z);
     let mut matrix = [[0.0; 4]; 4];
     for (column, axis) in axes.iter().enumerate() {
         for (row, (across, slope)) in [axis.x, axis.y].into_iter().zip(slopes).enumerate() {
-            // To the plane of the lens along the ray; the slope of D + u X.
+            // To the plane along the ray; the slope of D + u X.
             let moved = across - slope * axis.z;
             matrix[row][column] = moved;
             matrix[row + 2][column + 2] = moved / towards.z.abs();

@@ -306,3 +306,15 @@ fn a_wrong_map_leaves_a_defect() {
         }
     }
 }
+
+/// Behind a mesh a plane lies across the path of its normals, and leans against that of its patch.
+#[test]
+fn a_plane_may_lean_against_the_leg() {
+    for system in systems() {
+        let mut plane = after(&system, 0.6);
+        let Frame { x, y, d, .. } = plane.frame;
+        plane.frame = plane.frame.turned_to((d + 0.02 * x - 0.01 * y).normalize());
+        plane.frame.origin += 0.01 * plane.frame.x;
+        assert!(off(&system, &plane, Edition::Corrected) < CLOSE);
+    }
+}
