@@ -3,7 +3,8 @@
 use crate::ground::Ground;
 use crate::proposal::{Follower, Proposal};
 use crate::sky::Sky;
-use etendue_field::{Environment, Orientation, TwoPlane, VirtualPlane, random};
+use crate::station::Station;
+use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
 
 /// A mixture, with equal shares, of ways in which rays of an environment are drawn: a density over (x, y, u, v) at the beginning of the first leg.
@@ -24,21 +25,79 @@ enum Way {
         distance: f64,
         position: [Follower; 2],
     },
+    /// Positions and angles by the profiles of a plane on the first surface.
+    Facing(Box<Facing>),
     /// Points of the first surface, directions by the environment.
     Onto(Ground),
 }
 
+/// A plane that looks at light which arrives on a surface.
+#[derive(Debug)]
+struct Facing {
+    station: Station,
+    position: [Follower; 2],
+    angle: [Follower; 2],
+}
+
+impl Facing {
+    fn new(scene: &Scene, index: usize, plane: &VirtualPlane, aimed: bool) -> Self {
+        let w = &plane.window;
+        let follow = |profile: &Profile| {
+            if aimed {
+                Follower::new(profile)
+            } else {
+                Follower::constant(profile.half_width())
+            }
+        };
+        Self {
+            station: Station::new(scene, index, plane),
+            position: [&w.x, &w.y].map(follow),
+            angle: [&w.u, &w.v].map(follow),
+        }
+    }
+
+    /// A ray of the window, given at the beginning of the leg; `None` where it has none.
+    fn sample(&self, r: [f64; 4]) -> Option<TwoPlane> {
+        let seen = TwoPlane {
+            x: self.position[0].quantile(r[0]),
+            y: self.position[1].quantile(r[1]),
+            u: self.angle[0].quantile(r[2]),
+            v: self.angle[1].quantile(r[3]),
+        };
+        let (ray, _) = self.station.leg_ray(&seen)?;
+        Some(ray)
+    }
+
+    /// The density of [`Self::sample`] with respect to dx dy du dv at the beginning of the leg.
+    fn density(&self, ray: &TwoPlane) -> f64 {
+        let seen = || {
+            let (seen, per_ray) = self.station.look(ray, 1.0)?;
+            let (_, area) = self.station.leg_ray(&seen)?;
+            let place = self.position[0].density(seen.x) * self.position[1].density(seen.y);
+            let angle = self.angle[0].density(seen.u) * self.angle[1].density(seen.v);
+            Some(place * angle * per_ray / area)
+        };
+        seen().unwrap_or(0.0)
+    }
+}
+
 impl FromSky {
     /// Aimed emission has a way for the window of each plane on the first leg, by its profiles and by the environment, and one for the part of the
-    /// first surface that each other plane looks at. Plain emission is uniform over the windows of the former and over the first surface, always
-    /// by the environment.
+    /// first surface that each other plane looks at, and one more by the profiles of a plane on that surface. Plain emission is uniform over the windows of the former and over the first surface, always
+    /// by the environment, and over the windows of planes on that surface.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
         let mut ways = Vec::new();
-        for plane in &scene.planes {
+        for (index, plane) in scene.planes.iter().enumerate() {
             if looks_across(plane) {
                 ways.extend(across(plane, aimed));
-            } else if aimed {
+                continue;
+            }
+            if plane.leg == 0 {
+                let facing = Facing::new(scene, index, plane, aimed);
+                ways.push(Way::Facing(Box::new(facing)));
+            }
+            if aimed {
                 ways.extend(Ground::new(scene, Some(plane)).map(Way::Onto));
             }
         }
@@ -69,6 +128,7 @@ impl FromSky {
                 let [x, y] = [0, 1].map(|axis| position[axis].quantile(s[axis]));
                 Some(TwoPlane { x, y, u, v }.travelled(-distance))
             }
+            Way::Facing(facing) => facing.sample(r),
             Way::Onto(ground) => {
                 let [u, v] = self.sky.slopes(r)?;
                 let point = ground.sample([s[0], s[1], s[2]]);
@@ -89,6 +149,7 @@ impl FromSky {
                 let TwoPlane { x, y, .. } = ray.travelled(*distance);
                 by_sky * position[0].density(x) * position[1].density(y)
             }
+            Way::Facing(facing) => facing.density(ray),
             // Where no light comes from none was aimed.
             Way::Onto(_) if by_sky <= 0.0 => 0.0,
             Way::Onto(ground) => by_sky * ground.density(ray),

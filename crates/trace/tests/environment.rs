@@ -160,6 +160,10 @@ fn all_ways_agree() {
         Grating(name: "grating", center: (0, 0, 1.5), axis: Y, frequency: 2, modulation: 0.8)"#;
     let mirror = r#"Smooth(name: "mirror", center: (0, 0, 1.5), facing: (0.3, 0.1, -1), form: Sphere(-0.5), aperture: 0.5, event: Mirror)"#;
     let mesh = r#"Mesh(name: "mirror", center: (0.1, 0, 1.5), mesh: Paraboloid(curvatures: (-0.3, 0.2), half: 0.7, cells: 7), event: Mirror)"#;
+    let small =
+        r#"Rectangle(name: "wall", center: (0, 0, 2), size: (0.3, 0.4), facing: (0.5, 0.2, -1))"#;
+    let on_small = r#"(name: "on", at: Before("wall"), orientation: Tangent),
+        (name: "narrow", at: Before("wall"), orientation: Mirrored, window: (x: Hann(0.1), u: Box(0.01)))"#;
     let off_mirror = r#"(name: "before", at: Before("mirror"), orientation: LocalNormals), (name: "tangent", at: Before("mirror"), orientation: Tangent),
         (name: "after", at: After("mirror")), (name: "on", at: After("mirror"), orientation: LocalNormals), (name: "beyond", at: Distance(2.2))"#;
     let star = r#"Mesh(name: "wall", center: (0, 0, 2), mesh: Star(radius: 0.5, relief: 0.3, lobes: 4, rings: 30), albedo: 0.8)"#;
@@ -193,6 +197,15 @@ fn all_ways_agree() {
                 surfaces: mesh,
                 visits: &["mirror"],
                 planes: "(name: \"after\", at: After(\"mirror\"))",
+                ..default()
+            },
+        ),
+        (
+            "planes on a small wall, and beside it",
+            Bench {
+                light: ASIDE,
+                surfaces: small,
+                planes: on_small,
                 ..default()
             },
         ),
