@@ -1,6 +1,7 @@
 //! A plane of a measurement held against its prediction.
 
 use crate::agreement::{Agreement, UNSEEN};
+use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
@@ -181,9 +182,13 @@ impl Compared<'_> {
         } else if agreement.is_blurred(self.prediction, agrees) || !agrees && self.is_excused(test)
         {
             let error = percent(self.prediction.systematic_error().unwrap_or_default());
+            let what = if self.prediction.class == Class::Reference {
+                "behind a mesh this coarse photons and backward rays may differ"
+            } else {
+                "the quadrature of the prediction may be off"
+            };
             Some(format!(
-                "the quadrature of the prediction may be off by {error}, noise is {}; more photons \
-                 do not help",
+                "{what} by {error}, noise is {}; more photons do not help",
                 percent(noise)
             ))
         } else if agrees && noise > test.resolution {

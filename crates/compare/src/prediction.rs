@@ -21,7 +21,8 @@ pub struct Prediction {
     /// The slices of the windowed spectrum.
     pub slices: Slices,
     /// ‖error‖/‖slices‖, estimated: the standard error where there are replicates of theory, else
-    /// that of a quadrature. `None` for a closed form, and for a reference.
+    /// that of a quadrature. Of a reference, how far the two tracers may differ because a smooth
+    /// mesh is too coarse. `None` for a closed form, and for any other reference.
     pub quadrature_error: Option<f64>,
     /// The first-order chain; `slices` and all else are then those of the exact ray-space
     /// prediction.
@@ -63,12 +64,14 @@ impl Prediction {
 
     /// ‖error‖/‖slices‖ that no replicates show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
-        self.quadrature_error.filter(|_| !self.is_statistical())
+        let shows = self.is_statistical() && self.class != Class::Reference;
+        self.quadrature_error.filter(|_| !shows)
     }
 
     /// ‖error‖/‖slices‖ of theory's own replicates, which stays however many photons are measured.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
-        self.quadrature_error.filter(|_| self.is_statistical())
+        let shows = self.is_statistical() && self.class != Class::Reference;
+        self.quadrature_error.filter(|_| shows)
     }
 
     /// What theory predicts for a plane of a scene: nothing where none applies, and
@@ -162,6 +165,7 @@ impl Prediction {
         Ok(Self {
             class: Class::Reference,
             slices: estimate::slices(measurement, at)?.mean,
+            quadrature_error: scene.mesh_mismatch(&scene.planes[index]),
             replicates: measurement
                 .at_plane(at)
                 .map(|batch| batch.slices.clone())

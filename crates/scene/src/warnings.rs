@@ -32,24 +32,19 @@ impl Scene {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
-        for (i, leg) in self.path.legs.iter().enumerate().skip(1) {
-            let Some(Object::Mesh(mesh)) = leg.leaves.map(|hit| hit.object) else {
-                continue;
-            };
-            let mesh = &self.meshes[mesh];
-            let Some(smooth) = &mesh.smooth else { continue };
-            let later = self.planes.iter().filter(|plane| plane.leg >= i);
-            let seen = later.map(|plane| {
-                let looked = Look::new(mesh, smooth, [&self.path.legs[i - 1], leg], plane);
-                (looked.mismatch(), &plane.name)
-            });
-            let worst = seen.max_by(|(a, _), (b, _)| a.total_cmp(b));
-            if let Some((mismatch, plane)) = worst.filter(|(mismatch, _)| *mismatch > LEVEL) {
+        for leg in 1..self.path.legs.len() {
+            let later = self.planes.iter().filter(|plane| plane.leg >= leg);
+            let seen = later.filter_map(|plane| Some((self.mismatch(leg, plane)?, plane)));
+            let worst = seen.max_by(|((_, a), _), ((_, b), _)| a.total_cmp(b));
+            if let Some(((mesh, mismatch), plane)) =
+                worst.filter(|((_, mismatch), _)| *mismatch > LEVEL)
+            {
                 warnings.push(format!(
-                    "{}: too coarse for normals interpolated between its vertices. At {plane} photons \
+                    "{}: too coarse for normals interpolated between its vertices. At {} photons \
                      and backward rays may differ by {:.1} % of the spectrum; triangles {:.0} times \
                      shorter are fine enough for {} %",
                     mesh.name,
+                    plane.name,
                     100.0 * mismatch,
                     (mismatch / LEVEL).ceil(),
                     100.0 * LEVEL
@@ -57,6 +52,27 @@ impl Scene {
             }
         }
         warnings
+    }
+
+    /// How far photons and backward rays may differ at a plane because a smooth mesh before it is
+    /// too coarse, as a share of the spectrum (see [`warnings`](Self::warnings)). `None` without
+    /// such a mesh.
+    #[must_use]
+    pub fn mesh_mismatch(&self, plane: &VirtualPlane) -> Option<f64> {
+        let legs = 1..=plane.leg;
+        let all = legs.filter_map(|leg| Some(self.mismatch(leg, plane)?.1));
+        all.max_by(f64::total_cmp)
+    }
+
+    /// The smooth mesh at the beginning of a leg, and what it makes at a plane.
+    fn mismatch(&self, leg: usize, plane: &VirtualPlane) -> Option<(&MeshObject, f64)> {
+        let legs = [&self.path.legs[leg - 1], &self.path.legs[leg]];
+        let Object::Mesh(mesh) = legs[1].leaves?.object else {
+            return None;
+        };
+        let mesh = &self.meshes[mesh];
+        let looked = Look::new(mesh, mesh.smooth.as_ref()?, legs, plane);
+        Some((mesh, looked.mismatch()))
     }
 }
 

@@ -125,18 +125,25 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
         }
         Light::Environment { environment } => {
             let frame = &environment.frame;
-            let (direction, most) = match &environment.map {
+            let most = match &environment.map {
                 EnvironmentMap::Lobes(lobes) => {
-                    let lobe = &lobes[index as usize % lobes.len().max(1)];
+                    lobes.iter().map(|lobe| lobe.radiance).fold(0.0, f64::max)
+                }
+                EnvironmentMap::LatLong(_) => 1.0,
+            };
+            let direction = match &environment.map {
+                // What is left far from its middle may be all that goes forward.
+                EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
+                    let lobe = &lobes[(index / 8) as usize % lobes.len().max(1)];
                     let around = Frame::IDENTITY.turned_to(lobe.from);
                     let [x, y] = offset.map(|o| 3.0 * lobe.width * o);
                     let from = around.vector_to_world(DVec3::new(x, y, 1.0));
-                    (-frame.vector_to_world(from), lobe.radiance)
+                    -frame.vector_to_world(from)
                 }
-                EnvironmentMap::LatLong(_) => {
+                EnvironmentMap::Lobes(_) | EnvironmentMap::LatLong(_) => {
                     let (sin, cos) = (TAU * r[0]).sin_cos();
                     let across = (1.0 - r[1] * r[1]).sqrt();
-                    (DVec3::new(across * cos, across * sin, r[1]), 1.0)
+                    DVec3::new(across * cos, across * sin, r[1])
                 }
             };
             let direction = direction.normalize();

@@ -21,21 +21,38 @@ impl<const N: usize> Map<N> {
     /// The affine map that touches another map of rays at zero, by differences of fourth order:
     /// good to some 10⁻¹⁰ per metre and radian. `None` where a ray near zero does not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
+        Self::touching_by(STEP, map)
+    }
+
+    /// By differences of this step.
+    fn touching_by(step: f64, map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
         let offset = map([0.0; N])?;
         let mut matrix: Matrix<N> = [[0.0; N]; N];
         for column in 0..N {
             let at = |steps: f64| {
                 let mut z = [0.0; N];
-                z[column] = steps * STEP;
+                z[column] = steps * step;
                 map(z)
             };
             let [a, b, c, d] = [at(-2.0)?, at(-1.0)?, at(1.0)?, at(2.0)?];
             for row in 0..N {
                 let sum = a[row] - 8.0 * b[row] + 8.0 * c[row] - d[row];
-                matrix[row][column] = sum / (12.0 * STEP);
+                matrix[row][column] = sum / (12.0 * step);
             }
         }
         Some(Self { matrix, offset })
+    }
+
+    /// How far this map is from the one that touches another map of rays at zero, as
+    /// [`apart`](Self::apart) has it, beyond what differences leave open where that map bends fast.
+    pub(crate) fn off_touching(
+        &self,
+        map: impl Fn([f64; N]) -> Option<[f64; N]>,
+        half: &[f64; N],
+    ) -> Option<f64> {
+        let fine = Self::touching_by(STEP, &map)?;
+        let open = fine.apart(&Self::touching_by(2.0 * STEP, &map)?, half);
+        Some((self.apart(&fine, half) - open).max(0.0))
     }
 
     /// How far this map is from another, in the half-widths of a window: the largest difference of

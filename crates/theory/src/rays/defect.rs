@@ -1,7 +1,7 @@
 //! Whether the maps of a first-order chain are those of the real geometry.
 
 use super::System;
-use crate::geometry::{Map, SpectrumMap};
+use crate::geometry::SpectrumMap;
 use crate::model::Observed;
 use etendue_field::Window;
 
@@ -19,10 +19,10 @@ use etendue_field::Window;
 pub fn defect(view: &Observed<System>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
     let Observed { system, plane } = view;
     let lands = |ray| plane.coordinates(&system.follow(ray)?);
-    let traced = Map::touching(|ray| Some(lands(ray)?.0))?;
     let half = [window.x, window.y, window.u, window.v].map(|profile| profile.half_width());
     // What becomes of flux along the central ray; at the light it stands for radiance.
     let (center, per_flux) = lands([0.0; 4])?;
     let radiance = map.factor * plane.factor(center) / per_flux;
-    Some(map.rays().apart(&traced, &half).max((radiance - 1.0).abs()))
+    let off = map.rays().off_touching(|ray| Some(lands(ray)?.0), &half)?;
+    Some(off.max((radiance - 1.0).abs()))
 }
