@@ -188,7 +188,9 @@ impl Backward {
             }
         };
         let ray = TwoPlane { x, y, u, v };
-        let on_leg = looker.station.leg_ray(&ray).filter(|_| density > 0.0);
+        let is_ahead = looker.leg > 0 || looker.station.is_ahead([x, y]);
+        let on_leg = looker.station.leg_ray(&ray);
+        let on_leg = on_leg.filter(|_| density > 0.0 && is_ahead);
         let Some((on_leg, area)) = on_leg else {
             return Crossing { ray, weight: 0.0 };
         };

@@ -69,6 +69,13 @@ impl Station {
         Some((point, frame.d, 1.0 / frame.d.dot(view.frame.d)))
     }
 
+    /// Whether what it sees at a point, (x, y), lies ahead of where the first leg begins: a surface may
+    /// reach back beside the light.
+    pub(crate) fn is_ahead(&self, at: [f64; 2]) -> bool {
+        let arrives = self.surface.is_some_and(|view| view.arriving);
+        !arrives || self.point(at).is_some_and(|(point, ..)| point.z > 0.0)
+    }
+
     /// How it looks at the surface it is on; `None` across the leg.
     pub(crate) fn view(&self) -> Option<View> {
         self.surface

@@ -76,6 +76,17 @@ fn arriving() {
     agree(&wall, &[tangent]);
 }
 
+/// A surface that reaches back beside the light is dark there.
+#[test]
+fn arriving_behind_the_light() {
+    let near = smooth("Mirror").replace("(0, 0, 1)", "(0, 0, 0.04)");
+    for orientation in ["Tangent", "LocalNormals"] {
+        let plane = format!(r#"at: Before("s"), orientation: {orientation}"#);
+        agree(&near.replace("Sphere(0.2)", "Plane"), &[&plane]);
+        agree(&near, &[&plane]);
+    }
+}
+
 /// A tangent plane that goes on beyond its surface sees what passes beside.
 #[test]
 fn arriving_beside() {
