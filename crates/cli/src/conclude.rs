@@ -4,7 +4,7 @@ use crate::inquiry::inquire;
 use crate::method::Method;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
-use crate::{field, files, photons, pictures, progress, say, table};
+use crate::{aimed, field, files, photons, pictures, progress, say, table};
 use etendue_compare::{
     Applicability, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare,
 };
@@ -69,7 +69,8 @@ pub(crate) fn conclude(
     mut watch: Stopwatch,
 ) -> Result<u8, Failure> {
     let stage = progress::stage("comparing", ending.quiet);
-    let planes = compared(case)?;
+    let mut planes = compared(case)?;
+    aimed::leave_open(case, &mut planes);
     watch.lap("compare");
     let inquiries = stage.suspend(|| inquire(case, &planes, ending.quiet))?;
     stage.set_message("writing results");

@@ -3,6 +3,7 @@
 //! `run` measures a scene, predicts it, compares and draws; `measure`, `predict` and `compare` are its stages
 //! over files; `check` says what a scene says.
 
+mod aimed;
 mod args;
 mod bandwidth;
 mod batches;

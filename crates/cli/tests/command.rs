@@ -35,6 +35,28 @@ fn is_result(folder: &Path) -> bool {
     })
 }
 
+/// A plane that only photons aimed at another one see does not fail by the part that these see.
+#[test]
+fn a_window_seen_in_part_is_undecided() {
+    let folder = tempfile::tempdir().unwrap();
+    let of = |method: &str| {
+        let mut command = etendue();
+        command
+            .args(["run", "--force", "--method", method])
+            .arg(scene("wild/seen_in_part.ron"))
+            .arg("--out")
+            .arg(folder.path());
+        let output = command.output().unwrap();
+        let table = String::from_utf8(output.stdout).unwrap();
+        (output.status.code(), table)
+    };
+    let (code, table) = of("photons");
+    assert_eq!(code, Some(4), "{table}");
+    let said = "far: 0 of 100000 photons aimed at this window reach it";
+    assert!(table.contains(said), "{table}");
+    assert_eq!(of("backward").0, Some(0));
+}
+
 #[test]
 fn a_run_passes_and_leaves_a_result() {
     let folder = tempfile::tempdir().unwrap();
