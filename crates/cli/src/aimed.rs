@@ -2,7 +2,7 @@
 
 use crate::conclude::Case;
 use crate::method::Method;
-use etendue_compare::{PlaneComparison, Verdict};
+use etendue_compare::{Class, PlaneComparison, Verdict};
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_trace::Tracer;
@@ -18,12 +18,13 @@ const EACH: u64 = 8;
 /// to see, with an error that is far too small.
 pub(crate) fn leave_open(case: &Case, planes: &mut [PlaneComparison]) {
     let count = case.scene.planes.len() as u64;
-    if case.method != Method::Photons || count < 2 {
+    if count < 2 {
         return;
     }
     for (plane, compared) in planes.iter_mut().enumerate() {
         let report = &mut compared.report;
-        if report.exact_verdict() != Verdict::Fail {
+        let by_photons = case.method == Method::Photons || report.class == Class::Reference;
+        if report.exact_verdict() != Verdict::Fail || !by_photons {
             continue;
         }
         let photons = case.scene.run.photons / count;

@@ -1,6 +1,6 @@
 //! What keeps a plane from the theory of light between parallel planes.
 
-use etendue_field::{Frame, Light, Orientation, Profile, Quantity, VirtualPlane};
+use etendue_field::{Frame, Light, Orientation, Profile, Quantity, Side, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -87,7 +87,9 @@ fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bo
     let legs = &scene.path.legs;
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);
-    let along = scene.path.along(plane);
+    // A plane right after something is at the same distance.
+    let after = plane.side == Side::After;
+    let along = scene.path.along(plane) * if after { 1.0 + 1e-12 } else { 1.0 };
     let seen = [0, 1].map(|axis| window[axis] + along * slope[axis]);
     let light = [0, 1].map(|axis| {
         let [low, high] = scene.light.extent(axis);

@@ -276,3 +276,27 @@ fn a_smooth_mesh_is_flat_or_finely_curved() {
     assert_eq!(of(3.0, 100), Class::FirstOrder);
     assert_eq!(of(3.0, 10), Class::Reference);
 }
+
+/// What stands right at a plane, or in the light of a picture before a flat surface, is in the way.
+#[test]
+fn what_stands_at_a_plane_or_before_a_flat_surface() {
+    let sheet = r#"Mesh(name: "sheet", center: (0, 0, 0.5), mesh: Paraboloid(curvatures: (0, 0), half: 0.1, cells: 1))"#;
+    let floor = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (4, 4))"#;
+    let reasons = |light: &str, blockers: &str, surfaces: &str, at: &str| {
+        of(&scene(light, blockers, surfaces, r#""floor""#, at, 0.2)).reasons
+    };
+    let found = reasons(LIGHT, sheet, floor, r#"After("sheet")"#);
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert!(reasons(LIGHT, sheet, floor, r#"Before("sheet")"#).is_empty());
+
+    let leaning = r#"Rectangle(name: "floor", center: (0, 0, 1), size: (4, 4), facing: (-0.6, 0, -0.8)),
+        Smooth(name: "card", center: (-0.5, 0, 0.2), facing: (-1, 0, 1.5), form: Plane, aperture: 0.55, event: Mirror)"#;
+    let text = |visits: &str| {
+        let scene = scene(PROJECTOR, "", leaning, visits, "Distance(0.8)", 0.2);
+        of(&scene).reasons
+    };
+    assert_eq!(
+        text(r#""floor", "card""#),
+        ["light that meets card out of turn"]
+    );
+}

@@ -1,7 +1,7 @@
 //! Rays through specular surfaces: what photons meet, and where theory looks.
 
 use super::coordinates::coordinates;
-use super::rays::{DARK, Ray, lattice, met, point_on, ray_to};
+use super::rays::{DARK, Ray, centred, lattice, met, point_on, ray_to};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
@@ -66,13 +66,26 @@ impl Follower<'_> {
     pub(super) fn ray(&self, index: u32) -> Option<(Ray, f64)> {
         let r = lattice(index);
         let hit = self.scene.path.ends_at(0)?;
-        let patch = match (self.system.elements.first(), hit.object) {
-            (Some(element), _) => element.patch,
-            (None, Object::Patch(i)) => self.scene.patches[i].patch,
-            // Before a mesh or a flat surface there are the masks alone.
-            (None, Object::Mesh(_) | Object::Surface(_)) => return None,
+        let of_patch = |patch: &Patch| point_on(patch, hit.point, index, [r[0], r[1]]);
+        let target = match (self.system.elements.first(), hit.object) {
+            (Some(element), _) => of_patch(&element.patch)?,
+            (None, Object::Patch(i)) => of_patch(&self.scene.patches[i].patch)?,
+            (None, Object::Surface(i)) => {
+                let surface = &self.scene.surfaces[i];
+                let center = surface.frame.to_local(hit.point);
+                let across = |axis: usize| {
+                    let at = center[axis] + surface.size[axis] * centred(index, r[axis]);
+                    (2.0 * at.abs() <= surface.size[axis]).then_some(at)
+                };
+                let at = DVec3::new(across(0)?, across(1)?, 0.0);
+                surface.frame.to_world(at)
+            }
+            (None, Object::Mesh(i)) => {
+                let triangles = &self.scene.meshes[i].triangles;
+                let corners = triangles[index as usize % triangles.len()];
+                corners[0].lerp(corners[1], r[0]).lerp(corners[2], r[1])
+            }
         };
-        let target = point_on(&patch, hit.point, index, [r[0], r[1]])?;
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
