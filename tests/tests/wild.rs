@@ -365,6 +365,14 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
+/// Where most light of a sky comes from low, what comes from above is looked after all the same.
+#[test]
+fn a_low_sky_is_decided() {
+    let scene = scene("low_sky");
+    let reasons = Applicability::new(&scene, &scene.planes[0]).reasons;
+    assert_eq!(reasons, ["light that meets glass out of turn"]);
+}
+
 /// Rays do not go on from the triangles of a mesh as they do from the patch that osculates it: one
 /// is met again, the other is round.
 #[test]

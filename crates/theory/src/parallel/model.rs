@@ -180,7 +180,7 @@ fn of_mask(mask: &Mask, index: usize) -> Vec<Parameter> {
 mod tests {
     use super::*;
     use crate::testing::*;
-    use etendue_field::{HalfPlane, Rectangle};
+    use etendue_field::{FrequencyAxis, HalfPlane, Profile, ProjectionGrid, Rectangle, SliceGrid};
 
     #[test]
     fn parameters_follow_the_light() {
@@ -195,6 +195,25 @@ mod tests {
                 "travel b to c"
             ]
         );
+    }
+
+    /// A quarter finer rule of a wide disc behind a narrow window tells nothing of its error.
+    #[test]
+    fn wide_discs_behind_narrow_windows_are_sampled() {
+        let sampled = |radius: f64| {
+            let chain = chain_of(spot(disc([0.0; 2], radius), 0.0), [(0.0, None)]);
+            let window = window(Profile::Hann(0.1), Profile::Hann(1.0));
+            let axis = |spacing| FrequencyAxis { half: 1, spacing };
+            let grid = SliceGrid {
+                azimuths: 1,
+                rho: axis(5.0),
+                nu: axis(0.5),
+            };
+            let picture = ProjectionGrid::new(&window, 1);
+            chain.is_sampled((&window, &grid, &picture))
+        };
+        assert!(!sampled(0.1));
+        assert!(sampled(20.0));
     }
 
     #[test]
