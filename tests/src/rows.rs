@@ -36,7 +36,6 @@ const FACTORS: &str = "Operators of shading in 2D";
 const MIRRORS: &str = "Operators in 4D";
 const SHADED: &str = "Shading in 4D";
 const MAIN: &str = "Every plane";
-const WORDS: &str = "What the paper says";
 
 const ROWS: [Row; 12] = [
     Row {
@@ -54,12 +53,9 @@ const ROWS: [Row; 12] = [
         operator: ["multiplication", "convolution"],
         checks: &[
             checks(
-                WORDS,
-                "statement",
-                &[
-                    "replicas sit at the blockers' frequency f (3.4)",
-                    "small blockers act as their average (3.4)",
-                ],
+                FACTORS,
+                "operator",
+                &["visibility of a rectangle", "visibility of a half-plane"],
             ),
             checks(MAIN, "plane", &["after_blockers", "receiver"]),
             checks(SHADED, "plane", &["1_incidence"]),

@@ -20,6 +20,7 @@ mod scenes;
 mod spreading;
 mod tamper;
 mod traced;
+mod visibility;
 mod words;
 
 pub(crate) use glossy::glossy;

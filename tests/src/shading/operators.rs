@@ -1,6 +1,6 @@
 //! The section of the operators.
 
-use super::{brdfs, factors, small, verdict};
+use super::{brdfs, factors, small, verdict, visibility};
 use crate::report::Section;
 
 /// Both sides are good to 10⁻¹² or so.
@@ -22,7 +22,8 @@ pub(super) struct Comparison {
 pub(super) fn operators() -> Section {
     let mut rows = Vec::new();
     let mut passed = true;
-    for row in factors::all().into_iter().chain(brdfs::all()) {
+    let factors = visibility::all().into_iter().chain(factors::all());
+    for row in factors.chain(brdfs::all()) {
         let well = row.off < REQUIRED && row.fault.1 > SEEN;
         passed &= well;
         rows.push(vec![
@@ -38,7 +39,7 @@ pub(super) fn operators() -> Section {
     Section {
         title: "Operators of shading in 2D: theory against quadrature".to_owned(),
         text: format!(
-            "No photons. The spectrum the theory states against a plain quadrature of the primal: factors and lobes alone over 24 frequencies up to 6 cycles per \
+            "No photons. The spectrum the theory states against a plain quadrature of the primal: what passes a mask, at 12 frequencies; factors and lobes alone over 24 frequencies up to 6 cycles per \
              radian, then reflections of two Gaussians about 0.25 m and 0.28 rad wide at k = 0.5 /m, θ₀ = 0.5, θ₁ = −0.4, after all seven steps to first order, over 18 \
              frequencies; the horizon cuts that light, but for the ideal mirror, whose spectrum knows no horizon. Required beforehand: a relative difference below {REQUIRED:.0e}, since both sides \
              are good to 1e-12; and the fault named beside each operator, planted in the theory's form, off by more than {SEEN:.0e}."
