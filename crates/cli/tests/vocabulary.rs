@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{SCENE, array, call, files, json, refused};
+use common::{SCENE, array, call, files, json, refused, scene};
 use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};
@@ -43,13 +43,22 @@ fn backward_rays_agree_and_keep_no_ledger() {
     assert!(summary["planes"][1]["in_window"].as_u64().unwrap() > 1000);
 }
 
+/// A point is looked for where it is, but not behind a mirror that turns its light first.
 #[test]
-fn a_point_is_not_found_backwards() {
-    let folder = folder(&[(LIGHT, POINT)]);
+fn a_point_is_found_backwards_unless_a_mirror_turns_its_light() {
+    let beyond = ("at: Emission", "at: Distance(0.5)");
+    let found = folder(&[(LIGHT, POINT), beyond]);
+    let run = "run small.ron --method backward --photons 100000 --out out";
+    let output = call(found.path(), run);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let at_light = folder(&[(LIGHT, POINT)]);
+    refused(at_light.path(), run, &["it is a point there"]);
+    let mirror = scene("wild/ball_beyond_its_patch.ron");
+    let arguments = format!("run {} --method backward --out other", mirror.display());
     refused(
-        folder.path(),
-        "run small.ron --method backward --out out",
-        &["point light"],
+        at_light.path(),
+        &arguments,
+        &["no ray traced back from p finds the light"],
     );
 }
 

@@ -7,6 +7,8 @@ use etendue_scene::{BlockerLayer, Object, Scene};
 /// Lowest and highest coordinate along two axes.
 type Extent = [[f64; 2]; 2];
 
+/// No limits.
+const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// Slopes that no light exceeds.
 const FAR: f64 = 1e3;
 /// Share of the rays of a section that rounding may leave.
@@ -47,7 +49,7 @@ pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane) -> Option<String> {
     }
     let covering = layers
         .into_iter()
-        .find(|layer| covers(layer, &sections, scene));
+        .find(|layer| covers(layer, &sections, scene, plane));
     covering.map(|layer| format!("{} covers all ways", layer.name))
 }
 
@@ -122,11 +124,22 @@ fn extent(values: impl Iterator<Item = f64>) -> [f64; 2] {
 }
 
 /// Whether a layer leaves nothing of the rays of both sections on their way to the first surface.
-fn covers(layer: &BlockerLayer, sections: &[RaySection; 2], scene: &Scene) -> bool {
+fn covers(
+    layer: &BlockerLayer,
+    sections: &[RaySection; 2],
+    scene: &Scene,
+    plane: &VirtualPlane,
+) -> bool {
     let Mask::Opaque { shapes, .. } = &layer.mask else {
         return false;
     };
-    let towards = towards_surface(scene, sections, layer.distance);
+    // A plane before the surface sees what passes beside that, too.
+    let is_beyond = plane.leg > 0 || plane.orientation.is_local();
+    let towards = if is_beyond {
+        towards_surface(scene, sections, layer.distance)
+    } else {
+        UNLIMITED
+    };
     let crossed = [0, 1].map(|axis| {
         let [low, high] = sections[axis].at(layer.distance);
         [low.max(towards[axis][0]), high.min(towards[axis][1])]
@@ -143,13 +156,12 @@ fn covers(layer: &BlockerLayer, sections: &[RaySection; 2], scene: &Scene) -> bo
 
 /// Where lines from the light to the first surface cross a plane, if it is a smooth one.
 fn towards_surface(scene: &Scene, sections: &[RaySection; 2], distance: f64) -> Extent {
-    let unlimited = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
     let Some(Object::Patch(i)) = scene.path.ends_at(0).map(|hit| hit.object) else {
-        return unlimited;
+        return UNLIMITED;
     };
     let corners = scene.patches[i].patch.corners();
     if corners.iter().any(|corner| corner.z <= distance) {
-        return unlimited;
+        return UNLIMITED;
     }
     [0, 1].map(|axis| {
         let from = sections[axis].at(0.0);

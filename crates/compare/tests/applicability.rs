@@ -300,3 +300,13 @@ fn what_stands_at_a_plane_or_before_a_flat_surface() {
         ["light that meets card out of turn"]
     );
 }
+
+/// A card that shades a small mirror leaves light beside it, which a plane before the mirror sees.
+#[test]
+fn what_passes_beside_a_shaded_surface_is_not_dark() {
+    let card = r#"Shapes(name: "card", center: (0, 0, 0.5), shapes: [Rectangle(center: (0, 0), size: (0.4, 0.4))])"#;
+    let mirror = r#"Smooth(name: "mirror", center: (0, 0, 1), facing: (0, 0, -1), form: Plane, aperture: 0.05, event: Mirror)"#;
+    let dark = |at: &str| of(&scene(LIGHT, card, mirror, r#""mirror""#, at, 0.4)).dark;
+    assert!(dark(r#"After("mirror")"#).is_some());
+    assert_eq!(dark("Distance(0.8)"), None);
+}

@@ -86,8 +86,8 @@ enum How {
 /// A plane to which something turns the light of a point: no backward ray finds it.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error(
-    "no ray traced back from {plane} finds the light, a point or a beam behind a mirror, an \
-     interface or a lens: measure it by photons"
+    "no ray traced back from {plane} finds the light: it is a point there, or a point or a beam that \
+     a mirror, an interface or a lens turns first; measure it by photons"
 )]
 pub struct LightNotFound {
     plane: String,

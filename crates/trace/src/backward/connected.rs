@@ -8,7 +8,8 @@ use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
 /// Whether rays that are traced back from a plane find the light: light without extent only where
-/// nothing turns it before the plane, or before the first surface that scatters it.
+/// nothing turns it before the plane, or before the first surface that scatters it, and a point not
+/// from where it is.
 #[must_use]
 pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     let first = scene.path.legs.get(1).and_then(|leg| leg.leaves.as_ref());
@@ -17,16 +18,18 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
         Object::Mesh(i) => scene.meshes[i].smooth.is_some(),
         Object::Patch(i) => matches!(scene.patches[i].event, Event::Specular(_)),
     });
-    scene.light.has_extent() || plane.leg == 0 || !turns
+    let light = &scene.light;
+    let is_at_point = plane.leg == 0 && plane.distance <= 0.0 && !light.is_distant();
+    light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }
 
 /// The ray, given at the light, that goes from a light without extent to a point in the frame at the
 /// light; and the irradiance there across it, over what the ray carries per du dv or dx dy.
 pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)> {
-    if point.z <= 0.0 {
+    let [x, y] = [point.x, point.y];
+    if point.z < 0.0 || point.z == 0.0 && !light.is_distant() {
         return None;
     }
-    let [x, y] = [point.x, point.y];
     if light.is_distant() {
         let (u, v) = (0.0, 0.0);
         return Some((TwoPlane { x, y, u, v }, 1.0));
