@@ -122,7 +122,7 @@ impl Compared<'_> {
             self.inside() == 0
         } else {
             // Residuals that are all zero have no p.
-            p_value.is_none_or(|p| p >= test.level)
+            p_value.is_none_or(|p| p >= test.level) || self.agrees_within(0.0, test)
         };
         let photons_needed = self.photons_needed(&agreement, test);
         let open = self.open_question(&agreement, agrees, photons_needed, test);
@@ -210,11 +210,18 @@ impl Compared<'_> {
     /// Whether what a quadrature may be off by is all that photons disagree with, such as where they
     /// have next to no noise.
     fn is_excused(&self, test: &Test) -> bool {
-        self.prediction.systematic_error().is_some_and(|error| {
-            let forgiving = self.residuals.forgiving(self.predicted, error);
-            let p = forgiving.p_value(test.seed);
-            p.is_none_or(|p| p >= test.level)
-        })
+        let error = self.prediction.systematic_error();
+        error.is_some_and(|error| self.agrees_within(error, test))
+    }
+
+    /// Whether photons agree with a prediction that is off by no more than this share of each
+    /// frequency, and than the transform of photons is.
+    fn agrees_within(&self, error: f64, test: &Test) -> bool {
+        let p = self
+            .residuals
+            .forgiving(self.predicted, error)
+            .p_value(test.seed);
+        p.is_none_or(|p| p >= test.level)
     }
 
     /// Photons that would decide; `None` where that is not known, or more of them do not help.

@@ -20,6 +20,9 @@ pub struct Residuals {
 
 /// Rounds of random signs: the p-value is known to a part in 20,000.
 const ROUNDS: u64 = 19_999;
+/// Error of the fast transform of photons, as a share of the largest value
+/// (`etendue_field::transform`).
+const TRANSFORM: f64 = 2e-7;
 /// What rounding may leave of shares that add up to one.
 const ROUNDING: f64 = 1e-9;
 
@@ -84,13 +87,15 @@ impl Residuals {
     }
 
     /// The residuals from the prediction nearest to the measurement of those that are off by no more
-    /// than `error`|F| at each frequency.
+    /// than `error`|F| at each frequency, and than the fast transform is of the largest F.
     pub(crate) fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
+        let largest = prediction.half.iter().map(|f| f.norm()).fold(0.0, f64::max);
+        let of_transform = TRANSFORM * largest;
         moved.zip_mut_with(&prediction.half, |mean, f| {
             let distance = mean.norm();
             if distance > 0.0 {
-                *mean *= (error * f.norm() / distance).min(1.0);
+                *mean *= ((error * f.norm()).max(of_transform) / distance).min(1.0);
             }
         });
         let parts = self.parts.iter().map(|part| part - &moved);
