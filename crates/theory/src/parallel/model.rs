@@ -129,11 +129,16 @@ impl Chain {
         } else {
             OF_CLOSED_FORMS
         };
-        let is_resolved = match path.receiver() {
-            Some(receiver) => receiver.is_resolved(window),
-            None => DiscResolution::is_enough(&path, window, [grid.rho.max(), grid.nu.max()]),
-        };
-        !is_resolved || work.steps > accepted || work.bytes + work.bytes_each > BYTES
+        if work.steps > accepted || work.bytes + work.bytes_each > BYTES {
+            return true;
+        }
+        match path.receiver() {
+            Some(receiver) => !receiver.is_resolved(window),
+            None => {
+                let frequency = [grid.rho.max(), grid.nu.max()];
+                !DiscResolution::is_enough(&path, window, frequency)
+            }
+        }
     }
 
     /// ∫ L W without what stands in the way.

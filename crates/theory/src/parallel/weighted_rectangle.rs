@@ -70,13 +70,20 @@ impl DiscResolution {
     /// Whether discs may be taken apart about as finely as spectra up to `frequency` need it. A wide
     /// one behind a narrow window is not, and finer rules tell nothing of the error then.
     pub(crate) fn is_enough(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> bool {
+        if !path.has_discs() {
+            return true;
+        }
         let wanted = Self::wanted(path, window, frequency);
+        if wanted
+            .0
+            .iter()
+            .any(|discs| discs.count() >= whole(MOST_NODES))
+        {
+            return false;
+        }
         let affordable = wanted.clone().affordable(path, window);
         let mut both = wanted.0.iter().zip(&affordable.0);
-        let is_enough = |(wanted, affordable): (&Discs, &Discs)| {
-            wanted.count() < whole(MOST_NODES) && wanted.count() <= 2 * affordable.count()
-        };
-        !path.has_discs() || both.all(is_enough)
+        both.all(|(wanted, affordable)| wanted.count() <= 2 * affordable.count())
     }
 
     fn wanted(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
