@@ -365,6 +365,15 @@ fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Predic
     }
 }
 
+/// Squares that cover a window of the same size across the path leave light for one on a surface.
+#[test]
+fn what_goes_by_squares_is_decided() {
+    let scene = scene("squares_before_the_glass");
+    let theory = Applicability::new(&scene, &scene.planes[0]);
+    assert_eq!(theory.dark, None);
+    assert!(photons(&scene).tally(0).inside > 1000);
+}
+
 /// Where most light of a sky comes from low, what comes from above is looked after all the same.
 #[test]
 fn a_low_sky_is_decided() {

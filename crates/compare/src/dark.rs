@@ -1,7 +1,7 @@
 //! Planes that no light reaches, by what stands on the first leg.
 
 use crate::chain::stands_before;
-use etendue_field::{Mask, Profile, Shape, VirtualPlane};
+use etendue_field::{Mask, Orientation, Profile, Shape, VirtualPlane};
 use etendue_scene::{BlockerLayer, Object, Scene};
 
 /// Lowest and highest coordinate along two axes.
@@ -69,7 +69,8 @@ impl RaySection {
         let most = scene.light.steepest(axis).min(FAR);
         let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
-        if plane.leg == 0 {
+        // Coordinates on a surface are not those across the leg.
+        if plane.leg == 0 && plane.orientation == Orientation::Orthogonal {
             for side in [-1.0, 1.0] {
                 section.clip([side, side * plane.distance, position]);
                 section.clip([0.0, side, slope]);
