@@ -2,14 +2,11 @@
 
 use crate::conclude::Case;
 use crate::method::Method;
-use etendue_compare::{Class, PlaneComparison, Verdict};
-use etendue_field::PhotonSource;
+use etendue_compare::{Class, EACH, PlaneComparison, Verdict};
+use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::Scene;
 use etendue_trace::Tracer;
 use rayon::prelude::*;
-
-/// Photons of a batch with which one in 3,000 batches is empty.
-const EACH: u64 = 8;
 
 /// Leaves open what fails by photons that were aimed at other windows.
 ///
@@ -29,7 +26,7 @@ pub(crate) fn leave_open(case: &Case, planes: &mut [PlaneComparison]) {
         }
         let photons = case.scene.run.photons / count;
         let reach = reached(&case.scene, plane, photons);
-        if reach < EACH * u64::from(case.scene.run.batches) {
+        if (reach as f64) < EACH * f64::from(case.scene.run.batches) {
             let has_wrong_map = report.first_order.as_mut().is_some_and(|chain| {
                 chain.exact = Verdict::Undecided;
                 chain.verdict == Verdict::Fail
@@ -47,16 +44,13 @@ pub(crate) fn leave_open(case: &Case, planes: &mut [PlaneComparison]) {
 
 /// How many of so many photons reach the window of a plane, when they are aimed at it alone.
 fn reached(scene: &Scene, plane: usize, photons: u64) -> u64 {
-    let mut alone = Scene {
-        planes: vec![scene.planes[plane].clone()],
-        ..scene.clone()
-    };
+    let mut alone = scene.seen_at(&[plane]);
     alone.run.photons = photons;
     let tracer = Tracer::new(&alone);
     let window = &alone.planes[0].window;
     let of_batch = |batch: u32| {
         let mut inside = 0;
-        let mut count = |_: usize, crossings: &[etendue_field::Crossing]| {
+        let mut count = |_: usize, crossings: &[Crossing]| {
             let seen = crossings.iter().filter(|c| window.value(&c.ray) > 0.0);
             inside += seen.count() as u64;
         };

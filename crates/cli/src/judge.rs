@@ -16,8 +16,8 @@ pub(crate) struct Judge {
 }
 
 impl Judge {
-    /// Measures some planes of a scene by the methods that judge `method` there, a measurement for each
-    /// method.
+    /// Measures some planes of a scene by the methods that judge `method` there, a measurement for
+    /// each method.
     pub(crate) fn all(
         scene: &Scene,
         planes: &[usize],
@@ -31,11 +31,8 @@ impl Judge {
         });
         let judged = judged.into_iter();
         let judged = judged.filter(|(_, planes): &(_, Vec<usize>)| !planes.is_empty());
-        let measured = |(method, planes): (Method, Vec<usize>)| {
-            let scene = Scene {
-                planes: planes.iter().map(|i| scene.planes[*i].clone()).collect(),
-                ..scene.clone()
-            };
+        let judge = |(method, planes): (Method, Vec<usize>)| {
+            let scene = scene.seen_at(&planes);
             let measurement = measured(&scene, method, 0..scene.run.batches, quiet)?;
             Ok(Self {
                 method,
@@ -43,7 +40,7 @@ impl Judge {
                 planes,
             })
         };
-        judged.map(measured).collect()
+        judged.map(judge).collect()
     }
 
     /// The judge of a plane of the scene, and the plane's number in its measurement.

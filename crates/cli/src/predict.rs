@@ -41,8 +41,8 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
     Ok(0)
 }
 
-/// Predicts all planes of a scene for a measurement by `method`; where theory has no word, another method's
-/// measurement takes its place.
+/// Predicts all planes of a scene for a measurement by `method`; where theory has no word, another
+/// method's measurement takes its place.
 pub(crate) fn predicted(
     scene: &Scene,
     theories: &[Applicability],

@@ -36,7 +36,7 @@ pub use class::Class;
 pub use converge::{Convergence, converge};
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use memory::Memory;
-pub use plane::{PlaneComparison, compare};
+pub use plane::{EACH, PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction};
 pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
 pub use residuals::Residuals;

@@ -47,7 +47,7 @@ const DARK: f64 = 1e-12;
 /// takes them to be.
 const FEW: f64 = 0.25;
 /// Photons of a batch with which one in 3,000 batches is empty.
-const EACH: f64 = 8.0;
+pub const EACH: f64 = 8.0;
 
 /// Compares plane `index` of a measurement with its prediction.
 ///
@@ -207,8 +207,8 @@ impl Compared<'_> {
         }
     }
 
-    /// Whether what a quadrature may be off by is all that photons disagree with, such as where they
-    /// have next to no noise.
+    /// Whether what a quadrature may be off by is all that photons disagree with, such as where
+    /// they have next to no noise.
     fn is_excused(&self, test: &Test) -> bool {
         let error = self.prediction.systematic_error();
         error.is_some_and(|error| self.agrees_within(error, test))

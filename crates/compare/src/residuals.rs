@@ -86,8 +86,8 @@ impl Residuals {
         Self { grid, parts }
     }
 
-    /// The residuals from the prediction nearest to the measurement of those that are off by no more
-    /// than `error`|F| at each frequency, and than the fast transform is of the largest F.
+    /// The residuals from the prediction nearest to the measurement of those that are off by no
+    /// more than `error`|F| at each frequency, and than the fast transform is of the largest F.
     pub(crate) fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
         let largest = prediction.half.iter().map(|f| f.norm()).fold(0.0, f64::max);

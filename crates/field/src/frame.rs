@@ -167,6 +167,14 @@ impl Frame {
     }
 }
 
+/// The lowest and the highest corner of the box around points; the origin, twice, without any.
+#[must_use]
+pub fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
+    let low = points.iter().copied().reduce(DVec3::min);
+    let high = points.iter().copied().reduce(DVec3::max);
+    [low, high].map(Option::unwrap_or_default)
+}
+
 /// The corners of the box between two points.
 #[must_use]
 pub fn box_corners(low: DVec3, high: DVec3) -> [DVec3; 8] {

@@ -34,7 +34,7 @@ mod window;
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
 pub use environment::{Environment, EnvironmentMap, LatLong, SphericalGaussian};
 pub use field_grid::{Assignment, FieldGrid};
-pub use frame::{Frame, TwoPlane, box_corners};
+pub use frame::{Frame, TwoPlane, box_corners, enclosing};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use image::Image;
 pub use light::Light;

@@ -251,6 +251,15 @@ impl Surface {
 }
 
 impl Scene {
+    /// The same scene with some of its planes alone, by their numbers.
+    #[must_use]
+    pub fn seen_at(&self, planes: &[usize]) -> Self {
+        Self {
+            planes: planes.iter().map(|i| self.planes[*i].clone()).collect(),
+            ..self.clone()
+        }
+    }
+
     /// BLAKE3 of all that makes the scene: of its file, defaults and overrides included, as JSON, and after it
     /// the name and hash of each mesh and picture it names.
     #[must_use]

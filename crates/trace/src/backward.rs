@@ -3,7 +3,7 @@ mod reflected;
 
 use crate::bounce::at;
 use crate::bvh::{Form, Target, Targets};
-use crate::emit::{LAMBERTIAN, point, radiance};
+use crate::emit::{LAMBERTIAN, by_cosine, point, radiance};
 use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
 use crate::pieces::{Piece, Pieces};
 use crate::proposal::Follower;
@@ -21,7 +21,6 @@ use etendue_field::{
 use etendue_scene::{Event, Object, PatchObject, Scene};
 use glam::DVec3;
 use reflected::Reflection;
-use std::f64::consts::TAU;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).
 ///
@@ -386,9 +385,7 @@ impl Backward {
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
-        let (sin, cos) = (TAU * r[1]).sin_cos();
-        let [across, up] = [r[0].sqrt(), (1.0 - r[0]).sqrt()];
-        let towards = DVec3::new(across * cos, across * sin, up);
+        let towards = by_cosine([r[0], r[1]]);
         let towards = Frame::IDENTITY.turned_to(normal).vector_to_world(towards);
         let this = &self.legs[leg].frame;
         let end = this.to_local(point);

@@ -6,7 +6,9 @@
 //! The builder panics on boxes that are no numbers. No legal scene has them, and none reach it: what has no box in f32 is a candidate everywhere.
 
 use crate::obstacles::{direction, start};
-use etendue_field::{Frame, Patch, Shape, TwoPlane, interpolated_normal, triangle_distance};
+use etendue_field::{
+    Frame, Patch, Shape, TwoPlane, enclosing, interpolated_normal, triangle_distance,
+};
 use glam::{DVec3, Vec3A};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
@@ -132,13 +134,6 @@ impl Form {
             Self::Smooth(patch) => enclosing(&patch.corners()),
         }
     }
-}
-
-/// Lowest and highest coordinates of points.
-pub(crate) fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
-    let low = points.iter().copied().reduce(DVec3::min);
-    let high = points.iter().copied().reduce(DVec3::max);
-    [low, high].map(Option::unwrap_or_default)
 }
 
 fn smooth_hits(patch: &Patch, ray: &TwoPlane) -> [f64; 2] {

@@ -248,6 +248,13 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
     }
 }
 
+/// A direction about Z with a density in proportion to its cosine, from two numbers in (0, 1).
+pub(crate) fn by_cosine([a, b]: [f64; 2]) -> DVec3 {
+    let (sin, cos) = (TAU * b).sin_cos();
+    let [across, up] = [a.sqrt(), (1.0 - a).sqrt()];
+    DVec3::new(across * cos, across * sin, up)
+}
+
 /// The slopes of a point or a projector, or positions of a beam, with which light meets the first surface.
 fn even(scene: &Scene) -> Option<[[f64; 2]; 2]> {
     let light = &scene.light;

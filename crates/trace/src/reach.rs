@@ -1,10 +1,9 @@
 //! Where light that a plane looks at can come from: what emission and scattering are aimed at.
 
-use crate::bvh::enclosing;
 use crate::obstacles::{direction, start};
 use crate::station::Station;
 use etendue_field::{
-    Frame, Orientation, Patch, Profile, Side, TwoPlane, VirtualPlane, box_corners,
+    Frame, Orientation, Patch, Profile, Side, TwoPlane, VirtualPlane, box_corners, enclosing,
 };
 use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};

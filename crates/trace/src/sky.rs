@@ -1,6 +1,6 @@
 //! Directions in proportion to the radiance of an environment.
 
-use crate::emit::LAMBERTIAN;
+use crate::emit::{LAMBERTIAN, by_cosine};
 use crate::obstacles::{direction, ray_through};
 use etendue_field::random::{self, Stream};
 use etendue_field::{Environment, EnvironmentMap, Frame, SphericalGaussian, TwoPlane};
@@ -155,8 +155,7 @@ impl Sky {
     /// The slopes of a direction; `None` when it does not go forward.
     pub(crate) fn slopes(&self, r: [f64; 4]) -> Option<[f64; 2]> {
         let along = if r[0] < self.by_cosine {
-            let (sin, cos) = (TAU * r[1]).sin_cos();
-            DVec3::new(r[2].sqrt() * cos, r[2].sqrt() * sin, (1.0 - r[2]).sqrt())
+            by_cosine([r[2], r[1]])
         } else {
             let first = (r[0] - self.by_cosine) / (1.0 - self.by_cosine);
             self.sample([first, r[1], r[2], r[3]])
@@ -190,9 +189,7 @@ impl Sky {
         incident: impl FnOnce(&TwoPlane, f64) -> f64,
     ) -> f64 {
         let towards = if r[3] < 0.5 {
-            let (sin, cos) = (TAU * r[1]).sin_cos();
-            let [across, up] = [r[0].sqrt(), (1.0 - r[0]).sqrt()];
-            let towards = DVec3::new(across * cos, across * sin, up);
+            let towards = by_cosine([r[0], r[1]]);
             Frame::IDENTITY.turned_to(normal).vector_to_world(towards)
         } else {
             -self.sample([r[0], r[1], r[2], 2.0 * r[3] - 1.0])

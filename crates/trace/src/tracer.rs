@@ -251,10 +251,10 @@ impl Leg {
             let ends = |what: &Meeting| what.is(self.ends);
             let crossed = crossed
                 || on_path && self.obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
-            let seen = station.look(&ray, weight).filter(|_| crossed);
-            let is_ahead =
-                |seen: &TwoPlane| self.leaves.is_some() || station.is_ahead([seen.x, seen.y]);
-            if let Some((ray, weight)) = seen.filter(|(seen, _)| is_ahead(seen)) {
+            if crossed
+                && let Some((ray, weight)) = station.look(&ray, weight)
+                && (self.leaves.is_some() || station.is_ahead([ray.x, ray.y]))
+            {
                 let passes = self
                     .obstacles
                     .transmittance(&flight.ray, from, distance, side);

@@ -47,11 +47,7 @@ const BUDGET: Budget = Budget {
 
 /// Tries the planes of a scene for which a check has a reason, each as if it were alone.
 pub(super) fn trials(scene: &Scene) -> Vec<Trial> {
-    let planes = scene.planes.iter();
-    let alone = planes.map(|plane| Scene {
-        planes: vec![plane.clone()],
-        ..scene.clone()
-    });
+    let alone = (0..scene.planes.len()).map(|plane| scene.seen_at(&[plane]));
     alone.filter_map(|scene| trial(&scene)).collect()
 }
 

@@ -1,11 +1,10 @@
 //! What a run of a scene comes to: whether its verdict is wrong, and who of three is.
 
 use super::run::{Ending, PlaneSummary, Runner};
+use crate::scenes::{measured, traced, traced_backwards};
 use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
-use etendue_field::PhotonSource;
 use etendue_scene::{SceneFile, resolve};
-use etendue_spectrum::{Measurement, measure};
-use etendue_trace::{Backward, Tracer, finds};
+use etendue_trace::{Tracer, finds};
 use std::io;
 use std::path::Path;
 
@@ -225,14 +224,11 @@ fn of_tracers(file: &SceneFile, folder: &Path, name: &str) -> Option<Tracers> {
     let mut scene = resolve("scene", file.clone(), folder, u64::MAX).ok()?;
     scene.planes.retain(|plane| plane.name == name);
     let plane = scene.planes.first()?;
-    let measured = |source: &dyn PhotonSource| -> Measurement {
-        measure(source, &scene.planes, 0..scene.run.batches, &|_| ())
-    };
-    let photons = measured(&Tracer::new(&scene));
+    let photons = traced(&scene);
     let rays = if finds(&scene, plane) {
-        measured(&Backward::new(&scene).ok()?)
+        traced_backwards(&scene)?
     } else {
-        measured(&Tracer::evenly(&scene))
+        measured(&scene, &Tracer::evenly(&scene))
     };
     let inside = [&photons, &rays].map(|measured| measured.tally(0).inside);
     let theory = Applicability::new(&scene, plane);

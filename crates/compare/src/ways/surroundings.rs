@@ -1,7 +1,7 @@
 //! What stands around the path, and what a ray of a leg meets of it.
 
 use super::rays::Ray;
-use etendue_field::{Patch, VirtualPlane};
+use etendue_field::{Patch, VirtualPlane, enclosing};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -70,16 +70,6 @@ enum Form<'a> {
     Flat(&'a Surface),
     /// A box around a mesh, its lowest and highest corner.
     Around([DVec3; 2]),
-}
-
-/// The lowest and highest corner of a box around points.
-fn enclosing(points: &[DVec3]) -> [DVec3; 2] {
-    let corner = |of: fn(DVec3, DVec3) -> DVec3| points.iter().copied().reduce(of);
-    let none = DVec3::INFINITY;
-    [
-        corner(DVec3::min).unwrap_or(none),
-        corner(DVec3::max).unwrap_or(-none),
-    ]
 }
 
 /// Share of a distance that rounding may make.
