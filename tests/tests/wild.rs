@@ -418,6 +418,19 @@ fn what_stands_in_the_way_of_a_brdf_is_decided() {
     }
 }
 
+/// A mirror reaches before the mask in front of it; so narrow a window is found by no ray that is
+/// drawn from the light.
+#[test]
+fn a_sliver_of_slopes_is_decided() {
+    let scene = scene("sliver_of_slopes");
+    let theory = Applicability::new(&scene, &scene.planes[0]);
+    assert_eq!(theory.reasons, ["visibility of slit, partly beyond mirror"]);
+    let measured = backward(&scene);
+    let regardless = by_specular(&scene, 0, by_reference(&scene, 0, &measured));
+    let judged = report(&scene, &measured, 0, &regardless);
+    assert_eq!(judged.verdict, Verdict::Fail);
+}
+
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {

@@ -64,3 +64,11 @@ pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3
     let ((sin, cos), (up, across)) = ((u + plane.longitude).sin_cos(), v.sin_cos());
     local(plane, normal).vector_to_world(DVec3::new(across * sin, up, across * cos))
 }
+
+/// The ray with these coordinates, (x, y, u, v), at a plane across its leg.
+pub(super) fn across(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Ray {
+    Ray {
+        point: plane.frame.to_world(DVec3::new(x, y, 0.0)),
+        direction: direction(plane, plane.frame.d, [u, v]),
+    }
+}

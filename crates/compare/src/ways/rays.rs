@@ -1,6 +1,6 @@
 //! Rays of the light, drawn for a check: the same in every run.
 
-use etendue_field::{EnvironmentMap, Frame, Light, Patch, Shape};
+use etendue_field::{EnvironmentMap, Frame, Light, Patch, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -31,6 +31,23 @@ pub(super) struct Ray {
 impl Ray {
     pub(super) fn at(&self, t: f64) -> DVec3 {
         self.point + t * self.direction
+    }
+
+    /// The same ray, from where it crosses the plane of the light.
+    pub(super) fn begun(&self) -> Self {
+        Self {
+            point: self.at(-self.point.z / self.direction.z),
+            ..*self
+        }
+    }
+
+    /// A ray back along it, from beyond a surface that it meets.
+    pub(super) fn back(&self, patch: &Patch) -> Self {
+        let far = 4.0 * patch.aperture + (self.point - patch.frame.origin).length();
+        Self {
+            point: self.at(far),
+            direction: -self.direction,
+        }
     }
 
     /// The same ray in the coordinates of a frame.
@@ -87,6 +104,13 @@ pub(super) fn lattice(index: u32) -> [f64; 6] {
     })
 }
 
+/// Coordinates at a plane, evenly in its window.
+pub(super) fn within(window: &Window, r: [f64; 4]) -> [f64; 4] {
+    let Window { x, y, u, v } = window;
+    let profiles = [x, y, u, v];
+    std::array::from_fn(|axis| (2.0 * r[axis] - 1.0) * profiles[axis].half_width())
+}
+
 /// A number in (−1, 1): every other one evenly, else as densely near zero as its size, down to a
 /// thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
@@ -101,36 +125,17 @@ pub(super) fn centred(index: u32, r: f64) -> f64 {
 /// A ray of the light through a point, and its share of the strongest; `None` where none is.
 pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Option<(Ray, f64)> {
     let through = |from: DVec3| {
-        let direction = (point - from).try_normalize().filter(|d| d.z > 0.0)?;
+        let direction = (point - from).try_normalize()?;
         let point = from;
         Some(Ray { point, direction })
     };
     let offset = [0, 1].map(|axis| centred(index / 2, r[axis]));
-    match light {
-        Light::Area {
-            shape, exponent, ..
-        } => {
-            let ray = through(point_of(shape, offset))?;
-            Some((ray, ray.direction.z.powf(*exponent)))
-        }
-        Light::Point { .. } => Some((through(DVec3::ZERO)?, 1.0)),
-        Light::Projector { image, .. } => {
-            let ray = through(DVec3::ZERO)?;
-            let [u, v] = [ray.direction.x, ray.direction.y].map(|d| d / ray.direction.z);
-            Some((ray, image.value(u, v)))
-        }
-        Light::Beam { image, .. } => {
-            let ray = through(DVec3::new(point.x, point.y, 0.0))?;
-            Some((ray, image.value(point.x, point.y)))
-        }
+    let ray = match light {
+        Light::Area { shape, .. } => through(point_of(shape, offset))?,
+        Light::Point { .. } | Light::Projector { .. } => through(DVec3::ZERO)?,
+        Light::Beam { .. } => through(DVec3::new(point.x, point.y, 0.0))?,
         Light::Environment { environment } => {
             let frame = &environment.frame;
-            let most = match &environment.map {
-                EnvironmentMap::Lobes(lobes) => {
-                    lobes.iter().map(|lobe| lobe.radiance).fold(0.0, f64::max)
-                }
-                EnvironmentMap::LatLong(_) => 1.0,
-            };
             let direction = match &environment.map {
                 // What is left far from its middle may be all that goes forward.
                 EnvironmentMap::Lobes(lobes) if (index / 4).is_multiple_of(2) => {
@@ -147,15 +152,31 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
                 }
             };
             let direction = direction.normalize();
-            let from = point - point.z / direction.z * direction;
-            let share = environment.radiance(direction) / most;
-            (direction.z > 0.0).then_some((
-                Ray {
-                    point: from,
-                    direction,
-                },
-                share,
-            ))
+            Ray { point, direction }.begun()
+        }
+    };
+    let share = share(light, &ray);
+    (ray.direction.z > 0.0).then_some((ray, share))
+}
+
+/// The share of the strongest light that goes along a ray which begins at the light.
+pub(super) fn share(light: &Light, ray: &Ray) -> f64 {
+    let Ray { point, direction } = ray;
+    match light {
+        Light::Area { exponent, .. } => direction.z.powf(*exponent),
+        Light::Point { .. } => 1.0,
+        Light::Projector { image, .. } => {
+            image.value(direction.x / direction.z, direction.y / direction.z)
+        }
+        Light::Beam { image, .. } => image.value(point.x, point.y),
+        Light::Environment { environment } => {
+            let most = match &environment.map {
+                EnvironmentMap::Lobes(lobes) => {
+                    lobes.iter().map(|lobe| lobe.radiance).fold(0.0, f64::max)
+                }
+                EnvironmentMap::LatLong(_) => 1.0,
+            };
+            environment.radiance(*direction) / most
         }
     }
 }

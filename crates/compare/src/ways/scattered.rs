@@ -1,15 +1,14 @@
 //! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory
 //! looks.
 
-use super::coordinates::{coordinates, direction};
-use super::rays::{DARK, Ray, lattice, met, point_on, ray_to};
+use super::coordinates::{across, coordinates, direction};
+use super::rays::{DARK, Ray, lattice, met, point_on, ray_to, within};
 use super::surroundings::{Meets, Surroundings, in_words};
-use etendue_field::{Orientation, Profile, VirtualPlane, Window};
+use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Hit, Scene};
 use etendue_theory::Observed;
 use etendue_theory::rays::Plane;
 use etendue_theory::scattering::System;
-use glam::DVec3;
 
 /// What light for a plane meets before or behind a surface with a BRDF that theory does not know
 /// of, in words.
@@ -71,33 +70,17 @@ impl Scatterer<'_> {
     /// A ray that leaves the surface: from a point of it, or, every other one across the leg, as it
     /// comes through the window.
     fn leaving(&self, index: u32, r: [f64; 4]) -> Option<Ray> {
-        let Window { x, y, u, v } = &self.plane.window;
-        let within = |profile: &Profile, r: f64| (2.0 * r - 1.0) * profile.half_width();
-        let slopes = [within(u, r[2]), within(v, r[3])];
+        let [x, y, u, v] = within(&self.plane.window, r);
         let patch = &self.system.patch;
         if self.at.orientation == Orientation::Orthogonal && index % 4 < 2 {
-            let foot = DVec3::new(within(x, r[0]), within(y, r[1]), 0.0);
-            let seen = Ray {
-                point: self.at.frame.to_world(foot),
-                direction: direction(self.at, self.at.frame.d, slopes),
-            };
-            let back = self.back(&seen);
+            let seen = across(self.at, [x, y, u, v]);
+            let back = seen.back(patch);
             let point = back.at(back.theory_hit(patch)?);
             return Some(Ray { point, ..seen });
         }
         let point = point_on(patch, self.hit.point, index, [r[0], r[1]])?;
-        let direction = direction(self.at, patch.normal(point), slopes);
+        let direction = direction(self.at, patch.normal(point), [u, v]);
         Some(Ray { point, direction })
-    }
-
-    /// A ray back along another, from far beyond the surface.
-    fn back(&self, ray: &Ray) -> Ray {
-        let patch = &self.system.patch;
-        let far = 4.0 * patch.aperture + (ray.point - patch.frame.origin).length();
-        Ray {
-            point: ray.at(far),
-            direction: -ray.direction,
-        }
     }
 
     /// What stands between the light and a point of the surface.
@@ -133,7 +116,7 @@ impl Scatterer<'_> {
     /// Whether it is from this point that theory has the ray leave: it looks from far out back
     /// along it.
     fn looks_at(&self, leaving: &Ray) -> bool {
-        let back = self.back(leaving);
+        let back = leaving.back(&self.system.patch);
         let far = (back.point - leaving.point).length();
         let found = back.theory_hit(&self.system.patch);
         found.is_some_and(|t| (t - far).abs() < 1e-6 * far)

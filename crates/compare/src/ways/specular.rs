@@ -1,9 +1,9 @@
 //! Rays through specular surfaces: what photons meet, and where theory looks.
 
-use super::coordinates::coordinates;
-use super::rays::{DARK, Ray, centred, lattice, met, point_on, ray_to};
+use super::coordinates::{across, coordinates};
+use super::rays::{DARK, Ray, centred, lattice, met, point_on, ray_to, share, within};
 use super::surroundings::{Meets, Surroundings, in_words};
-use etendue_field::{Patch, TwoPlane, VirtualPlane};
+use etendue_field::{Light, Orientation, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, System};
@@ -62,9 +62,15 @@ impl Follower<'_> {
         (lit(arrival) || lit(self.theory(ray))).then_some(meets)
     }
 
-    /// Ray number `index` of the light, towards the first surface, and its share of the strongest.
+    /// Ray number `index` of the light, and its share of the strongest: towards the first surface, or,
+    /// every other one of a light with extent, as theory has it come through a window across its leg.
     pub(super) fn ray(&self, index: u32) -> Option<(Ray, f64)> {
         let r = lattice(index);
+        let light = &self.system.light;
+        let is_across = self.at.orientation == Orientation::Orthogonal;
+        if is_across && light.has_extent() && index % 4 < 2 {
+            return self.ray_of_window([r[0], r[1], r[2], r[3]]);
+        }
         let hit = self.scene.path.ends_at(0)?;
         let of_patch = |patch: &Patch| point_on(patch, hit.point, index, [r[0], r[1]]);
         let target = match (self.system.elements.first(), hit.object) {
@@ -86,7 +92,29 @@ impl Follower<'_> {
                 corners[0].lerp(corners[1], r[0]).lerp(corners[2], r[1])
             }
         };
-        ray_to(&self.system.light, target, index, [r[2], r[3]])
+        ray_to(light, target, index, [r[2], r[3]])
+    }
+
+    /// The ray of the light that theory has arrive in the window, from four numbers in (0, 1); the
+    /// window may see so little of the light that no ray from there finds it.
+    fn ray_of_window(&self, r: [f64; 4]) -> Option<(Ray, f64)> {
+        let mut ray = across(self.at, within(&self.plane.window, r));
+        for (leg, element) in self.system.elements.iter().enumerate().rev() {
+            let back = ray.back(&element.patch);
+            let point = back.at(back.theory_hit(&element.patch)?);
+            let came = self.turned(leg, on(&element.patch, point), &back)?;
+            ray = Ray {
+                direction: -came.direction,
+                ..came
+            };
+        }
+        let ray = ray.begun();
+        let light = &self.system.light;
+        let begins = match light {
+            Light::Area { shape, .. } => shape.contains(ray.point.x, ray.point.y),
+            _ => true,
+        };
+        (begins && ray.direction.z > 0.0).then(|| (ray, share(light, &ray)))
     }
 
     /// Where theory has a ray arrive.
