@@ -32,10 +32,17 @@ impl Follower<'_> {
             return None;
         }
         let tries = u32::try_from(LOOKED_AT / triangles).unwrap_or(u32::MAX);
+        let rays = (0..tries).filter_map(|index| self.ray(index));
+        let of_window = (0..tries).filter_map(|index| self.ray_of_window(index));
+        self.off_on_average(rays)
+            .or_else(|| self.off_on_average(of_window))
+    }
+
+    /// The same of given rays; `None` if none brings light into the window.
+    fn off_on_average(&self, rays: impl Iterator<Item = (Ray, f64)>) -> Option<f64> {
         let window = &self.plane.window;
         let half = [window.x, window.y, window.u, window.v].map(|p| Profile::half_width(&p));
-        let off = |index: u32| {
-            let (ray, emitted) = self.ray(index)?;
+        let off = |(ray, emitted): (Ray, f64)| {
             let (z, share) = self.theory(ray)?;
             let light = Some(emitted * share * window.value(&z)).filter(|light| *light > DARK)?;
             let apart = self.by_triangles(ray).map_or(LOST, |(seen, _)| {
@@ -45,7 +52,7 @@ impl Follower<'_> {
             });
             Some([light, light * apart * apart])
         };
-        let lit = (0..tries).filter_map(off).take(LIT);
+        let lit = rays.filter_map(off).take(LIT);
         let [light, squares] = lit.fold([0.0; 2], |sum, next| [sum[0] + next[0], sum[1] + next[1]]);
         (light > 0.0).then(|| (squares / light).sqrt())
     }

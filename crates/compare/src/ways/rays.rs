@@ -105,7 +105,7 @@ pub(super) fn lattice(index: u32) -> [f64; 6] {
 }
 
 /// Coordinates at a plane, evenly in its window.
-pub(super) fn within(window: &Window, r: [f64; 4]) -> [f64; 4] {
+pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
     let Window { x, y, u, v } = window;
     let profiles = [x, y, u, v];
     std::array::from_fn(|axis| (2.0 * r[axis] - 1.0) * profiles[axis].half_width())

@@ -45,7 +45,7 @@ impl Scatterer<'_> {
     /// if it does not come into the window.
     fn check(&self, index: u32) -> Option<Option<Meets>> {
         let r = lattice(index);
-        let leaving = self.leaving(index, [r[0], r[1], r[2], r[3]])?;
+        let leaving = self.leaving(index, r)?;
         let Ray { point, direction } = leaving;
         let normal = self.system.patch.normal(point);
         let window = &self.plane.window;
@@ -69,7 +69,7 @@ impl Scatterer<'_> {
 
     /// A ray that leaves the surface: from a point of it, or, every other one across the leg, as it
     /// comes through the window.
-    fn leaving(&self, index: u32, r: [f64; 4]) -> Option<Ray> {
+    fn leaving(&self, index: u32, r: [f64; 6]) -> Option<Ray> {
         let [x, y, u, v] = within(&self.plane.window, r);
         let patch = &self.system.patch;
         if self.at.orientation == Orientation::Orthogonal && index % 4 < 2 {

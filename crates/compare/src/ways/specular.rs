@@ -23,7 +23,9 @@ pub(crate) fn unforeseen_by_rays(
         at: &view.plane,
         around: Surroundings::new(scene, plane),
     };
-    let mut found = in_words(met(|index| follower.check(index)), scene);
+    let mut found = met(|index| follower.check(follower.ray(index)?));
+    found.extend(met(|index| follower.check(follower.ray_of_window(index)?)));
+    let mut found = in_words(found, scene);
     let off = follower.off_patches().filter(|off| *off > OFF_PATCHES);
     found.extend(off.map(|off| {
         let percent = 100.0 * off;
@@ -51,10 +53,9 @@ pub(super) type Arrival = Option<(TwoPlane, f64)>;
 const SAME: f64 = 1e-6;
 
 impl Follower<'_> {
-    /// What ray number `index` meets on its way that theory does not know of, if anything; `None` if
+    /// What a ray of the light meets on its way that theory does not know of, if anything; `None` if
     /// it brings no light into the window.
-    fn check(&self, index: u32) -> Option<Option<Meets>> {
-        let (ray, emitted) = self.ray(index)?;
+    fn check(&self, (ray, emitted): (Ray, f64)) -> Option<Option<Meets>> {
         let (arrival, meets) = self.photon(ray);
         let lit = |arrival: Arrival| {
             arrival.is_some_and(|(z, share)| emitted * share * self.plane.window.value(&z) > DARK)
@@ -62,15 +63,9 @@ impl Follower<'_> {
         (lit(arrival) || lit(self.theory(ray))).then_some(meets)
     }
 
-    /// Ray number `index` of the light, and its share of the strongest: towards the first surface, or,
-    /// every other one of a light with extent, as theory has it come through a window across its leg.
+    /// Ray number `index` of the light, towards the first surface, and its share of the strongest.
     pub(super) fn ray(&self, index: u32) -> Option<(Ray, f64)> {
         let r = lattice(index);
-        let light = &self.system.light;
-        let is_across = self.at.orientation == Orientation::Orthogonal;
-        if is_across && light.has_extent() && index % 4 < 2 {
-            return self.ray_of_window([r[0], r[1], r[2], r[3]]);
-        }
         let hit = self.scene.path.ends_at(0)?;
         let of_patch = |patch: &Patch| point_on(patch, hit.point, index, [r[0], r[1]]);
         let target = match (self.system.elements.first(), hit.object) {
@@ -92,13 +87,17 @@ impl Follower<'_> {
                 corners[0].lerp(corners[1], r[0]).lerp(corners[2], r[1])
             }
         };
-        ray_to(light, target, index, [r[2], r[3]])
+        ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// The ray of the light that theory has arrive in the window, from four numbers in (0, 1); the
-    /// window may see so little of the light that no ray from there finds it.
-    fn ray_of_window(&self, r: [f64; 4]) -> Option<(Ray, f64)> {
-        let mut ray = across(self.at, within(&self.plane.window, r));
+    /// Ray number `index` that theory has arrive in the window, from where a light with extent sends
+    /// it: hardly any ray of the light itself may come into a narrow one.
+    pub(super) fn ray_of_window(&self, index: u32) -> Option<(Ray, f64)> {
+        let light = &self.system.light;
+        if self.at.orientation != Orientation::Orthogonal || !light.has_extent() {
+            return None;
+        }
+        let mut ray = across(self.at, within(&self.plane.window, lattice(index)));
         for (leg, element) in self.system.elements.iter().enumerate().rev() {
             let back = ray.back(&element.patch);
             let point = back.at(back.theory_hit(&element.patch)?);
@@ -109,7 +108,6 @@ impl Follower<'_> {
             };
         }
         let ray = ray.begun();
-        let light = &self.system.light;
         let begins = match light {
             Light::Area { shape, .. } => shape.contains(ray.point.x, ray.point.y),
             _ => true,
