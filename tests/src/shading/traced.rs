@@ -2,8 +2,9 @@
 
 use super::light::Bell;
 use super::primal::{about, wave};
-use super::verdict;
-use crate::report::Section;
+use crate::report::Bound::{Above, AtMost, Below};
+use crate::report::{Check, Row, Section, worse};
+use crate::rows::Line;
 use crate::table1::{apart, slope};
 use etendue_field::Complex;
 use etendue_theory::geometry::Map;
@@ -65,19 +66,23 @@ pub(super) fn traced() -> Section {
         ("concave, Dirac", circle(0.65, -0.5, None)),
     ];
     let mut rows = Vec::new();
-    let mut passed = true;
     for (name, case) in &cases {
         for step in Step::ALL {
             let errors = SIZES.map(|size| case.error(step, size, &|_| ()));
             let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), errors[i].ln()]);
             let order = slope(&logs);
             let known = case.known(step);
-            let well = match known {
-                Some(known) => (order - known).abs() <= ORDER,
-                None => errors.iter().all(|error| *error < ROUNDING),
+            let check = match known {
+                Some(known) => {
+                    let off = (order - known).abs();
+                    Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
+                }
+                None => {
+                    let largest = errors.into_iter().fold(0.0, worse);
+                    Check::new("error", largest, Below(ROUNDING), "what trapezoids leave")
+                }
             };
-            passed &= well;
-            rows.push(vec![
+            let cells = vec![
                 format!("{step:?}").to_lowercase(),
                 (*name).to_owned(),
                 case.theta0.to_string(),
@@ -86,17 +91,17 @@ pub(super) fn traced() -> Section {
                 format!("{:.2e}", errors[3]),
                 known.map_or("–".to_owned(), |_| format!("{order:.3}")),
                 known.map_or("exact".to_owned(), |known| format!("{known:.0}")),
-                verdict(well),
-            ]);
+            ];
+            rows.push(Row::new(cells, vec![check]).of([line(step)]));
         }
     }
     let convex = circle(0.65, 0.5, Some(0.6));
     let right = convex.error(Step::Outgoing, SIZES[3], &|_| ());
     for (name, plant) in planted() {
         let errors = SIZES.map(|size| convex.error(Step::Outgoing, size, &*plant));
-        let well = errors[3] > SEEN * right;
-        passed &= well;
-        rows.push(vec![
+        let reason = "of a right chain the error falls with the size";
+        let check = Check::new("seen", errors[3], Above(SEEN * right), reason);
+        let cells = vec![
             "outgoing".to_owned(),
             format!("convex, planted: {name}"),
             convex.theta0.to_string(),
@@ -105,8 +110,8 @@ pub(super) fn traced() -> Section {
             format!("{:.2e}", errors[3]),
             "–".to_owned(),
             "stays".to_owned(),
-            verdict(well),
-        ]);
+        ];
+        rows.push(Row::new(cells, vec![check]));
     }
     Section {
         title: "A glossy circle, all steps, against traced rays".to_owned(),
@@ -128,7 +133,18 @@ pub(super) fn traced() -> Section {
             "verdict",
         ],
         rows,
-        passed,
+        checks: Vec::new(),
+    }
+}
+
+const fn line(step: Step) -> Line {
+    match step {
+        Step::Incidence => Line::Incidence,
+        Step::Curvature | Step::Back => Line::Curvature,
+        Step::Cosine => Line::Cosine,
+        Step::Mirror => Line::Mirror,
+        Step::Brdf => Line::Brdf,
+        Step::Outgoing => Line::Outgoing,
     }
 }
 
