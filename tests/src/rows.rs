@@ -20,64 +20,54 @@ pub(crate) enum Line {
     Environment,
 }
 
-/// Each with its name, and its operator in ray space and in Fourier space.
-const LINES: [(Line, [&str; 3]); 12] = [
-    (Line::Travel, ["travel", "shear", "shear"]),
-    (
-        Line::Visibility,
-        ["visibility", "multiplication", "convolution"],
-    ),
-    (
-        Line::Incidence,
-        ["light incidence", "scale, spatial", "scale, spatial"],
-    ),
-    (
-        Line::Outgoing,
-        ["outgoing angle", "scale, spatial", "scale, spatial"],
-    ),
-    (Line::Curvature, ["curvature", "shear", "shear"]),
-    (
-        Line::Cosine,
-        ["cosine term", "multiplication", "convolution"],
-    ),
-    (
-        Line::Mirror,
-        [
-            "mirror (section 4.2)",
-            "reflection of angles",
-            "reflection of angles",
-        ],
-    ),
-    (Line::Brdf, ["BRDF", "convolution", "multiplication"]),
-    (
-        Line::Texture,
-        ["texture mapping", "multiplication", "convolution"],
-    ),
-    (
-        Line::Separable,
-        [
-            "separable BRDF",
-            "multiplication, then convolution",
-            "convolution, then multiplication",
-        ],
-    ),
-    (
-        Line::SpaceVarying,
-        [
-            "space-varying BRDF",
-            "semi-convolution, angles",
-            "semi-convolution, space",
-        ],
-    ),
-    (
-        Line::Environment,
-        [
-            "environment map (section 6.1)",
-            "shear by k, multiplication",
-            "product at Ωx/k",
-        ],
-    ),
-];
+impl Line {
+    const ALL: [Self; 12] = [
+        Self::Travel,
+        Self::Visibility,
+        Self::Incidence,
+        Self::Outgoing,
+        Self::Curvature,
+        Self::Cosine,
+        Self::Mirror,
+        Self::Brdf,
+        Self::Texture,
+        Self::Separable,
+        Self::SpaceVarying,
+        Self::Environment,
+    ];
+
+    /// Its name, and its operator in ray space and in Fourier space.
+    fn words(self) -> [&'static str; 3] {
+        let [shear, scale, turn] = ["shear", "scale, spatial", "reflection of angles"];
+        let [times, spread] = ["multiplication", "convolution"];
+        match self {
+            Self::Travel => ["travel", shear, shear],
+            Self::Visibility => ["visibility", times, spread],
+            Self::Incidence => ["light incidence", scale, scale],
+            Self::Outgoing => ["outgoing angle", scale, scale],
+            Self::Curvature => ["curvature", shear, shear],
+            Self::Cosine => ["cosine term", times, spread],
+            Self::Mirror => ["mirror (section 4.2)", turn, turn],
+            Self::Brdf => ["BRDF", spread, times],
+            Self::Texture => ["texture mapping", times, spread],
+            Self::Separable => [
+                "separable BRDF",
+                "multiplication, then convolution",
+                "convolution, then multiplication",
+            ],
+            Self::SpaceVarying => [
+                "space-varying BRDF",
+                "semi-convolution, angles",
+                "semi-convolution, space",
+            ],
+            Self::Environment => [
+                "environment map (section 6.1)",
+                "shear by k, multiplication",
+                "product at Ωx/k",
+            ],
+        }
+    }
+}
 
 /// Every row, of the sections of all parts.
 pub(crate) fn rows(sections: &[Section]) -> Section {
@@ -96,28 +86,23 @@ pub(crate) fn rows(sections: &[Section]) -> Section {
             "smallest p",
             "verdict",
         ],
-        rows: LINES.iter().map(|(line, words)| row(*line, words, sections)).collect(),
+        rows: Line::ALL.map(|line| row(line, sections)).into(),
         checks: Vec::new(),
     }
 }
 
-fn row(line: Line, words: &[&str; 3], sections: &[Section]) -> Row {
+fn row(line: Line, sections: &[Section]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
     // With photons are those that have a p.
     let (planes, others): (Vec<&Row>, Vec<&Row>) = of_line.partition(|row| exact(row).is_some());
-    let mut cells: Vec<String> = words.iter().map(ToString::to_string).collect();
+    let mut cells = line.words().map(str::to_owned).to_vec();
     let mut checks = Vec::new();
     for (id, rows) in [("without photons", &others), ("with photons", &planes)] {
         let passed = rows.iter().filter(|row| row.passes()).count();
         cells.push(format!("{passed} of {}", rows.len()));
-        let least = AtLeast(rows.len().max(1) as f64);
-        checks.push(Check::new(
-            id,
-            passed as f64,
-            least,
-            "there are some, all pass",
-        ));
+        let (passed, all) = (passed as f64, rows.len().max(1) as f64);
+        checks.push(Check::new(id, passed, AtLeast(all), "all, and not of none"));
     }
     let p = planes.iter().filter_map(|row| exact(row));
     cells.push(p.fold(1.0, f64::min).to_string());

@@ -2,10 +2,10 @@
 
 use super::light::Bell;
 use super::primal::{about, wave};
-use crate::report::Bound::{Above, AtMost, Below};
+use crate::report::Bound::{Above, Below};
 use crate::report::{Check, Row, Section, worse};
 use crate::rows::Line;
-use crate::table1::{apart, slope};
+use crate::table1::{ORDER, apart, order, slope};
 use etendue_field::Complex;
 use etendue_theory::geometry::Map;
 use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term, cosine_squared_hat};
@@ -13,8 +13,6 @@ use std::f64::consts::TAU;
 
 /// Sizes of the neighbourhood.
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
-/// How far a fitted order may be from what is known beforehand.
-const ORDER: f64 = 0.15;
 /// Where a step leaves nothing out: what trapezoids up to seven deviations leave.
 const ROUNDING: f64 = 1e-9;
 const REACH: f64 = 7.0;
@@ -70,13 +68,10 @@ pub(super) fn traced() -> Section {
         for step in Step::ALL {
             let errors = SIZES.map(|size| case.error(step, size, &|_| ()));
             let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), errors[i].ln()]);
-            let order = slope(&logs);
+            let fitted = slope(&logs);
             let known = case.known(step);
             let check = match known {
-                Some(known) => {
-                    let off = (order - known).abs();
-                    Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
-                }
+                Some(known) => order(fitted, known),
                 None => {
                     let largest = errors.into_iter().fold(0.0, worse);
                     Check::new("error", largest, Below(ROUNDING), "what trapezoids leave")
@@ -89,7 +84,7 @@ pub(super) fn traced() -> Section {
                 case.k.to_string(),
                 format!("{:.2e}", errors[0]),
                 format!("{:.2e}", errors[3]),
-                known.map_or("–".to_owned(), |_| format!("{order:.3}")),
+                known.map_or("–".to_owned(), |_| format!("{fitted:.3}")),
                 known.map_or("exact".to_owned(), |known| format!("{known:.0}")),
             ];
             rows.push(Row::new(cells, vec![check]).of([line(step)]));

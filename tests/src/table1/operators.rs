@@ -1,10 +1,10 @@
 //! Every plane of the table.
 
-use super::order::{Fall, Order, fall};
+use super::order::{self, Fall, ORDER, Order, fall};
 use super::path::{Path, Stage};
 use super::planar::Found;
 use super::{Outcome, number, percent};
-use crate::report::Bound::{AtLeast, AtMost, Below};
+use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, EXACT, Row, Section, worse};
 use crate::rows::Line;
 use etendue_compare::Verdict;
@@ -13,8 +13,6 @@ use etendue_theory::geometry::Media;
 use etendue_theory::rays::System;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// How far a fitted order may be from what is known beforehand.
-const ORDER: f64 = 0.15;
 /// What two quadratures, each good to 10⁻⁴, may differ by where first order is exact.
 const QUADRATURE: f64 = 2e-4;
 
@@ -117,17 +115,11 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
 }
 
 fn follows(fall: &Fall, known: Order) -> Check {
-    let (figure, bound, reason) = match known.exponent() {
-        Some(order) => {
-            let off = (fall.order - order).abs();
-            (off, AtMost(ORDER), "a fit of four sizes")
-        }
-        None => {
-            let largest = fall.errors.into_iter().fold(0.0, worse);
-            (largest, Below(QUADRATURE), "two quadratures good to 1e-4")
-        }
-    };
-    Check::new("order", figure, bound, reason)
+    if let Some(known) = known.exponent() {
+        return order::check(fall.order, known);
+    }
+    let largest = fall.errors.into_iter().fold(0.0, worse);
+    Check::new("order", largest, Below(QUADRATURE), "two quadratures")
 }
 
 /// The last step on the way to a plane, and the row of the paper's table that it is.

@@ -1,10 +1,10 @@
 //! The operators in 2D: against a plain quadrature of the mapped field, and against rays traced off a circle.
 
-use super::order::slope;
+use super::order::{self, ORDER, slope};
 use super::path::Path;
 use super::path::Stage::{self, Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
 use super::quadrature::{apart, of_field, of_rays};
-use crate::report::Bound::{AtMost, Below};
+use crate::report::Bound::Below;
 use crate::report::{Check, Row, Section};
 use crate::rows::Line;
 use etendue_field::Complex;
@@ -18,8 +18,6 @@ const FIELD: Matrix<2> = [[1.0, 0.3], [0.3, 0.8]];
 const SIZES: [f64; 4] = [0.02, 0.01, 0.005, 0.0025];
 /// Rounding of a sum of 10⁴ terms.
 const ROUNDING: f64 = 1e-12;
-/// How far a fitted order may be from what is known beforehand.
-const ORDER: f64 = 0.15;
 
 /// Metres before and after the surface.
 const TRAVELS: [f64; 2] = [1.0, 0.7];
@@ -124,10 +122,9 @@ pub(super) struct Found {
 
 impl Found {
     pub(super) fn checks(&self) -> Vec<Check> {
-        let off = (self.order - self.known).abs();
         vec![
-            Check::new("2D map", self.map, Below(ROUNDING), "rounding of a sum"),
-            Check::new("2D order", off, AtMost(ORDER), "a fit of four sizes"),
+            Check::new("map", self.map, Below(ROUNDING), "rounding of a sum"),
+            order::check(self.order, self.known),
         ]
     }
 }
