@@ -32,7 +32,7 @@ pub(crate) fn page(photons: Option<u64>) -> ExitCode {
             return ExitCode::from(3);
         }
     }
-    ExitCode::from(u8::from(!section.passed))
+    ExitCode::from(u8::from(!section.passes()))
 }
 
 const HEAD: &str = "\

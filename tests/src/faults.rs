@@ -1,6 +1,7 @@
 //! Faults planted in the prediction or in the photons: a comparison is judged by what it rejects.
 
-use crate::report::Section;
+use crate::report::Bound::{AtLeast, Below};
+use crate::report::{Check, Row, Section};
 use crate::scenes::{fig9b, measured, named, traced};
 use etendue_compare::{Residuals, chain, sidak};
 use etendue_field::{
@@ -31,7 +32,7 @@ pub(crate) fn planted(photons: u64, seed: u64) -> Section {
         },
     );
 
-    let mut rows = vec![row(&scene, &sound, "none", &unchanged)];
+    let mut rows = vec![row(&scene, &sound, NONE, &unchanged)];
     for (name, predict) in predictions() {
         rows.push(row(&scene, &sound, name, predict.as_ref()));
     }
@@ -43,28 +44,25 @@ pub(crate) fn planted(photons: u64, seed: u64) -> Section {
     ));
     rows.push(row(&scene, &losing, "1 % of photons lost", &unchanged));
 
-    let rejected: Vec<bool> = rows.iter().map(|row| row.rejected).collect();
     Section {
         title: format!("Planted faults at {:.0e} photons", photons as f64),
         text: "Required: the run is rejected for every fault, and only then. p-values are not below 0.00005; \
                a dash is a plane the fault does not touch."
             .to_owned(),
         header: vec!["fault", "p, plane by plane", "run"],
-        passed: !rejected[0] && rejected[1..].iter().all(|r| *r),
-        rows: rows.into_iter().map(Row::cells).collect(),
+        rows,
+        checks: Vec::new(),
     }
 }
 
 /// Faults that only other scenes can show, each planted in the scene named.
 pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
+    let mut checks = Vec::new();
     for (name, faults) in elsewhere() {
         let scene = named(name, Some(photons), Some(seed));
         let sound = traced(&scene);
-        let none = row(&scene, &sound, "none", &unchanged);
-        passed &= !none.rejected;
-        let mut found = vec![none];
+        let mut found = vec![row(&scene, &sound, NONE, &unchanged)];
         for (fault, predict) in faults {
             found.push(row(&scene, &sound, fault, predict.as_ref()));
         }
@@ -88,11 +86,12 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> Section {
                 &unchanged,
             ));
         }
-        passed &= found.len() > 1 && found[1..].iter().all(|row| row.rejected);
-        rows.extend(found.into_iter().map(|row| {
-            let mut cells = vec![name.to_owned()];
-            cells.extend(row.cells());
-            cells
+        let faults = (found.len() - 1) as f64;
+        let reason = "else the scene shows nothing";
+        checks.push(Check::new("faults", faults, AtLeast(1.0), reason));
+        rows.extend(found.into_iter().map(|mut row| {
+            row.cells.insert(0, name.to_owned());
+            row
         }));
     }
     Section {
@@ -101,7 +100,7 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> Section {
             .to_owned(),
         header: vec!["scene", "fault", "p, plane by plane", "run"],
         rows,
-        passed,
+        checks,
     }
 }
 
@@ -223,28 +222,8 @@ fn move_layer(chain: &mut Chain, nth: usize, by: f64) {
     }
 }
 
-struct Row {
-    name: &'static str,
-    p_values: Vec<Option<f64>>,
-    rejected: bool,
-}
-
-impl Row {
-    fn cells(self) -> Vec<String> {
-        let show = |p: &Option<f64>| p.map_or("–".to_owned(), |p| format!("{p:.5}"));
-        let outcome = if self.rejected {
-            "rejected"
-        } else {
-            "accepted"
-        };
-        let p_values: Vec<String> = self.p_values.iter().map(show).collect();
-        vec![
-            self.name.to_owned(),
-            p_values.join(", "),
-            outcome.to_owned(),
-        ]
-    }
-}
+/// The row without a fault.
+const NONE: &str = "none";
 
 /// The slices predicted for a plane; `None` where the fault changes nothing.
 type Predict = dyn Fn(&Scene, &VirtualPlane) -> Option<Slices>;
@@ -256,11 +235,24 @@ fn row(scene: &Scene, measurement: &Measurement, name: &'static str, predict: &P
     };
     let p_values: Vec<Option<f64>> = scene.planes.iter().enumerate().map(p_value).collect();
     let level = sidak(scene.run.alpha, scene.planes.len());
-    Row {
-        name,
-        rejected: p_values.iter().flatten().any(|p| *p < level),
-        p_values,
-    }
+    let least = p_values
+        .iter()
+        .flatten()
+        .copied()
+        .fold(f64::INFINITY, f64::min);
+    let check = match name {
+        NONE => Check::p("accepted", Some(least), level),
+        _ => Check::new("rejected", least, Below(level), "a fault is planted"),
+    };
+    let show = |p: &Option<f64>| p.map_or("–".to_owned(), |p| format!("{p:.5}"));
+    let p_values: Vec<String> = p_values.iter().map(show).collect();
+    let outcome = if least < level {
+        "rejected"
+    } else {
+        "accepted"
+    };
+    let cells = vec![name.to_owned(), p_values.join(", "), outcome.to_owned()];
+    Row::new(cells, vec![check])
 }
 
 fn unchanged(scene: &Scene, plane: &VirtualPlane) -> Option<Slices> {

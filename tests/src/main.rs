@@ -186,7 +186,7 @@ fn main() -> ExitCode {
         Ok(all)
     };
     match reported() {
-        Ok(all) => ExitCode::from(u8::from(!all.iter().all(|section| section.passed))),
+        Ok(all) => ExitCode::from(u8::from(!all.iter().all(Section::passes))),
         Err(()) => ExitCode::from(3),
     }
 }
@@ -201,7 +201,7 @@ fn printed(outcome: std::io::Result<Section>) -> ExitCode {
     match outcome {
         Ok(section) => {
             println!("{}", section.markdown());
-            ExitCode::from(u8::from(!section.passed))
+            ExitCode::from(u8::from(!section.passes()))
         }
         Err(error) => {
             eprintln!("error: {error}");

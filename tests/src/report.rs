@@ -1,17 +1,157 @@
-//! What a validation found, as a table and a verdict.
+//! What a validation found: figures held against bounds, in tables, and how all of it reads.
 
-/// One validation: a table in Markdown, and whether it came out as it should.
+use crate::rows::Line;
+
+/// What a figure must be. What is not a number is none of these.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Bound {
+    Below(f64),
+    AtMost(f64),
+    AtLeast(f64),
+    Above(f64),
+}
+
+/// A figure, what it must be, and why that.
+#[derive(Clone, Debug)]
+pub(crate) struct Check {
+    pub(crate) id: &'static str,
+    pub(crate) figure: f64,
+    bound: Bound,
+    reason: &'static str,
+}
+
+/// The check of p of photons against the exact prediction.
+pub(crate) const EXACT: &str = "exact";
+
+impl Check {
+    pub(crate) fn new(id: &'static str, figure: f64, bound: Bound, reason: &'static str) -> Self {
+        Self {
+            id,
+            figure,
+            bound,
+            reason,
+        }
+    }
+
+    /// Of what holds or does not: the figure is 1 or 0.
+    pub(crate) fn fact(id: &'static str, holds: bool, reason: &'static str) -> Self {
+        Self::new(id, f64::from(holds), Bound::AtLeast(1.0), reason)
+    }
+
+    /// Of p, at a level; where there is no p it counts as 0.
+    pub(crate) fn p(id: &'static str, p: Option<f64>, level: f64) -> Self {
+        let bound = Bound::AtLeast(level);
+        Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
+    }
+
+    /// Of what must not be once.
+    pub(crate) fn none(id: &'static str, count: usize) -> Self {
+        Self::new(id, count as f64, Bound::AtMost(0.0), "none is borne")
+    }
+
+    pub(crate) fn passes(&self) -> bool {
+        self.held().2
+    }
+
+    /// What the figure must be in words, the bound, and whether it is.
+    fn held(&self) -> (&'static str, f64, bool) {
+        let figure = self.figure;
+        match self.bound {
+            Bound::Below(bound) => ("below", bound, figure < bound),
+            Bound::AtMost(bound) => ("at most", bound, figure <= bound),
+            Bound::AtLeast(bound) => ("at least", bound, figure >= bound),
+            Bound::Above(bound) => ("above", bound, figure > bound),
+        }
+    }
+
+    fn told(&self) -> String {
+        let (id, figure, reason) = (self.id, self.figure, self.reason);
+        let (words, bound, _) = self.held();
+        format!("{id}: {figure}, required {words} {bound} ({reason})\n")
+    }
+}
+
+fn failed(checks: &[Check]) -> impl Iterator<Item = &Check> {
+    checks.iter().filter(|check| !check.passes())
+}
+
+/// The larger figure; what is not a number is as far off as can be.
+pub(crate) fn worse(a: f64, b: f64) -> f64 {
+    if b.is_nan() { f64::INFINITY } else { a.max(b) }
+}
+
+/// A row of a table, and what is required of it.
+#[derive(Clone, Debug)]
+pub(crate) struct Row {
+    pub(crate) cells: Vec<String>,
+    pub(crate) checks: Vec<Check>,
+    /// The rows of the paper's Table 1 that this says something of.
+    pub(crate) lines: Vec<Line>,
+}
+
+impl Row {
+    pub(crate) fn new(cells: Vec<String>, checks: Vec<Check>) -> Self {
+        Self {
+            cells,
+            checks,
+            lines: Vec::new(),
+        }
+    }
+
+    pub(crate) fn of(self, lines: impl IntoIterator<Item = Line>) -> Self {
+        Self {
+            lines: lines.into_iter().collect(),
+            ..self
+        }
+    }
+
+    /// Whether something is required of it, and all of that holds.
+    pub(crate) fn passes(&self) -> bool {
+        !self.checks.is_empty() && failed(&self.checks).next().is_none()
+    }
+
+    fn verdict(&self) -> String {
+        if self.passes() {
+            return "pass".to_owned();
+        }
+        let ids: Vec<&str> = failed(&self.checks).map(|check| check.id).collect();
+        format!("FAIL: {}", ids.join(", "))
+    }
+}
+
+/// One validation: a table in Markdown, and what is required of its rows and of all of it.
 #[derive(Debug)]
 pub(crate) struct Section {
     pub(crate) title: String,
     /// What was done and what is required, in words.
     pub(crate) text: String,
+    /// Where rows have a cell less, the last column is for their verdicts.
     pub(crate) header: Vec<&'static str>,
-    pub(crate) rows: Vec<Vec<String>>,
-    pub(crate) passed: bool,
+    pub(crate) rows: Vec<Row>,
+    /// Beyond those of the rows.
+    pub(crate) checks: Vec<Check>,
 }
 
 impl Section {
+    pub(crate) fn passes(&self) -> bool {
+        self.failures().is_empty()
+    }
+
+    /// The same with a fault planted: now its checks must not all hold, as they do without it.
+    pub(crate) fn planted(mut self, title: String, text: &str, is_sound: bool) -> Self {
+        let is_seen = !self.passes();
+        self.rows.iter_mut().for_each(|row| row.checks.clear());
+        self.checks = vec![
+            Check::fact("sound", is_sound, "else a failure shows nothing"),
+            Check::fact("seen", is_seen, "the fault is planted"),
+        ];
+        Self {
+            title,
+            text: text.to_owned(),
+            ..self
+        }
+    }
+
     pub(crate) fn markdown(&self) -> String {
         // A bar within a cell would end it.
         let line = |cells: &[String]| {
@@ -20,14 +160,34 @@ impl Section {
         };
         let header: Vec<String> = self.header.iter().map(ToString::to_string).collect();
         let rule = vec!["---".to_owned(); header.len()];
-        let rows: String = self.rows.iter().map(|row| line(row)).collect();
-        let outcome = if self.passed { "passed" } else { "FAILED" };
+        let row = |row: &Row| {
+            let mut cells = row.cells.clone();
+            if cells.len() < header.len() {
+                cells.push(row.verdict());
+            }
+            line(&cells)
+        };
+        let rows: String = self.rows.iter().map(row).collect();
+        let outcome = match self.failures() {
+            none if none.is_empty() => "**passed**\n".to_owned(),
+            failures => format!("**FAILED**\n\n{failures}"),
+        };
         format!(
-            "## {}\n\n{}\n\n{}{}{rows}\nOutcome: **{outcome}**\n",
+            "## {}\n\n{}\n\n{}{}{rows}\nOutcome: {outcome}",
             self.title,
             self.text,
             line(&header),
             line(&rule)
         )
+    }
+
+    /// A line for each check that does not hold, after what its row begins with.
+    fn failures(&self) -> String {
+        let of_row = |row: &Row| {
+            let line = |check: &Check| format!("* {}: {}", row.cells[..2].join(", "), check.told());
+            failed(&row.checks).map(line).collect::<String>()
+        };
+        let of_all = failed(&self.checks).map(|check| format!("* {}", check.told()));
+        self.rows.iter().map(of_row).chain(of_all).collect()
     }
 }

@@ -1,6 +1,7 @@
 //! Every scene of the repository: its prediction, and the two tracers against each other.
 
-use crate::report::Section;
+use crate::report::Bound::{Above, AtLeast, AtMost, Below};
+use crate::report::{Check, Row, Section};
 use crate::scenes::{SUITE, compared, named, predicted, referred, traced, traced_backwards};
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict, sidak};
 use etendue_scene::Scene;
@@ -54,16 +55,10 @@ fn run(scene: Scene, level: f64) -> Outcome {
 }
 
 fn table(outcomes: &[Outcome], planes: usize, level: f64) -> Section {
-    let mut rows = Vec::new();
-    let mut passed = true;
-    for outcome in outcomes {
-        for (plane, backward) in outcome.planes.iter().zip(&outcome.backward) {
-            let report = &plane.report;
-            let disagrees = backward.is_some_and(|p| p < level);
-            passed &= report.verdict == Verdict::Pass && !disagrees;
-            rows.push(cells(&outcome.scene, report, *backward));
-        }
-    }
+    let rows = outcomes.iter().flat_map(|outcome| {
+        let planes = outcome.planes.iter().zip(&outcome.backward);
+        planes.map(|(plane, p)| row(&outcome.scene, &plane.report, *p, level))
+    });
     Section {
         title: format!("The suite: {} scenes, {planes} planes", outcomes.len()),
         text: format!(
@@ -84,15 +79,15 @@ fn table(outcomes: &[Outcome], planes: usize, level: f64) -> Section {
             "p backward",
             "verdict",
         ],
-        rows,
-        passed,
+        rows: rows.collect(),
+        checks: Vec::new(),
     }
 }
 
-fn cells(scene: &Scene, report: &PlaneReport, backward: Option<f64>) -> Vec<String> {
+fn row(scene: &Scene, report: &PlaneReport, backward: Option<f64>, level: f64) -> Row {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));
     let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.4}"));
-    vec![
+    let cells = vec![
         scene.name.clone(),
         report.name.clone(),
         report.class.to_string(),
@@ -104,8 +99,18 @@ fn cells(scene: &Scene, report: &PlaneReport, backward: Option<f64>) -> Vec<Stri
         number(report.chi2_per_dof),
         number(report.p_value),
         number(backward),
-        format!("{:?}", report.verdict).to_lowercase(),
-    ]
+    ];
+    let (agrees, decided) = match report.verdict {
+        Verdict::Pass => (true, true),
+        Verdict::Fail => (false, true),
+        Verdict::Undecided => (true, false),
+    };
+    let mut checks = vec![
+        Check::fact("agrees", agrees, "as a run judges"),
+        Check::fact("decided", decided, "as a run judges"),
+    ];
+    checks.extend(backward.map(|p| Check::p("backward", Some(p), level)));
+    Row::new(cells, checks)
 }
 
 fn outcome<'a>(outcomes: &'a [Outcome], name: &str) -> Option<&'a Outcome> {
@@ -115,7 +120,6 @@ fn outcome<'a>(outcomes: &'a [Outcome], name: &str) -> Option<&'a Outcome> {
 /// Two occluders that block everything together, and a lot of light alone (Durand et al. 2005, Fig. 7).
 fn occluders(outcomes: &[Outcome]) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     let at = |name: &str| {
         outcome(outcomes, name)?
             .planes
@@ -123,20 +127,20 @@ fn occluders(outcomes: &[Outcome]) -> Section {
             .find(|p| p.report.name == "receiver")
     };
     for (name, least, most) in [
-        ("fig7_one", 1_000_000, u64::MAX),
-        ("fig7_other", 1_000_000, u64::MAX),
-        ("fig7_two", 0, 0),
+        ("fig7_one", 1_000_000, f64::INFINITY),
+        ("fig7_other", 1_000_000, f64::INFINITY),
+        ("fig7_two", 0, 0.0),
     ] {
         let through = at(name).map_or(0, |plane| plane.report.crossed);
         // A short suite has fewer photons than the million asked for.
         let wanted = outcome(outcomes, name)
             .map_or(0, |o| o.scene.run.photons / 4)
             .min(least);
-        passed &= (wanted..=most).contains(&through);
-        rows.push(vec![
-            format!("{name}: photons through"),
-            through.to_string(),
-        ]);
+        let cells = vec![format!("{name}: photons through"), through.to_string()];
+        let reason = "a lot passes one, and nothing both";
+        let check = |bound| Check::new("through", through as f64, bound, reason);
+        let checks = vec![check(AtLeast(wanted as f64)), check(AtMost(most))];
+        rows.push(Row::new(cells, checks));
     }
     let norm =
         |of: &dyn Fn(usize) -> f64, n: usize| (0..n).map(|i| of(i).powi(2)).sum::<f64>().sqrt();
@@ -180,15 +184,17 @@ fn occluders(outcomes: &[Outcome]) -> Section {
         }
         _ => (f64::NAN, f64::NAN),
     };
-    passed &= sum < 1e-12 && blind > 1e-2;
-    rows.push(vec![
-        "both, predicted with phases, of the open spectrum".to_owned(),
-        format!("{sum:.1e}"),
-    ]);
-    rows.push(vec![
-        "the same without phases".to_owned(),
-        format!("{blind:.3}"),
-    ]);
+    rows.push(Row::new(
+        vec![
+            "both, predicted with phases, of the open spectrum".to_owned(),
+            format!("{sum:.1e}"),
+        ],
+        vec![Check::new("sum", sum, Below(1e-12), "rounding")],
+    ));
+    rows.push(Row::new(
+        vec!["the same without phases".to_owned(), format!("{blind:.3}")],
+        vec![Check::new("moduli", blind, Above(1e-2), "phases matter")],
+    ));
     Section {
         title: "Two occluders (Fig. 7)".to_owned(),
         text: "Required: a million photons past each, none past both; the sum of spectra F₁ + F₂ − F below 10⁻¹² of F, \
@@ -196,7 +202,7 @@ fn occluders(outcomes: &[Outcome]) -> Section {
             .to_owned(),
         header: vec!["", ""],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }
 
@@ -214,7 +220,6 @@ fn high_frequencies(outcomes: &[Outcome]) -> Section {
         Some(leaving.report.high_frequency_share.clone())
     };
     let mut rows = Vec::new();
-    let mut passed = true;
     let [a, b, c] = ["fig9a", "fig9b", "fig9c"].map(|name| shares(name).unwrap_or_default());
     for ((a, b), c) in a.iter().zip(&b).zip(&c) {
         let cells = [a, b, c].map(|h| {
@@ -227,15 +232,19 @@ fn high_frequencies(outcomes: &[Outcome]) -> Section {
             [b / a, b / c]
         };
         let (measured, predicted) = (ratio(|p| p.measured), ratio(|p| p.predicted));
-        for [to_a, to_c] in [measured, predicted] {
-            passed &= to_a >= 5.0 && to_c.abs() >= 10.0;
-        }
+        let reason = "far more than the next size of blockers has";
+        let checks = [measured, predicted].map(|[to_a, to_c]| {
+            [
+                Check::new("b/a", to_a, AtLeast(5.0), reason),
+                Check::new("b/c", to_c.abs(), AtLeast(10.0), reason),
+            ]
+        });
         let mut row = vec![format!("{:.2}", a.cut)];
         row.extend(cells);
         row.push(format!("{:.0}, {:.0}", measured[0], measured[1]));
-        rows.push(row);
+        rows.push(Row::new(row, checks.concat()));
     }
-    passed &= rows.len() == 2;
+    let cuts = Check::fact("cuts", rows.len() == 2, "the scenes have two");
     Section {
         title: "High frequencies of a shadow (Fig. 9)".to_owned(),
         text: "H: share of energy above the cut in the spectrum of the windowed irradiance on the light leaving the receiver, \
@@ -244,14 +253,13 @@ fn high_frequencies(outcomes: &[Outcome]) -> Section {
             .to_owned(),
         header: vec!["cut [cycles/m]", "fig9a", "fig9b", "fig9c", "b/a, b/c measured"],
         rows,
-        passed,
+        checks: vec![cuts],
     }
 }
 
 /// The white furnace: radiance times the configuration factor of the light, in closed form.
 fn furnace(outcomes: &[Outcome]) -> Section {
     let mut rows = Vec::new();
-    let mut passed = false;
     if let Some(outcome) = outcome(outcomes, "furnace") {
         let (plane, compared) = (&outcome.scene.planes[0], &outcome.planes[0]);
         let half = plane.window.x.half_width();
@@ -279,14 +287,19 @@ fn furnace(outcomes: &[Outcome]) -> Section {
         let zero = [0, 0, plane.grid.nu.half];
         let (measured, error) = (compared.measured.half[zero].re, compared.sigma[zero]);
         let predicted = compared.predicted.half[zero].re;
-        // Four standard errors; the prediction by quadrature of the same closed form, to its tolerance of 1e-4.
-        passed = (measured - known).abs() < 4.0 * error && (predicted / known - 1.0).abs() < 1e-4;
-        rows.push(vec![
+        let (off, wrong) = ((measured - known).abs(), (predicted / known - 1.0).abs());
+        let checks = vec![
+            Check::new("measured", off, Below(4.0 * error), "four standard errors"),
+            Check::new("theory", wrong, Below(1e-4), "of its quadrature"),
+        ];
+        let cells = vec![
             format!("{known:.6}"),
             format!("{measured:.6} ± {error:.6}"),
             format!("{predicted:.6}"),
-        ]);
+        ];
+        rows.push(Row::new(cells, checks));
     }
+    let lit = Check::fact("furnace", !rows.is_empty(), "the suite has one");
     Section {
         title: "White furnace".to_owned(),
         text: "∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m: radiance times configuration factor, by the closed form for \
@@ -294,7 +307,7 @@ fn furnace(outcomes: &[Outcome]) -> Section {
             .to_owned(),
         header: vec!["known", "measured", "predicted"],
         rows,
-        passed,
+        checks: vec![lit],
     }
 }
 

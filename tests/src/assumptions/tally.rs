@@ -3,7 +3,8 @@
 use super::kind::{DARK, UNKNOWN, assumptions};
 use super::trial::Ending;
 use super::{Options, Tried};
-use crate::report::Section;
+use crate::report::Bound::AtLeast;
+use crate::report::{self, Check, Section};
 use etendue_compare::Verdict;
 
 /// Scenes of a list that are named.
@@ -79,7 +80,6 @@ impl Row {
 /// The table, and whether each assumption is caught that is tried.
 pub(super) fn section(options: &Options, random: &[Tried], kept: &[Tried]) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     let (mut skipped, mut panics) = (0, 0);
     for says in assumptions() {
         let [row, other] = [random, kept].map(|tried| Row::new(says, tried));
@@ -87,14 +87,20 @@ pub(super) fn section(options: &Options, random: &[Tried], kept: &[Tried]) -> Se
         panics += row.panics + other.panics;
         let lit = row.lit + other.lit;
         let judged = row.judged() + other.judged();
-        passed &= match says {
-            DARK => lit == 0,
-            _ => judged == 0 || row.fails.len() + other.fails.len() > 0,
-        };
-        if says == UNKNOWN && row.planes + other.planes == 0 {
+        let fails = (row.fails.len() + other.fails.len()) as f64;
+        let planes = row.planes + other.planes;
+        if says == UNKNOWN && planes == 0 {
             continue;
         }
-        passed &= says != UNKNOWN;
+        let unnamed = Check::none("planes", planes);
+        let caught = Check::new("caught", fails, AtLeast(1.0), "planes were judged");
+        let dark = Check::none("lit", lit);
+        let checks = [
+            (says == UNKNOWN).then_some(unnamed),
+            (says != DARK && judged > 0).then_some(caught),
+            (says == DARK).then_some(dark),
+        ];
+        let checks = checks.into_iter().flatten().collect();
         let mut cells = vec![says.to_owned()];
         cells.extend([row.planes, row.alone, row.speechless].map(|count| count.to_string()));
         let [first, second] = if says == DARK {
@@ -105,7 +111,7 @@ pub(super) fn section(options: &Options, random: &[Tried], kept: &[Tried]) -> Se
         cells.push(first);
         cells.extend([row.undecided, row.passes].map(|count| count.to_string()));
         cells.push(second);
-        rows.push(cells);
+        rows.push(report::Row::new(cells, checks));
     }
     let drawn = random.iter().filter(|(_, trials)| trials.is_some()).count();
     Section {
@@ -129,6 +135,6 @@ pub(super) fn section(options: &Options, random: &[Tried], kept: &[Tried]) -> Se
             "caught, of the repository",
         ],
         rows,
-        passed: passed && panics == 0,
+        checks: vec![Check::none("panics", panics)],
     }
 }

@@ -1,7 +1,7 @@
 //! What came of all cases: one row for each kind of input.
 
 use super::case::{Fault, Kind, Outcome, Reached};
-use crate::report::Section;
+use crate::report::{Check, Row, Section};
 use std::collections::BTreeMap;
 
 /// The cases of one kind.
@@ -74,12 +74,12 @@ impl Tallies {
                 "worst MB",
             ],
             rows,
-            passed: bad.is_empty(),
+            checks: vec![Check::none("bad cases", bad.len())],
         }
     }
 }
 
-fn row(kind: Kind, tally: &Tally) -> Vec<String> {
+fn row(kind: Kind, tally: &Tally) -> Row {
     let reached = |reached| tally.reached[reached as usize];
     let share = |n: u64| match tally.cases {
         0 => "0".to_owned(),
@@ -106,5 +106,5 @@ fn row(kind: Kind, tally: &Tally) -> Vec<String> {
     row.extend(order.map(|fault| tally.faults[fault as usize].to_string()));
     row.push(format!("{:.1}", tally.seconds));
     row.push(format!("{:.0}", tally.peak as f64 / 1e6));
-    row
+    Row::new(row, Vec::new())
 }

@@ -9,7 +9,7 @@ mod trial;
 use crate::hostile::child;
 use crate::hostile::dice::Dice;
 use crate::hostile::progress;
-use crate::report::Section;
+use crate::report::{Check, Row, Section};
 use disk::FullDisk;
 use std::io;
 use std::path::PathBuf;
@@ -84,7 +84,7 @@ fn section(options: &Options, counts: &Counts, told: &[String]) -> Section {
         let trials: u64 = ended.iter().map(|f| counts[*f as usize]).sum();
         let mut row = vec![format!("{verb:?}").to_lowercase(), trials.to_string()];
         row.extend(counts.iter().map(ToString::to_string));
-        row
+        Row::new(row, Vec::new())
     });
     let mut text = format!(
         "Commands killed, started twice at once, and on full disks, in folders with an earlier \
@@ -119,6 +119,6 @@ fn section(options: &Options, counts: &Counts, told: &[String]) -> Section {
             "edited file not spared",
         ],
         rows: rows.collect(),
-        passed: told.is_empty(),
+        checks: vec![Check::none("bad endings", told.len())],
     }
 }

@@ -2,7 +2,8 @@
 
 use super::draw::Kind;
 use super::scene::{Measured, Outcome};
-use crate::report::Section;
+use crate::report::Bound::{AtLeast, Below};
+use crate::report::{Check, Row, Section, worse};
 use crate::statistics::{mean, uniformity};
 
 /// Standard errors of shares and means that are borne.
@@ -28,20 +29,17 @@ type Reading = fn(&Outcome) -> &Measured;
 pub(super) fn sections(outcomes: &[Outcome], left_out: usize) -> Vec<Section> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);
-    let mut sections = vec![all.0, by_kind(outcomes, left_out), worst(outcomes)];
-    let is_sound = all.1;
-    sections[0].passed = is_sound;
+    let is_sound = all.passes();
+    let mut sections = vec![all, by_kind(outcomes, left_out), worst(outcomes)];
     let faults: [(&str, Reading, f64); 3] = [
         ("Densities 2 % too large", |outcome| &outcome.planted, 1.0),
         ("Stated errors 20 % too small", sound, 0.8),
         ("Stated errors 25 % too large", sound, 1.25),
     ];
     for (title, reading, scale) in faults {
-        let (mut section, passed) = judged(outcomes, reading, scale);
-        section.title = format!("Planted: {}", title.to_lowercase());
-        section.text = "Required: with the bounds above, this fails.".to_owned();
-        section.passed = is_sound && !passed;
-        sections.push(section);
+        let title = format!("Planted: {}", title.to_lowercase());
+        let text = "Required: with the bounds above, this fails.";
+        sections.push(judged(outcomes, reading, scale).planted(title, text, is_sound));
     }
     sections
 }
@@ -50,9 +48,8 @@ pub(super) fn sections(outcomes: &[Outcome], left_out: usize) -> Vec<Section> {
 type Belongs = fn(Kind) -> bool;
 
 /// The shares beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
-fn judged(outcomes: &[Outcome], reading: Reading, scale: f64) -> (Section, bool) {
+fn judged(outcomes: &[Outcome], reading: Reading, scale: f64) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     let groups: [(&str, Belongs); 3] = [
         ("all", |_| true),
         ("against closed forms", Kind::is_chain),
@@ -61,13 +58,11 @@ fn judged(outcomes: &[Outcome], reading: Reading, scale: f64) -> (Section, bool)
     for (name, belongs) in groups {
         let of_group = outcomes.iter().filter(|outcome| belongs(outcome.kind));
         let of_group: Vec<&Measured> = of_group.map(reading).collect();
-        let (cells, as_expected) = row(name, &of_group, scale);
-        passed &= as_expected;
-        rows.push(cells);
+        rows.push(row(name, &of_group, scale));
     }
     let [one, two, three] = [1.0, 2.0, 3.0].map(|d| 100.0 * beyond(d));
     let [a, b, c] = STUDENT.map(|share| 100.0 * share);
-    let section = Section {
+    Section {
         title: format!("{} scenes", outcomes.len()),
         text: format!(
             "Four complex numbers a scene, and the one at zero frequency; ± is the standard error \
@@ -98,15 +93,14 @@ fn judged(outcomes: &[Outcome], reading: Reading, scale: f64) -> (Section, bool)
             "mean square of L2 ratios",
         ],
         rows,
-        passed,
-    };
-    (section, passed)
+        checks: Vec::new(),
+    }
 }
 
-/// Those of a group of scenes, and whether they are as expected.
-fn row(name: &str, of_group: &[&Measured], scale: f64) -> (Vec<String>, bool) {
-    let mut passed = true;
-    let mut cells = vec![name.to_owned(), of_group.len().to_string()];
+/// Those of a group of scenes.
+fn row(name: &str, of_group: &[&Measured], scale: f64) -> Row {
+    let cells = vec![name.to_owned(), of_group.len().to_string()];
+    let mut row = Row::new(cells, Vec::new());
     for distance in [1.0, 2.0, 3.0] {
         let of_scene = |measured: &&Measured| {
             let far = measured.apart.iter().filter(|d| **d / scale > distance);
@@ -114,12 +108,12 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> (Vec<String>, bool) {
         };
         let shares: Vec<f64> = of_group.iter().map(of_scene).collect();
         let numbers = (of_group.len() * of_group[0].apart.len()) as f64;
-        passed &= put(&mut cells, &shares, beyond(distance), numbers);
+        put(&mut row, &shares, beyond(distance), numbers);
     }
     for (distance, expected) in [1.0, 2.0, 3.0].into_iter().zip(STUDENT) {
         let is_far = |measured: &&Measured| f64::from(measured.zero.abs() / scale > distance);
         let shares: Vec<f64> = of_group.iter().map(is_far).collect();
-        passed &= put(&mut cells, &shares, expected, of_group.len() as f64);
+        put(&mut row, &shares, expected, of_group.len() as f64);
     }
     let p: Vec<f64> = of_group
         .iter()
@@ -129,12 +123,17 @@ fn row(name: &str, of_group: &[&Measured], scale: f64) -> (Vec<String>, bool) {
     let squares: Vec<f64> = of_group.iter().map(|m| (m.ratio / scale).powi(2)).collect();
     let [square, over_scenes] = mean(&squares);
     let error = common(of_group, scale).max(over_scenes);
-    passed &= uniform >= 0.01 / 3.0;
-    passed &= (1.0 - BORNE * error..OF_ONE + BORNE * error).contains(&square);
-    passed &= of_group.iter().all(|m| m.ratio / scale < LARGEST);
-    cells.push(format!("{uniform:.3}"));
-    cells.push(format!("{square:.3} ± {error:.3}"));
-    (cells, passed)
+    let (slack, reason) = (BORNE * error, "1 to 31/29, within its errors");
+    let largest = of_group.iter().map(|m| m.ratio / scale).fold(0.0, worse);
+    row.checks.extend([
+        Check::new("p", uniform, AtLeast(0.01 / 3.0), "1 % over all groups"),
+        Check::new("square", square, AtLeast(1.0 - slack), reason),
+        Check::new("square", square, Below(OF_ONE + slack), reason),
+        Check::new("ratio", largest, Below(LARGEST), "3e-5 are beyond it"),
+    ]);
+    row.cells.push(format!("{uniform:.3}"));
+    row.cells.push(format!("{square:.3} ± {error:.3}"));
+    row
 }
 
 /// The standard error of a mean square over scenes: the nets are the same in all of them, so it is
@@ -150,13 +149,16 @@ fn common(of_group: &[&Measured], scale: f64) -> f64 {
     error * (count as f64).sqrt()
 }
 
-/// Adds a share to a row; whether it is as expected of so many numbers.
-fn put(cells: &mut Vec<String>, shares: &[f64], expected: f64, numbers: f64) -> bool {
+/// Adds a share to a row, which must be as expected of so many numbers.
+fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
     let [share, error] = mean(shares);
     // Where few are far, their scatter over the scenes says little.
     let error = error.max((expected * (1.0 - expected) / numbers).sqrt());
-    cells.push(format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error));
-    (share - expected).abs() < BORNE * error
+    let cell = format!("{:.2} ± {:.2} %", 100.0 * share, 100.0 * error);
+    row.cells.push(cell);
+    let off = (share - expected).abs() / error;
+    row.checks
+        .push(Check::new("share", off, Below(BORNE), "standard errors"));
 }
 
 /// Shares and ratios of each kind of scene.
@@ -174,7 +176,7 @@ fn by_kind(outcomes: &[Outcome], left_out: usize) -> Section {
         let [square, error] = mean(&squares);
         let largest = |of: fn(&Outcome) -> f64| of_kind.iter().map(|o| of(o)).fold(0.0, f64::max);
         let least = of_kind.iter().map(|o| o.stated).fold(f64::MAX, f64::min);
-        vec![
+        let cells = vec![
             kind.name().to_owned(),
             ratios.len().to_string(),
             share(1.0),
@@ -189,7 +191,8 @@ fn by_kind(outcomes: &[Outcome], left_out: usize) -> Section {
             format!("{square:.2} ± {error:.2}"),
             format!("{:.1e} to {:.1e}", least, largest(|o| o.stated)),
             format!("{:.3}", largest(|o| o.of_truth)),
-        ]
+        ];
+        Row::new(cells, Vec::new())
     };
     Section {
         title: "By kind of scene".to_owned(),
@@ -210,7 +213,7 @@ fn by_kind(outcomes: &[Outcome], left_out: usize) -> Section {
             "largest error of the truth, in stated errors",
         ],
         rows: Kind::ALL.into_iter().map(row).collect(),
-        passed: true,
+        checks: Vec::new(),
     }
 }
 
@@ -220,14 +223,15 @@ fn worst(outcomes: &[Outcome]) -> Section {
     all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));
     let row = |outcome: &&Outcome| {
         let distances = outcome.sound.apart.iter().map(|d| format!("{d:.2}"));
-        vec![
+        let cells = vec![
             outcome.number.to_string(),
             outcome.kind.name().to_owned(),
             format!("{:.2}", outcome.sound.ratio),
             format!("{:.1e}", outcome.stated),
             format!("{:+.2}", outcome.sound.zero),
             distances.collect::<Vec<_>>().join(", "),
-        ]
+        ];
+        Row::new(cells, Vec::new())
     };
     Section {
         title: "The scenes farthest off".to_owned(),
@@ -236,6 +240,6 @@ fn worst(outcomes: &[Outcome]) -> Section {
                 .to_owned(),
         header: vec!["number", "kind", "L2 ratio", "stated", "at zero", "d"],
         rows: all.iter().take(WORST).map(row).collect(),
-        passed: true,
+        checks: Vec::new(),
     }
 }

@@ -32,7 +32,7 @@ pub(crate) fn page() -> ExitCode {
         eprintln!("docs/nets.md: {error}");
         return ExitCode::from(3);
     }
-    ExitCode::from(u8::from(!sections.iter().all(|section| section.passed)))
+    ExitCode::from(u8::from(!sections.iter().all(|section| section.passes())))
 }
 
 const HEAD: &str = "\

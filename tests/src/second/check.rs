@@ -3,6 +3,11 @@
 
 use super::SEED;
 use crate::hostile::dice::Dice;
+pub(super) use crate::report::worse;
+use crate::report::{
+    self,
+    Bound::{Above, AtMost, Below},
+};
 
 /// The largest difference of a round, with a fault planted in the second implementation or, where
 /// none is named, without.
@@ -43,21 +48,16 @@ impl Check {
         self.rounds[0] * self.rounds[1]
     }
 
-    /// Whether the two agree.
-    pub(super) fn holds(&self, outcome: &Outcome) -> bool {
-        outcome.difference <= self.tolerance.0
-    }
-
-    /// Whether a difference with a fault is one that the check reports: a number, so that no fault
+    /// The two agree, and do not with a fault: then they differ by a number, so that no fault
     /// passes for seen because it is nonsense.
-    pub(super) fn sees(&self, planted: f64) -> bool {
-        planted.is_finite() && planted > self.tolerance.0
+    pub(super) fn required(&self, difference: f64, planted: f64) -> Vec<report::Check> {
+        let (most, reason) = self.tolerance;
+        vec![
+            report::Check::new("agrees", difference, AtMost(most), reason),
+            report::Check::new("fault seen", planted, Above(most), reason),
+            report::Check::new("a number", planted, Below(f64::INFINITY), "no nonsense"),
+        ]
     }
-}
-
-/// The larger difference; what is not a number is as far off as can be.
-pub(super) fn worse(a: f64, b: f64) -> f64 {
-    if b.is_nan() { f64::INFINITY } else { a.max(b) }
 }
 
 /// How far two numbers are apart, as a share of the larger.

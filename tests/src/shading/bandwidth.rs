@@ -1,8 +1,8 @@
 //! The sampling criteria of section 6.2 against traced rays.
 
 use super::eye::Scene;
-use super::verdict;
-use crate::report::Section;
+use crate::report::Bound::Below;
+use crate::report::{Check, Row, Section};
 use etendue_theory::shading::{Criterion, Lobe};
 
 /// Six digits.
@@ -87,7 +87,6 @@ fn sweeps() -> Vec<(&'static str, Criterion)> {
 /// The section.
 pub(super) fn bandwidths() -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     for (name, criterion) in sweeps() {
         let scene = Scene { criterion };
         let [b, edge, both] = scene.traced();
@@ -98,14 +97,20 @@ pub(super) fn bandwidths() -> Section {
         // The bound is reached where both parts have one sign.
         let reached =
             1.0 + 2.0 * criterion.curvature * criterion.distance / criterion.outgoing.cos() > 0.0;
-        let well = off(said, b) < DIGITS
-            && off(said_edge, edge) < DIGITS
-            && both < bound * (1.0 + DIGITS)
-            && (!reached || off(bound, both) < DIGITS)
-            && images.iter().all(|image| (image - 1.0).abs() < IMAGE);
-        passed &= well;
+        let digits = |id, figure| Check::new(id, figure, Below(DIGITS), "six digits");
+        let image = |image: f64| {
+            let reason = "images a thousand times narrower than the radius";
+            Check::new("image", (image - 1.0).abs(), Below(IMAGE), reason)
+        };
+        let mut checks = vec![
+            digits("B", off(said, b)),
+            digits("B'", off(said_edge, edge)),
+            digits("B'' beyond its bound", both / bound - 1.0),
+        ];
+        checks.extend(reached.then(|| digits("B''", off(bound, both))));
+        checks.extend(images.map(image));
         let six = |x: f64| format!("{x:.5}");
-        rows.push(vec![
+        let cells = vec![
             name.to_owned(),
             criterion.curvature.to_string(),
             criterion.incidence.to_string(),
@@ -124,8 +129,8 @@ pub(super) fn bandwidths() -> Section {
             six(bound),
             six(both),
             format!("{:.4}, {:.4}", images[0], images[1]),
-            verdict(well),
-        ]);
+        ];
+        rows.push(Row::new(cells, checks));
     }
     Section {
         title: "Sampling criteria against traced rays (section 6.2)".to_owned(),
@@ -156,6 +161,6 @@ pub(super) fn bandwidths() -> Section {
             "verdict",
         ],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }

@@ -2,6 +2,7 @@
 
 use super::light::{Surface, frequencies, light, light_hat};
 use super::operators::Comparison;
+use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::geometry::Map;
@@ -90,10 +91,11 @@ pub(super) fn all() -> Vec<Comparison> {
 
 fn separable() -> Vec<Comparison> {
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
-    let row = |operator, surface: &Surface<'_>, right: Term<'_>, name, wrong: Term<'_>| {
+    let row = |line, operator, surface: &Surface<'_>, right: Term<'_>, name, wrong: Term<'_>| {
         let traced = primal(surface);
         Comparison {
             operator,
+            line: Some(line),
             compared: "reflection, step 7".to_owned(),
             off: apart(&chain(&reflection(vec![right])), &traced),
             fault: (name, apart(&chain(&reflection(vec![wrong])), &traced)),
@@ -106,6 +108,7 @@ fn separable() -> Vec<Comparison> {
     let glossy = |before| term(before, Some(GLOSS));
     vec![
         row(
+            Line::Mirror,
             "ideal mirror, δ/cos θ",
             &Surface {
                 before: &|_| 1.0,
@@ -117,6 +120,7 @@ fn separable() -> Vec<Comparison> {
             term(Factor::Cosine, None),
         ),
         row(
+            Line::Brdf,
             "cosine and Gaussian lobe",
             &surface(Some(&gaussian)),
             glossy(Factor::Cosine),
@@ -124,6 +128,7 @@ fn separable() -> Vec<Comparison> {
             glossy(Factor::One),
         ),
         row(
+            Line::Brdf,
             "cosine and Phong lobe",
             &surface(Some(&|_, d| PHONG.value(d))),
             term(Factor::Cosine, Some(PHONG)),
@@ -131,6 +136,7 @@ fn separable() -> Vec<Comparison> {
             term(Factor::Cosine, Some(Lobe::Phong { exponent: 31.5 })),
         ),
         row(
+            Line::Separable,
             "separable, f(θ_i') = Schlick",
             &Surface {
                 before: &schlick,
@@ -141,6 +147,7 @@ fn separable() -> Vec<Comparison> {
             glossy(Factor::Cosine),
         ),
         row(
+            Line::Separable,
             "separable, asymmetric f(θ_i')",
             &Surface {
                 before: &lopsided,
@@ -151,6 +158,7 @@ fn separable() -> Vec<Comparison> {
             glossy(Factor::Other(&conjugate)),
         ),
         row(
+            Line::Separable,
             "separable, h(θ_o') = cos²",
             &Surface {
                 after: Some(&after),
@@ -209,6 +217,7 @@ fn sum() -> Comparison {
     terms.remove(1);
     Comparison {
         operator: "sum of three separable terms",
+        line: Some(Line::Separable),
         compared: "reflection, step 7".to_owned(),
         off: apart(&right, &traced),
         fault: (
@@ -242,6 +251,7 @@ fn textured() -> Comparison {
     };
     Comparison {
         operator: "texture",
+        line: Some(Line::Texture),
         compared: "reflection times 1 + 0.7 cos(2π 1.5 s + 0.4)".to_owned(),
         off: apart(&with(1.5), &traced),
         fault: ("its frequency 5 % off", apart(&with(1.575), &traced)),
@@ -277,6 +287,7 @@ fn varying() -> Comparison {
     };
     Comparison {
         operator: "space-varying BRDF, semi-convolution",
+        line: Some(Line::SpaceVarying),
         compared: "reflection by a lobe that turns along s".to_owned(),
         off: apart(&through(&|w| bell.spectrum(w)), &traced),
         fault: ("a separable ρ", apart(&through(&straight), &traced)),

@@ -2,7 +2,7 @@
 
 use super::scenes::{alone, changed};
 use crate::predicted;
-use crate::report::Section;
+use crate::report::{Check, Row, Section};
 use crate::scenes::{compared, traced};
 use etendue_compare::{
     Applicability, FirstOrder, FirstOrderChain, FirstOrderReport, Prediction, Verdict, scattered,
@@ -57,7 +57,6 @@ fn row(map: &mut Map<4>, row: usize, by: f64) {
 pub(super) fn chains(photons: Option<u64>) -> Section {
     let photons = photons.unwrap_or(PHOTONS);
     let mut rows = Vec::new();
-    let mut passed = true;
     for plane in ["texture", "outgoing"] {
         let scene = alone(changed(SCENE, Some(photons), &[]), plane);
         let measurement = traced(&scene);
@@ -73,13 +72,17 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
             fault(&mut tampered);
             let [_, said] = predicted::scattered(&view, place, &tampered);
             let report = judged(&scene, &measurement, &sound, &tampered, said);
-            let due = if name == "none" {
-                Verdict::Pass
-            } else {
-                Verdict::Fail
+            let check = match name {
+                "none" => {
+                    let accepted = report.verdict == Verdict::Pass;
+                    Check::fact("accepted", accepted, "nothing is wrong")
+                }
+                _ => {
+                    let rejected = report.verdict == Verdict::Fail;
+                    Check::fact("rejected", rejected, "a fault is planted")
+                }
             };
-            passed &= report.verdict == due;
-            rows.push(vec![
+            let cells = vec![
                 SCENE.to_owned(),
                 plane.to_owned(),
                 name.to_owned(),
@@ -93,7 +96,8 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
                     Verdict::Undecided => "undecided",
                 }
                 .to_owned(),
-            ]);
+            ];
+            rows.push(Row::new(cells, vec![check]));
         }
     }
     Section {
@@ -114,7 +118,7 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
             "verdict",
         ],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }
 

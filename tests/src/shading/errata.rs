@@ -7,8 +7,9 @@ use super::brdfs::{
 use super::eye::Scene;
 use super::light::{Surface, light_hat};
 use super::primal::{between, integral, transform, wave};
-use super::{small, verdict};
-use crate::report::Section;
+use super::small;
+use crate::report::Bound::{AtLeast, Below};
+use crate::report::{Check, Row, Section};
 use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::geometry::Map;
@@ -42,24 +43,24 @@ pub(super) fn errata() -> Section {
     all.extend(brdf());
     all.extend(environment());
     all.extend(criteria());
-    let mut passed = true;
     let word = |accepted: bool| if accepted { "accepted" } else { "rejected" }.to_owned();
     let rows = all.into_iter().map(|e| {
-        let (printed, corrected) = (e.off < e.at_least, e.mended < e.at_most);
-        let well = !printed && corrected;
-        passed &= well;
-        vec![
+        let checks = vec![
+            Check::new("printed", e.off, AtLeast(e.at_least), "it is wrong"),
+            Check::new("corrected", e.mended, Below(e.at_most), "good to so much"),
+        ];
+        let cells = vec![
             e.place.to_owned(),
             e.printed,
             e.corrected,
             format!("{:.3}", e.off),
             format!("{}", e.at_least),
-            word(printed),
+            word(!checks[0].passes()),
             small(e.mended),
             small(e.at_most),
-            word(corrected),
-            verdict(well),
-        ]
+            word(checks[1].passes()),
+        ];
+        Row::new(cells, checks)
     });
     let rows = rows.collect();
     Section {
@@ -81,7 +82,7 @@ pub(super) fn errata() -> Section {
             "verdict",
         ],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }
 

@@ -2,6 +2,7 @@
 
 use super::operators::Comparison;
 use super::primal::{about, between, transform, wave};
+use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::shading::environment::{Glow, irradiance, mirrored_differential_irradiance};
@@ -66,18 +67,21 @@ fn cosines() -> Vec<Comparison> {
     vec![
         Comparison {
             operator: "clamped cosine",
+            line: Some(Line::Cosine),
             compared: "cos⁺^(Ω), ∫ cos θ e^(−2πiΩθ)".to_owned(),
             off: apart(&curve(cosine_hat), &clamped),
             fault: ("cosine twice", apart(&curve(cosine_squared_hat), &clamped)),
         },
         Comparison {
             operator: "cosine along latitudes",
+            line: Some(Line::Cosine),
             compared: "C₂(Ω), ∫ cos² φ e^(−2πiΩφ)".to_owned(),
             off: apart(&curve(cosine_squared_hat), &squared),
             fault: ("cosine once", apart(&curve(cosine_hat), &squared)),
         },
         Comparison {
             operator: "full-circle series",
+            line: Some(Line::Cosine),
             compared: "24 coefficients of cos⁺".to_owned(),
             off: apart(&said, &series),
             fault: ("the transform for the series", apart(&printed, &series)),
@@ -102,6 +106,7 @@ fn fresnel() -> Vec<Comparison> {
         let primal = plain(FRAC_PI_2, 0.5, &|t| share(t) * t.cos());
         Comparison {
             operator,
+            line: Some(Line::Separable),
             compared: "transform of F cos⁺".to_owned(),
             off: apart(&curve(|omega| fresnel.cosine_hat(omega)), &primal),
             fault: (name, apart(&curve(wrong), &primal)),
@@ -167,6 +172,7 @@ fn lobes() -> Vec<Comparison> {
             let primal = plain(end, inner, &|t| shape(t) / area);
             Comparison {
                 operator,
+                line: Some(Line::Brdf),
                 compared: "ρ̂'(Ω) of a lobe of unit integral".to_owned(),
                 off: apart(&curve(|w| lobe.spectrum(w)), &primal),
                 fault: (
@@ -266,6 +272,7 @@ fn differential_irradiance() -> Comparison {
     let area = |q: f64| Complex::from(2.0 * g_hat(q));
     Comparison {
         operator: "differential irradiance, g",
+        line: None,
         compared: "L ⊗ ĝ, transform of ℓ (1 + v²)^(−3/2)".to_owned(),
         off: apart(&with(&|q| g_hat(q).into()), &primal),
         fault: ("g of twice the size", apart(&with(&area), &primal)),
@@ -314,6 +321,7 @@ fn environments() -> Vec<Comparison> {
         let right = |w| mirrored_differential_irradiance(k, w, &hat);
         rows.push(Comparison {
             operator,
+            line: Some(Line::Environment),
             compared: format!("dE'_r^ at k = {k} /m"),
             off: apart(&of(&right), &traced),
             fault: (
@@ -325,6 +333,7 @@ fn environments() -> Vec<Comparison> {
         let turned = |[x, _]: [f64; 2]| irradiance(-k, x, &hat);
         rows.push(Comparison {
             operator: diffuse,
+            line: Some(Line::Environment),
             compared: format!("E^ at k = {k} /m"),
             off: apart(&of(&|[x, _]| irradiance(k, x, &hat)), &floor),
             fault: ("the sign of k", apart(&of(&turned), &floor)),

@@ -50,10 +50,6 @@ fn with_photons(photons: Option<u64>) -> Vec<Section> {
     ]
 }
 
-fn verdict(well: bool) -> String {
-    if well { "pass" } else { "FAIL" }.to_owned()
-}
-
 fn small(x: f64) -> String {
     format!("{x:.1e}")
 }

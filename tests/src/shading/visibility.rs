@@ -2,6 +2,7 @@
 
 use super::operators::Comparison;
 use super::primal::{between, wave};
+use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::{Complex, HalfPlane, Light, Mask, Profile, Rectangle, Shape, Window};
 use etendue_theory::{Chain, Operator, Source, at};
@@ -94,6 +95,7 @@ fn row(operator: &'static str, mask: &Mask, blocked: [[f64; 2]; 2]) -> Compariso
         .collect();
     Comparison {
         operator,
+        line: Some(Line::Visibility),
         compared: "spectrum behind the mask, transform of what passes it".to_owned(),
         off: apart(&theory(&[mask]), &primal),
         fault: ("the mask left out", apart(&theory(&[]), &primal)),

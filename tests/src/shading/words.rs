@@ -1,8 +1,8 @@
 //! What the paper says in words, as numbers.
 
-use super::verdict;
 use super::{blockers, spreading};
-use crate::report::Section;
+use crate::report::Bound::{AtLeast, AtMost};
+use crate::report::{Check, Row, Section};
 
 /// A statement, and what was measured.
 pub(super) struct Statement {
@@ -17,22 +17,21 @@ pub(super) struct Statement {
 
 /// The section.
 pub(super) fn words() -> Section {
-    let mut passed = true;
     let all = blockers::statements()
         .into_iter()
         .chain(spreading::statements());
     let rows = all.map(|s| {
         let [low, high] = s.expected;
-        let well = s.number >= low && s.number <= high;
-        passed &= well;
-        vec![
+        let checks = [AtLeast(low), AtMost(high)];
+        let checks = checks.map(|bound| Check::new("number", s.number, bound, "known beforehand"));
+        let cells = vec![
             s.said.to_owned(),
             s.measured,
             format!("{:.4e}", s.number),
             format!("{} … {}", bound(low), bound(high)),
             s.holds.to_owned(),
-            verdict(well),
-        ]
+        ];
+        Row::new(cells, checks.into())
     });
     let rows = rows.collect();
     Section {
@@ -42,7 +41,7 @@ pub(super) fn words() -> Section {
             .to_owned(),
         header: vec!["statement", "measured", "number", "required", "holds", "verdict"],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }
 

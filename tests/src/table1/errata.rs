@@ -3,7 +3,8 @@
 use super::bench::Bench;
 use super::steps::Steps;
 use super::{Outcome, number, percent};
-use crate::report::Section;
+use crate::report::Bound::{AtLeast, Below};
+use crate::report::{Check, EXACT, Row, Section};
 use etendue_compare::{FirstOrderReport, Verdict};
 use etendue_theory::geometry::{Edition, Map, Matrix};
 use std::f64::consts::TAU;
@@ -111,10 +112,9 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
 }
 
 /// Every misprint alone on a hollow sphere, and those of a plane mirror's on it.
-fn rows(outcome: &Outcome) -> (Vec<Vec<String>>, bool) {
+fn rows(outcome: &Outcome) -> Vec<Row> {
     let bench = Bench::new(outcome);
     let mut rows = Vec::new();
-    let mut passed = true;
     let flat = bench.shape[0][0] == 0.0;
     for (name, plane, misprint) in all() {
         if flat && (plane == "curvature" || name.contains("19")) {
@@ -130,10 +130,14 @@ fn rows(outcome: &Outcome) -> (Vec<Vec<String>>, bool) {
         // On a plane mirror Table 1's two scales cancel, and so do its two phases (docs/theory.md, section 7).
         let hidden = flat && name == "Table 1 as printed";
         let due = if hidden { Verdict::Pass } else { Verdict::Fail };
-        let well =
-            printed.verdict == due && sound.verdict == Verdict::Pass && bench.apart(index) < SAME;
-        passed &= well;
-        rows.push(vec![
+        let is_due = printed.verdict == due;
+        let is_sound = sound.verdict == Verdict::Pass;
+        let checks = vec![
+            Check::fact("printed", is_due, "it is wrong, unless slips cancel"),
+            Check::fact("corrected", is_sound, "it is right"),
+            Check::new("chain", bench.apart(index), Below(SAME), "rounding"),
+        ];
+        let cells = vec![
             outcome.scene.name.clone(),
             plane.to_owned(),
             name.to_owned(),
@@ -144,20 +148,14 @@ fn rows(outcome: &Outcome) -> (Vec<Vec<String>>, bool) {
             percent(sound.excess_bound),
             percent(Some(sound.chain.error)),
             word(sound.verdict).to_owned(),
-        ]);
+        ];
+        rows.push(Row::new(cells, checks));
     }
-    (rows, passed)
+    rows
 }
 
 /// The errata.
 fn section(outcomes: &[&Outcome]) -> Section {
-    let mut rows = Vec::new();
-    let mut passed = true;
-    for outcome in outcomes {
-        let (found, well) = self::rows(outcome);
-        rows.extend(found);
-        passed &= well;
-    }
     Section {
         title: "Errata: each misprint alone".to_owned(),
         text: "One step of the chain as the paper prints it, all others as they should be, held against the photons of the file by the rule for first-order \
@@ -177,8 +175,8 @@ fn section(outcomes: &[&Outcome]) -> Section {
             "error",
             "corrected",
         ],
-        rows,
-        passed,
+        rows: outcomes.iter().flat_map(|outcome| rows(outcome)).collect(),
+        checks: Vec::new(),
     }
 }
 
@@ -190,26 +188,30 @@ pub(super) fn misprints(sphere: &Outcome, flat: &Outcome) -> Section {
 /// The scene files that ask for the printed formulas: `--expect disagreement`.
 pub(super) fn as_printed(outcomes: &[&Outcome], level: f64) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
+    let mut checks = Vec::new();
     for outcome in outcomes {
-        let mut rejected = false;
+        let mut rejected = 0.0;
         for plane in &outcome.planes {
             let report = &plane.report;
             let Some(first) = &report.first_order else {
                 continue;
             };
-            rejected |= first.verdict == Verdict::Fail;
-            passed &= report.p_value.is_some_and(|p| p >= level);
-            rows.push(vec![
+            rejected += f64::from(first.verdict == Verdict::Fail);
+            let cells = vec![
                 outcome.scene.name.clone(),
                 report.name.clone(),
                 number(report.p_value),
                 percent_or_dark(first),
                 number(first.p_value),
                 word(first.verdict).to_owned(),
-            ]);
+            ];
+            rows.push(Row::new(
+                cells,
+                vec![Check::p(EXACT, report.p_value, level)],
+            ));
         }
-        passed &= rejected;
+        let reason = "some plane of each scene shows the misprint";
+        checks.push(Check::new("rejected", rejected, AtLeast(1.0), reason));
     }
     Section {
         title: "Scenes predicted as printed".to_owned(),
@@ -226,7 +228,7 @@ pub(super) fn as_printed(outcomes: &[&Outcome], level: f64) -> Section {
             "printed",
         ],
         rows,
-        passed,
+        checks,
     }
 }
 

@@ -13,7 +13,7 @@ mod scenes;
 mod steps;
 mod volume;
 
-pub(crate) use order::slope;
+pub(crate) use order::{ORDER, check as order, slope};
 pub(crate) use quadrature::apart;
 
 use crate::report::Section;

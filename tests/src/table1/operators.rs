@@ -1,30 +1,27 @@
 //! Every plane of the table.
 
-use super::order::{Fall, Order, fall};
+use super::order::{self, Fall, ORDER, Order, fall};
 use super::path::{Path, Stage};
+use super::planar::Found;
 use super::{Outcome, number, percent};
-use crate::report::Section;
+use crate::report::Bound::{AtLeast, Below};
+use crate::report::{Check, EXACT, Row, Section, worse};
+use crate::rows::Line;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
 use etendue_theory::geometry::Media;
 use etendue_theory::rays::System;
 use etendue_theory::{Model, Observed, Parameter};
 
-/// How far a fitted order may be from what is known beforehand.
-const ORDER: f64 = 0.15;
 /// What two quadratures, each good to 10⁻⁴, may differ by where first order is exact.
 const QUADRATURE: f64 = 2e-4;
 
 /// The 4D half of the table.
 pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     for outcome in outcomes {
-        for index in 0..outcome.planes.len() {
-            let (row, well) = row(outcome, index, level);
-            passed &= well;
-            rows.push(row);
-        }
+        let planes = 0..outcome.planes.len();
+        rows.extend(planes.map(|index| row(outcome, index, level)));
     }
     Section {
         title: format!(
@@ -61,11 +58,11 @@ pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Sec
             "verdict",
         ],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }
 
-fn row(outcome: &Outcome, index: usize, level: f64) -> (Vec<String>, bool) {
+fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
     let report = &outcome.planes[index].report;
     let view = outcome.system(index);
     let known = Order::expected(&view);
@@ -74,32 +71,32 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> (Vec<String>, bool) {
     let error = first.map_or(f64::NAN, |f| f.chain.error);
     let resolvable = first.and_then(|f| f.resolvable);
     let p_first = first.and_then(|f| f.p_value);
-    let mut failures = Vec::new();
-    let mut require = |what: &str, holds: bool| {
-        if !holds {
-            failures.push(what.to_owned());
-        }
-    };
-    require("dark", report.in_window > 0);
-    require("exact", report.p_value.is_some_and(|p| p >= level));
-    require("excess", first.is_some_and(|f| f.verdict == Verdict::Pass));
-    require("order", follows(&fall, known));
+    let agrees = first.is_some_and(|f| f.verdict == Verdict::Pass);
+    let light = report.in_window as f64;
+    let mut checks = vec![
+        Check::new("light", light, AtLeast(1.0), "p says nothing of the dark"),
+        Check::p(EXACT, report.p_value, level),
+        Check::fact("excess", agrees, "by the rule for first-order chains"),
+        follows(&fall, known),
+    ];
     if resolvable.is_some_and(|r| error > 2.0 * r) {
-        require("not told apart", p_first.is_some_and(|p| p < level));
+        let p = p_first.unwrap_or(1.0);
+        let reason = "the error is twice what noise hides";
+        checks.push(Check::new("told apart", p, Below(level), reason));
     }
-    let planar = section(&view).map(|(path, stage)| path.check(stage));
-    require("2D", planar.is_none_or(|c| c.holds()));
+    let planar = section(&view).map(|(path, stage)| path.found(stage));
+    checks.extend(planar.iter().flat_map(Found::checks));
     let [.., before, last] = fall.errors;
     let exponent = known.exponent();
     let order = |x: f64| match exponent {
         Some(_) => format!("{x:.3}"),
         None => "–".to_owned(),
     };
-    let passed = failures.is_empty();
+    let (word, line) = operator(&view);
     let cells = vec![
         outcome.scene.name.clone(),
         report.name.clone(),
-        operator(&view).to_owned(),
+        word.to_owned(),
         planar.map_or("–".to_owned(), |c| format!("{:.0e}", c.map)),
         planar.map_or("–".to_owned(), |c| format!("{:.2}", c.order)),
         report.in_window.to_string(),
@@ -113,47 +110,43 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> (Vec<String>, bool) {
         order(fall.order),
         order((before / last).log2()),
         exponent.map_or("exact".to_owned(), |n| format!("{n:.0}")),
-        if passed {
-            "pass".to_owned()
-        } else {
-            format!("FAIL: {}", failures.join(", "))
-        },
     ];
-    (cells, passed)
+    Row::new(cells, checks).of(line)
 }
 
-fn follows(fall: &Fall, known: Order) -> bool {
-    match known.exponent() {
-        Some(order) => (fall.order - order).abs() <= ORDER,
-        None => fall.errors.iter().all(|e| *e < QUADRATURE),
+fn follows(fall: &Fall, known: Order) -> Check {
+    if let Some(known) = known.exponent() {
+        return order::check(fall.order, known);
     }
+    let largest = fall.errors.into_iter().fold(0.0, worse);
+    Check::new("order", largest, Below(QUADRATURE), "two quadratures")
 }
 
-/// The last step on the way to a plane.
-fn operator(view: &Observed<System>) -> &'static str {
+/// The last step on the way to a plane, and the row of the paper's table that it is.
+fn operator(view: &Observed<System>) -> (&'static str, Option<Line>) {
     let Observed { system, plane } = view;
     let last = system.elements.last();
     if plane.arriving {
         return match plane.orientation {
-            Orientation::LocalNormals => "curvature",
-            Orientation::Mirrored => "mirror",
-            _ => "incidence",
+            Orientation::LocalNormals => ("curvature", Some(Line::Curvature)),
+            Orientation::Mirrored => ("mirror", Some(Line::Mirror)),
+            _ => ("incidence", Some(Line::Incidence)),
         };
     }
     let Some(element) = last else {
-        return "travel";
+        return ("travel", Some(Line::Travel));
     };
     let refracts = matches!(element.event, Specular::Refraction { .. });
     match plane.orientation {
-        Orientation::LocalNormals if refracts => "refraction",
-        Orientation::LocalNormals | Orientation::Mirrored => "mirror",
-        Orientation::Tangent => "back",
+        Orientation::LocalNormals if refracts => ("refraction", None),
+        Orientation::LocalNormals | Orientation::Mirrored => ("mirror", Some(Line::Mirror)),
+        Orientation::Tangent => ("back", Some(Line::Curvature)),
         Orientation::Orthogonal => {
             let far = (plane.frame.origin - element.patch.frame.origin).length();
             match element.event {
-                _ if far > 1e-6 => "travel",
-                Specular::ThinLens { .. } => "lens",
-                _ => "outgoing",
+                _ if far > 1e-6 => ("travel", Some(Line::Travel)),
+                Specular::ThinLens { .. } => ("lens", None),
+                _ => ("outgoing", Some(Line::Outgoing)),
             }
         }
     }

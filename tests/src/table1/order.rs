@@ -2,6 +2,7 @@
 
 use super::Outcome;
 use crate::predicted;
+use crate::report::{Bound::AtMost, Check};
 use etendue_field::{FrequencyAxis, Orientation, SliceGrid, Slices, Specular, Window};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{self, System};
@@ -9,6 +10,15 @@ use etendue_theory::{Model, Observed, Parameter};
 
 /// Sizes of the neighbourhood, in that of the scene.
 const SIZES: [f64; 4] = [1.0, 0.5, 0.25, 0.125];
+
+/// How far a fitted order may be from what is known beforehand.
+pub(crate) const ORDER: f64 = 0.15;
+
+/// The check of an order fitted to what falls.
+pub(crate) fn check(fitted: f64, known: f64) -> Check {
+    let off = (fitted - known).abs();
+    Check::new("order", off, AtMost(ORDER), "a fit of four sizes")
+}
 
 /// Angles of incidence below this are none, radians.
 const NORMAL: f64 = 1e-6;

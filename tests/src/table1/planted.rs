@@ -5,7 +5,8 @@ use super::bench::Bench;
 use super::errata::{percent_or_dark, word};
 use super::steps::Steps;
 use crate::predicted;
-use crate::report::Section;
+use crate::report::Bound::{AtLeast, Below};
+use crate::report::{Check, Row, Section};
 use etendue_compare::{Residuals, Verdict};
 use etendue_field::Specular;
 use etendue_theory::geometry::{Map, SpectrumMap};
@@ -83,7 +84,6 @@ fn swapped(bench: &Bench<'_>, sign: f64) -> Map<4> {
 /// Faults of the affine maps, judged by the rule for first-order chains.
 pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     for outcome in [oblique, normal] {
         let bench = Bench::new(outcome);
         let straight = bench.theta0.abs() < 1e-6;
@@ -107,9 +107,13 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                     )
                 })
                 .collect();
-            let rejected = judged.iter().any(|(_, r)| r.verdict == Verdict::Fail);
+            let failed = judged.iter().filter(|(_, r)| r.verdict == Verdict::Fail);
+            let count = failed.count();
             let accepted = judged.iter().all(|(_, r)| r.verdict == Verdict::Pass);
-            passed &= if name == "none" { accepted } else { rejected };
+            let check = match name {
+                "none" => Check::fact("accepted", accepted, "nothing is wrong"),
+                _ => Check::new("rejected", count as f64, AtLeast(1.0), "a fault is planted"),
+            };
             let decisive = judged
                 .iter()
                 .max_by(|a, b| {
@@ -124,11 +128,7 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                     },
                 );
             let [excess, stays] = decisive.1;
-            let count = judged
-                .iter()
-                .filter(|(_, r)| r.verdict == Verdict::Fail)
-                .count();
-            rows.push(vec![
+            let cells = vec![
                 outcome.scene.name.clone(),
                 name.to_owned(),
                 decisive.0.to_owned(),
@@ -141,7 +141,8 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
                     _ => decisive.2,
                 }
                 .to_owned(),
-            ]);
+            ];
+            rows.push(Row::new(cells, vec![check]));
         }
     }
     Section {
@@ -152,7 +153,7 @@ pub(super) fn first_order(oblique: &Outcome, normal: &Outcome) -> Section {
             .to_owned(),
         header: vec!["scene", "fault", "plane", "excess", "stays", "planes", "run"],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }
 
@@ -187,7 +188,6 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
 /// Wrong numbers in the exact prediction, judged by p.
 pub(super) fn exact(outcomes: &[&Outcome], level: f64) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     for outcome in outcomes {
         for (name, tamper) in numbers() {
             let p_value = |i: usize| {
@@ -206,8 +206,11 @@ pub(super) fn exact(outcomes: &[&Outcome], level: f64) -> Section {
                 continue;
             };
             let rejected = least < level;
-            passed &= rejected != (name == "none");
-            rows.push(vec![
+            let check = match name {
+                "none" => Check::p("accepted", Some(least), level),
+                _ => Check::new("rejected", least, Below(level), "a number is wrong"),
+            };
+            let cells = vec![
                 outcome.scene.name.clone(),
                 name.to_owned(),
                 outcome.planes[at].report.name.clone(),
@@ -218,7 +221,8 @@ pub(super) fn exact(outcomes: &[&Outcome], level: f64) -> Section {
                     found.len()
                 ),
                 if rejected { "rejected" } else { "accepted" }.to_owned(),
-            ]);
+            ];
+            rows.push(Row::new(cells, vec![check]));
         }
     }
     Section {
@@ -229,6 +233,6 @@ pub(super) fn exact(outcomes: &[&Outcome], level: f64) -> Section {
         ),
         header: vec!["scene", "fault", "plane", "p", "planes", "run"],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }

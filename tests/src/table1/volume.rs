@@ -1,7 +1,8 @@
 //! Étendue along real rays, and their way back.
 
 use super::Outcome;
-use crate::report::Section;
+use crate::report::Bound::Below;
+use crate::report::{Check, Row, Section, worse};
 use etendue_field::{Frame, Orientation};
 use etendue_theory::Observed;
 use etendue_theory::geometry::Edition;
@@ -23,7 +24,6 @@ struct Ray {
 /// Phase-space volume and reversibility on every scene with surfaces.
 pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
     let mut rows = Vec::new();
-    let mut passed = true;
     for outcome in outcomes {
         let planes = outcome.scene.planes.iter();
         let mut last = planes
@@ -42,21 +42,23 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
             let defects = defects(system, &plane.frame, at, ratio);
             let defects = defects.unwrap_or([f64::NAN; 3]);
             for (most, d) in most.iter_mut().zip(defects) {
-                *most = if d <= *most { *most } else { d };
+                *most = worse(*most, d);
             }
         }
         let [volume, invariant, back] = most;
-        let well = [linear, volume, invariant, back]
-            .iter()
-            .all(|d| *d < ROUNDING);
-        passed &= well;
-        let mut row = vec![
+        let found = [
+            ("chain", linear),
+            ("volume", volume),
+            ("invariant", invariant),
+            ("back", back),
+        ];
+        let mut cells = vec![
             outcome.scene.name.clone(),
             outcome.scene.planes[index].name.clone(),
         ];
-        row.extend([linear, volume, invariant, back].map(|d| format!("{d:.1e}")));
-        row.push(if well { "pass" } else { "FAIL" }.to_owned());
-        rows.push(row);
+        cells.extend(found.map(|(_, d)| format!("{d:.1e}")));
+        let checks = found.map(|(id, d)| Check::new(id, d, Below(ROUNDING), "rounding of steps"));
+        rows.push(Row::new(cells, checks.into()));
     }
     Section {
         title: "Étendue and the way back".to_owned(),
@@ -77,7 +79,7 @@ pub(super) fn volume(outcomes: &[&Outcome]) -> Section {
             "verdict",
         ],
         rows,
-        passed,
+        checks: Vec::new(),
     }
 }
 

@@ -1,7 +1,7 @@
 //! What all scenes come to, as a table.
 
 use super::judge::{Culprit, Judged, Trouble};
-use crate::report::Section;
+use crate::report::{Check, Row, Section};
 use std::collections::BTreeMap;
 
 /// Counts over scenes.
@@ -62,7 +62,8 @@ impl Tally {
         let mut row = |what: String, count: usize, which: &mut Vec<u64>| {
             which.sort_unstable();
             let shown: Vec<String> = which.iter().take(20).map(u64::to_string).collect();
-            rows.push(vec![what, count.to_string(), shown.join(", ")]);
+            let cells = vec![what, count.to_string(), shown.join(", ")];
+            rows.push(Row::new(cells, Vec::new()));
         };
         let none = &mut Vec::new();
         row("scenes".into(), self.scenes, none);
@@ -79,8 +80,12 @@ impl Tally {
         let fails = format!("of these, fail ({expected:.1} expected by chance)");
         row(fails, self.fails, none);
         row("of these, not again".into(), self.chance, none);
-        let broken = [&self.panics, &self.hangs, &self.killed];
-        let passed = broken.iter().all(|list| list.is_empty()) && self.wrong.is_empty();
+        let checks = vec![
+            Check::none("panics", self.panics.len()),
+            Check::none("hangs", self.hangs.len()),
+            Check::none("killed", self.killed.len()),
+            Check::none("wrong", self.wrong.len()),
+        ];
         for (what, which) in [
             ("**panics**", &mut self.panics),
             ("**hangs**", &mut self.hangs),
@@ -100,7 +105,7 @@ impl Tally {
                 .into(),
             header: vec!["what", "count", "scenes"],
             rows,
-            passed,
+            checks,
         }
     }
 }
