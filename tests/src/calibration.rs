@@ -2,9 +2,10 @@
 
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section};
-use crate::scenes::{fig9b, predicted, traced};
+use crate::scenes::{fig9b, predicted, sampled, traced, words};
 use crate::statistics::{mean, uniformity};
 use etendue_compare::{PlaneReport, Prediction, Test, compare};
+use etendue_scene::{Sampling, Scene};
 use etendue_spectrum::{Batch, Measurement};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -39,15 +40,16 @@ const FAULTS: [(Fault, &str); 2] = [
 ///
 /// Then judges them again as if σ had been 10 % too small and too large, and with batches that are
 /// not independent: all must be found out.
-pub(crate) fn calibration(seeds: Range<u64>, photons: u64) -> Vec<Section> {
+pub(crate) fn calibration(seeds: Range<u64>, photons: u64, sampling: Sampling) -> Vec<Section> {
     // Fewer seeds do not tell 3 % of variance, and later ones only calibrate once more.
     let count = seeds.end - seeds.start;
     let plants = count >= 1000 && seeds.start == 1;
     let faults = FAULTS.iter().filter(|_| plants);
     let faults: Vec<Option<Fault>> = faults.map(|(fault, _)| Some(*fault)).collect();
-    let all = sample(seeds, photons, &[&[None], &faults[..]].concat());
+    let scene = sampled(fig9b(photons, 1), sampling);
+    let all = sample(seeds, &scene, &[&[None], &faults[..]].concat());
     let seeds = count;
-    let judged = |scale: f64| judge(&all[0], seeds, photons, scale);
+    let judged = |scale: f64| judge(&all[0], seeds, &scene, scale);
     let mut sections = vec![judged(1.0)];
     let sound = sections[0].passes();
     for scale in [0.9, 1.1] {
@@ -56,7 +58,7 @@ pub(crate) fn calibration(seeds: Range<u64>, photons: u64) -> Vec<Section> {
         sections.push(judged(scale).planted(title, text, sound));
     }
     for (planes, (_, name)) in all[1..].iter().zip(FAULTS) {
-        let section = judge(planes, seeds, photons, 1.0);
+        let section = judge(planes, seeds, &scene, 1.0);
         let title = format!("The same with {name}");
         let text = "A fault planted in p. Required: p is not uniform by the bounds above.";
         sections.push(section.planted(title, text, sound));
@@ -85,11 +87,11 @@ fn planted(measurement: &Measurement, fault: Fault) -> Measurement {
 }
 
 /// What the seeds give with each of the faults, or without.
-fn sample(seeds: Range<u64>, photons: u64, faults: &[Option<Fault>]) -> Vec<Vec<Plane>> {
-    let predictions = predicted(&fig9b(photons, 1), None);
+fn sample(seeds: Range<u64>, scene: &Scene, faults: &[Option<Fault>]) -> Vec<Vec<Plane>> {
+    let predictions = predicted(scene, None);
     let reports: Vec<Vec<Vec<PlaneReport>>> = seeds
         .into_par_iter()
-        .map(|seed| reports(photons, seed, &predictions, faults))
+        .map(|seed| reports(scene.clone(), seed, &predictions, faults))
         .collect();
     let plane = |fault: usize, i: usize| {
         let of_plane = || reports.iter().map(move |r| &r[fault][i]);
@@ -109,12 +111,12 @@ fn sample(seeds: Range<u64>, photons: u64, faults: &[Option<Fault>]) -> Vec<Vec<
 
 /// The planes of one seed with each of the faults.
 fn reports(
-    photons: u64,
+    mut scene: Scene,
     seed: u64,
     predictions: &[Prediction],
     faults: &[Option<Fault>],
 ) -> Vec<Vec<PlaneReport>> {
-    let scene = fig9b(photons, seed);
+    scene.run.seed = seed;
     let sound = traced(&scene);
     let test = Test::of(&scene);
     let with = |fault: &Option<Fault>| {
@@ -130,7 +132,7 @@ fn reports(
     faults.iter().map(with).collect()
 }
 
-fn judge(planes: &[Plane], seeds: u64, photons: u64, scale: f64) -> Section {
+fn judge(planes: &[Plane], seeds: u64, scene: &Scene, scale: f64) -> Section {
     let mut rows = Vec::new();
     let all: Vec<f64> = planes
         .iter()
@@ -181,8 +183,9 @@ fn judge(planes: &[Plane], seeds: u64, photons: u64, scale: f64) -> Section {
     rows.push(Row::new(cells, vec![check]));
     Section {
         title: format!(
-            "Calibration over {seeds} seeds at {:.0e} photons",
-            photons as f64
+            "Calibration over {seeds} seeds at {:.0e} photons, {}",
+            scene.run.photons as f64,
+            words(scene.run.sampling)
         ),
         text: format!(
             "Required: p uniform by Kolmogorov–Smirnov at 1 % over the planes; the share of p below 10 % within \

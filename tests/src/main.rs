@@ -27,7 +27,9 @@ mod table1;
 mod wild;
 
 use clap::{Parser, Subcommand};
+use etendue_scene::Sampling;
 use report::Section;
+use std::ops::Range;
 use std::process::ExitCode;
 
 /// Statistical validation of Étendue: calibration, planted faults, noise floors.
@@ -268,9 +270,9 @@ fn with_part(page: &str, title: &str, part: &str) -> String {
 fn sections(command: &Command) -> Vec<Section> {
     match *command {
         Command::Short => {
-            let mut sections = calibration::calibration(1..101, 20_000);
+            let mut sections = calibrations(1..101, 20_000);
             sections.push(faults::planted(3_000_000, SEED));
-            sections.push(noise::floor(&[100_000, 1_000_000], SEED));
+            sections.push(noise::floor(&[1 << 17, 1 << 20], SEED));
             sections.extend(suite::suite(Some(200_000)));
             sections
         }
@@ -278,7 +280,7 @@ fn sections(command: &Command) -> Vec<Section> {
             seeds,
             first,
             photons,
-        } => calibration::calibration(first..first + seeds, photons),
+        } => calibrations(first..first + seeds, photons),
         Command::Faults { photons } => vec![faults::planted(photons, SEED)],
         Command::Suite { photons } => {
             let mut sections = suite::suite(photons);
@@ -300,24 +302,31 @@ fn sections(command: &Command) -> Vec<Section> {
         | Command::Assumptions(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {
-            let mut sections = noise(1_000_000_000);
-            sections.extend(calibration::calibration(1..1001, 100_000));
+            let mut sections = noise(1 << 30);
+            sections.extend(calibrations(1..1001, 100_000));
             sections.push(faults::planted(10_000_000, SEED));
             sections
         }
     }
 }
 
+/// By both kinds of numbers.
+fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<Section> {
+    let kinds = [Sampling::Net, Sampling::Random].into_iter();
+    let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));
+    sections.collect()
+}
+
 fn noise(most: u64) -> Vec<Section> {
-    let decades: Vec<u64> = (6..=12)
-        .map(|n| 10u64.pow(n))
-        .filter(|n| *n <= most)
-        .collect();
-    let planes = most.min(10_000_000);
+    let steps = (20..=40).step_by(3).map(|n| 1_u64 << n);
+    let decades: Vec<u64> = steps.filter(|n| *n <= most).collect();
+    let planes = most.min(1 << 23);
     vec![
         noise::planes(planes, SEED),
         noise::parameters(planes, SEED),
         noise::floor(&decades, SEED),
+        noise::gain(planes, 64),
+        noise::gain(planes, 1024),
     ]
 }
 

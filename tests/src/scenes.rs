@@ -2,7 +2,7 @@
 
 use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Test, compare};
 use etendue_field::PhotonSource;
-use etendue_scene::{RunFile, Scene, SceneFile, resolve};
+use etendue_scene::{RunFile, Sampling, Scene, SceneFile, resolve};
 use etendue_spectrum::{Measurement, measure};
 use etendue_trace::{Backward, Tracer};
 
@@ -56,6 +56,20 @@ pub(crate) fn receiver(photons: u64, seed: u64) -> Scene {
     let mut scene = fig9b(photons, seed);
     scene.planes.retain(|plane| plane.name == "receiver");
     scene
+}
+
+/// A scene whose photons are drawn from these numbers.
+pub(crate) fn sampled(mut scene: Scene, sampling: Sampling) -> Scene {
+    scene.run.sampling = sampling;
+    scene
+}
+
+/// What photons are drawn from, in words.
+pub(crate) fn words(sampling: Sampling) -> &'static str {
+    match sampling {
+        Sampling::Net => "nets",
+        Sampling::Random => "random numbers",
+    }
 }
 
 /// Gives a run so many photons, and the resolution that goes with them: noise falls with their root.

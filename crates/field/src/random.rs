@@ -15,6 +15,10 @@ pub enum Stream {
     Backward,
     /// The life of photon `index` of emission that is not aimed, to judge photons of aimed emission.
     Even,
+    /// The scrambling of net `index` of photons.
+    Net,
+    /// That of a net of emission that is not aimed.
+    EvenNet,
 }
 
 /// Four random words for `block` of item `index` in a stream of `seed`.

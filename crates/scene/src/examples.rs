@@ -76,6 +76,7 @@ photons | a whole number | 1e7
 seed | a whole number | 1
 batches | a whole number | 64
 emission | Aimed or Plain | Aimed
+sampling | Net or Random | Net
 "#;
 
 /// What the field at a path is, and one way to write it.

@@ -289,17 +289,20 @@ pub struct RunFile {
     pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
+    /// The numbers that photons are drawn from.
+    pub sampling: Sampling,
 }
 
 impl Default for RunFile {
     fn default() -> Self {
         Self {
-            photons: 10_000_000,
+            photons: 1 << 23,
             seed: 1,
             batches: 64,
             alpha: 0.01,
             resolution: 0.1,
             emission: Emission::Aimed,
+            sampling: Sampling::Net,
         }
     }
 }
@@ -348,6 +351,15 @@ pub enum Emission {
     Aimed,
     /// As light does: uniformly over the area, by the cosine over direction.
     Plain,
+}
+
+/// The numbers that photons are drawn from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Sampling {
+    /// Scrambled Sobol' nets, one for each batch: less noise, most with batches of 2ᵐ photons.
+    Net,
+    /// Independent random numbers.
+    Random,
 }
 
 fn one() -> f64 {

@@ -39,7 +39,7 @@ pub use fault::{Fault, SceneError};
 pub use file::{
     AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
     FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
-    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, SceneFile, ShapeFile,
+    MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
     SphericalGaussianFile, SurfaceFile, WindowFile,
 };
 pub use mesh::Mesh;

@@ -114,6 +114,7 @@ impl Resolver<'_> {
                 alpha: file.run.alpha,
                 resolution: file.run.resolution,
                 emission: file.run.emission,
+                sampling: file.run.sampling,
             },
             file,
         })

@@ -1,4 +1,4 @@
-use crate::{Emission, SceneFile};
+use crate::{Emission, Sampling, SceneFile};
 use etendue_field::{Frame, Light, Mask, Patch, Rectangle, Reflectance, Specular, VirtualPlane};
 use glam::DVec3;
 use std::collections::BTreeMap;
@@ -293,6 +293,8 @@ pub struct Run {
     pub resolution: f64,
     /// How photons leave the light.
     pub emission: Emission,
+    /// The numbers that photons are drawn from.
+    pub sampling: Sampling,
 }
 
 /// [`Scene::hash`] of a file and of the hashes of what it names.

@@ -96,6 +96,12 @@ impl Emitter {
         }
     }
 
+    /// The block of words from which on a photon's bounces take theirs. Of block 1 the emission takes
+    /// the last word, which says at which plane a ray is aimed; light from far away takes them all.
+    pub(crate) fn bounces_from(&self) -> u32 {
+        if self.sky.is_some() { 2 } else { 1 }
+    }
+
     /// A ray from the random words of two blocks; `None` when what was drawn goes nowhere.
     #[inline]
     #[must_use]
@@ -116,7 +122,7 @@ impl Emitter {
         let [along_x, along_y] = match self.proposals.as_slice() {
             [] => return Some(self.plain(r)),
             [only] => only,
-            several => &several[random::index(words(1)[0], several.len())],
+            several => &several[random::index(words(1)[3], several.len())],
         };
         let [x, u] = along_x.sample([r[0], r[1]]);
         let [y, v] = along_y.sample([r[2], r[3]]);

@@ -4,7 +4,7 @@
 //! crosses before that. It keeps the ledger of flux, and knows nothing of windows' spectra or of theory.
 //!
 //! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a
-//! distance along the central ray is a coordinate. Random numbers are functions of (seed, photon), so a photon's
+//! distance along the central ray is a coordinate. Its numbers are functions of (seed, batch, photon), so a photon's
 //! life does not depend on who traces it.
 
 mod aim;
@@ -14,6 +14,7 @@ pub mod brdf;
 mod bvh;
 mod emit;
 mod ground;
+mod numbers;
 mod obstacles;
 mod pieces;
 mod proposal;

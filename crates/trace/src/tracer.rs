@@ -1,10 +1,11 @@
 use crate::bounce::Bounce;
 use crate::bvh::Target;
 use crate::emit::Emitter;
+use crate::numbers::Source;
 use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
 use crate::shares::Shares;
 use crate::station::Station;
-use etendue_field::random::{self, Stream};
+use etendue_field::random::Stream;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
@@ -23,8 +24,7 @@ pub struct Tracer {
     legs: Vec<Leg>,
     planes: usize,
     shares: Shares,
-    seed: u64,
-    stream: Stream,
+    numbers: Source,
 }
 
 /// A leg of the path, as photons see it.
@@ -76,13 +76,13 @@ impl Tracer {
         // Legs beyond the last plane are of no interest.
         let last = scene.planes.iter().map(|plane| plane.leg).max();
         let legs = (0..=last.unwrap_or(0)).map(|leg| Leg::new(scene, leg));
+        let legs: Vec<Leg> = legs.collect();
         Self {
             emitter: Emitter::new(scene),
-            legs: legs.collect(),
             planes: scene.planes.len(),
             shares: Shares::new(&scene.run),
-            seed: scene.run.seed,
-            stream: Stream::Photon,
+            numbers: Source::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
+            legs,
         }
     }
 
@@ -93,18 +93,27 @@ impl Tracer {
     /// same.
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
+        let plain = Self::new(scene);
         Self {
             emitter: Emitter::evenly(scene),
-            stream: Stream::Even,
-            ..Self::new(scene)
+            numbers: Source::new(
+                &scene.run,
+                [Stream::Even, Stream::EvenNet],
+                plain.legs.len(),
+            ),
+            ..plain
         }
     }
 
     /// The life of one photon.
     #[inline]
-    fn photon(&self, index: u64, crossings: &mut [Vec<Crossing>], ledger: &mut Ledger) {
-        let words = |block| random::words(self.seed, self.stream, index, block);
-        let Some(ray) = self.emitter.sample(words) else {
+    fn photon(
+        &self,
+        words: impl Fn(u32) -> [u32; 4],
+        crossings: &mut [Vec<Crossing>],
+        ledger: &mut Ledger,
+    ) {
+        let Some(ray) = self.emitter.sample(&words) else {
             return;
         };
         let weight = self.emitter.weight(&ray);
@@ -118,7 +127,12 @@ impl Tracer {
         // Scattered light is aimed at windows: what becomes of it is in no account.
         let mut beyond = Ledger::default();
         let mut account = ledger;
-        for ((i, this), block) in self.legs.iter().enumerate().zip(2..) {
+        for ((i, this), block) in self
+            .legs
+            .iter()
+            .enumerate()
+            .zip(self.emitter.bounces_from()..)
+        {
             let Flight { ray, from, weight } = flight;
             let met = this.obstacles.first(&ray, from);
             if met.is_some_and(|(_, target)| target.tag.is(this.leaves)) {
@@ -293,8 +307,10 @@ impl PhotonSource for Tracer {
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
+            let numbers = self.numbers.of(batch, range.start, start);
             for index in start..end {
-                self.photon(index, &mut crossings, &mut block);
+                let words = |block| numbers.words(index, block);
+                self.photon(words, &mut crossings, &mut block);
             }
             for (plane, crossings) in crossings.iter_mut().enumerate() {
                 record(plane, crossings);

@@ -6,8 +6,8 @@ use super::surfaces::{passed, surface};
 use super::{blockers, light};
 use etendue_field::{Frame, Orientation, Quantity};
 use etendue_scene::{
-    CentralRay, Emission, EventFile, PathFile, Place, PlaneFile, RunFile, SceneFile, SurfaceFile,
-    resolve,
+    CentralRay, Emission, EventFile, PathFile, Place, PlaneFile, RunFile, Sampling, SceneFile,
+    SurfaceFile, resolve,
 };
 use glam::DVec3;
 use std::io;
@@ -30,6 +30,9 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     // What was put beside the way may shorten its last leg.
     let path = central_ray(&file, folder).unwrap_or(path);
     file.planes = planes(&mut draw, &file, &path);
+    if draw.one_in(4) {
+        file.run.sampling = Sampling::Random;
+    }
     Ok(file)
 }
 
@@ -72,6 +75,7 @@ fn empty(draw: &mut Draw, photons: u64) -> io::Result<SceneFile> {
             alpha: 0.01,
             resolution: 0.1,
             emission,
+            sampling: Sampling::Net,
         },
     })
 }

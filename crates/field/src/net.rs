@@ -1,0 +1,244 @@
+//! Points of Sobol' nets, scrambled at random, each by its number.
+//!
+//! Of 2ᵐ points of such a net there is one in each of the boxes into which halving the sides of the
+//! unit cube in turn divides it, where random points crowd here and leave gaps there. Scrambling
+//! moves each point at random and keeps that, so that a mean over a net has no bias, and nets with
+//! different keys are independent (Owen 1997, *Scrambled net variance for integrals of smooth
+//! functions*).
+
+use crate::random::{self, Stream};
+
+/// Coordinates of a block.
+const WIDTH: usize = 4;
+/// Blocks that are one net of 8 dimensions; each further one is a net of its own.
+const JOINT: usize = 2;
+
+/// Degree, inner coefficients and first direction numbers of each coordinate but the first
+/// (Joe and Kuo 2008, *Constructing Sobol' sequences with better two-dimensional projections*,
+/// table `new-joe-kuo-6`).
+const POLYNOMIALS: [(usize, u32, [u32; 5]); WIDTH * JOINT - 1] = [
+    (1, 0, [1, 0, 0, 0, 0]),
+    (2, 1, [1, 3, 0, 0, 0]),
+    (3, 1, [1, 3, 1, 0, 0]),
+    (3, 2, [1, 1, 1, 0, 0]),
+    (4, 1, [1, 1, 3, 3, 0]),
+    (4, 4, [1, 3, 5, 13, 0]),
+    (5, 2, [1, 1, 5, 5, 17]),
+];
+
+/// What a byte of a point's number adds to its coordinates without carry, [block, byte, value].
+static ADDED: [[[[u32; WIDTH]; 256]; 4]; JOINT] = added();
+
+/// What each bit of a point's number adds to a coordinate.
+const fn directions(dimension: usize) -> [u32; 32] {
+    let mut all = [0; 32];
+    let mut bit = 0;
+    while bit < 32 {
+        if dimension == 0 {
+            all[bit] = 1 << (31 - bit);
+        } else {
+            let (degree, inner, first) = POLYNOMIALS[dimension - 1];
+            if bit < degree {
+                all[bit] = first[bit] << (31 - bit);
+            } else {
+                let mut value = all[bit - degree] ^ (all[bit - degree] >> degree);
+                let mut k = 1;
+                while k < degree {
+                    if (inner >> (degree - 1 - k)) & 1 == 1 {
+                        value ^= all[bit - k];
+                    }
+                    k += 1;
+                }
+                all[bit] = value;
+            }
+        }
+        bit += 1;
+    }
+    all
+}
+
+const fn added() -> [[[[u32; WIDTH]; 256]; 4]; JOINT] {
+    let mut table = [[[[0; WIDTH]; 256]; 4]; JOINT];
+    let mut dimension = 0;
+    while dimension < WIDTH * JOINT {
+        let directions = directions(dimension);
+        let mut bit = 0;
+        while bit < 32 {
+            let mut value = 0;
+            while value < 256 {
+                if (value >> (bit % 8)) & 1 == 1 {
+                    table[dimension / WIDTH][bit / 8][value][dimension % WIDTH] ^= directions[bit];
+                }
+                value += 1;
+            }
+            bit += 1;
+        }
+        dimension += 1;
+    }
+    table
+}
+
+/// How a block of coordinates is scrambled: what is added and what it is multiplied by.
+#[derive(Clone, Copy, Debug)]
+struct Keys {
+    added: [u32; WIDTH],
+    factors: [u32; WIDTH],
+    /// The same of the order of its points.
+    order: [u32; 2],
+}
+
+/// A net of 2³² points, scrambled with keys of its own.
+#[derive(Clone, Debug)]
+pub struct Net {
+    /// Of each block.
+    keys: Vec<Keys>,
+}
+
+impl Net {
+    /// Net number `index` of what a stream of `seed` is for, with `blocks` blocks of four
+    /// coordinates.
+    #[must_use]
+    pub fn new(seed: u64, stream: Stream, index: u64, blocks: u32) -> Self {
+        let words = |block: u32| random::words(seed, stream, index, block);
+        let keys = (0..blocks).map(|block| {
+            let [added, factors, [a, b, ..]] = [0, 1, 2].map(|i| words(3 * block + i));
+            let order = [a, b];
+            Keys {
+                added,
+                factors,
+                order,
+            }
+        });
+        Self {
+            keys: keys.collect(),
+        }
+    }
+
+    /// Block `block` of a point, as random words. Any 2ᵐ points from a multiple of 2ᵐ on are a net.
+    #[inline]
+    #[must_use]
+    pub fn words(&self, point: u32, block: u32) -> [u32; WIDTH] {
+        let block = block as usize;
+        let keys = &self.keys[block];
+        // The first blocks belong to each other; what is beyond them meets them in a random order.
+        let (table, point) = if block < JOINT {
+            (&ADDED[block], point)
+        } else {
+            (&ADDED[0], scrambled(point, keys.order))
+        };
+        let [a, b, c, d] = point.to_le_bytes().map(usize::from);
+        let [a, b, c, d] = [&table[0][a], &table[1][b], &table[2][c], &table[3][d]];
+        std::array::from_fn(|k| {
+            scrambled(a[k] ^ b[k] ^ c[k] ^ d[k], [keys.added[k], keys.factors[k]])
+        })
+    }
+}
+
+/// Owen's scrambling by a hash of the reversed bits, each of which depends on those above it alone
+/// (Laine and Karras 2011; the hash of Vegdahl 2021, *Building a better LK hash*, with a factor that
+/// is independent of what is added: so each number is as likely as any other).
+#[inline]
+fn scrambled(value: u32, [added, factor]: [u32; 2]) -> u32 {
+    let mut x = value.reverse_bits();
+    x ^= x.wrapping_mul(0x3D20_ADEA);
+    x = x.wrapping_add(added);
+    x = x.wrapping_mul(factor | 1);
+    x ^= x.wrapping_mul(0x0552_6C56);
+    x ^= x.wrapping_mul(0x53A2_2864);
+    x.reverse_bits()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::random::unit;
+
+    /// Coordinates, of two blocks that belong to each other and one more.
+    const ALL: usize = 3 * WIDTH;
+
+    fn points(key: u64, count: u32) -> Vec<[f64; ALL]> {
+        let net = Net::new(7, Stream::Net, key, 3);
+        let point = |i| {
+            let blocks = [0, 1, 2].map(|block| net.words(i, block).map(unit));
+            std::array::from_fn(|k| blocks[k / WIDTH][k % WIDTH])
+        };
+        (0..count).map(point).collect()
+    }
+
+    fn cell(x: f64, n: u32) -> usize {
+        (1..n)
+            .take_while(|i| f64::from(*i) <= x * f64::from(n))
+            .count()
+    }
+
+    /// Each coordinate, and the first two of a block in every box of volume 2⁻ᵐ that halves their
+    /// sides, has one of 2ᵐ points.
+    #[test]
+    fn boxes_hold_one_point_each() {
+        const N: u32 = 256;
+        for key in 0..3 {
+            let points = points(key, N);
+            for k in 0..ALL {
+                let mut count = [0; N as usize];
+                points.iter().for_each(|p| count[cell(p[k], N)] += 1);
+                assert_eq!(count, [1; N as usize], "coordinate {k} of net {key}");
+            }
+            for (k, columns) in [0, 2 * WIDTH]
+                .into_iter()
+                .flat_map(|k| [4, 16, 64].map(|n| (k, n)))
+            {
+                let rows = N / columns;
+                let mut count = [0; N as usize];
+                for p in &points {
+                    count[cell(p[k], columns) * rows as usize + cell(p[k + 1], rows)] += 1;
+                }
+                assert_eq!(count, [1; N as usize], "{columns} columns of net {key}");
+            }
+        }
+    }
+
+    /// The mean of a product over all coordinates has no bias, and less noise than random numbers
+    /// have; so has that over the coordinates of one block.
+    #[test]
+    fn nets_beat_random_numbers() {
+        const N: u32 = 1 << 12;
+        const NETS: u64 = 64;
+        for (from, to, less) in [(0, WIDTH, 1e-3), (0, 2 * WIDTH, 1e-2), (0, ALL, 0.1)] {
+            let f = |p: &[f64; ALL]| -> f64 {
+                p[from..to].iter().map(|x| 1.0 + 0.5 * (x - 0.5)).product()
+            };
+            let errors = (0..NETS).map(|key| {
+                let sum: f64 = points(key, N).iter().map(f).sum();
+                sum / f64::from(N) - 1.0
+            });
+            let errors: Vec<f64> = errors.collect();
+            let power = errors.iter().map(|e| e * e).sum::<f64>() / NETS as f64;
+            let factors = i32::try_from(to - from).unwrap();
+            let random = ((1.0_f64 + 0.25 / 12.0).powi(factors) - 1.0) / f64::from(N);
+            assert!(power < less * random, "{from}..{to}: {:e}", power / random);
+            let mean = errors.iter().sum::<f64>() / NETS as f64;
+            // Four of its own standard errors.
+            assert!(
+                mean.abs() < 4.0 * (power / NETS as f64).sqrt(),
+                "{from}..{to}"
+            );
+        }
+    }
+
+    /// Points 5, 16 and 32, times 64, as `scipy.stats.qmc.Sobol(8, scramble=False)` of SciPy 1.17 has
+    /// them; it counts in Gray's code, so that they are its points 6, 31 and 63.
+    #[test]
+    fn points_are_those_of_sobol() {
+        let point = |[low, high]: [usize; 2]| -> Vec<u32> {
+            let words = (0..JOINT).flat_map(|block| {
+                let [a, b] = [ADDED[block][0][low], ADDED[block][0][high]];
+                (0..WIDTH).map(move |k| a[k] ^ b[k])
+            });
+            words.map(|word| word >> 26).collect()
+        };
+        assert_eq!(point([5, 0]), [40, 8, 56, 40, 40, 56, 8, 8]);
+        assert_eq!(point([16, 0]), [2, 34, 58, 62, 62, 50, 22, 34]);
+        assert_eq!(point([32, 0]), [1, 51, 23, 29, 55, 9, 37, 9]);
+        assert_eq!(point([4, 1]), point([5, 0]));
+    }
+}

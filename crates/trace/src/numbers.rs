@@ -1,0 +1,74 @@
+//! The numbers that photons are drawn from.
+
+use etendue_field::Net;
+use etendue_field::random::{self, Stream};
+use etendue_scene::{Run, Sampling};
+
+/// Which numbers, and for what they are.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source {
+    sampling: Sampling,
+    seed: u64,
+    /// Of random numbers, and of nets.
+    streams: [Stream; 2],
+    /// Blocks of four numbers that a photon takes at most.
+    blocks: u32,
+}
+
+/// Those of a block of photons.
+#[derive(Debug)]
+pub(crate) enum Numbers {
+    Random {
+        seed: u64,
+        stream: Stream,
+    },
+    /// A net, and the photon that has its first point.
+    Net(Net, u64),
+}
+
+/// Points of a net: as many as there are numbers of 32 bits.
+const POINTS: u64 = 1 << 32;
+
+impl Source {
+    pub(crate) fn new(run: &Run, streams: [Stream; 2], legs: usize) -> Self {
+        Self {
+            sampling: run.sampling,
+            seed: run.seed,
+            streams,
+            // Two for the emission, and one for each surface.
+            blocks: u32::try_from(legs + 1).unwrap_or(u32::MAX),
+        }
+    }
+
+    /// The numbers of a batch that begins with photon `first`, from photon `start` on; nets are
+    /// keyed by the batch, and a batch of more than 2³² photons takes several.
+    pub(crate) fn of(&self, batch: u32, first: u64, start: u64) -> Numbers {
+        let Self { seed, blocks, .. } = *self;
+        let [random, net] = self.streams;
+        match self.sampling {
+            Sampling::Random => Numbers::Random {
+                seed,
+                stream: random,
+            },
+            Sampling::Net => {
+                let number = (start - first) / POINTS;
+                let index = u64::from(batch) | number << 32;
+                Numbers::Net(Net::new(seed, net, index, blocks), first + number * POINTS)
+            }
+        }
+    }
+}
+
+impl Numbers {
+    /// Block `block` of the numbers of a photon.
+    #[inline]
+    pub(crate) fn words(&self, photon: u64, block: u32) -> [u32; 4] {
+        match self {
+            Self::Random { seed, stream } => random::words(*seed, *stream, photon, block),
+            Self::Net(net, first) => {
+                let point = u32::try_from(photon - first).unwrap_or(u32::MAX);
+                net.words(point, block)
+            }
+        }
+    }
+}
