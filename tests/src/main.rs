@@ -36,7 +36,7 @@ use std::process::ExitCode;
 #[derive(Debug, Parser)]
 #[command(after_help = "Examples:
   cargo run --release -p etendue-validation -- short
-  cargo run --release -p etendue-validation -- faults --photons 10000000
+  cargo run --release -p etendue-validation -- faults --photons 8388608
   cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
@@ -72,7 +72,7 @@ enum Command {
     /// Planted faults must be rejected.
     Faults {
         /// Photons.
-        #[arg(long, default_value_t = 10_000_000)]
+        #[arg(long, default_value_t = 1 << 23)]
         photons: u64,
     },
     /// Every plane, its parameters, and the receiver's noise floor up to a number of photons.
@@ -284,10 +284,7 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Faults { photons } => vec![faults::planted(photons, SEED)],
         Command::Suite { photons } => {
             let mut sections = suite::suite(photons);
-            sections.push(faults::planted_elsewhere(
-                photons.unwrap_or(4_000_000),
-                SEED,
-            ));
+            sections.push(faults::planted_elsewhere(photons.unwrap_or(1 << 22), SEED));
             sections
         }
         Command::Table1 { photons } => table1::table1(photons),
@@ -304,7 +301,7 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Main | Command::All => {
             let mut sections = noise(1 << 30);
             sections.extend(calibrations(1..1001, 100_000));
-            sections.push(faults::planted(10_000_000, SEED));
+            sections.push(faults::planted(1 << 23, SEED));
             sections
         }
     }

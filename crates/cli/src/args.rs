@@ -49,7 +49,7 @@ pub(crate) enum Command {
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
 
-Photon counts may be written 10_000_000 or 1e7.")]
+Photon counts may be written 10_000_000, 1e7 or 2^23; batches of 2^m photons have least noise.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -66,6 +66,11 @@ pub(crate) struct RunArgs {
 
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
+
+    /// Noise allowed at each plane, of the norm of its spectrum: photons are doubled until it is
+    /// reached, up to those of --photons
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) target_error: Option<f64>,
 
     /// What else to keep
     #[arg(long, value_name = "WHAT", value_delimiter = ',')]
@@ -387,7 +392,18 @@ fn range(text: &str) -> Result<Range<u32>, String> {
     }
 }
 
-/// A whole number, also as 10_000_000 or 1e7.
+/// A share in (0, 1], also in per cent.
+fn share(text: &str) -> Result<f64, String> {
+    let (number, unit) = match text.trim().strip_suffix('%') {
+        Some(number) => (number.trim(), 0.01),
+        None => (text.trim(), 1.0),
+    };
+    let share = number.parse().map(|number: f64| number * unit);
+    let share = share.ok().filter(|share| *share > 0.0 && *share <= 1.0);
+    share.ok_or_else(|| "must be a share of the spectrum, such as 0.1% or 0.001".to_owned())
+}
+
+/// A whole number, also as 10_000_000, 1e7 or 2^23.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
@@ -397,6 +413,10 @@ fn whole_number(text: &str) -> Result<u64, String> {
     let digits = text.replace('_', "");
     if let Ok(n) = digits.parse() {
         return Ok(n);
+    }
+    let power = digits.strip_prefix("2^").and_then(|m| m.parse().ok());
+    if let Some(number) = power.and_then(|m: u32| 1_u64.checked_shl(m)) {
+        return Ok(number);
     }
     let x: f64 = digits.parse().map_err(|_| "must be a whole number")?;
     if (0.0..=9.0e15).contains(&x) && x.fract() == 0.0 {

@@ -4,7 +4,7 @@ use crate::inquiry::inquire;
 use crate::method::Method;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
-use crate::{aimed, field, files, photons, pictures, progress, say, table};
+use crate::{aimed, field, files, photons, pictures, progress, say, table, target};
 use etendue_compare::{
     Applicability, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare,
 };
@@ -75,11 +75,15 @@ pub(crate) fn conclude(
     let inquiries = stage.suspend(|| inquire(case, &planes, ending.quiet))?;
     stage.set_message("writing results");
     let summary = Summary::new(case, &planes, inquiries);
+    let seconds = watch.seconds("trace");
     let finished = written(case, ending, results, &summary, &planes, watch)?;
     stage.finish_and_clear();
     finished.tell_replaced(ending.quiet);
     if !ending.quiet {
         table::print(&summary, &finished.folder);
+        if let Some(outlook) = seconds.and_then(|s| target::outlook(&case.measurement, s)) {
+            say(&outlook);
+        }
         let mut gone = finished.gone;
         gone.retain(|name| name.ends_with(".npy"));
         if !gone.is_empty() {

@@ -38,6 +38,7 @@ mod sealed;
 mod stored;
 mod summary;
 mod table;
+mod target;
 mod threads;
 mod warnings;
 

@@ -7,7 +7,7 @@ use crate::results::Results;
 use crate::stored::check_earlier;
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
-use crate::{field, limits, load, method, photons, say, warnings};
+use crate::{field, limits, load, method, photons, say, target, warnings};
 use etendue_compare::Applicability;
 use etendue_scene::Scene;
 use std::path::Path;
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 
 fn stages(
     args: &RunArgs,
-    scene: Scene,
+    mut scene: Scene,
     theories: Vec<Applicability>,
     results: Results,
 ) -> Result<u8, Failure> {
@@ -46,7 +46,13 @@ fn stages(
         say(&photons::announcement(&scene));
     }
     let method = args.photons.method;
-    let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;
+    let measurement = match args.target_error {
+        None => measured(&scene, method, 0..scene.run.batches, args.quiet)?,
+        Some(target) => {
+            let target = (target, args.photons.photons);
+            target::reached(&mut scene, method, target, args.quiet)?
+        }
+    };
     watch.lap("trace");
     let predictions = predicted(&scene, &theories, method, args.quiet)?;
     watch.lap("predict");

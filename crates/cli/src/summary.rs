@@ -116,6 +116,12 @@ impl Stopwatch {
         self.last = Instant::now();
     }
 
+    /// How long a stage took.
+    pub(crate) fn seconds(&self, stage: &str) -> Option<f64> {
+        let mut stages = self.seconds.iter();
+        stages.find(|(name, _)| *name == stage).map(|(_, s)| *s)
+    }
+
     /// `timing.json`.
     pub(crate) fn json(&self, photons: u64) -> Vec<u8> {
         #[derive(Serialize)]
@@ -128,13 +134,14 @@ impl Stopwatch {
             photons_per_second: Option<f64>,
             peak_memory_bytes: Option<u64>,
         }
-        let trace = self.seconds.iter().find(|(stage, _)| *stage == "trace");
         let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         json(&Timing {
             command: words.collect(),
             seconds: self.seconds.iter().copied().collect(),
             threads: rayon::current_num_threads(),
-            photons_per_second: trace.map(|(_, seconds)| photons as f64 / seconds),
+            photons_per_second: self
+                .seconds("trace")
+                .map(|seconds| photons as f64 / seconds),
             peak_memory_bytes: machine::peak_memory(),
         })
     }

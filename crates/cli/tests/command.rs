@@ -153,6 +153,43 @@ fn noise_leaves_a_run_undecided() {
     );
 }
 
+/// Photons are doubled until noise is low, and the result is that of a run with as many.
+#[test]
+fn a_target_error_is_reached() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |out: &str, arguments: &[&str]| {
+        let run = etendue()
+            .args(["run", "--out"])
+            .arg(folder.path().join(out))
+            .arg(scene("bench_peer.ron"))
+            .args(arguments)
+            .output();
+        run.unwrap()
+    };
+    let output = run("target", &["--target-error", "1.5%"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let told = String::from_utf8(output.stdout).unwrap();
+    assert!(told.contains("2 097 152 photons follow, about"), "{told}");
+    assert!(told.contains("100 times the photons, about"), "{told}");
+    let output = run("same", &["--photons", "2^21", "--quiet"]);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let [mut reached, mut same] = ["target", "same"].map(|out| files(&folder.path().join(out)));
+    for files in [&mut reached, &mut same] {
+        files.remove("timing.json");
+    }
+    assert!(reached == same);
+
+    let too_many = ["--target-error", "0.001", "--photons", "2^20"];
+    let output = run("refused", &too_many);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    let told = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        told.contains("would need some") && told.contains("allowed: 1 048 576"),
+        "{told}"
+    );
+    assert!(!folder.path().join("refused").exists());
+}
+
 /// A result of one scene is not replaced by that of another with the same name.
 #[test]
 fn another_scene_keeps_out_of_the_folder() {

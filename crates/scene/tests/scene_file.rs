@@ -84,7 +84,7 @@ fn faults_are_reported_together_with_field_value_and_range() {
     let text = edited("fill: 0.6, ", "fill: -1, ")
         .replace("albedo: 0.5", "albedo: NaN")
         .replace("size: (0.2, 0.2)", "size: (0.2, inf)")
-        .replace("photons: 10_000_000", "photons: 3");
+        .replace("photons: 8_388_608", "photons: 3");
     let fields: Vec<String> = faults(&text).into_iter().map(|f| f.field).collect();
     for field in [
         "light.size[1]",

@@ -81,6 +81,23 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
     })
 }
 
+/// The noise of the slices at plane `plane`, as a share of them: √(Σσ²/(Σ|S̄|² − Σσ²)). `None` where
+/// no photon came, or where there is more noise than light.
+///
+/// # Errors
+///
+/// With fewer than two batches.
+pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
+    let SliceEstimate { mean, variance, .. } = slices(measurement, plane)?;
+    // Frequencies at ρ = 0 stand there twice, as ν and −ν.
+    let share = |(_, rho, _): (usize, usize, usize)| if rho == 0 { 0.5 } else { 1.0 };
+    let noise: f64 = variance.indexed_iter().map(|(at, v)| share(at) * v).sum();
+    let powers = mean.half.indexed_iter();
+    let both: f64 = powers.map(|(at, s)| share(at) * s.norm_sqr()).sum();
+    let light = both - noise;
+    Ok((light > 0.0).then(|| (noise / light).sqrt()))
+}
+
 /// The mean projection at plane `plane` with its standard error.
 ///
 /// # Errors

@@ -16,7 +16,7 @@ use etendue_theory::scattering::{ReflectionChain, chain, defect};
 /// Of the exact prediction, which is not asked here.
 const LEVEL: f64 = 0.01;
 /// Photons, unless others are given.
-const PHOTONS: u64 = 4_000_000;
+const PHOTONS: u64 = 1 << 22;
 const SCENE: &str = "textured_glossy";
 
 type Change = fn(&mut ReflectionChain);

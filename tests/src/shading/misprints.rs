@@ -14,7 +14,7 @@ use std::f64::consts::PI;
 /// Share of true sections that may be rejected, over all misprints.
 const ALPHA: f64 = 0.01;
 /// Photons, unless others are given.
-const PHOTONS: u64 = 4_000_000;
+const PHOTONS: u64 = 1 << 22;
 /// Curvature of the sphere in the environment, as in the file, per metre.
 pub(super) const K: f64 = 1.25;
 

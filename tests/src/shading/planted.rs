@@ -17,7 +17,7 @@ use std::f64::consts::TAU;
 /// Share of true sections that may be rejected, over all benches.
 const ALPHA: f64 = 0.01;
 /// Photons of a bench, unless others are given: those by which the subtlest faults are seen.
-const PHOTONS: u64 = 4_000_000;
+const PHOTONS: u64 = 1 << 22;
 /// A pixel of an environment of 256 pixels all around, radians.
 const PIXEL: f64 = TAU / 256.0;
 

@@ -1,0 +1,98 @@
+//! Photons until there is little enough noise, and how long less noise would take.
+
+use crate::failure::Failure;
+use crate::measure::measured;
+use crate::method::Method;
+use crate::say;
+use crate::table::grouped;
+use etendue_scene::Scene;
+use etendue_spectrum::{Measurement, estimate};
+use indicatif::HumanDuration;
+use std::time::{Duration, Instant};
+
+/// Photons of the first stage.
+const FIRST: u64 = 1 << 20;
+/// The most photons of a stage, unless a user says so.
+const MOST: u64 = 1 << 40;
+
+/// Measures all batches of a scene with 2ᵐ photons: the first of these numbers, from 2²⁰ on, with
+/// which noise is at most a share `target` of the spectrum at each plane. The scene is given that
+/// number.
+///
+/// A stage begins anew, so that its result is that of a run with as many photons. Which stages there
+/// may be is fixed beforehand, and noise alone says which one is the last, so that p is as it would
+/// be.
+///
+/// # Errors
+/// When no photon comes to any plane, or more photons would be needed than `most`.
+pub(crate) fn reached(
+    scene: &mut Scene,
+    method: Method,
+    (target, most): (f64, Option<u64>),
+    quiet: bool,
+) -> Result<Measurement, Failure> {
+    let most = most.unwrap_or(MOST);
+    let mut photons = FIRST.min(most);
+    loop {
+        let begun = Instant::now();
+        scene.run.photons = photons;
+        scene.file.run.photons = photons;
+        let measurement = measured(scene, method, 0..scene.run.batches, quiet)?;
+        let (emitted, is) = (grouped(photons), "noise is");
+        let Some((plane, noise)) = noisiest(&measurement) else {
+            let none = format!("--target-error: none of {emitted} photons came into a window");
+            return Err(Failure::cannot_run(none));
+        };
+        if noise <= target {
+            return Ok(measurement);
+        }
+        let now = format!("{} at {plane} with {emitted} photons", percent(noise));
+        // Nets may need fewer than the root of their number says: the largest power below that.
+        let needed = photons as f64 * (noise / target).powi(2);
+        let mut next = 2 * photons;
+        while 2.0 * next as f64 <= needed {
+            next *= 2;
+        }
+        if next > most {
+            return Err(Failure::cannot_run(format!(
+                "--target-error {}: {is} {now}, and would need some {needed:.0e}; allowed: {}, \
+                 more by --photons",
+                percent(target),
+                grouped(most)
+            )));
+        }
+        if !quiet {
+            let time = begun.elapsed().mul_f64(next as f64 / photons as f64);
+            let next = grouped(next);
+            let time = HumanDuration(time);
+            say(&format!("{is} {now}: {next} photons follow, about {time}"));
+        }
+        photons = next;
+    }
+}
+
+/// What noise the run has, and what a hundred times its time would bring, in words; `None` where
+/// there is no light.
+pub(crate) fn outlook(measurement: &Measurement, seconds: f64) -> Option<String> {
+    let (plane, noise) = noisiest(measurement)?;
+    let longer = Duration::try_from_secs_f64(100.0 * seconds).ok()?;
+    let (noise, less) = (percent(noise), percent(0.1 * noise));
+    let longer = HumanDuration(longer);
+    Some(format!(
+        "noise is {noise} at {plane}; 100 times the photons, about {longer}, bring it to {less} or below"
+    ))
+}
+
+/// The plane of lit ones with the most noise, and how much of its spectrum that is.
+fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
+    let planes = measurement.planes().iter().enumerate();
+    let lit = planes.filter_map(|(i, plane)| {
+        let noise = estimate::noise(measurement, i).ok()??;
+        Some((plane.name.as_str(), noise))
+    });
+    lit.max_by(|(_, a), (_, b)| a.total_cmp(b))
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.3} %", 100.0 * share)
+}
