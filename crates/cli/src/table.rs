@@ -160,7 +160,7 @@ fn measured(parameter: &ParameterReport) -> [String; 2] {
     let change = if share > 1.0 {
         number(None, 0)
     } else {
-        format!("{:.2} %", 100.0 * share)
+        small_percent(share)
     };
     if share > 1.0 || parameter.error > parameter.measured.abs() {
         [number(None, 0), change]
@@ -282,6 +282,16 @@ fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |v| format!("{:.3} %", 100.0 * v))
 }
 
+/// Two decimals, more where there would not be two digits.
+fn small_percent(share: f64) -> String {
+    let percent = 100.0 * share;
+    let mut decimals = 2;
+    while percent > 0.0 && decimals < 12 && percent * 10f64.powi(decimals) < 9.5 {
+        decimals += 1;
+    }
+    fixed(percent, usize::try_from(decimals).unwrap_or(2)) + " %"
+}
+
 /// Value ± error, to two digits of the error.
 fn uncertain(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
@@ -321,6 +331,7 @@ mod tests {
         };
         assert_eq!(shown(0.2, 0.21, 0.01), ["0.210 ± 0.010", "19.30 %"]);
         assert_eq!(shown(2.0, -113.0, 41.0), ["–", "–"]);
+        assert_eq!(shown(1.0, 1.0, 6.3e-6)[1], "0.0024 %");
         assert_eq!(shown(2.0, 0.1, 0.2), ["–", "38.60 %"]);
         assert_eq!(shown(0.0, 0.1, 0.2), ["0.10 ± 0.20", "7.7e-1"]);
     }
