@@ -12,6 +12,7 @@ use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
 use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::morton::morton_encode_u64_unorm;
 use obvhs::ray::{Ray, RayHit};
 use rayon::prelude::*;
@@ -186,7 +187,12 @@ fn built(numbers: Vec<u32>, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     for i in &mut bvh.primitive_indices {
         *i = numbers[*i as usize];
     }
-    // Rays do not ask for it.
+    finished(bvh)
+}
+
+/// A hierarchy as rays ask it: nodes lie in the order in which they are opened.
+fn finished(mut bvh: Bvh2) -> Bvh2 {
+    bvh.reorder_in_stack_traversal_order();
     bvh.parents = Vec::new();
     bvh.nodes.shrink_to_fit();
     bvh
@@ -230,8 +236,10 @@ fn joined(mut parts: Vec<Bvh2>) -> Bvh2 {
         bvh.primitive_indices.extend(&part.primitive_indices);
     }
     bvh.parents = Vec::new();
+    // Parts overlap: some nodes belong elsewhere.
+    ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
     bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);
-    bvh
+    finished(bvh)
 }
 
 fn number(count: usize) -> u32 {
