@@ -27,13 +27,10 @@ const COMPLEX: f64 = 16.0;
 /// that one stage leaves to the next.
 const PROGRAM: f64 = 1.5e8;
 
-/// Bytes of a triangle in the scene and in the hierarchy of one tracer while it is built. Measured:
-/// 430.
-const TRIANGLE: f64 = 450.0;
-/// Bytes of a triangle in the hierarchy of the other tracer. Measured: 270.
-const TRIANGLE_OF_REFERENCE: f64 = 300.0;
-/// Bytes of a triangle in the hierarchy of each further leg. Measured: 140.
-const TRIANGLE_OF_LEG: f64 = 150.0;
+/// Bytes of a triangle, and of the hierarchy over it while that is built. Measured: 130.
+const TRIANGLE: f64 = 150.0;
+/// Bytes of the normals at the corners of a triangle.
+const NORMALS: f64 = 72.0;
 
 impl Memory {
     /// The memory of a run of a scene on so many threads. `theories` are those of its planes.
@@ -59,7 +56,6 @@ impl Memory {
         let spectra = |plane: &VirtualPlane| COMPLEX * cells(&plane.grid);
         // Of a reference its measurement and the copies that a prediction keeps.
         let kept = |of: &Applicability| if is_reference(of) { 3.0 } else { 1.0 };
-        let has_reference = planes.iter().any(|(_, of)| is_reference(of));
         Self {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
             threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
@@ -75,7 +71,7 @@ impl Memory {
             // made of.
             comparison: largest(&|plane, _| (batches + 8.0) * spectra(plane))
                 + sum(&|plane, _| 4.0 * spectra(plane)),
-            meshes: meshes(scene, has_reference),
+            meshes: meshes(scene),
         }
     }
 
@@ -97,15 +93,12 @@ fn is_reference(applicability: &Applicability) -> bool {
     matches!(applicability.theory, Theory::None)
 }
 
-fn meshes(scene: &Scene, has_reference: bool) -> f64 {
-    let triangles: usize = scene.meshes.iter().map(|mesh| mesh.triangles.len()).sum();
-    let reference = if has_reference {
-        TRIANGLE_OF_REFERENCE
-    } else {
-        0.0
-    };
-    let legs = TRIANGLE_OF_LEG * (scene.path.legs.len() - 1) as f64;
-    triangles as f64 * (TRIANGLE + reference + legs)
+fn meshes(scene: &Scene) -> f64 {
+    let each = scene.meshes.iter().map(|mesh| {
+        let normals = mesh.smooth.as_ref().map_or(0.0, |_| NORMALS);
+        mesh.triangles.len() as f64 * (TRIANGLE + normals)
+    });
+    each.sum()
 }
 
 fn cells(grid: &SliceGrid) -> f64 {

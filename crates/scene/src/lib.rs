@@ -21,6 +21,7 @@ mod curvature;
 mod examples;
 mod fault;
 mod file;
+mod hierarchy;
 mod likely;
 pub mod limits;
 mod mesh;
@@ -33,6 +34,7 @@ mod read;
 mod resolve;
 mod scene;
 mod shown;
+mod triangles;
 mod warnings;
 
 pub use fault::{Fault, SceneError};
@@ -42,6 +44,7 @@ pub use file::{
     MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
     SphericalGaussianFile, SurfaceFile, WindowFile,
 };
+pub use hierarchy::Hierarchy;
 pub use mesh::Mesh;
 pub use read::{ReadError, read_below, read_file};
 pub use resolve::resolve;
@@ -50,3 +53,4 @@ pub use scene::{
     SmoothMesh, Surface, scene_hash,
 };
 pub use shown::shown;
+pub use triangles::Triangles;

@@ -32,7 +32,7 @@ pub const SHAPES: usize = 100_000;
 pub const PRODUCTS: f64 = 1e6;
 
 /// Triangles of all meshes that are made, not read from files: a little more than the finest of them
-/// has. Each takes 72 bytes, and about as much again where light is traced.
+/// has. Each takes 72 bytes, and about as much again while the hierarchy over them is built.
 pub const MADE_TRIANGLES: u64 = 20_000_000;
 
 /// Characters of a name, of the scene, of a plane, of blockers or of a surface: it names a folder or

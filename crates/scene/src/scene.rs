@@ -1,7 +1,8 @@
-use crate::{Emission, Sampling, SceneFile};
+use crate::{Emission, Sampling, SceneFile, Triangles};
 use etendue_field::{Frame, Light, Mask, Patch, Rectangle, Reflectance, Specular, VirtualPlane};
 use glam::DVec3;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// A checked experiment. Distances are along the central ray from the light, blockers lie across its first leg, and
 /// all coordinates are those of the frame at the light.
@@ -153,7 +154,7 @@ pub struct MeshObject {
     /// Where its own origin is, in the frame at the light.
     pub center: DVec3,
     /// Corners of the triangles, in the frame at the light.
-    pub triangles: Vec<[DVec3; 3]>,
+    pub triangles: Triangles,
     /// Nearest and farthest distance of its corners.
     pub extent: [f64; 2],
     /// Reflected over incident flux, if it is Lambertian.
@@ -168,7 +169,7 @@ pub struct SmoothMesh {
     /// What it does to light.
     pub event: Specular,
     /// Unit normals at the corners of the triangles, outward as they are wound, in the frame at the light.
-    pub normals: Vec<[DVec3; 3]>,
+    pub normals: Arc<[[DVec3; 3]]>,
 }
 
 impl MeshObject {

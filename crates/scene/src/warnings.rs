@@ -163,7 +163,7 @@ impl<'a> Look<'a> {
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
         let stride = self.mesh.triangles.len().div_ceil(MOST);
-        let triangles = self.mesh.triangles.iter().zip(&self.smooth.normals);
+        let triangles = self.mesh.triangles.iter().zip(self.smooth.normals.iter());
         for (corners, normals) in triangles.step_by(stride) {
             let local = corners.map(|p| self.frame.to_local(p));
             let normals = normals.map(|n| self.frame.vector_to_local(n));

@@ -2,14 +2,15 @@ mod connected;
 mod reflected;
 
 use crate::bounce::at;
-use crate::bvh::{Form, Target, Targets};
 use crate::emit::{LAMBERTIAN, by_cosine, point, radiance};
+use crate::form::Form;
 use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
-use crate::pieces::{Piece, Pieces};
+use crate::pieces::Pieces;
 use crate::proposal::Follower;
 use crate::shares::Shares;
 use crate::sky::Sky;
 use crate::station::Station;
+use crate::targets::{Target, Targets};
 use crate::tracer::rounding;
 use connected::connection;
 pub use connected::finds;
@@ -241,7 +242,7 @@ impl Backward {
         match &leaves.how {
             How::Diffuse { albedo, .. } => {
                 // It was left on the side it goes away from.
-                let normal = target.form.normal(point);
+                let normal = target.normal(point);
                 let normal = this
                     .frame
                     .vector_to_world(normal.dot(along).signum() * normal);
@@ -250,7 +251,7 @@ impl Backward {
                     * self.irradiance(leg - 1, point, normal, block, words)
             }
             How::Reflects { patch, reflectance } => {
-                let facing = target.form.normal(point);
+                let facing = target.normal(point);
                 if along.dot(facing) <= 0.0 {
                     return 0.0;
                 }
@@ -265,7 +266,7 @@ impl Backward {
                 visible * self.reflected(leg - 1, &reflection, block, words)
             }
             How::Turned { lens, event } => {
-                let facing = target.form.normal(point);
+                let facing = target.normal(point);
                 let Some(came) = event.turned(lens, facing, point, -along) else {
                     return 0.0;
                 };
@@ -435,18 +436,14 @@ impl Leaves {
     fn new(scene: &Scene, leg: &etendue_scene::Leg, object: Object) -> Self {
         let around = Around(leg.frame);
         let target = |form| Target { form, tag: () };
-        let diffuse = |albedo, pieces: Vec<Piece>| How::Diffuse {
-            albedo,
-            pieces: Pieces::new(pieces),
-        };
+        let diffuse = |albedo, pieces| How::Diffuse { albedo, pieces };
         let (targets, how) = match object {
             Object::Surface(i) => {
                 let surface = &scene.surfaces[i];
                 let [a, b, _, d] = surface.corners();
-                let piece = Piece::new(a, [b, d], false);
                 (
                     vec![target(around.surface(surface))],
-                    diffuse(surface.albedo, vec![piece]),
+                    diffuse(surface.albedo, Pieces::One([a, b, d])),
                 )
             }
             Object::Mesh(i) => {
@@ -455,11 +452,10 @@ impl Leaves {
                     let (lens, event) = (Frame::IDENTITY, smooth.event);
                     How::Turned { lens, event }
                 } else {
-                    let pieces = mesh.triangles.iter();
-                    let pieces = pieces.map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
-                    diffuse(mesh.albedo.unwrap_or(0.0), pieces.collect())
+                    let pieces = Pieces::triangles(&mesh.triangles);
+                    diffuse(mesh.albedo.unwrap_or(0.0), pieces)
                 };
-                (around.mesh(mesh).map(target).collect(), how)
+                (vec![target(around.mesh(mesh))], how)
             }
             Object::Patch(i) => {
                 let PatchObject { patch, event, .. } = &scene.patches[i];

@@ -1,9 +1,11 @@
 //! Points of the first surface that light meets, for light from far away to be aimed at.
 
-use crate::bvh::{Form, Target, Targets};
+use crate::form::Form;
+use crate::mesh::Mesh;
 use crate::obstacles::{Around, direction, start};
-use crate::pieces::{Piece, Pieces};
+use crate::pieces::Pieces;
 use crate::reach::footprint;
+use crate::targets::{Target, Targets};
 use etendue_field::{Frame, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
@@ -39,21 +41,18 @@ impl Ground {
                     surface.size = (high - low).to_array();
                 }
                 let [a, b, _, d] = surface.corners();
-                let piece = Piece::new(a, [b, d], false);
                 (
                     vec![target(around.surface(&surface))],
-                    Points::Flat(Pieces::new(vec![piece])),
+                    Points::Flat(Pieces::One([a, b, d])),
                 )
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
-                let pieces = mesh.triangles.iter();
-                let pieces = pieces.map(|[a, b, c]| Piece::new(*a, [*b, *c], true));
-                let pieces = Pieces::new(pieces.collect());
+                let pieces = Pieces::triangles(&mesh.triangles);
                 // As they are, whatever normals they have between them.
-                let triangles = mesh.triangles.iter();
-                let triangles = triangles.map(|corners| target(Form::Triangle(*corners)));
-                (triangles.collect(), Points::Flat(pieces))
+                let mesh = Mesh::new(&mesh.triangles, None, Frame::IDENTITY);
+                let form = Form::Mesh(Box::new(mesh));
+                (vec![target(form)], Points::Flat(pieces))
             }
             Object::Patch(i) => {
                 let patch = scene.patches[i].patch;
@@ -88,7 +87,7 @@ impl Ground {
         let mut sum = 0.0;
         self.targets.each(ray, |at, target| {
             let point = start(ray) + at * along;
-            let normal = target.form.normal(point);
+            let normal = target.normal(point);
             // Per area of the surface.
             let density = match &self.points {
                 Points::Flat(pieces) => 1.0 / pieces.area(),

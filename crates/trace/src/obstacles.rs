@@ -1,4 +1,6 @@
-use crate::bvh::{Form, Target, Targets};
+use crate::form::Form;
+use crate::mesh::Mesh;
+use crate::targets::{Met, Target, Targets};
 use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
@@ -135,7 +137,10 @@ impl Obstacles {
             };
             let surface = |material| Meeting::Surface { object, material };
             let tag = material.map_or(Meeting::Blocker, surface);
-            targets.extend(around.mesh(mesh).map(|form| Target { form, tag }));
+            targets.push(Target {
+                form: around.mesh(mesh),
+                tag,
+            });
         }
         let ends = [0, 1].map(|axis| scene.light.extent(axis));
         let ends = ends.as_flattened().iter().map(|end| end.abs());
@@ -150,7 +155,7 @@ impl Obstacles {
 
     /// What a ray meets first beyond `from`, and at what distance.
     #[inline]
-    pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, &Target<Meeting>)> {
+    pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, Met<'_, Meeting>)> {
         let first = self.targets.first(ray, from);
         let mut nearest = first.map_or(f64::INFINITY, |(distance, _)| distance);
         let mut blocked = false;
@@ -163,7 +168,7 @@ impl Obstacles {
             }
         }
         if blocked {
-            Some((nearest, &HALF_PLANE))
+            Some((nearest, HALF_PLANE.met(0)))
         } else {
             first
         }
@@ -229,7 +234,13 @@ const ROUNDING: f64 = 1e-9;
 
 /// What a ray meets in a half-plane.
 static HALF_PLANE: Target<Meeting> = Target {
-    form: Form::Triangle([DVec3::ZERO; 3]),
+    form: Form::Flat {
+        distance: 0.0,
+        shape: Shape::Rectangle(Rectangle {
+            center: [0.0; 2],
+            size: [0.0; 2],
+        }),
+    },
     tag: Meeting::Blocker,
 };
 
@@ -281,17 +292,9 @@ impl Around {
         Self::flat(&self.0.decompose(&surface.frame), &shape)
     }
 
-    pub(crate) fn mesh(&self, mesh: &MeshObject) -> impl Iterator<Item = Form> {
-        mesh.triangles.iter().enumerate().map(|(i, corners)| {
-            let corners = corners.map(|p| self.0.to_local(p));
-            match &mesh.smooth {
-                None => Form::Triangle(corners),
-                Some(smooth) => Form::Shaded {
-                    corners,
-                    normals: Box::new(smooth.normals[i].map(|n| self.0.vector_to_local(n))),
-                },
-            }
-        })
+    pub(crate) fn mesh(&self, mesh: &MeshObject) -> Form {
+        let normals = mesh.smooth.as_ref().map(|smooth| &smooth.normals);
+        Form::Mesh(Box::new(Mesh::new(&mesh.triangles, normals, self.0)))
     }
 
     /// A shape in the plane of a frame; across the leg, with axes along its own, distances are exact.

@@ -1,68 +1,61 @@
-//! Surfaces in pieces of which points can be drawn.
+//! Surfaces of which points can be drawn, in the frame at the light.
 
+use etendue_scene::Triangles;
 use glam::DVec3;
 
-/// Parallelograms or triangles in the frame at the light, with their running share of the area.
+/// A surface in flat pieces.
 #[derive(Debug)]
-pub(crate) struct Pieces {
-    upto: Vec<(f64, Piece)>,
-    area: f64,
-}
-
-/// A corner and two edges, of a parallelogram or of a triangle.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Piece {
-    corner: DVec3,
-    edges: [DVec3; 2],
-    is_triangle: bool,
+pub(crate) enum Pieces {
+    /// A parallelogram, by a corner and those beside it.
+    One([DVec3; 3]),
+    /// Triangles, and the area up to each and with it.
+    Many(Triangles, Vec<f64>),
 }
 
 impl Pieces {
-    pub(crate) fn new(pieces: Vec<Piece>) -> Self {
+    pub(crate) fn triangles(triangles: &Triangles) -> Self {
         let mut area = 0.0;
-        let upto = pieces.into_iter().map(|piece| {
-            area += piece.area();
-            (area, piece)
+        let upto = triangles.iter().map(|corners| {
+            area += 0.5 * parallelogram(corners);
+            area
         });
-        Self {
-            upto: upto.collect(),
-            area,
-        }
+        Self::Many(triangles.clone(), upto.collect())
     }
 
     /// The whole area.
     pub(crate) fn area(&self) -> f64 {
-        self.area
+        match self {
+            Self::One(corners) => parallelogram(corners),
+            Self::Many(_, upto) => upto.last().copied().unwrap_or(0.0),
+        }
     }
 
     /// A uniform point of it and a normal there, from three numbers in (0, 1).
     pub(crate) fn point(&self, r: [f64; 3]) -> (DVec3, DVec3) {
-        let wanted = r[2] * self.area;
-        let i = self.upto.partition_point(|(upto, _)| *upto < wanted);
-        let (_, piece) = self.upto[i.min(self.upto.len() - 1)];
-        let [a, b] = piece.edges;
-        let folded = piece.is_triangle && r[0] + r[1] > 1.0;
-        let [s, t] = if folded {
-            [1.0 - r[0], 1.0 - r[1]]
-        } else {
-            [r[0], r[1]]
+        let [mut s, mut t, which] = r;
+        let corners = match self {
+            Self::One(corners) => corners,
+            Self::Many(triangles, upto) => {
+                if s + t > 1.0 {
+                    [s, t] = [1.0 - s, 1.0 - t];
+                }
+                let wanted = which * self.area();
+                let i = upto.partition_point(|upto| *upto < wanted);
+                &triangles[i.min(upto.len() - 1)]
+            }
         };
-        (piece.corner + s * a + t * b, a.cross(b).normalize())
+        let [a, b] = edges(corners);
+        (corners[0] + s * a + t * b, a.cross(b).normalize())
     }
 }
 
-impl Piece {
-    pub(crate) fn new(corner: DVec3, ends: [DVec3; 2], is_triangle: bool) -> Self {
-        Self {
-            corner,
-            edges: ends.map(|end| end - corner),
-            is_triangle,
-        }
-    }
+/// The edges at the first corner.
+fn edges([corner, b, c]: &[DVec3; 3]) -> [DVec3; 2] {
+    [b - corner, c - corner]
+}
 
-    fn area(&self) -> f64 {
-        let [a, b] = self.edges;
-        let whole = a.cross(b).length();
-        if self.is_triangle { 0.5 * whole } else { whole }
-    }
+/// The area of the parallelogram over three corners.
+fn parallelogram(corners: &[DVec3; 3]) -> f64 {
+    let [a, b] = edges(corners);
+    a.cross(b).length()
 }

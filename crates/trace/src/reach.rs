@@ -43,7 +43,7 @@ pub(crate) fn outline(scene: &Scene, object: Object) -> Vec<DVec3> {
     match object {
         Object::Surface(i) => scene.surfaces[i].corners().to_vec(),
         Object::Mesh(i) => {
-            let [low, high] = enclosing(scene.meshes[i].triangles.as_flattened());
+            let [low, high] = scene.meshes[i].triangles.bounds();
             box_corners(low, high).to_vec()
         }
         Object::Patch(i) => scene.patches[i].patch.corners().to_vec(),

@@ -1,10 +1,10 @@
 use crate::bounce::Bounce;
-use crate::bvh::Target;
 use crate::emit::Emitter;
 use crate::numbers::Source;
 use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
 use crate::shares::Shares;
 use crate::station::Station;
+use crate::targets::Met;
 use etendue_field::random::Stream;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane};
 use etendue_scene::{Object, Scene};
@@ -148,7 +148,7 @@ impl Tracer {
                 account.escaped += arrives;
                 return;
             };
-            let Meeting::Surface { material, .. } = target.tag else {
+            let Meeting::Surface { material, .. } = *target.tag else {
                 account.absorbed += arrives;
                 return;
             };
@@ -185,10 +185,10 @@ pub(crate) fn cosines(ray: &TwoPlane) -> f64 {
 }
 
 impl Arrival {
-    fn new(ray: &TwoPlane, distance: f64, target: &Target<Meeting>, flux: f64) -> Self {
+    fn new(ray: &TwoPlane, distance: f64, target: Met<'_, Meeting>, flux: f64) -> Self {
         let direction = direction(ray);
         let point = start(ray) + distance * direction;
-        let facing = target.form.normal(point);
+        let facing = target.normal(point);
         Self {
             point,
             normal: -facing.dot(direction).signum() * facing,
@@ -248,7 +248,7 @@ impl Leg {
     fn record(
         &self,
         flight: &Flight,
-        met: Option<(f64, &Target<Meeting>)>,
+        met: Option<(f64, Met<'_, Meeting>)>,
         crossings: &mut [Vec<Crossing>],
     ) {
         let Flight { ray, from, weight } = *flight;

@@ -1,7 +1,7 @@
 //! What stands around the path, and what a ray of a leg meets of it.
 
 use super::rays::Ray;
-use etendue_field::{Patch, VirtualPlane, enclosing};
+use etendue_field::{Patch, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
 
@@ -86,9 +86,7 @@ impl<'a> Surroundings<'a> {
                 Object::Patch(i) => Form::Smooth(scene.patches[i].patch),
                 Object::Surface(i) => Form::Flat(&scene.surfaces[i]),
                 Object::Mesh(_) if leg <= plane.leg => continue,
-                Object::Mesh(i) => {
-                    Form::Around(enclosing(scene.meshes[i].triangles.as_flattened()))
-                }
+                Object::Mesh(i) => Form::Around(scene.meshes[i].triangles.bounds()),
             };
             if objects.iter().all(|(object, _)| *object != hit.object) {
                 objects.push((hit.object, form));

@@ -5,6 +5,7 @@ use crate::Mesh;
 use crate::fault::Fault;
 use crate::file::{BlockersFile, EventFile, FormFile, MeshSource, SceneFile, SurfaceFile};
 use crate::scene::{MeshObject, SmoothMesh};
+use crate::triangles::Triangles;
 use etendue_field::Frame;
 use glam::DVec3;
 use std::path::Path;
@@ -104,10 +105,12 @@ impl Resolver<'_> {
             Some(event) => Some(self.smooth(&at, event, &mesh, frame)?),
             None => None,
         };
+        // While a hierarchy is built, it is not to be held as well.
+        drop(mesh);
         Some(MeshObject {
             name: placed.name.clone(),
             center: frame.to_local(at.center),
-            triangles,
+            triangles: Triangles::new(triangles, reach),
             extent,
             albedo: placed.albedo,
             smooth,

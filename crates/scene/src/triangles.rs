@@ -1,0 +1,72 @@
+//! The triangles of a mesh in a scene.
+
+use crate::hierarchy::Hierarchy;
+use etendue_field::enclosing;
+use glam::DVec3;
+use std::fmt;
+use std::ops::Deref;
+use std::sync::Arc;
+
+/// Triangles, in the frame at the light, and the one hierarchy over them that all rays ask. Clones
+/// share both.
+#[derive(Clone)]
+pub struct Triangles(Arc<Shared>);
+
+struct Shared {
+    corners: Vec<[DVec3; 3]>,
+    bounds: [DVec3; 2],
+    hierarchy: Hierarchy,
+}
+
+impl Triangles {
+    /// Of these corners. `origins` is the largest coordinate a ray starts from.
+    #[must_use]
+    pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
+        let bounds = |i: usize| enclosing(&corners[i]);
+        Self(Arc::new(Shared {
+            hierarchy: Hierarchy::new(corners.len(), origins, bounds),
+            bounds: enclosing(corners.as_flattened()),
+            corners,
+        }))
+    }
+
+    /// Lowest and highest corner of the box around them.
+    #[must_use]
+    pub fn bounds(&self) -> [DVec3; 2] {
+        self.0.bounds
+    }
+
+    /// Names the triangles that a ray may meet: [`Hierarchy::along`].
+    #[inline]
+    pub fn along(
+        &self,
+        start: DVec3,
+        direction: DVec3,
+        range: [f64; 2],
+        mut meet: impl FnMut(usize) -> f64,
+    ) {
+        let hierarchy = &self.0.hierarchy;
+        let order = hierarchy.order();
+        hierarchy.along(start, direction, range, |i| meet(order[i] as usize));
+    }
+}
+
+impl Deref for Triangles {
+    type Target = [[DVec3; 3]];
+
+    fn deref(&self) -> &Self::Target {
+        &self.0.corners
+    }
+}
+
+impl PartialEq for Triangles {
+    fn eq(&self, other: &Self) -> bool {
+        **self == **other
+    }
+}
+
+impl fmt::Debug for Triangles {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list().entries(self.iter()).finish()
+    }
+}

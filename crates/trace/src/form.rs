@@ -1,0 +1,138 @@
+//! The forms of what ends a ray.
+
+use crate::mesh::Mesh;
+use crate::obstacles::{direction, start};
+use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
+use glam::DVec3;
+
+/// The form of a target, in the frame of a leg. What is large is elsewhere: flat shapes, by far the
+/// most, are to stay in the processor's cache.
+#[derive(Clone, Debug)]
+pub(crate) enum Form {
+    /// A flat shape across the central ray.
+    Flat { distance: f64, shape: Shape },
+    /// A flat shape in the plane of X and Y of a frame.
+    Oblique { frame: Box<Frame>, shape: Shape },
+    /// Triangles; what is met of it is the part with the number of a triangle.
+    Mesh(Box<Mesh>),
+    /// A smooth surface.
+    Smooth(Box<Patch>),
+}
+
+impl Form {
+    /// The distance, along the central ray, at which a ray meets it, and the part that it meets;
+    /// where it can meet it several times, the first beyond `from`, and of a mesh, none beyond
+    /// `until`.
+    #[inline]
+    pub(crate) fn first(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
+        if let Self::Flat { distance, shape } = self {
+            let at = ray.travelled(*distance);
+            return shape.contains(at.x, at.y).then_some((*distance, 0));
+        }
+        self.first_elsewhere(ray, from, until)
+    }
+
+    /// [`Self::first`] of what is not flat: kept out of the loops that mostly meet flat shapes.
+    #[inline(never)]
+    fn first_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
+        let whole = |distance| (distance, 0);
+        match self {
+            Self::Flat { .. } => None,
+            Self::Oblique { frame, shape } => {
+                let (start, direction) = (start(ray), direction(ray));
+                let distance = (frame.origin - start).dot(frame.d) / direction.dot(frame.d);
+                let at = frame.to_local(start + distance * direction);
+                (distance.is_finite() && shape.contains(at.x, at.y)).then_some(whole(distance))
+            }
+            Self::Mesh(mesh) => mesh.first(ray, from, until),
+            Self::Smooth(patch) => {
+                let hits = smooth_hits(patch, ray);
+                hits.into_iter().find(|at| *at > from).map(whole)
+            }
+        }
+    }
+
+    /// The largest distance at which the line of a ray meets it, and the part that it meets.
+    pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, usize)> {
+        match self {
+            Self::Mesh(mesh) => mesh.last(ray),
+            Self::Smooth(patch) => {
+                let hits = smooth_hits(patch, ray).into_iter().rev();
+                hits.filter(|at| !at.is_nan()).map(|at| (at, 0)).next()
+            }
+            _ => self.first(ray, f64::NEG_INFINITY, f64::INFINITY),
+        }
+    }
+
+    /// Whether it is met at a distance between `from` and `until` that `does`.
+    #[inline]
+    pub(crate) fn blocks(
+        &self,
+        ray: &TwoPlane,
+        [from, until]: [f64; 2],
+        does: impl Fn(f64) -> bool,
+    ) -> bool {
+        if let Self::Mesh(mesh) = self {
+            return mesh.blocks(ray, [from, until], does);
+        }
+        let first = self.first(ray, from, until);
+        first.is_some_and(|(at, _)| does(at))
+    }
+
+    /// Tells the distances at which the line of a ray meets it, and the parts that it meets.
+    pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, usize)) {
+        match self {
+            Self::Mesh(mesh) => mesh.each(ray, tell),
+            Self::Smooth(patch) => {
+                // A line that meets it once has the same distance twice.
+                let [first, last] = smooth_hits(patch, ray);
+                let second = (last > first).then_some(last);
+                let hits = [Some(first).filter(|at| !at.is_nan()), second];
+                hits.into_iter().flatten().for_each(|at| tell(at, 0));
+            }
+            _ => {
+                if let Some((at, part)) = self.first(ray, f64::NEG_INFINITY, f64::INFINITY) {
+                    tell(at, part);
+                }
+            }
+        }
+    }
+
+    /// A normal at a point of a part of it, of unit length.
+    pub(crate) fn normal(&self, part: usize, point: DVec3) -> DVec3 {
+        match self {
+            Self::Flat { .. } => DVec3::Z,
+            Self::Oblique { frame, .. } => frame.d,
+            Self::Mesh(mesh) => mesh.normal(part, point),
+            Self::Smooth(patch) => patch.normal(point),
+        }
+    }
+
+    /// Lowest and highest corner of a box around it.
+    pub(crate) fn bounds(&self) -> [DVec3; 2] {
+        match self {
+            Self::Flat { distance, shape } => {
+                let bounds = shape.bounds();
+                let [x, y] = [bounds.extent(0), bounds.extent(1)];
+                [0, 1].map(|i| DVec3::new(x[i], y[i], *distance))
+            }
+            Self::Oblique { frame, shape } => {
+                let bounds = shape.bounds();
+                let [[left, right], [low, high]] = [bounds.extent(0), bounds.extent(1)];
+                let corners = [[left, low], [right, low], [left, high], [right, high]]
+                    .map(|[x, y]| frame.to_world(DVec3::new(x, y, 0.0)));
+                enclosing(&corners)
+            }
+            Self::Mesh(mesh) => mesh.bounds(),
+            Self::Smooth(patch) => enclosing(&patch.corners()),
+        }
+    }
+}
+
+fn smooth_hits(patch: &Patch, ray: &TwoPlane) -> [f64; 2] {
+    let frame = &patch.frame;
+    patch.hits(
+        frame.to_local(start(ray)),
+        frame.vector_to_local(direction(ray)),
+    )
+}

@@ -1,0 +1,256 @@
+//! A mesh as a leg sees it.
+//!
+//! Its triangles stay in the frame at the light, with the one hierarchy over them: a ray is turned
+//! to it. Whether it hits is decided in the frame of the leg, where a direction is (u, v, 1) and
+//! triangles that share an edge share the arithmetic.
+
+use crate::obstacles::{direction, start};
+use etendue_field::triangle_distance;
+use etendue_field::{Frame, TwoPlane, box_corners, enclosing, interpolated_normal};
+use etendue_scene::Triangles;
+use glam::DVec3;
+use std::cmp::Reverse;
+use std::sync::Arc;
+
+/// A mesh, seen from a leg.
+#[derive(Clone, Debug)]
+pub(crate) struct Mesh {
+    triangles: Triangles,
+    /// At the corners, if it is smooth.
+    normals: Option<Arc<[[DVec3; 3]]>>,
+    /// The frame of the leg, unless it is that at the light.
+    leg: Option<Frame>,
+}
+
+impl Mesh {
+    pub(crate) fn new(
+        triangles: &Triangles,
+        normals: Option<&Arc<[[DVec3; 3]]>>,
+        leg: Frame,
+    ) -> Self {
+        Self {
+            triangles: triangles.clone(),
+            normals: normals.cloned(),
+            leg: (leg != Frame::IDENTITY).then_some(leg),
+        }
+    }
+
+    /// The first triangle that a ray meets beyond `from`, and at what distance; of several there,
+    /// that with the lowest number. What is beyond `until` does not matter.
+    pub(crate) fn first(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
+        let mut first: Option<(f64, usize)> = None;
+        self.along(ray, 1.0, [from, until], |at, i| {
+            if at > from && first.is_none_or(|first| (at, i) < first) {
+                first = Some((at, i));
+            }
+            first.map_or(until, |(at, _)| at)
+        });
+        first
+    }
+
+    /// The last triangle on the line of a ray, as in [`Self::first`].
+    pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, usize)> {
+        let mut last: Option<(f64, Reverse<usize>)> = None;
+        self.along(ray, -1.0, [f64::INFINITY, f64::NEG_INFINITY], |at, i| {
+            let found = (at, Reverse(i));
+            if last.is_none_or(|last| found > last) {
+                last = Some(found);
+            }
+            last.map_or(f64::NEG_INFINITY, |(at, _)| at)
+        });
+        last.map(|(at, Reverse(i))| (at, i))
+    }
+
+    /// Whether a triangle is met at a distance between `from` and `distance` that will `do`; looked
+    /// for backwards.
+    pub(crate) fn blocks(
+        &self,
+        ray: &TwoPlane,
+        [from, distance]: [f64; 2],
+        does: impl Fn(f64) -> bool,
+    ) -> bool {
+        let mut blocked = false;
+        self.along(ray, -1.0, [distance, from], |at, _| {
+            blocked |= does(at);
+            // Then nothing matters any more.
+            if blocked { f64::INFINITY } else { from }
+        });
+        blocked
+    }
+
+    /// Tells every triangle on the line of a ray, and at what distance.
+    pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, usize)) {
+        self.along(ray, 1.0, [f64::NEG_INFINITY, f64::INFINITY], |at, i| {
+            tell(at, i);
+            f64::INFINITY
+        });
+    }
+
+    /// Goes through triangles on a ray, forward or back (`way` 1 or −1). `meet` tells how far they
+    /// still matter.
+    #[inline]
+    fn along(
+        &self,
+        ray: &TwoPlane,
+        way: f64,
+        range: [f64; 2],
+        mut meet: impl FnMut(f64, usize) -> f64,
+    ) {
+        let (mut start, mut direction) = (start(ray), direction(ray));
+        if let Some(leg) = &self.leg {
+            (start, direction) = (leg.to_world(start), leg.vector_to_world(direction));
+        }
+        let mut matters = range[1];
+        let range = range.map(|at| way * at);
+        self.triangles.along(start, way * direction, range, |i| {
+            if let Some(at) = triangle_distance(&self.corners(i), ray) {
+                matters = meet(at, i);
+            }
+            way * matters
+        });
+    }
+
+    /// The corners of a triangle, in the frame of the leg.
+    #[inline]
+    fn corners(&self, i: usize) -> [DVec3; 3] {
+        let corners = self.triangles[i];
+        match &self.leg {
+            None => corners,
+            Some(leg) => corners.map(|p| leg.to_local(p)),
+        }
+    }
+
+    /// A normal at a point of a triangle, of unit length.
+    pub(crate) fn normal(&self, i: usize, point: DVec3) -> DVec3 {
+        let corners = self.corners(i);
+        let Some(normals) = &self.normals else {
+            let [a, b, c] = corners;
+            return (b - a).cross(c - a).normalize();
+        };
+        let leg = self.leg.unwrap_or(Frame::IDENTITY);
+        let normals = normals[i].map(|n| leg.vector_to_local(n));
+        interpolated_normal(&corners, &normals, point)
+    }
+
+    /// All hits on the line of a ray, found without any hierarchy.
+    #[cfg(test)]
+    pub(crate) fn in_turn(&self, ray: &TwoPlane) -> Vec<(f64, usize)> {
+        let numbers = 0..self.triangles.len();
+        let hits = numbers.filter_map(|i| Some((triangle_distance(&self.corners(i), ray)?, i)));
+        hits.collect()
+    }
+
+    /// Lowest and highest corner of a box around it.
+    pub(crate) fn bounds(&self) -> [DVec3; 2] {
+        let [low, high] = self.triangles.bounds();
+        match &self.leg {
+            None => [low, high],
+            Some(leg) => enclosing(&box_corners(low, high).map(|p| leg.to_local(p))),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_field::random::{self, Stream};
+
+    /// Across a leg that begins far from the light, and across that at the light.
+    fn legs() -> [Frame; 2] {
+        let [origin, d] = [DVec3::new(3.0, -1.0, 2.5), DVec3::new(-3.0, 1.2, -1.4)];
+        [
+            Frame::IDENTITY,
+            Frame::new(origin, d, DVec3::X).unwrap_or(Frame::IDENTITY),
+        ]
+    }
+
+    /// A wavy sheet of 2n² triangles around (0, 0, 1).
+    fn sheet(n: u32) -> Triangles {
+        let corner = |i: u32, j: u32| {
+            let [x, y] = [i, j].map(|k| f64::from(k) / f64::from(n) * 2.0 - 1.0);
+            DVec3::new(x, y, 1.0 + 0.1 * (7.0 * x).sin() * (5.0 * y).cos())
+        };
+        let mut sheet = Vec::new();
+        for i in 0..n {
+            for j in 0..n {
+                let [a, b, c, d] =
+                    [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)].map(|(i, j)| corner(i, j));
+                sheet.extend([[a, b, c], [a, c, d]]);
+            }
+        }
+        Triangles::new(sheet, 0.5)
+    }
+
+    /// The ray of a leg through two points in the frame at the light.
+    fn ray(leg: &Frame, from: DVec3, to: DVec3) -> TwoPlane {
+        let [from, to] = [from, to].map(|p| leg.to_local(p));
+        let [u, v] = [0, 1].map(|axis| (to - from)[axis] / (to - from).z);
+        TwoPlane {
+            x: from.x - u * from.z,
+            y: from.y - v * from.z,
+            u,
+            v,
+        }
+    }
+
+    /// From hierarchies of one part, and of several.
+    #[test]
+    fn agrees_with_every_triangle_tried_in_turn() {
+        for (n, rays) in [(16, 5000), (200, 200)] {
+            let triangles = sheet(n);
+            for leg in legs() {
+                let mesh = Mesh::new(&triangles, None, leg);
+                let (mut hits, mut misses) = (0, 0);
+                for index in 0..rays {
+                    let r = |block| {
+                        let words = random::words(5, Stream::Photon, index, block);
+                        let [x, y, z, _] = words.map(|w| random::unit(w) - 0.5);
+                        DVec3::new(2.2 * x, 2.2 * y, 1.0 + 0.3 * z)
+                    };
+                    let ray = ray(&leg, r(0), r(1));
+                    let all = mesh.in_turn(&ray);
+                    let by = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0);
+                    assert_eq!(mesh.last(&ray), all.iter().copied().max_by(by), "{ray:?}");
+                    let mut told = Vec::new();
+                    mesh.each(&ray, |at, i| told.push((at, i)));
+                    told.sort_by_key(|(_, i)| *i);
+                    assert_eq!(told, all, "{ray:?}");
+                    let half = 0.5 * (leg.to_local(r(0)).z + leg.to_local(r(1)).z);
+                    let beyond = all.iter().copied().filter(|(at, _)| *at > half);
+                    let expected = beyond.min_by(by);
+                    let first = mesh.first(&ray, half, f64::INFINITY);
+                    assert_eq!(first, expected, "{ray:?}");
+                    let end = half + 0.2;
+                    let blocks = mesh.blocks(&ray, [half, end], |at| at > half && at < end);
+                    assert_eq!(blocks, expected.is_some_and(|(at, _)| at < end), "{ray:?}");
+                    hits += u64::from(expected.is_some());
+                    misses += u64::from(all.is_empty());
+                }
+                assert!(hits > rays / 10, "{hits}: too few to tell");
+                assert!(misses > rays / 100, "{misses}: too few to tell");
+            }
+        }
+    }
+
+    /// Rays at the common edges and corners of a sheet of triangles: none passes.
+    #[test]
+    fn triangles_that_share_edges_leak_nothing() {
+        const N: u32 = 16;
+        let triangles = sheet(N);
+        for leg in legs() {
+            let mesh = Mesh::new(&triangles, None, leg);
+            for i in 1..N - 1 {
+                for j in 1..N - 1 {
+                    let (x, y) = (0.013 * f64::from(i), -0.017 * f64::from(j));
+                    // Corners that four squares share, and points of the edge between.
+                    let [p, _, end] = triangles[(2 * (i * N + j)) as usize];
+                    for t in [0.0, 0.3, 0.5, 1.0] {
+                        let ray = ray(&leg, DVec3::new(x, y, 0.0), p.lerp(end, t));
+                        let first = mesh.first(&ray, f64::NEG_INFINITY, f64::INFINITY);
+                        assert!(first.is_some(), "{ray:?}");
+                    }
+                }
+            }
+        }
+    }
+}

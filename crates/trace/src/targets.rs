@@ -1,0 +1,257 @@
+//! What ends rays on a leg.
+
+use crate::form::Form;
+use crate::obstacles::{direction, start};
+use etendue_field::TwoPlane;
+use etendue_scene::Hierarchy;
+use glam::DVec3;
+
+/// Something that ends a ray, and what it is.
+#[derive(Clone, Debug)]
+pub(crate) struct Target<T> {
+    pub(crate) form: Form,
+    pub(crate) tag: T,
+}
+
+/// A target that a ray meets, and which part of it.
+#[derive(Debug)]
+pub(crate) struct Met<'a, T> {
+    form: &'a Form,
+    part: usize,
+    pub(crate) tag: &'a T,
+}
+
+/// Targets, and the hierarchy that finds the first one hit.
+#[derive(Debug)]
+pub(crate) struct Targets<T> {
+    hierarchy: Hierarchy,
+    /// In the order of the hierarchy's leaves.
+    targets: Vec<Target<T>>,
+}
+
+impl<T> Target<T> {
+    pub(crate) fn met(&self, part: usize) -> Met<'_, T> {
+        let Self { form, tag } = self;
+        Met { form, part, tag }
+    }
+}
+
+impl<T> Clone for Met<'_, T> {
+    fn clone(&self) -> Self {
+        *self
+    }
+}
+
+impl<T> Copy for Met<'_, T> {}
+
+impl<T> Met<'_, T> {
+    /// A normal at the point that is met, of unit length.
+    pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
+        self.form.normal(self.part, point)
+    }
+}
+
+impl<T: Clone> Targets<T> {
+    /// `origins` is the largest coordinate a ray starts from.
+    pub(crate) fn new(targets: &[Target<T>], origins: f64) -> Self {
+        let bounds: Vec<_> = targets.iter().map(|target| target.form.bounds()).collect();
+        let hierarchy = Hierarchy::new(bounds.len(), origins, |i| bounds[i]);
+        let order = hierarchy.order().iter();
+        let targets = order.map(|i| targets[*i as usize].clone()).collect();
+        Self { hierarchy, targets }
+    }
+
+    /// The first target that a ray meets beyond `from`, and at what distance.
+    #[inline]
+    pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, Met<'_, T>)> {
+        let mut first = None;
+        let mut nearest = f64::INFINITY;
+        let range = [from, nearest];
+        let (start, direction) = (start(ray), direction(ray));
+        self.hierarchy.along(start, direction, range, |i| {
+            let target = &self.targets[i];
+            if let Some((distance, part)) = target.form.first(ray, from, nearest)
+                && distance < nearest
+                && distance > from
+            {
+                nearest = distance;
+                first = Some((target, part));
+            }
+            nearest
+        });
+        first.map(|(target, part)| (nearest, target.met(part)))
+    }
+
+    /// The last target on the line of a ray, and at what distance; looked for backwards, from
+    /// beyond everything.
+    pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, Met<'_, T>)> {
+        let mut last = None;
+        let mut farthest = f64::NEG_INFINITY;
+        let range = [f64::NEG_INFINITY, f64::INFINITY];
+        let (start, back) = (start(ray), -direction(ray));
+        self.hierarchy.along(start, back, range, |i| {
+            let target = &self.targets[i];
+            if let Some((distance, part)) = target.form.last(ray)
+                && distance > farthest
+            {
+                farthest = distance;
+                last = Some((target, part));
+            }
+            -farthest
+        });
+        last.map(|(target, part)| (farthest, target.met(part)))
+    }
+
+    /// Tells every target on the line of a ray, and at what distance.
+    pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, Met<'_, T>)) {
+        let range = [f64::NEG_INFINITY, f64::INFINITY];
+        let (start, direction) = (start(ray), direction(ray));
+        self.hierarchy.along(start, direction, range, |i| {
+            let target = &self.targets[i];
+            let form = &target.form;
+            form.each(ray, |distance, part| tell(distance, target.met(part)));
+            f64::INFINITY
+        });
+    }
+
+    /// Whether light on a ray meets a target between `from` and `distance`; at that very distance
+    /// when `inclusive`. Looked for backwards, from there; what `ignored` says does not count.
+    pub(crate) fn blocks(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        distance: f64,
+        inclusive: bool,
+        ignored: impl Fn(&T) -> bool,
+    ) -> bool {
+        let does = |at: f64| at > from && (at < distance || inclusive && at <= distance);
+        let mut blocked = false;
+        let (start, back) = (start(ray), -direction(ray));
+        self.hierarchy.along(start, back, [-distance, -from], |i| {
+            let Target { form, tag } = &self.targets[i];
+            blocked |= !ignored(tag) && form.blocks(ray, [from, distance], does);
+            // Then nothing matters any more.
+            if blocked { f64::NEG_INFINITY } else { -from }
+        });
+        blocked
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::mesh::Mesh;
+    use etendue_field::random::{self, Stream};
+    use etendue_field::{Disc, Frame, Rectangle, Shape};
+    use etendue_scene::Triangles;
+
+    fn mesh(triangles: Vec<[DVec3; 3]>) -> Form {
+        let triangles = Triangles::new(triangles, 0.0);
+        Form::Mesh(Box::new(Mesh::new(&triangles, None, Frame::IDENTITY)))
+    }
+
+    /// Squares that share edges, discs and triangles: the cases in which rounding would leak.
+    fn targets(scale: f64) -> Vec<Target<u32>> {
+        let mut targets = Vec::new();
+        for layer in 1..4u32 {
+            for i in 0..20u32 {
+                for j in (layer % 2..20).step_by(2) {
+                    let center = [i, j].map(|i| (0.1 * f64::from(i) - 1.0) * scale);
+                    let shape = if layer == 2 {
+                        let radius = 0.05 * scale;
+                        Shape::Disc(Disc { center, radius })
+                    } else {
+                        let size = [0.1 * scale; 2];
+                        Shape::Rectangle(Rectangle { center, size })
+                    };
+                    let distance = f64::from(layer) * scale;
+                    targets.push(Form::Flat { distance, shape });
+                }
+            }
+        }
+        let corner = |i: u32| {
+            let t = 0.7 * f64::from(i);
+            scale * DVec3::new(t.sin(), (1.3 * t).cos(), 1.5 + 0.4 * (2.9 * t).sin())
+        };
+        let triangle = |i| [corner(i), corner(i + 1), corner(i + 2)];
+        targets.extend((0..30).map(|i| mesh(vec![triangle(i)])));
+        targets.push(mesh((30..60).map(triangle).collect()));
+        targets.extend((0..40).map(|i| {
+            let d = corner(i) - DVec3::new(0.0, 0.0, scale);
+            let shape = Shape::Disc(Disc {
+                center: [0.02 * scale, -0.01 * scale],
+                radius: 0.1 * scale,
+            });
+            let frame = Frame::new(corner(i + 3), d, DVec3::X).unwrap_or(Frame::IDENTITY);
+            let frame = Box::new(frame);
+            Form::Oblique { frame, shape }
+        }));
+        let tags = 0u32..;
+        let tagged = targets.into_iter().zip(tags);
+        tagged.map(|(form, tag)| Target { form, tag }).collect()
+    }
+
+    /// Where a ray meets targets beyond its beginning, found without any hierarchy.
+    fn in_turn(all: &[Target<u32>], ray: &TwoPlane) -> Vec<f64> {
+        let met = all.iter().flat_map(|target| match &target.form {
+            Form::Mesh(mesh) => mesh.in_turn(ray),
+            form => form.first(ray, 0.0, f64::INFINITY).into_iter().collect(),
+        });
+        met.map(|(at, _)| at).collect()
+    }
+
+    #[test]
+    fn agrees_with_every_target_tried_in_turn() {
+        for scale in [1e-30, 1e-3, 1.0, 1e3, 1e30] {
+            let all = targets(scale);
+            let found = Targets::new(&all, 0.5 * scale);
+            let (mut hits, mut blocked) = (0, 0);
+            for index in 0..20_000 {
+                let w = random::words(3, Stream::Photon, index, 0).map(|w| random::unit(w) - 0.5);
+                let ray = TwoPlane {
+                    x: w[0] * scale,
+                    y: w[1] * scale,
+                    u: w[2],
+                    v: w[3],
+                };
+                let met = in_turn(&all, &ray);
+                let expected = met.iter().copied().fold(f64::INFINITY, f64::min);
+                let first = found.first(&ray, 0.0).map_or(f64::INFINITY, |(at, _)| at);
+                assert!(
+                    first.total_cmp(&expected).is_eq(),
+                    "{ray:?} at scale {scale}"
+                );
+                hits += u32::from(first.is_finite());
+                let farthest = met.into_iter().fold(f64::NEG_INFINITY, f64::max);
+                let last = found.last(&ray).map_or(f64::NEG_INFINITY, |(at, _)| at);
+                assert!(last.total_cmp(&farthest).is_eq(), "{ray:?}: last");
+                for (distance, inclusive) in [(1.0, false), (1.0, true), (1.6, true), (2.0, false)]
+                {
+                    let distance = distance * scale;
+                    let expected = expected < distance || inclusive && expected <= distance;
+                    let blocks = found.blocks(&ray, 0.0, distance, inclusive, |_| false);
+                    assert_eq!(blocks, expected, "{ray:?} to {distance}");
+                    blocked += u32::from(blocks);
+                }
+            }
+            assert!(hits > 10_000, "{hits} rays hit: too few to tell");
+            assert!((10_000..70_000).contains(&blocked), "{blocked} of 80,000");
+        }
+    }
+
+    /// What no legal scene has: the builder is spared it, and what is sound beside it is found.
+    #[test]
+    fn forms_without_a_box_are_candidates_everywhere() {
+        for bad in [f64::NAN, f64::INFINITY, 1e300] {
+            let mut all = targets(1.0);
+            let strange = mesh(vec![[DVec3::splat(bad); 3]]);
+            all.extend((0..50).map(|tag| Target {
+                form: strange.clone(),
+                tag,
+            }));
+            let found = Targets::new(&all, 0.5);
+            let straight = TwoPlane::default();
+            assert!(found.first(&straight, 0.0).is_some(), "{bad}");
+        }
+    }
+}
