@@ -91,4 +91,21 @@ pub trait PhotonSource: Sync {
         record: &mut dyn FnMut(usize, &[Crossing]),
         progress: &dyn Fn(u64),
     ) -> Ledger;
+
+    /// How many parts of a batch may be emitted one by one, by several threads; at least one, and a
+    /// function of the scene alone.
+    fn parts(&self, _batch: u32) -> u32 {
+        1
+    }
+
+    /// Emits one part of a batch, as [`Self::emit`] does all of them in order.
+    fn emit_part(
+        &self,
+        batch: u32,
+        _part: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        self.emit(batch, record, progress)
+    }
 }

@@ -16,6 +16,26 @@ pub struct PlaneBatch {
     pub moments: RayMoments,
 }
 
+impl PlaneBatch {
+    /// Adds what another part of the batch measured.
+    fn add(&mut self, other: &Self) {
+        self.tally.add(&other.tally);
+        self.slices.half += &other.slices.half;
+        self.projection.values += &other.projection.values;
+        let sums = self.moments.0.iter_mut().zip(other.moments.0);
+        sums.for_each(|(sum, other)| *sum += other);
+    }
+}
+
+impl Batch {
+    /// Adds what another part of the batch measured.
+    pub(crate) fn add(&mut self, other: &Self) {
+        self.ledger.add(&other.ledger);
+        let planes = self.planes.iter_mut().zip(&other.planes);
+        planes.for_each(|(plane, other)| plane.add(other));
+    }
+}
+
 /// What one batch of photons measured: a replicate, independent of all others.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Batch {

@@ -12,8 +12,8 @@ pub const PROJECTION_BINS: usize = 64;
 
 /// Measures `batches` of photons from `source` at `planes`, on the threads of the current rayon pool.
 ///
-/// A batch is the sequential work of one thread, so the result is the same to the bit on any number of
-/// threads. `progress` is told the photons as they are traced.
+/// A part of a batch is the sequential work of one thread, and parts are added in order, so the result
+/// is the same to the bit on any number of threads. `progress` is told the photons as they are traced.
 ///
 /// A batch that emits nothing measures nothing and is left out: with fewer photons than batches the result
 /// holds as many batches as photons.
@@ -34,25 +34,41 @@ pub fn measure(
             .map(|(plane, plan)| Recorder::new(plane, plan))
             .collect()
     };
+    let part = |recorders: &mut Vec<Recorder<'_>>, index: u32, part: u32| {
+        measure_part(source, [index, part], recorders, progress)
+    };
     let measured: Vec<Option<Batch>> = batches
         .into_par_iter()
         .with_max_len(1)
-        .map_init(recorders, |recorders, index| {
-            let wanted = source.emitted(index) > 0;
-            wanted.then(|| measure_batch(source, index, recorders, progress))
+        .map_init(recorders, |own, index| {
+            if source.emitted(index) == 0 {
+                return None;
+            }
+            let parts = source.parts(index);
+            if parts == 1 {
+                return Some(part(own, index, 0));
+            }
+            let parts = (0..parts).into_par_iter().with_max_len(1);
+            let parts = parts.map_init(recorders, |own, number| part(own, index, number));
+            let parts: Vec<Batch> = parts.collect();
+            parts.into_iter().reduce(|mut sum, part| {
+                sum.add(&part);
+                sum
+            })
         })
         .collect();
     Measurement::of(planes, measured.into_iter().flatten())
 }
 
-fn measure_batch(
+/// What a part of a batch adds to the means over the whole batch.
+fn measure_part(
     source: &dyn PhotonSource,
-    index: u32,
+    [index, part]: [u32; 2],
     recorders: &mut [Recorder<'_>],
     progress: &(dyn Fn(u64) + Sync),
 ) -> Batch {
     let record = &mut |plane: usize, crossings: &[Crossing]| recorders[plane].record(crossings);
-    let ledger = source.emit(index, record, &|photons| progress(photons));
+    let ledger = source.emit_part(index, part, record, &|photons| progress(photons));
     let emitted = source.emitted(index);
     let scale = 1.0 / emitted as f64;
     Batch {

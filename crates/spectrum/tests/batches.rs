@@ -3,7 +3,7 @@
 mod common;
 
 use common::{Shower, boxed, grid, hann, plane};
-use etendue_field::{Crossing, PhotonSource, VirtualPlane};
+use etendue_field::{Crossing, Ledger, PhotonSource, VirtualPlane};
 use etendue_spectrum::{Measurement, MergeError, direct, estimate, measure};
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -26,6 +26,58 @@ fn shower() -> Shower {
 
 fn run(source: &Shower, batches: std::ops::Range<u32>) -> Measurement {
     measure(source, &source.planes, batches, &|_| ())
+}
+
+/// Each plane's photons of a shower are a part of their own.
+struct Parted(Shower);
+
+impl PhotonSource for Parted {
+    fn emitted(&self, batch: u32) -> u64 {
+        self.0.emitted(batch)
+    }
+
+    fn emit(
+        &self,
+        batch: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        self.0.emit(batch, record, progress)
+    }
+
+    fn parts(&self, _: u32) -> u32 {
+        2
+    }
+
+    fn emit_part(
+        &self,
+        batch: u32,
+        part: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        _: &dyn Fn(u64),
+    ) -> Ledger {
+        let mut of_part = |plane: usize, block: &[Crossing]| {
+            if plane == part as usize {
+                record(plane, block);
+            }
+        };
+        let ledger = self.0.emit(batch, &mut of_part, &|_| ());
+        ledger.scaled(0.5)
+    }
+}
+
+/// Parts of a batch add up to it, on any number of threads.
+#[test]
+fn parts_make_a_batch() {
+    let whole = run(&shower(), 0..10);
+    let parted = Parted(shower());
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let measured = pool
+            .unwrap()
+            .install(|| measure(&parted, &planes(), 0..10, &|_| ()));
+        assert!(measured == whole, "{threads} threads");
+    }
 }
 
 #[test]

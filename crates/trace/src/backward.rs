@@ -7,7 +7,7 @@ use crate::form::Form;
 use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
 use crate::pieces::Pieces;
 use crate::proposal::Follower;
-use crate::shares::Shares;
+use crate::shares::{BLOCK, Shares};
 use crate::sky::Sky;
 use crate::station::Station;
 use crate::targets::{Target, Targets};
@@ -514,9 +514,6 @@ impl Looker {
         }
     }
 }
-
-/// Rays between two reports.
-const BLOCK: usize = 4096;
 
 impl PhotonSource for Backward {
     fn emitted(&self, batch: u32) -> u64 {

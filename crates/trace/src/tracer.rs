@@ -2,7 +2,7 @@ use crate::bounce::Bounce;
 use crate::emit::Emitter;
 use crate::numbers::Source;
 use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
-use crate::shares::Shares;
+use crate::shares::{BLOCK, Shares};
 use crate::station::Station;
 use crate::targets::Met;
 use etendue_field::random::Stream;
@@ -65,9 +65,6 @@ pub(crate) struct Arrival {
     pub(crate) direction: DVec3,
     pub(crate) flux: f64,
 }
-
-/// Photons traced between two reports.
-const BLOCK: usize = 4096;
 
 impl Tracer {
     /// The tracer of a scene.
@@ -301,13 +298,32 @@ impl PhotonSource for Tracer {
         record: &mut dyn FnMut(usize, &[Crossing]),
         progress: &dyn Fn(u64),
     ) -> Ledger {
+        let mut total = Ledger::default();
+        for part in 0..self.parts(batch) {
+            total.add(&self.emit_part(batch, part, record, progress));
+        }
+        total
+    }
+
+    fn parts(&self, batch: u32) -> u32 {
+        self.shares.parts(batch)
+    }
+
+    fn emit_part(
+        &self,
+        batch: u32,
+        part: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
         let mut crossings = vec![Vec::with_capacity(BLOCK); self.planes];
         let mut total = Ledger::default();
-        let range = self.shares.of(batch);
+        let first = self.shares.of(batch).start;
+        let range = self.shares.part(batch, part);
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
-            let numbers = self.numbers.of(batch, range.start, start);
+            let numbers = self.numbers.of(batch, first, start);
             for index in start..end {
                 let words = |block| numbers.words(index, block);
                 self.photon(words, &mut crossings, &mut block);
