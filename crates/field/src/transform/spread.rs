@@ -1,6 +1,6 @@
 use super::block::{Block, GROUP};
 use super::kernel::{Kernel, WIDTH};
-use fearless_simd::{Simd, f64x4, prelude::*};
+use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
 
 /// How the rays of one azimuth φ fall on its fine grid, a period of `rows` × `columns` cells.
 ///
@@ -125,16 +125,12 @@ fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel, weight: &[f64]) {
 #[inline(always)]
 fn add<S: Simd>(simd: S, group: &Group, stride: usize, fine: &mut [f64]) {
     for (i, across) in group.across.iter().enumerate() {
-        let (left, right) = across.split_at(WIDTH / 2);
-        let left = f64x4::from_slice(simd, left);
-        let right = f64x4::from_slice(simd, right);
+        let across = f64x8::from_slice(simd, across);
         let start = group.start[i];
         let cells = &mut fine[start..start + (WIDTH - 1) * stride + WIDTH];
         for (j, down) in group.down.iter().enumerate() {
             let row = &mut cells[j * stride..j * stride + WIDTH];
-            let (l, r) = row.split_at_mut(WIDTH / 2);
-            (f64x4::from_slice(simd, l) + left * down[i]).store_slice(l);
-            (f64x4::from_slice(simd, r) + right * down[i]).store_slice(r);
+            (f64x8::from_slice(simd, row) + across * down[i]).store_slice(row);
         }
     }
 }
