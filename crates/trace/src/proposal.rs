@@ -53,8 +53,10 @@ impl Follower {
         let s = (t / self.half).clamp(-1.0, 1.0);
         match self.kind {
             Kind::Constant => 0.5 * (1.0 + s),
-            Kind::Tent if s < 0.0 => 0.5 * (1.0 + s) * (1.0 + s),
-            Kind::Tent => 1.0 - 0.5 * (1.0 - s) * (1.0 - s),
+            Kind::Tent => {
+                let beyond = 0.5 * (1.0 - s.abs()) * (1.0 - s.abs());
+                if s < 0.0 { beyond } else { 1.0 - beyond }
+            }
             Kind::Cosine => {
                 let t = s * self.half;
                 0.5 * (1.0 + t / (t.hypot(1.0) * self.sine()))
@@ -67,8 +69,11 @@ impl Follower {
     pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match self.kind {
             Kind::Constant => 2.0 * p - 1.0,
-            Kind::Tent if p < 0.5 => (2.0 * p).max(0.0).sqrt() - 1.0,
-            Kind::Tent => 1.0 - (2.0 * (1.0 - p)).max(0.0).sqrt(),
+            // One formula for both sides: a processor guesses the side wrong every other time.
+            Kind::Tent => {
+                let beyond = p.min(1.0 - p).max(0.0);
+                (1.0 - (2.0 * beyond).sqrt()).copysign(p - 0.5)
+            }
             Kind::Cosine => {
                 let sine = (2.0 * p - 1.0) * self.sine();
                 return sine / (1.0 - sine * sine).sqrt();
