@@ -431,6 +431,14 @@ fn a_sliver_of_slopes_is_decided() {
     assert_eq!(judged.verdict, Verdict::Fail);
 }
 
+/// What bulges towards a light without extent does not shadow its own tangent plane.
+#[test]
+fn a_plane_behind_its_surface_is_decided() {
+    let scene = scene("before_a_trough");
+    let reference = by_reference(&scene, 0, &backward(&scene));
+    assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
+}
+
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {

@@ -66,11 +66,8 @@ impl Backward {
             cosine / (point.z * point.z)
         };
         let nothing = |_| [0.0; 4];
-        let found = if station.view().is_some() {
-            self.arriving(0, &at_light, point.z, 1, &nothing)
-        } else {
-            self.incident(0, &at_light, point.z, station.side, 1, &nothing)
-        };
+        // A plane on a surface looks at all that arrives there, as photons are counted.
+        let found = self.incident(0, &at_light, station.distance, station.side, 1, &nothing);
         let weight = found * per_ray * area / density;
         let (ray, weight) = station.look(&at_light, weight)?;
         Some(Crossing { ray, weight })
