@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::files::{radial_z, z};
 use crate::results::Results;
 use crate::summary::Summary;
-use crate::table::word;
+use crate::table::{grouped, word};
 use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Theory, stands_before};
 use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, Side, SliceGrid, VirtualPlane};
 use etendue_figures::{
@@ -132,8 +132,9 @@ pub(crate) fn path(
             scene.name
         ),
         note: &format!(
-            "{:e} photons, seed {}; spectra are means over azimuths.{dashed}",
-            summary.photons as f64, summary.seed
+            "{} photons, seed {}; spectra are means over azimuths.{dashed}",
+            grouped(summary.photons),
+            summary.seed
         ),
         section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),
         columns,
@@ -180,8 +181,10 @@ fn column<'a>(
 /// What a picture was made from, in a line.
 fn made_from(summary: &Summary) -> String {
     format!(
-        "{}, {:e} photons, seed {}",
-        summary.scene, summary.photons as f64, summary.seed
+        "{}, {} photons, seed {}",
+        summary.scene,
+        grouped(summary.photons),
+        summary.seed
     )
 }
 

@@ -81,7 +81,8 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
     })
 }
 
-/// The noise of the slices at plane `plane`, as a share of them: √(Σσ²/(Σ|S̄|² − Σσ²)). `None` where
+/// The noise of the slices at plane `plane`, as a share of them: √(Σσ²/(Σ|S̄|² − Σσ²)), over
+/// independent frequencies. `None` where
 /// no photon came, or where there is more noise than light.
 ///
 /// # Errors
@@ -89,11 +90,13 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
 /// With fewer than two batches.
 pub fn noise(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
     let SliceEstimate { mean, variance, .. } = slices(measurement, plane)?;
-    // Frequencies at ρ = 0 stand there twice, as ν and −ν.
-    let share = |(_, rho, _): (usize, usize, usize)| if rho == 0 { 0.5 } else { 1.0 };
-    let noise: f64 = variance.indexed_iter().map(|(at, v)| share(at) * v).sum();
-    let powers = mean.half.indexed_iter();
-    let both: f64 = powers.map(|(at, s)| share(at) * s.norm_sqr()).sum();
+    let (mut noise, mut both) = (0.0, 0.0);
+    for (((_, m, n), variance), value) in variance.indexed_iter().zip(&mean.half) {
+        if mean.grid.is_independent(m, n) {
+            noise += variance;
+            both += value.norm_sqr();
+        }
+    }
     let light = both - noise;
     Ok((light > 0.0).then(|| (noise / light).sqrt()))
 }
