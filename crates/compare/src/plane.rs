@@ -119,7 +119,7 @@ impl Compared<'_> {
         let agreement = Agreement::new(self.residuals, self.variance, self.predicted);
         let p_value = self.residuals.p_value(test.seed);
         let agrees = if self.predicted.is_dark() {
-            self.inside() == 0
+            self.is_dark()
         } else {
             // Residuals that are all zero have no p.
             p_value.is_none_or(|p| p >= test.level) || self.agrees_within(0.0, test)
@@ -242,6 +242,14 @@ impl Compared<'_> {
         } else {
             agreement.photons_needed(emitted, self.prediction, test)
         }
+    }
+
+    /// Whether photons brought no light, or so little that a prediction could not tell it from its
+    /// rounding.
+    fn is_dark(&self) -> bool {
+        let light = self.residuals.mean();
+        let light = light.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        light <= self.prediction.unblocked * DARK
     }
 
     fn inside(&self) -> u64 {
