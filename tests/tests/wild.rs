@@ -439,6 +439,18 @@ fn a_plane_behind_its_surface_is_decided() {
     assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
 }
 
+/// A wall beside the light reaches behind it, where no light goes forward.
+#[test]
+fn a_wall_that_reaches_behind_the_light_is_decided() {
+    let scene = scene("beside_the_light");
+    let theory = Applicability::new(&scene, &scene.planes[0]);
+    assert_eq!(theory.reasons, ["a window that reaches behind the light"]);
+    let measured = backward(&scene);
+    let regardless = by_specular(&scene, 0, by_reference(&scene, 0, &measured));
+    let judged = report(&scene, &measured, 0, &regardless);
+    assert_eq!(judged.verdict, Verdict::Fail);
+}
+
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {

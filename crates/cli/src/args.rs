@@ -49,7 +49,7 @@ pub(crate) enum Command {
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
 
-Photon counts may be written 10_000_000, 1e7 or 2^23; batches of 2^m photons have least noise.")]
+Photon counts may be written 10_000_000, 1e7 or 2^23; powers of two have least noise, in 64 batches or 2^m.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,
@@ -67,8 +67,9 @@ pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
 
-    /// Noise allowed at each plane, of the norm of its spectrum: photons are doubled until it is
-    /// reached, up to those of --photons
+    /// Goes on until noise alone is at most this share of the spectrum at each plane: with 2^20
+    /// photons first, then as many as that takes, up to --photons [default: 2^40]; exit code 3 if
+    /// these do not do
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
 

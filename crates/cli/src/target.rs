@@ -5,6 +5,7 @@ use crate::measure::measured;
 use crate::method::Method;
 use crate::say;
 use crate::table::grouped;
+use etendue_field::tidy;
 use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, estimate};
 use indicatif::HumanDuration;
@@ -14,10 +15,12 @@ use std::time::{Duration, Instant};
 const FIRST: u64 = 1 << 20;
 /// The most photons of a stage, unless a user says so.
 const MOST: u64 = 1 << 40;
+/// How many times as many photons the root of their number may ask for, that nets may do without.
+const FARTHEST: f64 = 8.0;
 
 /// Measures all batches of a scene with 2ᵐ photons: the first of these numbers, from 2²⁰ on, with
 /// which noise is at most a share `target` of the spectrum at each plane. The scene is given that
-/// number.
+/// number. The last stage has `most` photons, a power of two or not.
 ///
 /// A stage begins anew, so that its result is that of a run with as many photons. Which stages there
 /// may be is fixed beforehand, and noise alone says which one is the last, so that p is as it would
@@ -49,18 +52,19 @@ pub(crate) fn reached(
         let now = format!("{} at {plane} with {emitted} photons", percent(noise));
         // Nets may need fewer than the root of their number says: the largest power below that.
         let needed = photons as f64 * (noise / target).powi(2);
-        let mut next = 2 * photons;
-        while 2.0 * next as f64 <= needed {
-            next *= 2;
+        let mut next = photons.saturating_mul(2);
+        while next < most && 2.0 * next as f64 <= needed {
+            next = next.saturating_mul(2);
         }
-        if next > most {
+        if photons == most || needed > FARTHEST * most as f64 {
             return Err(Failure::cannot_run(format!(
-                "--target-error {}: {is} {now}, and would need some {needed:.0e}; allowed: {}, \
-                 more by --photons",
-                percent(target),
+                "--target-error {} %: {is} {now}, and falls as the root of their number or faster: \
+                 {needed:.1e} photons reach that; allowed: {}, more by --photons",
+                tidy(100.0 * target),
                 grouped(most)
             )));
         }
+        let next = next.min(most);
         if !quiet {
             let time = begun.elapsed().mul_f64(next as f64 / photons as f64);
             let next = grouped(next);

@@ -184,7 +184,7 @@ fn a_target_error_is_reached() {
     assert_eq!(output.status.code(), Some(3), "{output:?}");
     let told = String::from_utf8(output.stderr).unwrap();
     assert!(
-        told.contains("would need some") && told.contains("allowed: 1 048 576"),
+        told.contains("photons reach that; allowed: 1 048 576"),
         "{told}"
     );
     assert!(!folder.path().join("refused").exists());

@@ -26,6 +26,9 @@ pub(crate) fn unforeseen_by_rays(
     let mut found = met(|index| follower.check(follower.ray(index)?));
     found.extend(met(|index| follower.check(follower.ray_of_window(index)?)));
     let mut found = in_words(found, scene);
+    if follower.looks_behind_light() {
+        found.push("a window that reaches behind the light".to_owned());
+    }
     let off = follower.off_patches().filter(|off| *off > OFF_PATCHES);
     found.extend(off.map(|off| {
         let percent = 100.0 * off;
@@ -53,6 +56,16 @@ pub(super) type Arrival = Option<(TwoPlane, f64)>;
 const SAME: f64 = 1e-6;
 
 impl Follower<'_> {
+    /// Whether the window of a plane on the first surface holds points to which no light goes
+    /// forward: theory has it come along the whole line of a ray.
+    fn looks_behind_light(&self) -> bool {
+        let [x, y] = [self.plane.window.x, self.plane.window.y].map(|p| p.half_width());
+        let corners = [[x, y], [x, -y], [-x, y], [-x, -y]];
+        let depth = |[x, y]: [f64; 2]| self.at.frame.to_world(DVec3::new(x, y, 0.0)).z;
+        let is_on_surface = self.at.orientation != Orientation::Orthogonal;
+        self.plane.leg == 0 && is_on_surface && corners.into_iter().any(|at| depth(at) <= 0.0)
+    }
+
     /// What a ray of the light meets on its way that theory does not know of, if anything; `None` if
     /// it brings no light into the window.
     fn check(&self, (ray, emitted): (Ray, f64)) -> Option<Option<Meets>> {
