@@ -49,7 +49,8 @@ pub(crate) enum Command {
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
 
-Photon counts may be written 10_000_000, 1e7 or 2^23; powers of two have least noise, in 64 batches or 2^m.")]
+Photon counts may be written 10_000_000, 1e7 or 2^23.
+Powers of two have least noise, in 64 batches or 2^m.")]
 pub(crate) struct RunArgs {
     #[command(flatten)]
     pub(crate) scene: SceneArgs,

@@ -81,7 +81,7 @@ pub(crate) fn conclude(
     finished.tell_replaced(ending.quiet);
     if !ending.quiet {
         table::print(&summary, &finished.folder);
-        if let Some(outlook) = seconds.and_then(|s| target::outlook(&case.measurement, s)) {
+        if let Some(outlook) = seconds.and_then(|s| target::outlook(&summary.planes, s)) {
             say(&outlook);
         }
         let mut gone = finished.gone;

@@ -278,18 +278,19 @@ fn fixed(value: f64, digits: usize) -> String {
     if zero { text.replace('-', "") } else { text }
 }
 
-fn percent(value: Option<f64>) -> String {
+pub(crate) fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |v| format!("{:.3} %", 100.0 * v))
 }
 
 /// Two decimals, more where there would not be two digits.
 fn small_percent(share: f64) -> String {
     let percent = 100.0 * share;
-    let mut decimals = 2;
-    while percent > 0.0 && decimals < 12 && percent * 10f64.powi(decimals) < 9.5 {
-        decimals += 1;
-    }
-    fixed(percent, usize::try_from(decimals).unwrap_or(2)) + " %"
+    let digits = if percent > 0.0 {
+        decimals(percent).max(2)
+    } else {
+        2
+    };
+    fixed(percent, digits) + " %"
 }
 
 /// Value ± error, to two digits of the error.

@@ -4,7 +4,8 @@ use crate::failure::Failure;
 use crate::measure::measured;
 use crate::method::Method;
 use crate::say;
-use crate::table::grouped;
+use crate::table::{grouped, percent};
+use etendue_compare::PlaneReport;
 use etendue_field::tidy;
 use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, estimate};
@@ -41,7 +42,7 @@ pub(crate) fn reached(
         scene.run.photons = photons;
         scene.file.run.photons = photons;
         let measurement = measured(scene, method, 0..scene.run.batches, quiet)?;
-        let (emitted, is) = (grouped(photons), "noise is");
+        let emitted = grouped(photons);
         let Some((plane, noise)) = noisiest(&measurement) else {
             let none = format!("--target-error: none of {emitted} photons came into a window");
             return Err(Failure::cannot_run(none));
@@ -49,7 +50,8 @@ pub(crate) fn reached(
         if noise <= target {
             return Ok(measurement);
         }
-        let now = format!("{} at {plane} with {emitted} photons", percent(noise));
+        let noise_now = percent(Some(noise));
+        let now = format!("noise is {noise_now} at {plane} with {emitted} photons");
         // Nets may need fewer than the root of their number says: the largest power below that.
         let needed = photons as f64 * (noise / target).powi(2);
         let mut next = photons.saturating_mul(2);
@@ -58,7 +60,7 @@ pub(crate) fn reached(
         }
         if photons == most || needed > FARTHEST * most as f64 {
             return Err(Failure::cannot_run(format!(
-                "--target-error {} %: {is} {now}, and falls as the root of their number or faster: \
+                "--target-error {} %: {now}, and falls as the root of their number or faster: \
                  {needed:.1e} photons reach that; allowed: {}, more by --photons",
                 tidy(100.0 * target),
                 grouped(most)
@@ -69,7 +71,7 @@ pub(crate) fn reached(
             let time = begun.elapsed().mul_f64(next as f64 / photons as f64);
             let next = grouped(next);
             let time = HumanDuration(time);
-            say(&format!("{is} {now}: {next} photons follow, about {time}"));
+            say(&format!("{now}: {next} photons follow, about {time}"));
         }
         photons = next;
     }
@@ -77,13 +79,17 @@ pub(crate) fn reached(
 
 /// What noise the run has, and what a hundred times its time would bring, in words; `None` where
 /// there is no light.
-pub(crate) fn outlook(measurement: &Measurement, seconds: f64) -> Option<String> {
-    let (plane, noise) = noisiest(measurement)?;
-    let longer = Duration::try_from_secs_f64(100.0 * seconds).ok()?;
-    let (noise, less) = (percent(noise), percent(0.1 * noise));
-    let longer = HumanDuration(longer);
+pub(crate) fn outlook(planes: &[PlaneReport], seconds: f64) -> Option<String> {
+    let noise = |plane: &PlaneReport| plane.noise_limit;
+    let lit = planes
+        .iter()
+        .filter_map(|plane| Some((&plane.name, noise(plane)?)));
+    let (plane, noise) = lit.max_by(|(_, a), (_, b)| a.total_cmp(b))?;
+    let longer = HumanDuration(Duration::try_from_secs_f64(100.0 * seconds).ok()?);
+    let [noise, less] = [noise, 0.1 * noise].map(|noise| percent(Some(noise)));
     Some(format!(
-        "noise is {noise} at {plane}; 100 times the photons, about {longer}, bring it to {less} or below"
+        "noise is {noise} at {plane}; 100 times the photons, about {longer}, bring it to {less} \
+         or below"
     ))
 }
 
@@ -95,8 +101,4 @@ fn noisiest(measurement: &Measurement) -> Option<(&str, f64)> {
         Some((plane.name.as_str(), noise))
     });
     lit.max_by(|(_, a), (_, b)| a.total_cmp(b))
-}
-
-fn percent(share: f64) -> String {
-    format!("{:.3} %", 100.0 * share)
 }

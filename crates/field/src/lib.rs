@@ -39,7 +39,7 @@ pub use frame::{Frame, TwoPlane, box_corners, enclosing};
 pub use frequency::{FrequencyAxis, SliceGrid};
 pub use image::Image;
 pub use light::Light;
-pub use net::Net;
+pub use net::{Net, sobol_directions};
 pub use number::tidy;
 pub use patch::{Patch, Specular};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};

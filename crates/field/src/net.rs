@@ -29,8 +29,10 @@ const POLYNOMIALS: [(usize, u32, [u32; 5]); WIDTH * JOINT - 1] = [
 /// What a byte of a point's number adds to its coordinates without carry, [block, byte, value].
 static ADDED: [[[[u32; WIDTH]; 256]; 4]; JOINT] = added();
 
-/// What each bit of a point's number adds to a coordinate.
-const fn directions(dimension: usize) -> [u32; 32] {
+/// What each bit of a point's number adds to a coordinate of Sobol' points, without carry; of eight
+/// coordinates, from 0 on.
+#[must_use]
+pub const fn sobol_directions(dimension: usize) -> [u32; 32] {
     let mut all = [0; 32];
     let mut bit = 0;
     while bit < 32 {
@@ -61,7 +63,7 @@ const fn added() -> [[[[u32; WIDTH]; 256]; 4]; JOINT] {
     let mut table = [[[[0; WIDTH]; 256]; 4]; JOINT];
     let mut dimension = 0;
     while dimension < WIDTH * JOINT {
-        let directions = directions(dimension);
+        let directions = sobol_directions(dimension);
         let mut bit = 0;
         while bit < 32 {
             let mut value = 0;

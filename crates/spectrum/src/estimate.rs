@@ -82,8 +82,7 @@ pub fn slices(measurement: &Measurement, plane: usize) -> Result<SliceEstimate, 
 }
 
 /// The noise of the slices at plane `plane`, as a share of them: √(Σσ²/(Σ|S̄|² − Σσ²)), over
-/// independent frequencies. `None` where
-/// no photon came, or where there is more noise than light.
+/// independent frequencies. `None` where no photon came, or where there is more noise than light.
 ///
 /// # Errors
 ///

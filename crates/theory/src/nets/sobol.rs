@@ -5,56 +5,21 @@
 //! net is an unbiased estimate, and nets scrambled with different keys are independent (Owen 1997).
 
 use etendue_field::random::unit;
+use etendue_field::sobol_directions;
 
 /// Coordinates of a point.
 pub(crate) const DIMENSIONS: usize = 6;
 
-/// Degree, inner coefficients and first direction numbers of each coordinate but the first
-/// (Joe and Kuo 2008, *Constructing Sobol' sequences with better two-dimensional projections*,
-/// table `new-joe-kuo-6`).
-const POLYNOMIALS: [(usize, u32, [u32; 4]); DIMENSIONS - 1] = [
-    (1, 0, [1, 0, 0, 0]),
-    (2, 1, [1, 3, 0, 0]),
-    (3, 1, [1, 3, 1, 0]),
-    (3, 2, [1, 1, 1, 0]),
-    (4, 1, [1, 1, 3, 3]),
-];
-
 /// What a bit of a point's number adds to its coordinates, bit by bit without carry.
-static DIRECTIONS: [[u32; 32]; DIMENSIONS] = directions();
-
-const fn directions() -> [[u32; 32]; DIMENSIONS] {
+static DIRECTIONS: [[u32; 32]; DIMENSIONS] = {
     let mut all = [[0; 32]; DIMENSIONS];
-    let mut bit = 0;
-    while bit < 32 {
-        all[0][bit] = 1 << (31 - bit);
-        bit += 1;
-    }
-    let mut dimension = 1;
+    let mut dimension = 0;
     while dimension < DIMENSIONS {
-        let (degree, inner, first) = POLYNOMIALS[dimension - 1];
-        let mut bit = 0;
-        while bit < 32 {
-            all[dimension][bit] = if bit < degree {
-                first[bit] << (31 - bit)
-            } else {
-                let before = all[dimension];
-                let mut value = before[bit - degree] ^ (before[bit - degree] >> degree);
-                let mut k = 1;
-                while k < degree {
-                    if (inner >> (degree - 1 - k)) & 1 == 1 {
-                        value ^= before[bit - k];
-                    }
-                    k += 1;
-                }
-                value
-            };
-            bit += 1;
-        }
+        all[dimension] = sobol_directions(dimension);
         dimension += 1;
     }
     all
-}
+};
 
 /// The points of a scrambled net, one after the other.
 #[derive(Clone, Debug)]
