@@ -256,7 +256,7 @@ fn predicted(plane: &PlaneReport) -> String {
     reason = "between 0 and 17"
 )]
 fn decimals(error: f64) -> usize {
-    (1.0 - error.log10().floor()).clamp(0.0, 17.0) as usize
+    (1.0 - libm::log10(error).floor()).clamp(0.0, 17.0) as usize
 }
 
 pub(crate) fn word(verdict: Verdict) -> &'static str {

@@ -45,7 +45,8 @@ impl Agreement {
             predicted,
             measured: residuals.sum(&mean, half, |m, f| (m + f).norm_sqr()) - noise,
             excess_squared_error: (predicted > 0.0).then(|| residuals.squared_error() / predicted),
-            noise_floor_db: (peak > 0.0 && noise > 0.0).then(|| 10.0 * (mean_noise / peak).log10()),
+            noise_floor_db: (peak > 0.0 && noise > 0.0)
+                .then(|| 10.0 * libm::log10(mean_noise / peak)),
         }
     }
 

@@ -80,7 +80,7 @@ pub fn converge(
 
 /// The slope of ln error over ln e.
 fn order(steps: &[[f64; 2]]) -> f64 {
-    let logs: Vec<[f64; 2]> = steps.iter().map(|step| step.map(f64::ln)).collect();
+    let logs: Vec<[f64; 2]> = steps.iter().map(|step| step.map(libm::log)).collect();
     let n = logs.len() as f64;
     let mean = [0, 1].map(|i| logs.iter().map(|l| l[i]).sum::<f64>() / n);
     let sum = |f: &dyn Fn(&[f64; 2]) -> f64| logs.iter().map(f).sum::<f64>();

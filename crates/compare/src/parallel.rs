@@ -12,7 +12,7 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
         let [before, leg] = legs else { continue };
         if let Some(Hit { object, normal, .. }) = &leg.leaves {
             let [incidence, outgoing] = [-before.frame.d, leg.frame.d]
-                .map(|d| d.dot(*normal).clamp(-1.0, 1.0).acos().to_degrees());
+                .map(|d| libm::acos(d.dot(*normal).clamp(-1.0, 1.0)).to_degrees());
             let is_flat = matches!(object, Object::Surface(_));
             if outgoing > ROUNDING || incidence > ROUNDING || !is_flat {
                 let name = scene.name_of(*object);

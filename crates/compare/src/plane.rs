@@ -8,7 +8,7 @@ use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport
 use crate::residuals::{Residuals, crossed_power};
 use crate::score::{ParameterReport, score};
 use crate::verdict::{Test, Verdict};
-use etendue_field::{SliceGrid, Slices, tidy};
+use etendue_field::{SliceGrid, Slices, modulus, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
     BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, second_moment,
@@ -234,7 +234,7 @@ impl Compared<'_> {
             // Of n replicates that hold m rays in the mean n e⁻ᵐ are empty.
             let all = self.prediction.replicates.len() as f64;
             let empty = self.prediction.replicates.iter().filter(|r| r.is_dark());
-            let each = (all / empty.count() as f64).ln();
+            let each = libm::log(all / empty.count() as f64);
             let more = (EACH * batches / inside as f64).max(EACH / each);
             let more = more.is_finite().then(|| (emitted as f64 * more).ceil());
             let less_noise = agreement.photons_needed(emitted, self.prediction, test);
@@ -248,7 +248,7 @@ impl Compared<'_> {
     /// rounding.
     fn is_dark(&self) -> bool {
         let light = self.residuals.mean();
-        let light = light.iter().map(|s| s.norm()).fold(0.0, f64::max);
+        let light = light.iter().map(|s| modulus(*s)).fold(0.0, f64::max);
         light <= self.prediction.unblocked * DARK
     }
 
@@ -359,14 +359,14 @@ fn covariance(
 /// Rounded up to one digit, with a tenth to spare: the noise of one run says what another needs.
 fn rounded(photons: f64) -> f64 {
     let wanted = 1.1 * photons;
-    let unit = 10f64.powf(wanted.max(1.0).log10().floor());
+    let unit = libm::pow(10f64, libm::log10(wanted.max(1.0)).floor());
     (wanted / unit).ceil() * unit
 }
 
 /// The predicted slices, set to zero where they are the rounding errors of a dark field.
 fn without_rounding(prediction: &Prediction) -> Slices {
     let least = prediction.unblocked * DARK;
-    let dark = prediction.slices.half.iter().all(|f| f.norm() <= least);
+    let dark = prediction.slices.half.iter().all(|f| modulus(*f) <= least);
     if dark {
         Slices::zeros(prediction.slices.grid)
     } else {
@@ -405,7 +405,7 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
                 "the spectrum goes on beyond |{name}| = {}, where it is {:.0} dB below its peak; \
                  bandwidths count what is inside",
                 tidy(max),
-                10.0 * (peak / border).log10()
+                10.0 * libm::log10(peak / border)
             ));
         }
     }

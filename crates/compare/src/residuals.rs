@@ -1,7 +1,7 @@
 //! Measured minus predicted, batch by batch, and the tests made on it.
 
 use etendue_field::random::{self, Stream};
-use etendue_field::{Complex, SliceGrid, Slices};
+use etendue_field::{Complex, SliceGrid, Slices, modulus};
 use etendue_spectrum::{Measurement, PlaneBatch};
 use ndarray::{Array2, Array3, Axis};
 
@@ -90,12 +90,16 @@ impl Residuals {
     /// more than `error`|F| at each frequency, and than the fast transform is of the largest F.
     pub(crate) fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
-        let largest = prediction.half.iter().map(|f| f.norm()).fold(0.0, f64::max);
+        let largest = prediction
+            .half
+            .iter()
+            .map(|f| modulus(*f))
+            .fold(0.0, f64::max);
         let of_transform = TRANSFORM * largest;
         moved.zip_mut_with(&prediction.half, |mean, f| {
-            let distance = mean.norm();
+            let distance = modulus(*mean);
             if distance > 0.0 {
-                *mean *= ((error * f.norm()).max(of_transform) / distance).min(1.0);
+                *mean *= ((error * modulus(*f)).max(of_transform) / distance).min(1.0);
             }
         });
         let parts = self.parts.iter().map(|part| part - &moved);
@@ -229,14 +233,17 @@ impl Residuals {
         }
         let mut products = Array2::zeros((r, r));
         for k in 0..self.grid.azimuths {
-            let rows: Vec<f64> = self
-                .parts
-                .iter()
-                .flat_map(|residual| self.row(residual, &scale, k))
-                .collect();
-            let columns = rows.len() / r;
-            if let Ok(rows) = Array2::from_shape_vec((r, columns), rows) {
-                products += &rows.dot(&rows.t());
+            let row = |residual| self.row(residual, &scale, k);
+            let rows: Vec<Vec<f64>> = self.parts.iter().map(row).collect();
+            for b in 0..r {
+                for c in 0..=b {
+                    products[[b, c]] += dot(&rows[b], &rows[c]);
+                }
+            }
+        }
+        for b in 0..r {
+            for c in 0..b {
+                products[[c, b]] = products[[b, c]];
             }
         }
         products
@@ -357,4 +364,19 @@ fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
     }
     signs.truncate(count);
     signs
+}
+/// Σ a b in eight sums side by side. The matrix products of libraries round as the processor at
+/// hand does best, these on every processor alike.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    const LANES: usize = 8;
+    let (a, a_rest) = a.as_chunks::<LANES>();
+    let (b, b_rest) = b.as_chunks::<LANES>();
+    let mut sums = [0.0; LANES];
+    for (a, b) in a.iter().zip(b) {
+        for lane in 0..LANES {
+            sums[lane] += a[lane] * b[lane];
+        }
+    }
+    let rest = a_rest.iter().zip(b_rest).map(|(a, b)| a * b);
+    sums.into_iter().chain(rest).sum()
 }

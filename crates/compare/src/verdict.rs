@@ -55,5 +55,5 @@ impl Verdict {
 /// 1967).
 #[must_use]
 pub fn sidak(alpha: f64, planes: usize) -> f64 {
-    1.0 - (1.0 - alpha).powf(1.0 / planes as f64)
+    1.0 - libm::pow(1.0 - alpha, 1.0 / planes as f64)
 }

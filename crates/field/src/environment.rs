@@ -86,14 +86,14 @@ impl SphericalGaussian {
     pub fn radiance_from(&self, from: DVec3) -> f64 {
         // 1 − cos γ, without cancelling where it is small.
         let fall = 0.5 * (from - self.from).length_squared();
-        self.radiance * (-fall / (self.width * self.width)).exp()
+        self.radiance * libm::exp(-fall / (self.width * self.width))
     }
 
     /// Its integral over all directions, 2π σ² (1 − exp(−2/σ²)) L.
     #[must_use]
     pub fn integral(&self) -> f64 {
         let squared = self.width * self.width;
-        -TAU * squared * (-2.0 / squared).exp_m1() * self.radiance
+        -TAU * squared * libm::expm1(-2.0 / squared) * self.radiance
     }
 }
 
@@ -126,8 +126,8 @@ impl LatLong {
     #[inline]
     #[must_use]
     pub fn place(&self, from: DVec3) -> [f64; 2] {
-        let longitude = from.x.atan2(from.z);
-        let latitude = from.y.atan2(from.x.hypot(from.z));
+        let longitude = libm::atan2(from.x, from.z);
+        let latitude = libm::atan2(from.y, libm::hypot(from.x, from.z));
         let [w, h] = [self.radiance.width() as f64, self.radiance.height() as f64];
         [w * (0.5 - longitude / TAU), h * (0.5 - latitude / PI)]
     }
@@ -152,11 +152,11 @@ impl LatLong {
 fn toward(width: usize, height: usize, [column, row]: [f64; 2]) -> DVec3 {
     let longitude = TAU * (0.5 - column / width as f64);
     let latitude = PI * (0.5 - row / height as f64);
-    let across = latitude.cos();
+    let across = libm::cos(latitude);
     DVec3::new(
-        across * longitude.sin(),
-        latitude.sin(),
-        across * longitude.cos(),
+        across * libm::sin(longitude),
+        libm::sin(latitude),
+        across * libm::cos(longitude),
     )
 }
 
@@ -201,15 +201,16 @@ mod tests {
         };
         // Light that comes from along +X travels along −X.
         assert!((environment.radiance(DVec3::new(-3.0, 0.0, 0.0)) - 2.0).abs() < 1e-15);
-        let aside = environment.radiance(DVec3::new(-(0.1_f64.cos()), 0.1_f64.sin(), 0.0));
-        let expected = 2.0 * ((0.1_f64.cos() - 1.0) / 0.09).exp();
+        let aside =
+            environment.radiance(DVec3::new(-(libm::cos(0.1_f64)), libm::sin(0.1_f64), 0.0));
+        let expected = 2.0 * libm::exp((libm::cos(0.1_f64) - 1.0) / 0.09);
         assert!((aside - expected).abs() < 1e-14); // rounding of unit vectors
         // ∫ over the sphere by mid-points in cos γ: an error of (step/σ²)²/24.
         let n = 20_000;
         let sum: f64 = (0..n)
             .map(|i| {
                 let cosine = (f64::from(i) + 0.5) / f64::from(n) * 2.0 - 1.0;
-                2.0 * ((cosine - 1.0) / 0.09).exp() * TAU * 2.0 / f64::from(n)
+                2.0 * libm::exp((cosine - 1.0) / 0.09) * TAU * 2.0 / f64::from(n)
             })
             .sum();
         assert!((lobe.integral() / sum - 1.0).abs() < 1e-7);

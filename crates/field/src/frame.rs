@@ -135,7 +135,7 @@ impl Frame {
     /// The longitude of a direction: its angle from D towards X, radians.
     #[must_use]
     pub fn longitude(&self, direction: DVec3) -> f64 {
-        direction.dot(self.x).atan2(direction.dot(self.d))
+        libm::atan2(direction.dot(self.x), direction.dot(self.d))
     }
 
     /// A point of the world in the coordinates (X, Y, D) of this frame.

@@ -57,7 +57,7 @@ impl SliceGrid {
     /// The 4D frequency (Ωx, Ωy, Ωu, Ωv) of slice `k` at (ρ, ν).
     #[must_use]
     pub fn frequency(&self, k: usize, rho: f64, nu: f64) -> [f64; 4] {
-        let (s, c) = self.azimuth(k).sin_cos();
+        let (s, c) = libm::sincos(self.azimuth(k));
         [rho * c, rho * s, nu * c, nu * s]
     }
 

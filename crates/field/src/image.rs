@@ -16,7 +16,7 @@ impl Image {
     #[must_use]
     pub fn value(&self, a: f64, b: f64) -> f64 {
         let [p, q] = [a / self.width[0], b / self.width[1]];
-        let envelope = (-std::f64::consts::PI * (p * p + q * q)).exp();
+        let envelope = libm::exp(-std::f64::consts::PI * (p * p + q * q));
         let grating = self.grating.map_or(1.0, |g| g.transmittance(a, b));
         envelope * grating
     }

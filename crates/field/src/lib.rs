@@ -21,6 +21,7 @@ mod net;
 mod number;
 mod patch;
 mod plane;
+mod portable;
 mod projection;
 mod quadrature;
 pub mod random;
@@ -43,6 +44,7 @@ pub use net::{Net, sobol_directions};
 pub use number::tidy;
 pub use patch::{Patch, Specular};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
+pub use portable::{Complex, cis, modulus, power, square_root};
 pub use projection::{Projection, ProjectionGrid};
 pub use quadrature::gauss_legendre;
 pub use raster::Raster;
@@ -51,6 +53,3 @@ pub use reflectance::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance};
 pub use shape::{Disc, Grating, HalfPlane, Mask, Shape, interpolated_normal, triangle_distance};
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};
-
-/// Complex numbers of a spectrum.
-pub type Complex = num_complex::Complex<f64>;

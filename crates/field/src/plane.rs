@@ -86,8 +86,8 @@ impl VirtualPlane {
                 1.0 / (secant_squared * secant_squared)
             }
             (Quantity::DifferentialIrradiance, _) => {
-                let latitude = ray.v.cos();
-                (ray.u + self.longitude).cos() * latitude * latitude
+                let latitude = libm::cos(ray.v);
+                libm::cos(ray.u + self.longitude) * latitude * latitude
             }
         }
     }

@@ -18,7 +18,7 @@ pub fn gauss_legendre(n: usize) -> Vec<(f64, f64)> {
 
 /// Root i of the Legendre polynomial of degree n by Newton's method, and its weight 2/((1 − x²) P'(x)²).
 fn node(n: usize, i: usize) -> (f64, f64) {
-    let mut x = -(PI * (i as f64 + 0.75) / (n as f64 + 0.5)).cos();
+    let mut x = -libm::cos(PI * (i as f64 + 0.75) / (n as f64 + 0.5));
     // Quadratic convergence from an error below 0.1/n²: five steps reach rounding.
     for _ in 0..5 {
         let (value, slope) = legendre(n, x);

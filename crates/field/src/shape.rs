@@ -140,7 +140,7 @@ impl Grating {
     pub fn transmittance(&self, x: f64, y: f64) -> f64 {
         let t = if self.axis == 0 { x } else { y };
         let angle = std::f64::consts::TAU * self.frequency * t + self.phase;
-        0.5 * (1.0 + self.modulation * angle.cos())
+        0.5 * (1.0 + self.modulation * libm::cos(angle))
     }
 }
 

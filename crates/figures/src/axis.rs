@@ -180,7 +180,7 @@ fn step(least: f64) -> f64 {
 )]
 fn order(value: f64) -> i32 {
     if value > 0.0 && value.is_finite() {
-        (value.log10() + 1e-9).floor() as i32
+        (libm::log10(value) + 1e-9).floor() as i32
     } else {
         0
     }

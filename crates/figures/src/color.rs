@@ -98,7 +98,7 @@ impl Shading {
         match self.reference {
             None => value,
             // A power after noise removal may be negative: it is below any floor.
-            Some(reference) => 10.0 * (value / reference).max(0.0).log10(),
+            Some(reference) => 10.0 * libm::log10((value / reference).max(0.0)),
         }
     }
 }

@@ -279,7 +279,7 @@ fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
 /// Short slanted strokes behind a surface, on the side away from the light.
 fn hatch(svg: &mut Svg, start: [f64; 2], end: [f64; 2]) {
     let along = [end[0] - start[0], end[1] - start[1]];
-    let length = along[0].hypot(along[1]);
+    let length = libm::hypot(along[0], along[1]);
     if length == 0.0 {
         return;
     }

@@ -27,8 +27,8 @@ impl MeshObject {
         }
         let [h, _, _, ss, st, tt] = quadric(&frame, &near, edge)?;
         // h = … + ½ (ss s² + 2 st s t + tt t²): the principal axes of that form, turned over, since convex is positive.
-        let angle = 0.5 * (2.0 * st).atan2(ss - tt);
-        let (sin, cos) = angle.sin_cos();
+        let angle = 0.5 * libm::atan2(2.0 * st, ss - tt);
+        let (sin, cos) = libm::sincos(angle);
         let along = cos * frame.x + sin * frame.y;
         let curvature = |c: f64, s: f64| -(ss * c * c + 2.0 * st * c * s + tt * s * s);
         let far = corners

@@ -191,9 +191,9 @@ impl Resolver<'_> {
 
     /// The level of each plane must be one that a p-value can fall below.
     fn level(&mut self, alpha: f64, planes: usize) {
-        let level = 1.0 - (1.0 - alpha).powf(1.0 / planes.max(1) as f64);
+        let level = 1.0 - libm::pow(1.0 - alpha, 1.0 / planes.max(1) as f64);
         if level < LEAST_LEVEL {
-            let least = 1.0 - (1.0 - LEAST_LEVEL).powf(planes as f64);
+            let least = 1.0 - libm::pow(1.0 - LEAST_LEVEL, planes as f64);
             let allowed =
                 format!("at least {least:.4} with {planes} planes: p is known to 1/20000");
             self.faults.add("run.alpha", number(alpha), allowed);

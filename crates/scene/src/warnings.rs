@@ -111,7 +111,7 @@ struct Wave {
 impl Wave {
     fn add(&mut self, at: DVec3, sums: &Sums) {
         let [x, y] = self.frequency;
-        let (sin, cos) = (TAU * (x * at.x + y * at.y)).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * (x * at.x + y * at.y));
         let add = |to: &mut [f64; 2], sum: f64| *to = [to[0] + sum * cos, to[1] + sum * sin];
         add(&mut self.difference, sums.difference);
         add(&mut self.whole, sums.whole);
@@ -123,7 +123,7 @@ fn waves(plane: &VirtualPlane) -> Vec<Wave> {
     let axis = &plane.grid.rho;
     let orders = 0..=axis.half.min(WAVES);
     let wave = |azimuth: u32, order: usize| {
-        let (sin, cos) = (PI * f64::from(azimuth) / f64::from(AZIMUTHS)).sin_cos();
+        let (sin, cos) = libm::sincos(PI * f64::from(azimuth) / f64::from(AZIMUTHS));
         let rho = axis.spacing * order as f64;
         Wave {
             frequency: [rho * cos, rho * sin],

@@ -1,6 +1,6 @@
 //! The plain sums that the slice transform is held against.
 
-use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane};
+use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, cis};
 use std::f64::consts::TAU;
 
 /// Σ weight · `window`(ray) · e^(−2πi Ω·z) over `crossings`, at the 4D `frequency` Ω = (Ωx, Ωy, Ωu, Ωv).
@@ -16,7 +16,7 @@ pub fn at<'a>(
         .into_iter()
         .map(|Crossing { ray, weight }| {
             let cycles = ox * ray.x + oy * ray.y + ou * ray.u + ov * ray.v;
-            Complex::from_polar(weight * window(ray), -TAU * cycles)
+            cis(-TAU * cycles) * (weight * window(ray))
         })
         .sum()
 }

@@ -117,7 +117,7 @@ mod tests {
         let grid = grid();
         Array2::from_shape_fn((grid.rho.count(), grid.nu.count()), |(i, j)| {
             let (rho, nu) = (grid.rho.value(i), grid.nu.value(j));
-            (-(nu - slope * rho).powi(2) - (rho / 0.8).powi(2)).exp()
+            libm::exp(-(nu - slope * rho).powi(2) - (rho / 0.8).powi(2))
         })
     }
 

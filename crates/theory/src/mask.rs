@@ -185,8 +185,8 @@ mod tests {
         let bins = Bins::new(&shapes);
         for k in 0..200 {
             let k = f64::from(k);
-            let at = [(1.7 * k).sin(), (2.3 * k).cos()];
-            let half = 0.2 * (0.9 * k).sin().abs();
+            let at = [libm::sin(1.7 * k), libm::cos(2.3 * k)];
+            let half = 0.2 * libm::sin(0.9 * k).abs();
             let sides = at.map(|c| [c - half, c + half]);
             let mut found = Vec::new();
             bins.meeting(sides, |shape| found.push(shape.bounds().center));

@@ -103,7 +103,7 @@ pub(crate) fn blockers(count: u32, pitch: f64, side: f64) -> Vec<Rectangle> {
     let slack = 0.5 * (pitch - side);
     cells
         .map(|(i, j)| {
-            let jitter = [(3.1 * i + 7.7 * j).sin(), (5.3 * i - 2.9 * j).cos()];
+            let jitter = [libm::sin(3.1 * i + 7.7 * j), libm::cos(5.3 * i - 2.9 * j)];
             let center = [i - middle, j - middle];
             square([0, 1].map(|k| center[k] * pitch + jitter[k] * slack), side)
         })

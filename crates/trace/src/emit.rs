@@ -3,7 +3,7 @@ use crate::proposal::{Follower, Proposal};
 use crate::reach::{looks_at_surface, outline, reach};
 use crate::sky;
 use crate::station::Station;
-use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, random};
+use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, power, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -132,13 +132,13 @@ impl Emitter {
     /// Uniform over the light's area, by radiance and cosine over direction; a point's by solid angle, forwards.
     #[inline(never)]
     fn plain(&self, r: [f64; 4]) -> TwoPlane {
-        let (sin, cos) = (TAU * r[3]).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * r[3]);
         let (position, slope) = match self.light {
             Light::Area {
                 shape, exponent, ..
             } => {
                 // cos θ of a density in proportion to cosⁿ⁺¹θ.
-                let squared = (1.0 - r[2]).powf(2.0 / (exponent + 2.0));
+                let squared = power(1.0 - r[2], 2.0 / (exponent + 2.0));
                 (
                     point(&shape, [r[0], r[1]]),
                     ((1.0 - squared) / squared).sqrt(),
@@ -150,7 +150,7 @@ impl Emitter {
             }
             // By the picture's envelope: the two normal deviates of Box and Muller (1958).
             Light::Projector { image, .. } | Light::Beam { image, .. } => {
-                let radius = (-r[2].ln() / PI).sqrt();
+                let radius = (-libm::log(r[2]) / PI).sqrt();
                 let [a, b] = [image.width[0] * radius * cos, image.width[1] * radius * sin];
                 return match self.light {
                     Light::Beam { .. } => TwoPlane {
@@ -194,10 +194,11 @@ impl Emitter {
                 Light::Area {
                     shape, exponent, ..
                 } => {
-                    let lobe = (exponent + 2.0) / TAU * secant_squared.powf(-2.0 - 0.5 * exponent);
+                    let lobe =
+                        (exponent + 2.0) / TAU * power(secant_squared, -2.0 - 0.5 * exponent);
                     lobe / shape.area()
                 }
-                Light::Point { .. } => secant_squared.powf(-1.5) / TAU,
+                Light::Point { .. } => 1.0 / (TAU * secant_squared * secant_squared.sqrt()),
                 Light::Projector { image, .. } => envelope(&image, ray.u, ray.v),
                 Light::Beam { image, .. } => envelope(&image, ray.x, ray.y),
                 Light::Environment { .. } => unreachable!("it has emission of its own"),
@@ -242,7 +243,7 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
             } else if *exponent == 0.0 {
                 *radiance
             } else {
-                radiance * ray.secant_squared().powf(-0.5 * exponent)
+                radiance * power(ray.secant_squared(), -0.5 * exponent)
             }
         }
         Light::Point { intensity } => intensity * ray.secant_squared().sqrt(),
@@ -256,7 +257,7 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
 
 /// A direction about Z with a density in proportion to its cosine, from two numbers in (0, 1).
 pub(crate) fn by_cosine([a, b]: [f64; 2]) -> DVec3 {
-    let (sin, cos) = (TAU * b).sin_cos();
+    let (sin, cos) = libm::sincos(TAU * b);
     let [across, up] = [a.sqrt(), (1.0 - a).sqrt()];
     DVec3::new(across * cos, across * sin, up)
 }
@@ -298,7 +299,7 @@ pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {
             low + r[axis] * (high - low)
         }),
         Shape::Disc(disc) => {
-            let (sin, cos) = (TAU * r[1]).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * r[1]);
             let radius = disc.radius * r[0].sqrt();
             [disc.center[0] + radius * cos, disc.center[1] + radius * sin]
         }

@@ -73,7 +73,7 @@ impl Ground {
         match &self.points {
             Points::Flat(pieces) => pieces.point(r).0,
             Points::Smooth(patch) => {
-                let (sin, cos) = (TAU * r[1]).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * r[1]);
                 let radius = patch.aperture * r[0].sqrt();
                 patch.point(radius * cos, radius * sin)
             }

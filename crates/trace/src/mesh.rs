@@ -168,7 +168,7 @@ mod tests {
     fn sheet(n: u32) -> Triangles {
         let corner = |i: u32, j: u32| {
             let [x, y] = [i, j].map(|k| f64::from(k) / f64::from(n) * 2.0 - 1.0);
-            DVec3::new(x, y, 1.0 + 0.1 * (7.0 * x).sin() * (5.0 * y).cos())
+            DVec3::new(x, y, 1.0 + 0.1 * libm::sin(7.0 * x) * libm::cos(5.0 * y))
         };
         let mut sheet = Vec::new();
         for i in 0..n {

@@ -44,7 +44,7 @@ impl Follower {
     /// Sine of the angle with the largest slope.
     #[inline]
     fn sine(&self) -> f64 {
-        self.half / self.half.hypot(1.0)
+        self.half / (1.0 + self.half * self.half).sqrt()
     }
 
     /// Share of the density below `t`.
@@ -59,7 +59,7 @@ impl Follower {
             }
             Kind::Cosine => {
                 let t = s * self.half;
-                0.5 * (1.0 + t / (t.hypot(1.0) * self.sine()))
+                0.5 * (1.0 + t / ((1.0 + t * t).sqrt() * self.sine()))
             }
         }
     }
@@ -92,7 +92,10 @@ impl Follower {
         match self.kind {
             Kind::Constant => 0.5 / self.half,
             Kind::Tent => (1.0 - s) / self.half,
-            Kind::Cosine => 0.5 * (1.0 + t * t).powf(-1.5) / self.sine(),
+            Kind::Cosine => {
+                let secant_squared = 1.0 + t * t;
+                0.5 / (secant_squared * secant_squared.sqrt() * self.sine())
+            }
         }
     }
 }

@@ -57,7 +57,7 @@ impl Spread {
     fn sample(&self, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         match self {
             Self::Cosine => {
-                let (sin, cos) = (TAU * b).sin_cos();
+                let (sin, cos) = libm::sincos(TAU * b);
                 let slope = (a / (1.0 - a)).sqrt();
                 let local = DVec3::new(slope * cos, slope * sin, 1.0);
                 Frame::IDENTITY.turned_to(normal).vector_to_world(local)
@@ -106,7 +106,7 @@ impl Angles {
         self.view
             .angles(point, direction(ray))
             .map_or(0.0, |[u, v]| {
-                self.across[0].density(u) * self.across[1].density(v) / v.cos()
+                self.across[0].density(u) * self.across[1].density(v) / libm::cos(v)
             })
     }
 }

@@ -4,7 +4,7 @@ use crate::emit::{LAMBERTIAN, by_cosine};
 use crate::obstacles::{direction, ray_through};
 use etendue_field::random::{self, Stream};
 use etendue_field::{Environment, EnvironmentMap, Frame, SphericalGaussian, TwoPlane};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 
 /// An environment, and how directions of its light are drawn.
@@ -66,7 +66,7 @@ fn tent(r: f64) -> f64 {
 
 /// Cosine of the latitude of the centres of a row.
 fn cosine(row: usize, height: usize) -> f64 {
-    (PI * (0.5 - (row as f64 + 0.5) / height as f64)).cos()
+    libm::cos(PI * (0.5 - (row as f64 + 0.5) / height as f64))
 }
 
 impl Sky {
@@ -107,10 +107,10 @@ impl Sky {
                 let lobe = &lobes[chosen(upto, r[0])];
                 let squared = lobe.width * lobe.width;
                 // 1 − cos γ.
-                let fall = -squared * (r[1] * (-2.0 / squared).exp_m1()).ln_1p();
+                let fall = -squared * libm::log1p(r[1] * libm::expm1(-2.0 / squared));
                 let fall = fall.clamp(0.0, 2.0);
                 let sine = (fall * (2.0 - fall)).sqrt();
-                let (s, c) = (TAU * r[2]).sin_cos();
+                let (s, c) = libm::sincos(TAU * r[2]);
                 let local = DVec3::new(sine * c, sine * s, 1.0 - fall);
                 let around = Frame::IDENTITY.turned_to(lobe.from);
                 around.vector_to_world(local)
@@ -145,7 +145,9 @@ impl Sky {
                 });
                 let [w, h] = [raster.width() as f64, raster.height() as f64];
                 // A square of latitude and longitude, and its solid angle.
-                let pixel = (TAU / w) * (PI / h) * from.x.hypot(from.z).max(f64::MIN_POSITIVE);
+                let pixel = (TAU / w)
+                    * (PI / h)
+                    * DVec2::new(from.x, from.z).length().max(f64::MIN_POSITIVE);
                 weighted.sum::<f64>() / (total(rows) * pixel)
             }
             _ => unreachable!("the choice is that of the map"),
@@ -170,7 +172,7 @@ impl Sky {
         let by_cosine = 1.0 / (LAMBERTIAN * secant_squared.sqrt());
         let by_light = self.density(direction(ray));
         let density = self.by_cosine * by_cosine + (1.0 - self.by_cosine) * by_light;
-        density * secant_squared.powf(-1.5)
+        density / (secant_squared * secant_squared.sqrt())
     }
 
     /// Radiance along a ray, in the frame at the light.
@@ -274,7 +276,7 @@ mod tests {
                 let r = random::words(5, Stream::Photon, index, 0).map(random::unit);
                 let d = sky.sample(r);
                 assert!((d.length() - 1.0).abs() < 1e-12); // rounding
-                let [i, j] = [d.y.atan2(d.x) / TAU + 0.5, 0.5 * (d.z + 1.0)];
+                let [i, j] = [libm::atan2(d.y, d.x) / TAU + 0.5, 0.5 * (d.z + 1.0)];
                 let cell = |t: f64, n: usize| ((t * n as f64) as usize).min(n - 1);
                 counts[cell(i, CELLS[0]) * CELLS[1] + cell(j, CELLS[1])] += 1.0;
             }
@@ -286,7 +288,7 @@ mod tests {
                 for k in 0..SUB * SUB {
                     let [a, z] = [(0, k / SUB), (1, k % SUB)]
                         .map(|(axis, s)| ((corner[axis] * SUB + s) as f64 + 0.5) / n[axis] as f64);
-                    let (sin, cos) = (TAU * (a - 0.5)).sin_cos();
+                    let (sin, cos) = libm::sincos(TAU * (a - 0.5));
                     let z = 2.0 * z - 1.0;
                     let across = (1.0 - z * z).sqrt();
                     p += sky.density(DVec3::new(across * cos, across * sin, z));

@@ -185,18 +185,18 @@ impl View {
     fn seen(&self, frame: &Frame, away: DVec3) -> Option<([f64; 2], f64)> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
         let DVec3 { x: t, y: b, z: n } = frame.vector_to_local(away.normalize());
-        let (longitude, sine) = (turned * t.atan2(n), turned * b);
-        let latitude = sine.asin();
+        let (longitude, sine) = (turned * libm::atan2(t, n), turned * b);
+        let latitude = libm::asin(sine);
         // The angle to the normal has the cosine cos θ cos φ = n, and the solid angle is cos φ dθ dφ.
-        let measure = n * latitude.cos();
+        let measure = n * libm::cos(latitude);
         (n > 0.0).then_some(([longitude - self.longitude, latitude], measure))
     }
 
     /// The inverse of [`Self::seen`].
     fn away(&self, frame: &Frame, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
-        let (sin, cos) = (turned * (u + self.longitude)).sin_cos();
-        let (up, across) = (turned * v).sin_cos();
+        let (sin, cos) = libm::sincos(turned * (u + self.longitude));
+        let (up, across) = libm::sincos(turned * v);
         (across > 0.0 && cos > 0.0)
             .then(|| frame.vector_to_world(DVec3::new(across * sin, up, across * cos)))
     }
@@ -205,7 +205,7 @@ impl View {
         let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
         // The normals of the patch turn by less than this within the window.
         let turns = self.patch.map_or(0.0, |patch| {
-            patch.curvature.map(f64::abs).iter().sum::<f64>() * x.hypot(y)
+            patch.curvature.map(f64::abs).iter().sum::<f64>() * libm::hypot(x, y)
         });
         let mut widest = [0.0_f64; 2];
         for i in 0..SIDE * SIDE {
@@ -214,11 +214,11 @@ impl View {
             let away = self.away(&self.frame, [s * u, t * v])?;
             let along = if self.arriving { -away } else { away };
             for (widest, across) in widest.iter_mut().zip([along.x, along.y]) {
-                *widest = widest.max(across.atan2(along.z).abs());
+                *widest = widest.max(libm::atan2(across, along.z).abs());
             }
         }
         let widest = widest.map(|angle| MARGIN * angle + 2.0 * turns);
-        (widest[0].max(widest[1]) < WIDE).then(|| widest.map(f64::tan))
+        (widest[0].max(widest[1]) < WIDE).then(|| widest.map(libm::tan))
     }
 
     /// Whether it looks at light that arrives.

@@ -171,7 +171,12 @@ mod tests {
         }
         let corner = |i: u32| {
             let t = 0.7 * f64::from(i);
-            scale * DVec3::new(t.sin(), (1.3 * t).cos(), 1.5 + 0.4 * (2.9 * t).sin())
+            scale
+                * DVec3::new(
+                    libm::sin(t),
+                    libm::cos(1.3 * t),
+                    1.5 + 0.4 * libm::sin(2.9 * t),
+                )
         };
         let triangle = |i| [corner(i), corner(i + 1), corner(i + 2)];
         targets.extend((0..30).map(|i| mesh(vec![triangle(i)])));

@@ -48,8 +48,8 @@ pub(super) fn coordinates(
     (away.z > 0.0).then(|| TwoPlane {
         x: at.x,
         y: at.y,
-        u: turned * away.x.atan2(away.z) - plane.longitude,
-        v: turned * away.y.asin(),
+        u: turned * libm::atan2(away.x, away.z) - plane.longitude,
+        v: turned * libm::asin(away.y),
     })
 }
 
@@ -61,7 +61,7 @@ pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3
             .frame
             .vector_to_world(DVec3::new(u, v, 1.0).normalize());
     }
-    let ((sin, cos), (up, across)) = ((u + plane.longitude).sin_cos(), v.sin_cos());
+    let ((sin, cos), (up, across)) = (libm::sincos(u + plane.longitude), libm::sincos(v));
     local(plane, normal).vector_to_world(DVec3::new(across * sin, up, across * cos))
 }
 

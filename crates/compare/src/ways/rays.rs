@@ -118,7 +118,7 @@ pub(super) fn centred(index: u32, r: f64) -> f64 {
     if index.is_multiple_of(2) {
         s
     } else {
-        s.signum() * 1e-3_f64.powf(1.0 - s.abs())
+        s.signum() * libm::pow(1e-3_f64, 1.0 - s.abs())
     }
 }
 
@@ -146,7 +146,7 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
                     -frame.vector_to_world(from)
                 }
                 EnvironmentMap::Lobes(_) | EnvironmentMap::LatLong(_) => {
-                    let (sin, cos) = (TAU * r[0]).sin_cos();
+                    let (sin, cos) = libm::sincos(TAU * r[0]);
                     let across = (1.0 - r[1] * r[1]).sqrt();
                     DVec3::new(across * cos, across * sin, r[1])
                 }
@@ -163,7 +163,7 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
 pub(super) fn share(light: &Light, ray: &Ray) -> f64 {
     let Ray { point, direction } = ray;
     match light {
-        Light::Area { exponent, .. } => direction.z.powf(*exponent),
+        Light::Area { exponent, .. } => libm::pow(direction.z, *exponent),
         Light::Point { .. } => 1.0,
         Light::Projector { image, .. } => {
             image.value(direction.x / direction.z, direction.y / direction.z)
@@ -192,7 +192,8 @@ fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
         }
         Shape::Disc(disc) => {
             let [x, y] = disc.center;
-            let scale = disc.radius * a.abs().max(b.abs()) / a.hypot(b).max(f64::MIN_POSITIVE);
+            let scale =
+                disc.radius * a.abs().max(b.abs()) / libm::hypot(a, b).max(f64::MIN_POSITIVE);
             DVec3::new(x + scale * a, y + scale * b, 0.0)
         }
     }

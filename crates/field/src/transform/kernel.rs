@@ -116,7 +116,7 @@ impl Kernel {
             for tap in 0..HALF {
                 // Taps 4 to 7 mirror taps 3 to 0: twice the cosine.
                 let phase = TAU * xi * (tap as f64 - 3.0 - f);
-                sum += 2.0 * weight * self.tap(tap, f) * phase.cos();
+                sum += 2.0 * weight * self.tap(tap, f) * libm::cos(phase);
             }
         }
         sum
@@ -126,7 +126,7 @@ impl Kernel {
 /// Tap `tap` from the kernel's formula.
 fn exact(tap: usize, f: f64) -> f64 {
     let z = (tap as f64 - 3.0 - f) / HALF as f64;
-    (BETA * ((1.0 - z * z).max(0.0).sqrt() - 1.0)).exp()
+    libm::exp(BETA * ((1.0 - z * z).max(0.0).sqrt() - 1.0))
 }
 
 /// Coefficients of t⁰, t¹, … of the polynomial that meets `function` at the Chebyshev nodes of [−1,
@@ -134,14 +134,16 @@ fn exact(tap: usize, f: f64) -> f64 {
 fn fit(function: impl Fn(f64) -> f64) -> [f64; 2 * TERMS] {
     const N: usize = 2 * TERMS;
     let node = |i: usize| PI * (i as f64 + 0.5) / N as f64;
-    let values: [f64; N] = std::array::from_fn(|i| function(node(i).cos()));
+    let values: [f64; N] = std::array::from_fn(|i| function(libm::cos(node(i))));
     let mut coefficients = [0.0; N];
     // The Chebyshev polynomials T_n and T_(n+1), as coefficients of powers of t.
     let (mut now, mut next) = ([0.0; N], [0.0; N]);
     now[0] = 1.0;
     next[1] = 1.0;
     for n in 0..N {
-        let projection: f64 = (0..N).map(|i| values[i] * (n as f64 * node(i)).cos()).sum();
+        let projection: f64 = (0..N)
+            .map(|i| values[i] * libm::cos(n as f64 * node(i)))
+            .sum();
         let amplitude = projection * if n == 0 { 1.0 } else { 2.0 } / N as f64;
         for (c, p) in coefficients.iter_mut().zip(now) {
             *c += amplitude * p;
@@ -190,7 +192,7 @@ mod tests {
                 .map(|i| {
                     let d = 8.0 * (f64::from(i) + 0.5) / f64::from(n) - 4.0;
                     let semicircle = (1.0 - d * d / 16.0).sqrt();
-                    (BETA * (semicircle - 1.0)).exp() * (TAU * xi * d).cos()
+                    libm::exp(BETA * (semicircle - 1.0)) * libm::cos(TAU * xi * d)
                 })
                 .sum();
             let expected = 8.0 * sum / f64::from(n);

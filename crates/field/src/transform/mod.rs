@@ -63,7 +63,7 @@ impl SliceTransform {
         let kernel = Kernel::new();
         let placements: Vec<_> = (0..grid.azimuths)
             .map(|k| {
-                let (sin, cos) = grid.azimuth(k).sin_cos();
+                let (sin, cos) = libm::sincos(grid.azimuth(k));
                 let along = |axis: &FrequencyAxis| [cos * axis.spacing, sin * axis.spacing];
                 Placement {
                     rho: along(&grid.rho),
@@ -196,12 +196,12 @@ mod tests {
         for i in 0..500 {
             let t = f64::from(i);
             let ray = TwoPlane {
-                x: (t * 0.7).sin(),
-                y: (t * 1.3).cos(),
-                u: (t * 2.1).sin(),
-                v: (t * 0.3).cos(),
+                x: libm::sin(t * 0.7),
+                y: libm::cos(t * 1.3),
+                u: libm::sin(t * 2.1),
+                v: libm::cos(t * 0.3),
             };
-            sum.deposit(&ray, 1.0 + t.cos());
+            sum.deposit(&ray, 1.0 + libm::cos(t));
         }
         sum.finish(1.0)
     }

@@ -32,9 +32,10 @@ impl Mesh {
         }
         let lobe = f64::from(lobes);
         let point = |theta: f64, phi: f64| {
-            let r = radius * (1.0 + relief * theta.sin().powf(lobe) * (lobe * phi).cos());
-            let (sin, cos) = theta.sin_cos();
-            r * DVec3::new(sin * phi.cos(), sin * phi.sin(), cos)
+            let r =
+                radius * (1.0 + relief * libm::pow(libm::sin(theta), lobe) * libm::cos(lobe * phi));
+            let (sin, cos) = libm::sincos(theta);
+            r * DVec3::new(sin * libm::cos(phi), sin * libm::sin(phi), cos)
         };
         let segments = 2 * rings;
         let step = PI / f64::from(rings);

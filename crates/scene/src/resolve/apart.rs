@@ -71,7 +71,7 @@ fn meet(a: &Shape, b: &Shape) -> bool {
         && match (a, b) {
             (Shape::Rectangle(_), Shape::Rectangle(_)) => true,
             (Shape::Disc(a), Shape::Disc(b)) => {
-                let between = (a.center[0] - b.center[0]).hypot(a.center[1] - b.center[1]);
+                let between = libm::hypot(a.center[0] - b.center[0], a.center[1] - b.center[1]);
                 between < (a.radius + b.radius) * (1.0 - TOUCH)
             }
             (Shape::Disc(disc), Shape::Rectangle(rectangle))
@@ -81,7 +81,7 @@ fn meet(a: &Shape, b: &Shape) -> bool {
                     let [low, high] = rectangle.extent(axis);
                     disc.center[axis] - disc.center[axis].clamp(low, high)
                 };
-                beyond(0).hypot(beyond(1)) < disc.radius * (1.0 - TOUCH)
+                libm::hypot(beyond(0), beyond(1)) < disc.radius * (1.0 - TOUCH)
             }
         }
 }

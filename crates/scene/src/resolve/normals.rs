@@ -77,12 +77,12 @@ impl Resolver<'_> {
         let field = at.field(&format!("vertex {}", at.number(vertex)));
         let value = format!(
             "on a fold: its normal is {:.1}° from that of {}",
-            cosine.clamp(-1.0, 1.0).acos().to_degrees(),
+            libm::acos(cosine.clamp(-1.0, 1.0)).to_degrees(),
             at.triangle(triangle)
         );
         let allowed = format!(
             "vertices of a smooth surface, at most {:.1}° from each triangle, all wound alike{}",
-            LEAST.acos().to_degrees(),
+            libm::acos(LEAST).to_degrees(),
             others(turned.len())
         );
         self.faults.add(field, value, allowed);

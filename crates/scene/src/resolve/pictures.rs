@@ -91,7 +91,7 @@ impl Resolver<'_> {
             let reach = REACH * lobe.width;
             // A width at fault has been named already.
             let is_narrow = lobe.width >= WIDTHS[0] && reach < FRAC_PI_2;
-            if is_narrow && from.z > reach.sin() {
+            if is_narrow && from.z > libm::sin(reach) {
                 let allowed = "a direction before the central ray: an environment shines forward, along path.direction";
                 let DVec3 { x, y, z } = lobe.from;
                 self.faults

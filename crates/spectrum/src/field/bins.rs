@@ -39,7 +39,7 @@ impl RadialBins {
         let edges = [edges(grid, [0, 1]), edges(grid, [2, 3])];
         let ring = |[a, b]: [usize; 2], [i, j]: [usize; 2]| {
             let along = |axis, i| grid.harmonic(axis, i) as f64 * grid.spacing(axis);
-            let radius = along(a, i).hypot(along(b, j));
+            let radius = libm::hypot(along(a, i), along(b, j));
             let edges = &edges[a / 2];
             let above = edges.partition_point(|edge| *edge <= radius);
             (above < edges.len()).then(|| above - 1)
@@ -154,7 +154,7 @@ mod tests {
                 |axis: usize| (-20_i32..=20).map(move |m| f64::from(m) * grid.spacing(axis));
             let rings = |a: usize, b: usize| {
                 let edges = bins.edges[a / 2].clone();
-                let radii = around(a).flat_map(|x| around(b).map(move |y| x.hypot(y)));
+                let radii = around(a).flat_map(|x| around(b).map(move |y| libm::hypot(x, y)));
                 let mut counts = vec![0; edges.len() - 1];
                 for r in radii {
                     let ring = (0..counts.len()).find(|i| (edges[*i]..edges[i + 1]).contains(&r));

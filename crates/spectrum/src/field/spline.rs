@@ -13,7 +13,11 @@ use std::f64::consts::PI;
 /// sin(πf)/(πf).
 fn sinc(f: f64) -> f64 {
     let t = PI * f;
-    if t.abs() < 1e-9 { 1.0 } else { t.sin() / t }
+    if t.abs() < 1e-9 {
+        1.0
+    } else {
+        libm::sin(t) / t
+    }
 }
 
 /// sinc^p(f): the transform of the spline.
@@ -55,7 +59,7 @@ pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
     match assignment {
         // The ray lies up to half a cell from where it is counted: |e^(iθ)/sinc f − 1| with |θ| ≤ πf.
         Assignment::Nearest => {
-            let square = 1.0 / (one * one) - 2.0 * (PI * f).cos() / one + 1.0;
+            let square = 1.0 / (one * one) - 2.0 * libm::cos(PI * f) / one + 1.0;
             square.max(0.0).sqrt()
         }
         // All terms are positive at t = 0, and Σ 1/(f + n)² = π²/sin²(πf).
@@ -73,7 +77,7 @@ pub(crate) fn worst_alias(assignment: Assignment, f: f64) -> f64 {
 
 /// The mean of |ε|² over the place of the ray: Σ_(n≠0) (f/(f + n))^2p, from the sums of Jing (2005), Eq. 20.
 pub(crate) fn mean_square_alias(assignment: Assignment, f: f64) -> f64 {
-    let s = (PI * f).sin().powi(2);
+    let s = libm::sin(PI * f).powi(2);
     let all = match assignment {
         Assignment::Nearest => 1.0,
         Assignment::Cic => 1.0 - 2.0 / 3.0 * s,

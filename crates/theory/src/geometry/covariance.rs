@@ -45,5 +45,5 @@ pub fn power_spectrum<const N: usize>(field: &Matrix<N>) -> Option<Matrix<N>> {
 pub fn gaussian_spectrum<const N: usize>(field: &Matrix<N>, omega: [f64; N]) -> f64 {
     let volume = congruent(&diagonal([TAU.sqrt(); N]), field);
     let exponent = -2.0 * PI * PI * dot(&omega, &times(field, &omega));
-    matrix::determinant(&volume).sqrt() * exponent.exp()
+    matrix::determinant(&volume).sqrt() * libm::exp(exponent)
 }

@@ -29,7 +29,7 @@ pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
     } else if a < f64::MIN_POSITIVE {
         PI * sinc(0.5 * b)
     } else if b < 1.0 {
-        scaled(a, b) * (-a).exp()
+        scaled(a, b) * libm::exp(-a)
     } else {
         climbed(a, b)
     }
@@ -38,13 +38,13 @@ pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
 /// e^a K for b < 1: the path from −π/2 to π/2 moved up to −π/2 + i∞ and down again, where tan(±π/2
 /// + it) = i coth t.
 fn scaled(a: f64, b: f64) -> f64 {
-    let twice_sine = 2.0 * (0.5 * PI * b).sin();
-    let damping = |t: f64| -2.0 * a / (2.0 * t).exp_m1(); // −a (coth t − 1)
+    let twice_sine = 2.0 * libm::sin(0.5 * PI * b);
+    let damping = |t: f64| -2.0 * a / libm::expm1(2.0 * t); // −a (coth t − 1)
     if b < -1.0 {
-        -twice_sine * integral(|t| (damping(t) + b * t).exp())
+        -twice_sine * integral(|t| libm::exp(damping(t) + b * t))
     } else {
         // The integral of e^(bt), which ends only for b < 0, by itself.
-        PI * sinc(0.5 * b) - twice_sine * integral(|t| damping(t).exp_m1() * (b * t).exp())
+        PI * sinc(0.5 * b) - twice_sine * integral(|t| libm::expm1(damping(t)) * libm::exp(b * t))
     }
 }
 
@@ -52,7 +52,7 @@ fn scaled(a: f64, b: f64) -> f64 {
 /// ln t.
 fn integral(f: impl Fn(f64) -> f64) -> f64 {
     // From e^−40 to e^4.2 = 67; beyond both there is less than 1e-17.
-    let nodes = (-1280..=134).map(|i| (f64::from(i) * STEP).exp());
+    let nodes = (-1280..=134).map(|i| libm::exp(f64::from(i) * STEP));
     nodes.map(|t| t * f(t)).sum::<f64>() * STEP
 }
 
@@ -72,8 +72,8 @@ fn climbed(a: f64, b: f64) -> f64 {
         m += 1.0;
         if value.abs() > HUGE {
             (before, value) = (before / HUGE, value / HUGE);
-            exponent += HUGE.ln();
+            exponent += libm::log(HUGE);
         }
     }
-    value * exponent.exp()
+    value * libm::exp(exponent)
 }

@@ -12,35 +12,35 @@
 /// (x, v) to (x, θ).
 #[must_use]
 pub fn to_angles_2d([x, v]: [f64; 2]) -> [f64; 2] {
-    [x, v.atan()]
+    [x, libm::atan(v)]
 }
 
 /// (x, θ) to (x, v).
 #[must_use]
 pub fn to_slopes_2d([x, theta]: [f64; 2]) -> [f64; 2] {
-    [x, theta.tan()]
+    [x, libm::tan(theta)]
 }
 
 /// dv/dθ = 1/cos² θ.
 #[must_use]
 pub fn jacobian_2d(theta: f64) -> f64 {
-    theta.cos().powi(-2)
+    libm::cos(theta).powi(-2)
 }
 
 /// (x, y, u, v) to (x, y, θ, φ).
 #[must_use]
 pub fn to_angles([x, y, u, v]: [f64; 4]) -> [f64; 4] {
-    [x, y, u.atan(), v.atan2(1.0_f64.hypot(u))]
+    [x, y, libm::atan(u), libm::atan2(v, libm::hypot(1.0_f64, u))]
 }
 
 /// (x, y, θ, φ) to (x, y, u, v).
 #[must_use]
 pub fn to_slopes([x, y, theta, phi]: [f64; 4]) -> [f64; 4] {
-    [x, y, theta.tan(), phi.tan() / theta.cos()]
+    [x, y, libm::tan(theta), libm::tan(phi) / libm::cos(theta)]
 }
 
 /// du dv / dθ dφ = 1/(cos³ θ cos² φ), at (θ, φ).
 #[must_use]
 pub fn jacobian([theta, phi]: [f64; 2]) -> f64 {
-    theta.cos().powi(-3) * phi.cos().powi(-2)
+    libm::cos(theta).powi(-3) * libm::cos(phi).powi(-2)
 }

@@ -21,7 +21,7 @@ impl Edition {
     #[must_use]
     pub fn incidence(self, theta0: f64) -> SpectrumMap<2> {
         let right = Map::<2>::incidence(theta0).spectrum_map();
-        let c0 = theta0.cos();
+        let c0 = libm::cos(theta0);
         let factor = match self {
             Self::Corrected => return right,
             Self::Equations => c0,
@@ -55,7 +55,7 @@ impl Edition {
             Self::Corrected => right,
             Self::Equations | Self::Table => SpectrumMap {
                 factor: right.factor,
-                matrix: [[1.0 / theta1.cos(), 0.0], [0.0, 1.0]],
+                matrix: [[1.0 / libm::cos(theta1), 0.0], [0.0, 1.0]],
                 phase: without_two_pi(right.phase),
             },
         }

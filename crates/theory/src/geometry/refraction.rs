@@ -33,8 +33,8 @@ impl Media {
     /// ray runs along −(sin θ₂ T + cos θ₂ N).
     #[must_use]
     pub fn refracted(&self, theta1: f64) -> Option<f64> {
-        let sine = self.index_ratio() * theta1.sin();
-        (sine.abs() < 1.0).then(|| sine.asin())
+        let sine = self.index_ratio() * libm::sin(theta1);
+        (sine.abs() < 1.0).then(|| libm::asin(sine))
     }
 }
 
@@ -49,7 +49,7 @@ impl Map<2> {
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
         let theta2 = media.refracted(theta0)?;
-        let scale = media.index_ratio() * theta0.cos() / theta2.cos();
+        let scale = media.index_ratio() * libm::cos(theta0) / libm::cos(theta2);
         Some(Self {
             matrix: [[1.0, 0.0], [0.0, scale]],
             offset: [0.0, theta2 - scale * theta0],

@@ -1,6 +1,6 @@
 use super::Map;
 use super::matrix::{Matrix, dot, plus, product, sections, times, transpose};
-use etendue_field::Complex;
+use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
 /// What a step does to spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
@@ -40,7 +40,7 @@ impl<const N: usize> SpectrumMap<N> {
     /// The spectrum after the step at Ω of a field with the spectrum L before.
     #[must_use]
     pub fn spectrum(&self, omega: [f64; N], before: &dyn Fn([f64; N]) -> Complex) -> Complex {
-        let turn = Complex::from_polar(self.factor, -TAU * dot(&omega, &self.phase));
+        let turn = cis(-TAU * dot(&omega, &self.phase)) * self.factor;
         turn * before(times(&self.matrix, &omega))
     }
 }

@@ -17,7 +17,7 @@ impl Map<2> {
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
         Self {
-            matrix: [[-1.0 / theta0.cos(), 0.0], [0.0, 1.0]],
+            matrix: [[-1.0 / libm::cos(theta0), 0.0], [0.0, 1.0]],
             offset: [0.0, theta0],
         }
     }
@@ -46,7 +46,7 @@ impl Map<2> {
     #[must_use]
     pub fn outgoing(theta1: f64) -> Self {
         Self {
-            matrix: [[theta1.cos(), 0.0], [0.0, 1.0]],
+            matrix: [[libm::cos(theta1), 0.0], [0.0, 1.0]],
             offset: [0.0, -theta1],
         }
     }
@@ -81,7 +81,7 @@ impl Map<4> {
     }
 
     fn tilt([[m11, m12], [m21, m22]]: Matrix2, sign: f64, longitude: f64) -> Self {
-        let sagittal = sign * longitude.cos();
+        let sagittal = sign * libm::cos(longitude);
         Self::linear([
             [1.0, 0.0, 0.0, 0.0],
             [0.0, 1.0, 0.0, 0.0],

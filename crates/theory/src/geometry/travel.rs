@@ -57,7 +57,7 @@ impl Map<4> {
     /// angle to the normal (Durand et al. 2005, section 5.2).
     #[must_use]
     pub fn rotation(angle: f64) -> Self {
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         Self::linear([
             [cos, sin, 0.0, 0.0],
             [-sin, cos, 0.0, 0.0],

@@ -192,9 +192,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
     let azimuths = grid.azimuths as f64;
     let replicates = REPLICATES as f64;
-    let rounds = (budget.nodes / (replicates * f64::from(FIRST)))
-        .log2()
-        .max(1.0);
+    let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST))).max(1.0);
     let derivatives = OF_DERIVATIVES as f64 * FIELDS;
     let rays = budget.nodes * (RAY + SPREAD * azimuths);
     let rays_of_derivatives = derivatives * f64::from(NODES_OF_DERIVATIVES) * SPREAD * azimuths;
@@ -375,7 +373,7 @@ mod tests {
         fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
             for (i, node) in nodes.iter_mut().enumerate() {
                 node.z = std::array::from_fn(|k| at[k + i] - 0.5);
-                node.weight = (3.0 * at[4]).cos() + i as f64;
+                node.weight = libm::cos(3.0 * at[4]) + i as f64;
             }
         }
     }

@@ -21,7 +21,7 @@ mod tests {
 
     #[test]
     fn gaussian_integral() {
-        let integral = integrate(40, [-3.5, 3.5], |x| (-PI * x * x).exp());
+        let integral = integrate(40, [-3.5, 3.5], |x| libm::exp(-PI * x * x));
         assert!((integral - 1.0).abs() < 1e-14); // tail 1e-17, the rule converges geometrically
     }
 }

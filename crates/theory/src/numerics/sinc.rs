@@ -5,6 +5,6 @@ pub(crate) fn sinc(t: f64) -> f64 {
     if angle.abs() < 1e-8 {
         1.0
     } else {
-        angle.sin() / angle
+        libm::sin(angle) / angle
     }
 }

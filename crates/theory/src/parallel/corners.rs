@@ -199,7 +199,7 @@ impl<'a> Corners<'a> {
 impl Wave {
     /// (cos θ, sin θ), θ = 2π s·p + phase.
     fn phase(&self, p: [f64; 2]) -> [f64; 2] {
-        let (sin, cos) = self.angle(p).sin_cos();
+        let (sin, cos) = libm::sincos(self.angle(p));
         [cos, sin]
     }
 }

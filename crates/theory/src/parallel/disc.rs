@@ -40,13 +40,13 @@ fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let node = |j: usize| angle * (j as f64 + 0.5);
     let cosecant = |i: usize| match i {
         0 => 0.0,
-        _ if i.is_multiple_of(2) => -1.0 / (angle * i as f64).sin(),
-        _ => 1.0 / (angle * i as f64).sin(),
+        _ if i.is_multiple_of(2) => -1.0 / libm::sin(angle * i as f64),
+        _ => 1.0 / libm::sin(angle * i as f64),
     };
     let pairs = (0..n).flat_map(|j| (0..n).map(move |k| (j, k)));
     pairs
         .map(|(j, k)| {
-            let half = [node(j).cos(), node(k).sin()].map(|t| disc.radius * t);
+            let half = [libm::cos(node(j)), libm::sin(node(k))].map(|t| disc.radius * t);
             let difference = if k < j { -1.0 } else { 1.0 } * cosecant(k.abs_diff(j));
             WeightedRectangle {
                 extent: [0, 1].map(|i| [disc.center[i] - half[i], disc.center[i] + half[i]]),
@@ -60,11 +60,11 @@ fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
 fn strips(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = |i: usize| FRAC_PI_2 * (2.0 * i as f64 / n as f64 - 1.0);
     // The area below sin t, for a radius of 1.
-    let area = |t: f64| t + 0.5 * (2.0 * t).sin();
+    let area = |t: f64| t + 0.5 * libm::sin(2.0 * t);
     (0..n)
         .map(|i| {
             let [from, to] = [angle(i), angle(i + 1)];
-            let ends = [from, to].map(f64::sin);
+            let ends = [from, to].map(libm::sin);
             let half = 0.5 * (area(to) - area(from)) / (ends[1] - ends[0]);
             let around = |axis: usize, t: f64| disc.center[axis] + disc.radius * t;
             WeightedRectangle {
@@ -93,19 +93,19 @@ mod tests {
     /// R J₁(2πRΩ)/Ω = 2 R² ∫ cos(2πRΩ sin t) cos²t dt over (−π/2, π/2).
     fn disc_transform(omega: f64) -> f64 {
         let angle = TAU * DISC.radius * omega;
-        let f = |t: f64| (angle * t.sin()).cos() * t.cos().powi(2);
+        let f = |t: f64| libm::cos(angle * libm::sin(t)) * libm::cos(t).powi(2);
         2.0 * DISC.radius.powi(2) * integrate(64, [-FRAC_PI_2, FRAC_PI_2], f)
     }
 
     fn transform(patches: &[WeightedRectangle], omega: f64, azimuth: f64) -> f64 {
-        let k = [azimuth.cos(), azimuth.sin()].map(|c| c * omega);
+        let k = [libm::cos(azimuth), libm::sin(azimuth)].map(|c| c * omega);
         let side = |p: &WeightedRectangle, i: usize| p.extent[i][1] - p.extent[i][0];
         // Symmetrical, so that only the even part is left.
         let middle = |p: &WeightedRectangle, i: usize| 0.5 * (p.extent[i][1] + p.extent[i][0]);
         let value = |p: &WeightedRectangle| {
             let phase = TAU * (k[0] * middle(p, 0) + k[1] * middle(p, 1));
             let factors = [0, 1].map(|i| side(p, i) * sinc(side(p, i) * k[i]));
-            p.weight * factors[0] * factors[1] * phase.cos()
+            p.weight * factors[0] * factors[1] * libm::cos(phase)
         };
         patches.iter().map(value).sum()
     }
@@ -140,7 +140,7 @@ mod tests {
             for (i, patch) in patches.iter().enumerate() {
                 let [t, s] = [i / n, i % n].map(|j| PI * (2 * j + 1) as f64 / (4 * n) as f64);
                 let odd = (0..n).map(|i| (2 * i + 1) as f64);
-                let sum: f64 = odd.map(|m| m * (m * t).cos() * (m * s).sin()).sum();
+                let sum: f64 = odd.map(|m| m * libm::cos(m * t) * libm::sin(m * s)).sum();
                 let expected = PI * sum / (n * n) as f64;
                 assert!((patch.weight - expected).abs() < 1e-13); // rounding of weights up to 3
             }

@@ -4,7 +4,7 @@
 //! Lengths are in units of the half-widths of the window, so that 1 is the size of everything.
 
 use crate::numerics::sinc::sinc;
-use etendue_field::Complex;
+use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
 /// Below this largest phase, in radians, the series is used; above it the edge form keeps 14
@@ -166,7 +166,7 @@ impl Polygon {
         }
         let phase = |corner: &Vertex| TAU * dot(k, minus(corner.at, first.at)).abs();
         if self.0.iter().map(phase).fold(0.0, f64::max) < SERIES_PHASE {
-            self.series(k) * Complex::cis(-TAU * dot(k, first.at))
+            self.series(k) * cis(-TAU * dot(k, first.at))
         } else {
             self.edge_form(k)
         }
@@ -184,7 +184,7 @@ impl Polygon {
         let (a, b) = (minus(q.at, p.at), minus(r.at, q.at));
         let center = [0, 1].map(|i| 0.5 * (p.at[i] + r.at[i]));
         let size = cross(a, b) * sinc(dot(k, a)) * sinc(dot(k, b));
-        Complex::cis(-TAU * dot(k, center)) * size
+        cis(-TAU * dot(k, center)) * size
     }
 
     /// exp(−2πi k·c) sinc(k·e) times the slopes spanned, for a segment e with midpoint c.
@@ -192,7 +192,7 @@ impl Polygon {
         let [a, b] = [self.0[0].at, self.0[1].at];
         let e = minus(b, a);
         let middle = [0.5 * (a[0] + b[0]), 0.5 * (a[1] + b[1])];
-        Complex::cis(-TAU * dot(k, middle)) * (e[1] * sinc(dot(k, e)))
+        cis(-TAU * dot(k, middle)) * (e[1] * sinc(dot(k, e)))
     }
 
     /// i/(2π|k|²) Σ (n·k) exp(−2πi k·c) sinc(k·e) over the edges e with midpoints c and outward
@@ -202,7 +202,7 @@ impl Polygon {
         for (a, b) in self.sides() {
             let e = minus(b.at, a.at);
             let middle = [0.5 * (a.at[0] + b.at[0]), 0.5 * (a.at[1] + b.at[1])];
-            sum += Complex::cis(-TAU * dot(k, middle)) * (cross(k, e) * sinc(dot(k, e)));
+            sum += cis(-TAU * dot(k, middle)) * (cross(k, e) * sinc(dot(k, e)));
         }
         sum * Complex::new(0.0, 1.0 / (TAU * dot(k, k)))
     }
@@ -271,10 +271,10 @@ mod tests {
     fn series_and_edge_form_agree_where_they_meet() {
         let triangle = Polygon::square([0, 1]).clipped([1.0, 2.0], -1.0, 2);
         for angle in 0..20 {
-            let direction = Complex::cis(0.3 * f64::from(angle));
+            let direction = cis(0.3 * f64::from(angle));
             let k = [direction.re, direction.im].map(|c| c * SERIES_PHASE / (TAU * 3.0));
             let corner = triangle.0[0].at;
-            let series = triangle.series(k) * Complex::cis(-TAU * dot(k, corner));
+            let series = triangle.series(k) * cis(-TAU * dot(k, corner));
             // The edge form cancels to a phase of 0.1: some ten roundings of its terms, about 1.
             assert!((series - triangle.edge_form(k)).norm() < 1e-14);
         }

@@ -244,7 +244,7 @@ impl<'a> Cells<'a> {
 
     /// Σ terms cos(2π n f u), by Clenshaw's recurrence.
     fn sum(&self, terms: &[f64], u: f64) -> f64 {
-        let cos = (TAU * self.series * u).cos();
+        let cos = libm::cos(TAU * self.series * u);
         let (mut next, mut last) = (0.0, 0.0);
         for term in terms.iter().skip(1).rev() {
             (next, last) = (term + 2.0 * cos * next - last, next);

@@ -1,6 +1,6 @@
 //! Arithmetic along a row of frequencies.
 
-use etendue_field::Complex;
+use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
 /// Frequencies with a common position frequency, in cycles per half-width.
@@ -40,8 +40,8 @@ impl FrequencyRow {
 
     /// scale · exp(−2πi k·p) along the row, by powers outwards from the middle.
     pub(crate) fn exponentials(&self, p: [f64; 2], scale: impl Into<Complex>, to: &mut Parts) {
-        let middle = Complex::cis(-TAU * self.position * p[0]) * scale.into();
-        let up = Complex::cis(-TAU * self.step * p[1]);
+        let middle = cis(-TAU * self.position * p[0]) * scale.into();
+        let up = cis(-TAU * self.step * p[1]);
         let (mut above, mut below) = (middle, middle);
         (to.re[self.half], to.im[self.half]) = (middle.re, middle.im);
         for j in 1..=self.half {

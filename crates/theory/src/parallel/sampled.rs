@@ -117,7 +117,7 @@ impl Chain {
 /// A width on the receiver beyond what a window sees of it from so far.
 fn seen(window: &Window, distance: f64) -> f64 {
     let [x, y, u, v] = [window.x, window.y, window.u, window.v].map(|p| p.half_width());
-    2.0 * (x + distance * u).hypot(y + distance * v)
+    2.0 * libm::hypot(x + distance * u, y + distance * v)
 }
 
 fn diffuse(albedo: f64) -> Reflectance {

@@ -50,7 +50,7 @@ pub(crate) fn slices_at_fineness(
     let values: Vec<Vec<Complex>> = (0..azimuths * rows)
         .into_par_iter()
         .map(|i| {
-            let (sin, cos) = grid.azimuth(i / rows).sin_cos();
+            let (sin, cos) = libm::sincos(grid.azimuth(i / rows));
             let rho = (i % rows) as f64 * grid.rho.spacing;
             let mut row = vec![Complex::ZERO; grid.nu.count()];
             for product in &products {

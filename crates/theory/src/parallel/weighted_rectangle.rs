@@ -114,7 +114,7 @@ impl DiscResolution {
             terms *= (discs.count() as f64).powi(2);
             count += 1.0;
         }
-        let share = (MOST_TERMS / terms).powf(0.5 / count).min(1.0);
+        let share = libm::pow(MOST_TERMS / terms, 0.5 / count).min(1.0);
         let fewer = |n: usize| whole((share * n as f64).round()).max(1);
         Self(
             planes

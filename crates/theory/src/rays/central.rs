@@ -35,15 +35,15 @@ impl Incidence {
             let ahead = along > 0.0 || (along.abs() < NORMAL && aside > 0.0);
             let sign = if ahead { 1.0 } else { -1.0 };
             let x = across.normalize() * sign;
-            (x, sign * across.length().atan2(-n.dot(frame.d)))
+            (x, sign * libm::atan2(across.length(), -n.dot(frame.d)))
         };
-        let t = -x * theta0.cos() - frame.d * theta0.sin();
+        let t = -x * libm::cos(theta0) - frame.d * libm::sin(theta0);
         Self {
             n,
             t,
             b: n.cross(t),
             theta0,
-            turn: x.dot(frame.y).atan2(x.dot(frame.x)),
+            turn: libm::atan2(x.dot(frame.y), x.dot(frame.x)),
         }
     }
 

@@ -153,7 +153,7 @@ impl Walk {
         let (shape, theta1) = self.event(element, hit)?;
         self.back(shape, theta1);
         let Incidence { n, t, b, .. } = hit.incidence;
-        let (sin, cos) = theta1.sin_cos();
+        let (sin, cos) = libm::sincos(theta1);
         let x = if let Specular::Mirror = element.event {
             let words = format!("map  outgoing angle {}", degrees(theta1));
             self.step(&self.print.outgoing_4d(theta1), words);
@@ -164,7 +164,7 @@ impl Walk {
             self.step(&off.spectrum_map(), words);
             -t * cos + n * sin
         };
-        let turn = hit.leaving.x.dot(b).atan2(hit.leaving.x.dot(x));
+        let turn = libm::atan2(hit.leaving.x.dot(b), hit.leaving.x.dot(x));
         self.turn(turn, "the frame of the next leg");
         self.frame = hit.leaving;
         Some(self)
@@ -262,7 +262,7 @@ impl Walk {
     /// From axes (T, B) to those of the plane, angles counted from its longitude.
     fn onto_surface(&mut self, t: DVec3, b: DVec3, plane: &Plane) {
         let axis = plane.frame.x;
-        let turn = axis.dot(b).atan2(axis.dot(t));
+        let turn = libm::atan2(axis.dot(b), axis.dot(t));
         self.turn(turn, "the plane's axes");
         if plane.longitude != 0.0 {
             let mut map = Map::identity();
@@ -277,7 +277,7 @@ impl Walk {
     /// that stands for it.
     fn reach_frame(&mut self, plane: &Frame) {
         let towards = plane.vector_to_local(self.frame.d);
-        if towards.x.hypot(towards.y) > 1e-9 {
+        if libm::hypot(towards.x, towards.y) > 1e-9 {
             let mut map = Map::linear(seen_across(plane, &self.frame));
             let [u, v] = [towards.x, towards.y].map(|t| t / towards.z);
             let moved = plane.to_local(self.frame.origin);
@@ -285,7 +285,7 @@ impl Walk {
             self.step(&map.spectrum_map(), "map  frame of the plane".into());
             return;
         }
-        let turn = plane.x.dot(self.frame.y).atan2(plane.x.dot(self.frame.x));
+        let turn = libm::atan2(plane.x.dot(self.frame.y), plane.x.dot(self.frame.x));
         self.turn(turn, "the plane's axes");
         let moved = plane.to_local(self.frame.origin);
         if moved.x.abs().max(moved.y.abs()) > 1e-9 {

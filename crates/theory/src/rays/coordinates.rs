@@ -30,7 +30,9 @@ impl Plane {
             (Orientation::Orthogonal, Quantity::DifferentialIrradiance) => {
                 (1.0 + u * u + v * v).powi(-2)
             }
-            (_, Quantity::DifferentialIrradiance) => (u + self.longitude).cos() * v.cos() * v.cos(),
+            (_, Quantity::DifferentialIrradiance) => {
+                libm::cos(u + self.longitude) * libm::cos(v) * libm::cos(v)
+            }
         }
     }
 
@@ -73,12 +75,12 @@ impl Plane {
     ) -> Option<([f64; 4], f64)> {
         let away = if self.arriving { -direction } else { direction };
         let away = local.vector_to_local(away);
-        let (mut theta, mut phi) = (away.x.atan2(away.z), away.y.asin());
+        let (mut theta, mut phi) = (libm::atan2(away.x, away.z), libm::asin(away.y));
         if self.orientation == Orientation::Mirrored {
             (theta, phi) = (-theta, -phi);
         }
         let z = [s, t, theta - self.longitude, phi];
-        let projected = theta.cos() * phi.cos() * phi.cos();
+        let projected = libm::cos(theta) * libm::cos(phi) * libm::cos(phi);
         (away.z > 0.0).then(|| (z, self.factor(z) / projected))
     }
 }

@@ -66,7 +66,7 @@ impl System {
                 let [a, b] = if axis == 0 { [t, 0.0] } else { [0.0, t] };
                 let passes = grating.map_or(1.0, |g| g.transmittance(a, b));
                 // Between the values of the table no part of a grating is missed.
-                (-PI * (t / width).powi(2)).exp() * (passes + 0.1)
+                libm::exp(-PI * (t / width).powi(2)) * (passes + 0.1)
             })
         };
         Some([along(0)?, along(1)?])
@@ -90,7 +90,7 @@ pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
         Light::Beam { irradiance, image } => irradiance * image.value(x, y),
         Light::Area {
             radiance, exponent, ..
-        } => radiance * cosine.powi(4) * cosine.powf(*exponent),
+        } => radiance * cosine.powi(4) * libm::pow(cosine, *exponent),
         // Its rays leave no plane.
         Light::Environment { .. } => {
             panic!("rays of an environment are not followed from the light")
@@ -109,7 +109,7 @@ pub(crate) fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> [f64; 2] {
         }
         Shape::Disc(disc) => {
             let [x, y] = disc.center;
-            let (sin, cos) = (TAU * b).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * b);
             let r = disc.radius * a.sqrt();
             [x + r * cos, y + r * sin]
         }

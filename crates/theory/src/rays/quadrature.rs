@@ -71,7 +71,8 @@ impl<F: RayField> Finder<'_, F> {
         // Cycles per unit of a coordinate at the light, in phases and in the window.
         let cycles = |k: usize| {
             let column = self.neighbourhood.1.map(|row| row[k]);
-            let phase = rho * column[0].hypot(column[1]) + nu * column[2].hypot(column[3]);
+            let phase =
+                rho * libm::hypot(column[0], column[1]) + nu * libm::hypot(column[2], column[3]);
             let widths = column.iter().zip(window);
             let window = widths.map(|(c, profile)| c.abs() / profile.half_width());
             phase + window.fold(0.0, f64::max)

@@ -5,7 +5,7 @@
 //! imaginary parts; ± ν share it.
 
 use crate::nets::Node;
-use etendue_field::{Complex, SliceGrid, Slices};
+use etendue_field::{Complex, SliceGrid, Slices, cis};
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array2, Axis};
 use rayon::prelude::*;
@@ -50,7 +50,7 @@ pub(super) fn sums(nodes: &[Node], grid: &SliceGrid) -> Slices {
 
 /// Sums of the products of the parts of both factors over some rays, [2m + part, 2n + part].
 fn product(nodes: &[Node], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
-    let (sin, cos) = grid.azimuth(azimuth).sin_cos();
+    let (sin, cos) = libm::sincos(grid.azimuth(azimuth));
     let [along_rho, along_nu] = [grid.rho.half, grid.nu.half].map(|half| 2 * (half + 1));
     let mut sum = Array2::zeros((along_rho, along_nu));
     let mut rho = Array2::zeros((BLOCK, along_rho));
@@ -72,13 +72,13 @@ fn product(nodes: &[Node], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
 
 /// scale · e^(i n angle) for n = 0, 1, …, real and imaginary parts by turns.
 fn powers(angle: f64, scale: f64, row: Option<&mut [f64]>) {
-    let step = Complex::cis(angle);
+    let step = cis(angle);
     let squared = step * step;
     let stride = squared * squared * squared * squared;
     let parts = row.into_iter().flat_map(|row| row.chunks_mut(2 * POWERS));
     for (part, to) in parts.enumerate() {
         // Lanes side by side do not wait for each other.
-        let mut lanes = [Complex::from_polar(scale, angle * (part * POWERS) as f64); LANES];
+        let mut lanes = [cis(angle * (part * POWERS) as f64) * scale; LANES];
         for i in 1..LANES {
             lanes[i] = lanes[i - 1] * step;
         }

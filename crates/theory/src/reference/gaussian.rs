@@ -7,7 +7,6 @@
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
 use crate::shading::g_hat;
-use complex_bessel::besselj;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -100,9 +99,9 @@ pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 
     // Enough for the oscillation, and for the Gaussian where it is narrower than the light.
     let nodes = 16 + count(2.0 * width * (big_q.abs() + p.sqrt()));
     let integral = integrate(nodes, [-half, half], |y| {
-        Complex::from_polar((-PI * p * y * y).exp(), -TAU * big_q * y)
+        Complex::from_polar(libm::exp(-PI * p * y * y), -TAU * big_q * y)
     });
-    integral * ((-PI * omega * omega / q).exp() / q.sqrt())
+    integral * (libm::exp(-PI * omega * omega / q) / q.sqrt())
 }
 
 /// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the
@@ -111,7 +110,7 @@ pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 
 pub(crate) fn point_light(distance: f64, window: &Gaussian, k: [f64; 2]) -> f64 {
     let travelled = Travelled::new(distance, window);
     let [omega, _] = travelled.frequencies(k);
-    (-PI * omega * omega / travelled.q).exp() / travelled.q.sqrt()
+    libm::exp(-PI * omega * omega / travelled.q) / travelled.q.sqrt()
 }
 
 /// The field of a bulb of width w with the lobe exp(−πv²/c²) at distance D: the area light under a
@@ -124,7 +123,7 @@ pub(crate) fn spot(
     window: &Gaussian,
     k: [f64; 2],
 ) -> Complex {
-    let b = window.b.recip().hypot(lobe.recip()).recip();
+    let b = libm::hypot(window.b.recip(), lobe.recip()).recip();
     area_light(width, distance, &Gaussian { a: window.a, b }, k)
 }
 
@@ -143,17 +142,12 @@ pub(crate) fn disc_light(
     let travelled = Travelled::new(distance, window);
     let [[omega_x, q_x], [omega_y, q_y]] = [[x, u], [y, v]].map(|k| travelled.frequencies(k));
     let Travelled { p, q, .. } = travelled;
-    let (omega, big_q) = (omega_x.hypot(omega_y), q_x.hypot(q_y));
+    let (omega, big_q) = (libm::hypot(omega_x, omega_y), libm::hypot(q_x, q_y));
     let nodes = 16 + count(4.0 * radius * (big_q + p.sqrt()));
     let integral = integrate(nodes, [0.0, radius], |r| {
-        r * (-PI * p * r * r).exp() * j0(TAU * big_q * r)
+        r * libm::exp(-PI * p * r * r) * libm::j0(TAU * big_q * r)
     });
-    TAU * integral * (-PI * omega * omega / q).exp() / q
-}
-
-/// The Bessel function J₀ of a real number.
-fn j0(z: f64) -> f64 {
-    besselj(0.0, Complex::from(z)).map_or(f64::NAN, |j| j.re)
+    TAU * integral * libm::exp(-PI * omega * omega / q) / q
 }
 
 /// The field exp(−π(α x² + 2β x v + γ v²)): a Gaussian window after travel, for one.
@@ -175,8 +169,8 @@ pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
     let Tilted { alpha, beta, gamma } = *field;
     let a = (alpha - beta * beta / gamma).sqrt().recip();
     let along = x - beta * v / gamma;
-    let scale = a * (-PI * v * v / gamma).exp() / gamma.sqrt();
-    let even = scale * (-PI * (a * along).powi(2)).exp();
+    let scale = a * libm::exp(-PI * v * v / gamma) / gamma.sqrt();
+    let even = scale * libm::exp(-PI * (a * along).powi(2));
     let odd = scale / PI.sqrt() * dawson(PI.sqrt() * a * along);
     let half = Complex::new(0.5 * even, -odd);
     [even.into(), half, half.conj()]
@@ -184,7 +178,7 @@ pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
 
 /// Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule: the integrand is entire.
 fn dawson(x: f64) -> f64 {
-    integrate(24 + count(x * x), [0.0, x], |t| (t * t - x * x).exp())
+    integrate(24 + count(x * x), [0.0, x], |t| libm::exp(t * t - x * x))
 }
 
 /// The same light seen through a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
@@ -212,14 +206,15 @@ pub(crate) fn blocked_by_strip(
     [omega_x, omega_v]: [f64; 2],
 ) -> Complex {
     let half = 0.5 * bench.light;
-    let nodes = 32 + count(2.0 * (bench.light + strip[1] - strip[0]) * omega_x.hypot(omega_v));
+    let nodes =
+        32 + count(2.0 * (bench.light + strip[1] - strip[0]) * libm::hypot(omega_x, omega_v));
     let sum: Complex = integrate(nodes, strip, |y| {
         integrate(nodes, [-half, half], |origin| {
             let v = (y - origin) / bench.to_blockers;
             let x = y + bench.below * v;
             let (p, q) = (x / window.a, v / window.b);
             Complex::from_polar(
-                (-PI * (p * p + q * q)).exp(),
+                libm::exp(-PI * (p * p + q * q)),
                 -TAU * (omega_x * x + omega_v * v),
             )
         })
@@ -241,7 +236,7 @@ pub(crate) fn shaded(window: &Gaussian, field: impl Fn(&Gaussian) -> Complex) ->
         .map(|s| {
             let s2 = s * s;
             let b = (1.0 / (window.b * window.b) + s2 / PI).sqrt().recip();
-            field(&Gaussian { a: window.a, b }) * (s2 * (-s2).exp())
+            field(&Gaussian { a: window.a, b }) * (s2 * libm::exp(-s2))
         })
         .sum();
     sum * (4.0 * STEP / PI.sqrt())

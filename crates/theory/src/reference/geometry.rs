@@ -12,7 +12,7 @@ fn caustic_of_a_hollow_mirror() {
     let (a, s) = (p("A"), p("S"));
     let beam = |[x, t]: [f64; 2]| {
         let exponent = (a * x).powi(2) + (s * t).powi(2);
-        Complex::from(a * s * (-PI * exponent).exp())
+        Complex::from(a * s * libm::exp(-PI * exponent))
     };
     let map = |sample: &Value| Map::<2>::caustic(p("th0"), p("k"), number(&sample["d"]));
     let all = samples(&block["samples"]).iter();

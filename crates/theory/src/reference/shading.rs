@@ -85,10 +85,10 @@ fn fresnel_and_cosine() {
         let square = Complex::new(index, extinction) * Complex::new(index, extinction);
         let across = |omega: f64| {
             let kernel = |theta: f64| {
-                let (sine, cosine) = theta.sin_cos();
+                let (sine, cosine) = libm::sincos(theta);
                 let beyond = (square - sine * sine).sqrt();
                 let share = ((cosine - beyond) / (cosine + beyond)).norm_sqr();
-                2.0 * share * cosine * (TAU * omega * theta).cos()
+                2.0 * share * cosine * libm::cos(TAU * omega * theta)
             };
             crate::numerics::quadrature::integrate(200, [0.0, 0.5 * PI], kernel)
         };
@@ -137,13 +137,13 @@ impl Bell {
         let [[a, b], [_, d]] = self.covariance;
         let (x, t) = (x - self.mean[0], t - self.mean[1]);
         let form = (d * x * x - 2.0 * b * x * t + a * t * t) / self.det();
-        self.amplitude * (-0.5 * form).exp()
+        self.amplitude * libm::exp(-0.5 * form)
     }
 
     fn spectrum(&self, [x, t]: [f64; 2]) -> Complex {
         let [[a, b], [_, d]] = self.covariance;
         let form = a * x * x + 2.0 * b * x * t + d * t * t;
-        let size = self.amplitude * TAU * self.det().sqrt() * (-2.0 * PI * PI * form).exp();
+        let size = self.amplitude * TAU * self.det().sqrt() * libm::exp(-2.0 * PI * PI * form);
         Complex::from_polar(size, -TAU * (x * self.mean[0] + t * self.mean[1]))
     }
 }
@@ -218,14 +218,14 @@ fn every_step_of_a_reflection() {
 /// direction and X points the other way.
 fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
     let turn = k * s;
-    let point = [turn.sin() / k, (turn.cos() - 1.0) / k];
+    let point = [libm::sin(turn) / k, (libm::cos(turn) - 1.0) / k];
     let angle = local + turn - central;
-    let (sine, cosine) = central.sin_cos();
+    let (sine, cosine) = libm::sincos(central);
     let across = point[0] * cosine - point[1] * sine;
     let along = point[0] * sine + point[1] * cosine;
     (
-        [across - along * angle.tan(), angle],
-        local.cos() / angle.cos(),
+        [across - along * libm::tan(angle), angle],
+        libm::cos(local) / libm::cos(angle),
     )
 }
 
@@ -249,7 +249,7 @@ fn traced(parameters: &Value, bells: &[Bell], lobe: Option<f64>, omega: [f64; 2]
         for (incident, di) in lattice(theta0 - k * s, 0.45, 60) {
             let ([x, theta], _) = seen(k, theta0, s, incident);
             let light: f64 = bells.iter().map(|bell| bell.value([-x, theta])).sum();
-            let share = light * incident.cos() * ds * di;
+            let share = light * libm::cos(incident) * ds * di;
             if share < 1e-20 {
                 continue;
             }
@@ -259,7 +259,7 @@ fn traced(parameters: &Value, bells: &[Bell], lobe: Option<f64>, omega: [f64; 2]
             };
             // A normal distribution by trapezoids 0.4 deviations long: beyond rounding.
             for (z, dz) in lattice(0.0, 8.0, 20) {
-                let density = (-0.5 * z * z).exp() / TAU.sqrt() * dz;
+                let density = libm::exp(-0.5 * z * z) / TAU.sqrt() * dz;
                 sum += wave(s, deviation * z - incident) * (share * density);
             }
         }

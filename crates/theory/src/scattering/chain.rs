@@ -120,8 +120,8 @@ fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
     [
         at.x,
         at.y,
-        away.x.atan2(away.z),
-        away.y.clamp(-1.0, 1.0).asin(),
+        libm::atan2(away.x, away.z),
+        libm::asin(away.y.clamp(-1.0, 1.0)),
     ]
 }
 

@@ -164,7 +164,7 @@ impl Mirrored {
             by: by(2),
             inverse,
             determinant: determinant.abs(),
-            width: (BROADENED * angular_width(&system.reflectance.brdf)?).hypot(light),
+            width: libm::hypot(BROADENED * angular_width(&system.reflectance.brdf)?, light),
         })
     }
 
@@ -374,13 +374,13 @@ fn radius(shape: &Shape) -> f64 {
         let [low, high] = shape.bounds().extent(axis);
         low.abs().max(high.abs())
     });
-    x.hypot(y)
+    libm::hypot(x, y)
 }
 
 /// A point of the plane with the density of `bell_density`.
 fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
     let r = width * (a / (1.0 - a)).sqrt();
-    let (sin, cos) = (TAU * b).sin_cos();
+    let (sin, cos) = libm::sincos(TAU * b);
     [r * cos, r * sin]
 }
 

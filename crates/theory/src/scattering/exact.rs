@@ -24,7 +24,7 @@ impl System {
         let frame = &plane.frame;
         let foot = frame.to_world(DVec3::new(x, y, 0.0));
         let away = || {
-            let ((sin, cos), (up, across)) = ((u + plane.longitude).sin_cos(), v.sin_cos());
+            let ((sin, cos), (up, across)) = (libm::sincos(u + plane.longitude), libm::sincos(v));
             DVec3::new(across * sin, up, across * cos)
         };
         let (point, normal, direction) = match plane.orientation {

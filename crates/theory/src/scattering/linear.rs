@@ -66,7 +66,7 @@ impl<'a> Linear<'a> {
         let [u, v] = slopes;
         // From slopes to angles as they are: dω = cos φ dθ dφ = du dv cos³, and tan φ = v cos θ.
         let across = (1.0 + u * u).sqrt();
-        let (longitude, latitude) = (u.atan(), (v / across).atan());
+        let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
         let per_angle = 1.0 / ((1.0 + u * u + v * v) * across);
         // Of the ray along the axis that meets the place.
         let [_, _, theta, phi] = self.chain.onto.apply([point.x, point.y, 0.0, 0.0]);
@@ -75,7 +75,7 @@ impl<'a> Linear<'a> {
             theta + a * longitude + b * latitude,
             phi + c * longitude + d * latitude,
         );
-        let cosine = theta.cos().max(0.0) * phi.cos().powi(2);
+        let cosine = libm::cos(theta).max(0.0) * libm::cos(phi).powi(2);
         let irradiance = weight * per_angle * (a * d - b * c).abs() * cosine;
         let [s, t, to_theta, to_phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
@@ -87,13 +87,13 @@ impl<'a> Linear<'a> {
     /// The BRDF as it meets the central ray, which comes from `center`, at angles from the mirror
     /// direction; a factor of the angle of incidence stays one.
     fn kernel(&self, brdf: &Brdf, center: DVec3, from: f64, [theta, phi]: [f64; 2]) -> f64 {
-        let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, from.cos());
+        let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from));
         match brdf.lobe {
             Lobe::Lambertian => factor() / PI,
             // Its cosine is that of the angle from the mirror direction, wherever that is.
             Lobe::Phong { exponent } => {
-                let cos = (theta.cos() * phi.cos()).max(0.0);
-                factor() * (exponent + 1.0) / TAU * cos.powf(exponent)
+                let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
+                factor() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
             }
             _ => {
                 let to = away(theta - self.chain.incidence, phi);
@@ -105,6 +105,6 @@ impl<'a> Linear<'a> {
 
 /// The direction at a longitude and a latitude, from the normal.
 fn away(theta: f64, phi: f64) -> DVec3 {
-    let ((sin, cos), (up, across)) = (theta.sin_cos(), phi.sin_cos());
+    let ((sin, cos), (up, across)) = (libm::sincos(theta), libm::sincos(phi));
     DVec3::new(across * sin, up, across * cos)
 }

@@ -47,7 +47,7 @@ impl<'a> Sky<'a> {
                 let axes = |lobe: &SphericalGaussian| {
                     let squared = lobe.width.powi(2);
                     let axes = Frame::IDENTITY.turned_to(lobe.from);
-                    (squared, (-2.0 / squared).exp_m1(), axes)
+                    (squared, libm::expm1(-2.0 / squared), axes)
                 };
                 Some(Self::Lobes(Lobes {
                     shares: shares(integrals())?,
@@ -71,10 +71,10 @@ impl<'a> Sky<'a> {
                 let (i, a) = picked(&lobes.shares, a);
                 let (squared, least, axes) = lobes.each[i];
                 // 1 − cos γ, by the quantiles of exp((cos γ − 1)/σ²).
-                let fall = -squared * (a * least).ln_1p();
+                let fall = -squared * libm::log1p(a * least);
                 let fall = fall.clamp(0.0, 2.0);
                 let sin = (fall * (2.0 - fall)).sqrt();
-                let (s, c) = (TAU * b).sin_cos();
+                let (s, c) = libm::sincos(TAU * b);
                 let local = DVec3::new(sin * c, sin * s, 1.0 - fall);
                 axes.vector_to_world(local)
             }
@@ -134,9 +134,9 @@ impl<'a> Pixels<'a> {
         let (i, across) = picked(&self.cells[j], b);
         let h = self.rows.len();
         // Even in the sine of the latitude.
-        let [top, bottom] = [j, j + 1].map(|j| latitude(h, j).sin());
+        let [top, bottom] = [j, j + 1].map(|j| libm::sin(latitude(h, j)));
         let sine = (top + down * (bottom - top)).clamp(-1.0, 1.0);
-        let row = h as f64 * (0.5 - sine.asin() / PI);
+        let row = h as f64 * (0.5 - libm::asin(sine) / PI);
         self.map.direction([i as f64 + across, row])
     }
 
@@ -162,7 +162,7 @@ fn latitude(h: usize, j: usize) -> f64 {
 
 /// The solid angle of a row of a map, per radian of longitude.
 fn solid_angle(h: usize, j: usize) -> f64 {
-    latitude(h, j).sin() - latitude(h, j + 1).sin()
+    libm::sin(latitude(h, j)) - libm::sin(latitude(h, j + 1))
 }
 
 /// Shares of a whole, added up; `None` where there is nothing.
@@ -222,7 +222,7 @@ mod tests {
             let sky = Sky::new(&environment, DVec3::NEG_Z).unwrap();
             for i in 0..4000 {
                 let t = f64::from(i);
-                let (s, c) = (2.4 * t).sin_cos();
+                let (s, c) = libm::sincos(2.4 * t);
                 let cos = (t + 0.5) / 4000.0;
                 let sin = (1.0 - cos * cos).sqrt();
                 // Along directions that go forward.

@@ -66,7 +66,7 @@ impl Criterion {
     pub fn surface(&self) -> f64 {
         let behind = self.lobe_cutoff + COSINE_CUTOFF + self.environment_cutoff;
         let turned = self.curvature.abs() * (2.0 * self.lobe_cutoff + COSINE_CUTOFF);
-        (self.nearness() * behind + turned) / self.outgoing.cos()
+        (self.nearness() * behind + turned) / libm::cos(self.outgoing)
     }
 
     /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as a size: it drops the 1. That is right
@@ -82,22 +82,22 @@ impl Criterion {
     pub fn printed_blocker(&self) -> f64 {
         let nearness = self.blocker_distance.map_or(0.0, f64::recip);
         let sum = nearness + 2.0 * self.curvature.abs();
-        self.distance / self.outgoing.cos() * sum * self.lobe_cutoff
+        self.distance / libm::cos(self.outgoing) * sum * self.lobe_cutoff
     }
 
     /// 1 + 2kd/cos θ₁: both shears of the surface, then travel.
     fn doubled_shear(&self) -> f64 {
-        1.0 + 2.0 * self.curvature * self.distance / self.outgoing.cos()
+        1.0 + 2.0 * self.curvature * self.distance / libm::cos(self.outgoing)
     }
 
     /// cos θ₀/d': the slope of the spectrum of an edge on the surface, without curvature.
     fn nearness(&self) -> f64 {
         self.blocker_distance
-            .map_or(0.0, |distance| self.incidence.cos() / distance)
+            .map_or(0.0, |distance| libm::cos(self.incidence) / distance)
     }
 
     /// d cos θ₀/(d' cos θ₁).
     fn edge(&self) -> f64 {
-        self.distance * self.nearness() / self.outgoing.cos()
+        self.distance * self.nearness() / libm::cos(self.outgoing)
     }
 }

@@ -6,7 +6,7 @@
 //! angles are on the surface, those of light that has been flipped. `environment` is env^.
 
 use super::cosine_hat;
-use etendue_field::Complex;
+use etendue_field::{Complex, cis};
 use std::f64::consts::{PI, TAU};
 
 /// The differential irradiance dE' in the frames of the local normals: 1/|k| env^(Ωx/k) cos⁺^(Ωθ −
@@ -60,14 +60,14 @@ impl Glow {
     #[must_use]
     pub fn value(&self, theta: f64) -> f64 {
         let z = (theta - self.mean) / self.deviation;
-        self.amplitude * (-0.5 * z * z).exp()
+        self.amplitude * libm::exp(-0.5 * z * z)
     }
 
     /// env^(Ω) = A σ √(2π) exp(−2π²σ²Ω²) e^(−2πi Ωμ).
     #[must_use]
     pub fn spectrum(&self, omega: f64) -> Complex {
         let z = PI * self.deviation * omega;
-        let size = self.amplitude * self.deviation * TAU.sqrt() * (-2.0 * z * z).exp();
-        Complex::from_polar(size, -TAU * omega * self.mean)
+        let size = self.amplitude * self.deviation * TAU.sqrt() * libm::exp(-2.0 * z * z);
+        cis(-TAU * omega * self.mean) * size
     }
 }

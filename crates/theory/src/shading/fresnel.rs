@@ -2,7 +2,7 @@
 
 use super::cosine::{cosine_hat, cosine_power_hat};
 use super::panels::even_transform;
-use etendue_field::Complex;
+use etendue_field::{Complex, square_root};
 use std::f64::consts::FRAC_PI_2;
 
 /// Halvings of the panels towards grazing angles, where the reflectance of what has an index of N
@@ -40,7 +40,7 @@ impl Fresnel {
     /// and Wolf 1999, section 1.5). θ from the normal, in radians, |θ| ≤ π/2.
     #[must_use]
     pub fn reflectance(&self, theta: f64) -> f64 {
-        let (sine, cosine) = theta.sin_cos();
+        let (sine, cosine) = libm::sincos(theta);
         let index = match *self {
             Self::Dielectric { index } => Complex::from(index),
             Self::Conductor { index, extinction } => Complex::new(index, extinction),
@@ -50,7 +50,7 @@ impl Fresnel {
         };
         let square = index * index;
         // The index times the cosine beyond.
-        let beyond = (square - sine * sine).sqrt();
+        let beyond = square_root(square - sine * sine);
         let across = (cosine - beyond) / (cosine + beyond);
         let along = (square * cosine - beyond) / (square * cosine + beyond);
         0.5 * (across.norm_sqr() + along.norm_sqr())
@@ -71,7 +71,7 @@ impl Fresnel {
             return normal_reflectance * cosine_hat(omega) + (1.0 - normal_reflectance) * rest;
         }
         even_transform(&self.ends(), omega, |theta| {
-            self.reflectance(theta) * theta.cos()
+            self.reflectance(theta) * libm::cos(theta)
         })
     }
 
@@ -84,7 +84,7 @@ impl Fresnel {
         if let Self::Dielectric { index } = *self
             && index < 1.0
         {
-            let critical = index.asin();
+            let critical = libm::asin(index);
             ends.push(critical);
             ends.extend(
                 halved(CRITICAL)
@@ -103,7 +103,7 @@ mod tests {
     #[test]
     fn brewster_and_total_reflection() {
         let glass = Fresnel::Dielectric { index: 1.5 };
-        let at = 1.5_f64.atan();
+        let at = libm::atan(1.5_f64);
         // At Brewster's angle one polarisation is not reflected: half of (n² − 1)²/(n² + 1)².
         let expected = 0.5 * (1.25_f64 / 3.25).powi(2);
         assert!((glass.reflectance(at) - expected).abs() < 1e-15); // rounding
@@ -115,11 +115,11 @@ mod tests {
     #[test]
     fn from_inside_the_transform_at_zero_is_the_integral() {
         let inside = Fresnel::Dielectric { index: 1.0 / 1.5 };
-        let critical = (1.0_f64 / 1.5).asin();
+        let critical = libm::asin(1.0_f64 / 1.5);
         // Substituting a square on both sides of the critical angle takes the root away.
         let below = crate::numerics::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
             let theta = critical - t * t;
-            2.0 * t * inside.reflectance(theta) * theta.cos()
+            2.0 * t * inside.reflectance(theta) * libm::cos(theta)
         });
         let expected = 2.0 * (below + 1.0 - 1.0 / 1.5);
         assert!((inside.cosine_hat(0.0) - expected).abs() < 1e-12); // as promised
@@ -131,7 +131,7 @@ mod tests {
             let metal = Fresnel::Conductor { index, extinction };
             let halved = (1..=40).map(|n| FRAC_PI_2 * (1.0 - 0.5_f64.powi(n)));
             let ends: Vec<f64> = [0.0].into_iter().chain(halved).chain([FRAC_PI_2]).collect();
-            let finer = even_transform(&ends, 0.7, |t| metal.reflectance(t) * t.cos());
+            let finer = even_transform(&ends, 0.7, |t| metal.reflectance(t) * libm::cos(t));
             assert!((metal.cosine_hat(0.7) - finer).abs() < 1e-12, "{index}"); // as promised
         }
     }

@@ -18,7 +18,7 @@ pub(super) fn reciprocal_gamma(z: f64) -> (f64, f64) {
     } else {
         -1.0
     };
-    (sign * (PI * (z - whole)).sin() / PI, ln_gamma(1.0 - z))
+    (sign * libm::sin(PI * (z - whole)) / PI, ln_gamma(1.0 - z))
 }
 
 #[cfg(test)]
@@ -27,7 +27,7 @@ mod tests {
 
     fn reciprocal(z: f64) -> f64 {
         let (factor, ln) = reciprocal_gamma(z);
-        factor * ln.exp()
+        factor * libm::exp(ln)
     }
 
     #[test]

@@ -45,7 +45,7 @@ impl Lobe {
             Self::Phong { exponent } => {
                 let inside = angle.abs() < FRAC_PI_2;
                 let power = if inside {
-                    angle.cos().powf(exponent)
+                    libm::pow(libm::cos(angle), exponent)
                 } else {
                     0.0
                 };
@@ -53,19 +53,19 @@ impl Lobe {
             }
             Self::Gaussian { deviation } => {
                 let z = angle / deviation;
-                (-0.5 * z * z).exp() / (deviation * (2.0 * PI).sqrt())
+                libm::exp(-0.5 * z * z) / (deviation * (2.0 * PI).sqrt())
             }
             Self::Beckmann { roughness } => {
                 let Some(t) = slope(angle) else { return 0.0 };
                 let area = PI.sqrt() * roughness * (2.0 + roughness * roughness);
                 let z = t / roughness;
-                (1.0 + t * t).powi(2) * (-z * z).exp() / area
+                (1.0 + t * t).powi(2) * libm::exp(-z * z) / area
             }
             Self::Ggx { roughness } => {
                 if angle.abs() > PI {
                     return 0.0;
                 }
-                let (sine, cosine) = (0.5 * angle).sin_cos();
+                let (sine, cosine) = libm::sincos(0.5 * angle);
                 let a = roughness * roughness;
                 let area = PI * (1.0 + a) / (a * roughness);
                 (a * cosine * cosine + sine * sine).powi(-2) / area
@@ -83,7 +83,7 @@ impl Lobe {
             Self::Phong { exponent } => {
                 cosine_power_hat(exponent, omega) / cosine_power_hat(exponent, 0.0)
             }
-            Self::Gaussian { deviation } => (-2.0 * (PI * deviation * omega).powi(2)).exp(),
+            Self::Gaussian { deviation } => libm::exp(-2.0 * (PI * deviation * omega).powi(2)),
             Self::Beckmann { .. } | Self::Ggx { .. } => {
                 even_transform(&self.ends(), omega, |angle| self.value(angle))
             }
@@ -157,7 +157,7 @@ impl Lobe {
 
 /// tan(δ/2); `None` where it is so large that no microfacet is so steep.
 fn slope(angle: f64) -> Option<f64> {
-    let t = (0.5 * angle).tan();
+    let t = libm::tan(0.5 * angle);
     (angle.abs() < PI && t.abs() < 1e100).then_some(t)
 }
 
@@ -191,7 +191,7 @@ mod tests {
                 let sum: f64 = (0..count)
                     .map(|i| {
                         let at = f64::from(i) * step - PI;
-                        lobe.value(at) * (2.0 * PI * omega * at).cos() * step
+                        lobe.value(at) * libm::cos(2.0 * PI * omega * at) * step
                     })
                     .sum();
                 // The corner of cos δ leaves step²/6; 3e-8.
@@ -212,7 +212,7 @@ mod tests {
         let root = (p * p - q * q).sqrt();
         for n in 0..30 {
             let n = f64::from(n);
-            let expected = ((p - root) / q).powf(n) * (1.0 + n * root / p);
+            let expected = libm::pow((p - root) / q, n) * (1.0 + n * root / p);
             let got = lobe.spectrum(n / (2.0 * PI));
             assert!((got - expected).abs() < 1e-12, "{n}: {got} {expected}"); // as promised
         }

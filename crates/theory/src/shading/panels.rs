@@ -21,7 +21,7 @@ pub(super) fn even_transform(ends: &[f64], omega: f64, f: impl Fn(f64) -> f64) -
             let middle = ends[0] + half * (2.0 * part + 1.0);
             for (x, weight) in &rule {
                 let at = middle + half * x;
-                sum += weight * f(at) * (TAU * omega * at).cos();
+                sum += weight * f(at) * libm::cos(TAU * omega * at);
             }
             part += 1.0;
         }

@@ -103,7 +103,7 @@ mod tests {
     use std::f64::consts::PI;
 
     fn bell(width: f64, omega: f64) -> Complex {
-        Complex::from(width * (-PI * (width * omega).powi(2)).exp())
+        Complex::from(width * libm::exp(-PI * (width * omega).powi(2)))
     }
 
     #[test]

@@ -8,7 +8,7 @@ pub(super) fn value() -> f64 {
 }
 
 pub(super) fn sample([a, b]: [f64; 2]) -> DVec3 {
-    let (sin, cos) = (TAU * b).sin_cos();
+    let (sin, cos) = libm::sincos(TAU * b);
     let across = a.sqrt();
     DVec3::new(across * cos, across * sin, (1.0 - a).sqrt())
 }

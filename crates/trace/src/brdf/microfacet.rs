@@ -65,7 +65,7 @@ impl Microfacets {
         let c2 = cosine * cosine;
         let tangent2 = (1.0 - c2).max(0.0) / c2;
         match self.distribution {
-            Distribution::Beckmann => (-tangent2 / a2).exp() / (PI * a2 * c2 * c2),
+            Distribution::Beckmann => libm::exp(-tangent2 / a2) / (PI * a2 * c2 * c2),
             Distribution::Ggx => {
                 let spread = c2 * (a2 + tangent2);
                 a2 / (PI * spread * spread)
@@ -85,17 +85,17 @@ impl Microfacets {
                 if a > 6.0 {
                     return 1.0;
                 }
-                2.0 / (1.0 + libm::erf(a) + (-a * a).exp() / (a * PI.sqrt()))
+                2.0 / (1.0 + libm::erf(a) + libm::exp(-a * a) / (a * PI.sqrt()))
             }
-            Distribution::Ggx => 2.0 / (1.0 + slope.hypot(1.0)),
+            Distribution::Ggx => 2.0 / (1.0 + (1.0 + slope * slope).sqrt()),
         }
     }
 
     /// Beckmann's normals by D · cos θ (their Eqs. 28 f.).
     fn normal(&self, [a, b]: [f64; 2]) -> DVec3 {
-        let tangent = self.roughness * (-a.ln()).sqrt();
-        let (sin, cos) = (TAU * b).sin_cos();
-        let height = 1.0 / tangent.hypot(1.0);
+        let tangent = self.roughness * (-libm::log(a)).sqrt();
+        let (sin, cos) = libm::sincos(TAU * b);
+        let height = 1.0 / (1.0 + tangent * tangent).sqrt();
         DVec3::new(height * tangent * cos, height * tangent * sin, height)
     }
 
@@ -108,7 +108,7 @@ impl Microfacets {
         let across = across.unwrap_or(DVec3::X);
         let up = view.cross(across);
         // A point of the projected hemisphere: half of a disc, and what is seen of the other half.
-        let (sin, cos) = (TAU * b).sin_cos();
+        let (sin, cos) = libm::sincos(TAU * b);
         let radius = a.sqrt();
         let t1 = radius * cos;
         let seen = 0.5 * (1.0 + view.z);

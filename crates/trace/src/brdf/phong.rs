@@ -1,6 +1,6 @@
 //! Phong's lobe: cosⁿ of the angle to the mirror direction, drawn as it is.
 
-use etendue_field::Frame;
+use etendue_field::{Frame, power};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -14,12 +14,12 @@ pub(super) fn value(exponent: f64, from: DVec3, to: DVec3) -> f64 {
     if cosine <= 0.0 {
         return 0.0;
     }
-    (exponent + 1.0) / TAU * cosine.powf(exponent)
+    (exponent + 1.0) / TAU * power(cosine, exponent)
 }
 
 pub(super) fn sample(exponent: f64, given: DVec3, [a, b]: [f64; 2]) -> DVec3 {
-    let (sin, cos) = (TAU * b).sin_cos();
-    let along = a.powf(1.0 / (exponent + 1.0));
+    let (sin, cos) = libm::sincos(TAU * b);
+    let along = power(a, 1.0 / (exponent + 1.0));
     let across = ((1.0 - along) * (1.0 + along)).sqrt();
     let around = Frame::IDENTITY.turned_to(mirrored(given));
     around.vector_to_world(DVec3::new(across * cos, across * sin, along))

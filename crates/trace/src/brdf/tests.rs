@@ -51,7 +51,11 @@ fn lobes() -> Vec<Brdf> {
 }
 
 fn at(angle: f64) -> DVec3 {
-    DVec3::new(angle.sin() * 0.8, angle.sin() * 0.6, angle.cos())
+    DVec3::new(
+        libm::sin(angle) * 0.8,
+        libm::sin(angle) * 0.6,
+        libm::cos(angle),
+    )
 }
 
 fn around(given: DVec3) -> Frame {
@@ -94,11 +98,11 @@ fn integrals(edges: &[f64], given: DVec3, f: impl Fn(DVec3) -> f64) -> Vec<f64> 
                     let turn =
                         sector as f64 * TAU / SECTORS as f64 + (f64::from(j) + 0.5) * step[1];
                     let local = DVec3::new(
-                        angle.sin() * turn.cos(),
-                        angle.sin() * turn.sin(),
-                        angle.cos(),
+                        libm::sin(angle) * libm::cos(turn),
+                        libm::sin(angle) * libm::sin(turn),
+                        libm::cos(angle),
                     );
-                    sum += f(pole.vector_to_world(local)) * angle.sin();
+                    sum += f(pole.vector_to_world(local)) * libm::sin(angle);
                 }
             }
             cells.push(sum * step[0] * step[1]);
@@ -126,7 +130,7 @@ fn chi2(
         let local = pole.vector_to_local(samples(r));
         let angle = local.angle_between(DVec3::Z);
         let ring = edges[1..rings].partition_point(|edge| *edge <= angle);
-        let turn = local.y.atan2(local.x).rem_euclid(TAU) / TAU;
+        let turn = libm::atan2(local.y, local.x).rem_euclid(TAU) / TAU;
         let sector = ((turn * SECTORS as f64) as usize).min(SECTORS - 1);
         counts[ring * SECTORS + sector] += 1.0;
     }

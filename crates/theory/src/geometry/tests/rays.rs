@@ -22,7 +22,7 @@ pub(super) fn error_and_order<const N: usize>(
         errors.fold(0.0, f64::max)
     };
     let (wide, narrow) = (error(2.0 * SIZE), error(SIZE));
-    (narrow, (wide / narrow).log2())
+    (narrow, libm::log2(wide / narrow))
 }
 
 /// The next term of the error is e times smaller and moves the order by about as much.
@@ -128,7 +128,10 @@ fn foci_of_a_hollow_sphere() {
         -(high[axis] - low[axis]) / (high[axis + 2] - low[axis + 2])
     };
     let map = Map::<4>::mirror_reflection(theta0, [[-0.5, 0.0], [0.0, -0.5]]).matrix;
-    let expected = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()]; // Coddington
+    let expected = [
+        0.5 * radius * libm::cos(theta0),
+        0.5 * radius / libm::cos(theta0),
+    ]; // Coddington
     for (axis, expected) in expected.into_iter().enumerate() {
         let traced = crossing(axis);
         // E² = 1e-8, and a curvature of order one.

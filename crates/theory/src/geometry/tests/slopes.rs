@@ -20,7 +20,7 @@ fn there_and_back() {
 fn the_direction_is_the_same() {
     for z in bundle::<4>(20, 1.4) {
         let [_, _, u, v] = to_slopes(z);
-        let ((st, ct), (sp, cp)) = (z[2].sin_cos(), z[3].sin_cos());
+        let ((st, ct), (sp, cp)) = (libm::sincos(z[2]), libm::sincos(z[3]));
         let length = (1.0 + u * u + v * v).sqrt();
         let off = [
             u / length - cp * st,

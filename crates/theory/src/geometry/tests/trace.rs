@@ -24,20 +24,20 @@ pub(super) struct Axes([Vector; 3]);
 impl Axes {
     /// Light that seems to come from the angle θ: D = −(sin θ T + cos θ N).
     pub(super) fn coming(theta: f64) -> Self {
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = libm::sincos(theta);
         Self([[-cos, 0.0, sin], [0.0, 1.0, 0.0], [-sin, 0.0, -cos]])
     }
 
     /// Light that leaves at the angle θ: D = sin θ T + cos θ N.
     pub(super) fn leaving(theta: f64) -> Self {
-        let (sin, cos) = theta.sin_cos();
+        let (sin, cos) = libm::sincos(theta);
         Self([[cos, 0.0, -sin], [0.0, 1.0, 0.0], [sin, 0.0, cos]])
     }
 
     /// X and Y turned about D, from X towards Y.
     pub(super) fn turned(&self, angle: f64) -> Self {
         let Self([x, y, d]) = *self;
-        let (sin, cos) = angle.sin_cos();
+        let (sin, cos) = libm::sincos(angle);
         let turned = along(scaled(x, cos), sin, y);
         Self([turned, along(scaled(y, cos), -sin, x), d])
     }
@@ -107,6 +107,6 @@ pub(super) fn refracted(surface: Surface, theta0: f64, media: &Media, z: [f64; 4
     let cosine = -dot(ray[1], n);
     let after = (1.0 - ratio * ratio * (1.0 - cosine * cosine)).sqrt();
     let direction = along(scaled(ray[1], ratio), ratio * cosine - after, n);
-    let theta2 = (ratio * theta0.sin()).asin();
+    let theta2 = libm::asin(ratio * libm::sin(theta0));
     Axes::coming(theta2).coordinates([point, direction])
 }

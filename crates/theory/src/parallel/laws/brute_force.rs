@@ -81,7 +81,7 @@ pub(super) fn brute_force(
         let from = start(&chain.source.light, c, d);
         let [u, v] = [(x, from[0]), (y, from[1])].map(|(to, from)| (to - from) / walk.distance);
         let ray = TwoPlane { x, y, u, v };
-        let lobe = ray.secant_squared().powf(-0.5 * exponent);
+        let lobe = libm::pow(ray.secant_squared(), -0.5 * exponent);
         let value = lobe * walk.passes(&ray) * window.value(&ray);
         for (sum, k) in sums.iter_mut().zip(frequencies) {
             let phase = k[0] * x + k[1] * y + k[2] * u + k[3] * v;
@@ -105,7 +105,7 @@ fn start(light: &Light, c: f64, d: f64) -> [f64; 2] {
             ..
         } => {
             let radius = disc.radius * c.sqrt();
-            let (sin, cos) = (TAU * d).sin_cos();
+            let (sin, cos) = libm::sincos(TAU * d);
             [disc.center[0] + radius * cos, disc.center[1] + radius * sin]
         }
         _ => [0.0, 0.0],

@@ -52,7 +52,7 @@ impl SlopePower {
             Self::Flat => 1.0,
             Self::Cosine => 1.0 / (secant_squared * secant_squared),
             Self::Half(n) => secant_squared.sqrt().recip().powi(n),
-            Self::Power(power) => secant_squared.powf(-power),
+            Self::Power(power) => libm::pow(secant_squared, -power),
         }
     }
 }
@@ -67,7 +67,7 @@ struct Counts {
 
 impl Counts {
     fn new(power: f64, frequency: f64) -> Self {
-        let halves = |level: usize| 4.0 * 0.5_f64.powf(level as f64);
+        let halves = |level: usize| 4.0 * libm::pow(0.5_f64, level as f64);
         let mut lengths = (0..).map(halves);
         let fits = |length: &f64| nodes(power, frequency, *length) <= MOST;
         let longest = lengths.find(fits).unwrap_or(f64::MIN_POSITIVE);
@@ -89,7 +89,7 @@ impl Counts {
         if ratio < 1.0 {
             return [(1.0 / ratio).ceil() as usize, self.levels[0]];
         }
-        let level = ratio.log2().min((LEVELS - 1) as f64) as usize;
+        let level = libm::log2(ratio).min((LEVELS - 1) as f64) as usize;
         [1, self.levels[level]]
     }
 }
@@ -110,9 +110,9 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
     let power = power.abs();
     let counts = (0..12).map(|k| {
         let b = 0.8 * 0.6_f64.powi(k);
-        let beyond = (0.5 * length).hypot(b) - 0.5 * length;
-        let growth = power * (beyond - (1.0 - b * b).ln()) + TAU * frequency.abs() * b;
-        (NATS + growth) / (2.0 * (2.0 * b / length).asinh())
+        let beyond = libm::hypot(0.5 * length, b) - 0.5 * length;
+        let growth = power * (beyond - libm::log(1.0 - b * b)) + TAU * frequency.abs() * b;
+        (NATS + growth) / (2.0 * libm::asinh(2.0 * b / length))
     });
     counts.fold(f64::INFINITY, f64::min).ceil() as usize
 }
@@ -262,8 +262,8 @@ impl Density<'_> {
 fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
     let corner = |u: f64, v: f64| {
         let side = |u: f64, v: f64| {
-            let c = u.hypot(1.0);
-            u / c * (v / c).atan()
+            let c = libm::hypot(u, 1.0);
+            u / c * libm::atan(v / c)
         };
         0.5 * (side(u, v) + side(v, u))
     };
@@ -274,7 +274,7 @@ fn cosine([[u0, u1], [v0, v1]]: Bounds) -> f64 {
 fn cosine_along_u(u: f64, v: f64) -> f64 {
     let c2 = 1.0 + v * v;
     let c = c2.sqrt();
-    (u / (c2 + u * u) + (u / c).atan() / c) / (2.0 * c2)
+    (u / (c2 + u * u) + libm::atan(u / c) / c) / (2.0 * c2)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use super::Receiver;
 use super::kernel::{Axis, Kernels};
 use crate::parallel::row::FrequencyRow;
-use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window};
+use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window, cis};
 use ndarray::{Array1, Array2};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -52,7 +52,7 @@ impl Receiver<'_> {
 
     /// The spectrum at one frequency (Ωx, Ωy, Ωu, Ωv): a plain sum over no fewer nodes.
     pub(crate) fn at(&self, window: &Window, frequency: [f64; 4]) -> Complex {
-        let highest = frequency[0].hypot(frequency[1]);
+        let highest = libm::hypot(frequency[0], frequency[1]);
         let nodes = self.nodes(window, highest).max(OF_PLAIN_SUMS);
         self.table(window, nodes).at(frequency)
     }
@@ -177,7 +177,7 @@ impl ExitantTable {
         let values: Vec<Vec<Complex>> = (0..azimuths * rows)
             .into_par_iter()
             .map(|i| {
-                let (sin, cos) = grid.azimuth(i / rows).sin_cos();
+                let (sin, cos) = libm::sincos(grid.azimuth(i / rows));
                 let rho = (i % rows) as f64 * grid.rho.spacing;
                 let frequencies = [cos, sin].map(|along| FrequencyRow {
                     position: rho * along,
@@ -216,7 +216,7 @@ impl ExitantTable {
             let (window, frequency) = (self.axes[k].position, frequencies[k].position);
             let coordinates = self.coordinates[k].iter();
             coordinates
-                .map(|&t| Complex::from_polar(window.value(t), -TAU * frequency * t))
+                .map(|&t| cis(-TAU * frequency * t) * window.value(t))
                 .collect()
         };
         let [x, y] = [wave(0), wave(1)];

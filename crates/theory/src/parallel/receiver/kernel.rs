@@ -2,7 +2,7 @@
 
 use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::row::{FrequencyRow, Parts, add_scaled};
-use etendue_field::{Complex, Profile};
+use etendue_field::{Complex, Profile, cis};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;
 
@@ -31,7 +31,7 @@ impl Axis {
     /// frequency (docs/theory.md (19)).
     pub(crate) fn at(&self, coordinates: &[f64], [omega, nu]: [f64; 2]) -> Vec<Complex> {
         let rule = self.rule([omega, nu]);
-        let wave = |x: f64, u: f64| Complex::cis(-TAU * (omega * x + nu * u));
+        let wave = |x: f64, u: f64| cis(-TAU * (omega * x + nu * u));
         let kernel = |&t: &f64| self.rays(t, &rule).map(|(w, x, u)| wave(x, u) * w).sum();
         coordinates.iter().map(kernel).collect()
     }

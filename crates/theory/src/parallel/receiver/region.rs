@@ -165,18 +165,18 @@ impl ReceiverRegion {
         let disc = &self.discs[i];
         let mut angles = vec![0.0];
         for side in self.sides[0] {
-            let angle = ((side - disc.center[0]) / disc.radius).acos();
+            let angle = libm::acos((side - disc.center[0]) / disc.radius);
             angles.extend([angle, -angle]);
         }
         for side in self.sides[1] {
-            let angle = ((side - disc.center[1]) / disc.radius).asin();
+            let angle = libm::asin((side - disc.center[1]) / disc.radius);
             angles.extend([angle, 2.0 * FRAC_PI_2 - angle]);
         }
         for (_, other) in self.discs.iter().enumerate().filter(|(j, _)| *j != i) {
             let [du, dv] = [0, 1].map(|k| other.center[k] - disc.center[k]);
-            let (r, s, d) = (disc.radius, other.radius, du.hypot(dv));
-            let half = ((d * d + r * r - s * s) / (2.0 * d * r)).acos();
-            let middle = dv.atan2(du);
+            let (r, s, d) = (disc.radius, other.radius, libm::hypot(du, dv));
+            let half = libm::acos((d * d + r * r - s * s) / (2.0 * d * r));
+            let middle = libm::atan2(dv, du);
             angles.extend([middle - half, middle + half]);
         }
         // Not a number where they do not cross.
@@ -206,14 +206,14 @@ fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &Density<'_>) 
     nodes
         .map(|(angle, weight)| {
             let [u, v] = on(disc, angle);
-            density.along_u([from, u], v) * (disc.radius * angle.cos() * weight)
+            density.along_u([from, u], v) * (disc.radius * libm::cos(angle) * weight)
         })
         .sum()
 }
 
 /// The point of a circle at an angle.
 fn on(disc: &Disc, angle: f64) -> [f64; 2] {
-    let (sin, cos) = angle.sin_cos();
+    let (sin, cos) = libm::sincos(angle);
     [
         disc.center[0] + disc.radius * cos,
         disc.center[1] + disc.radius * sin,
@@ -234,7 +234,7 @@ fn distances(sides: Bounds, point: [f64; 2]) -> [f64; 2] {
         let [below, above] = [sides[k][0] - point[k], point[k] - sides[k][1]];
         [below.max(above).max(0.0), (-below).max(-above)]
     });
-    [0, 1].map(|end| along[0][end].hypot(along[1][end]))
+    [0, 1].map(|end| libm::hypot(along[0][end], along[1][end]))
 }
 
 /// Whether one disc holds another, or is the same.
@@ -247,5 +247,5 @@ fn apart(a: &Disc, b: &Disc) -> bool {
 }
 
 fn distance(a: &Disc, b: &Disc) -> f64 {
-    (a.center[0] - b.center[0]).hypot(a.center[1] - b.center[1])
+    libm::hypot(a.center[0] - b.center[0], a.center[1] - b.center[1])
 }

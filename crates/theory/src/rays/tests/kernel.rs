@@ -6,8 +6,9 @@ use crate::rays::sums::sums;
 use std::f64::consts::TAU;
 
 fn nodes(count: usize) -> Vec<Node> {
-    let number =
-        |i: usize, k: usize| ((i * (2 * k + 3)) as f64 * 0.618_033_988_75 + k as f64 * 0.37).sin();
+    let number = |i: usize, k: usize| {
+        libm::sin((i * (2 * k + 3)) as f64 * 0.618_033_988_75 + k as f64 * 0.37)
+    };
     let node = |i| Node {
         z: std::array::from_fn(|k| number(i, k)),
         weight: 1.5 + number(i, 4),

@@ -120,12 +120,12 @@ fn placed(
     [azimuth, twist]: [f64; 2],
     curvature: [f64; 3],
 ) -> Patch {
-    let (sin, cos) = azimuth.sin_cos();
+    let (sin, cos) = libm::sincos(azimuth);
     let x = leg.x * cos + leg.y * sin;
-    let d = -leg.d * theta0.cos() + x * theta0.sin();
+    let d = -leg.d * libm::cos(theta0) + x * libm::sin(theta0);
     let origin = leg.origin + leg.d * distance;
     let untwisted = Frame::new(origin, d, leg.x).unwrap();
-    let (sin, cos) = twist.sin_cos();
+    let (sin, cos) = libm::sincos(twist);
     let axis = untwisted.x * cos + untwisted.y * sin;
     Patch {
         frame: Frame::new(origin, d, axis).unwrap(),

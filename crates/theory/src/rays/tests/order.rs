@@ -22,7 +22,7 @@ fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Editio
 fn order(system: &System, plane: &Plane, widths: [f64; 2]) -> f64 {
     let [wide, narrow] = [0.1, 0.05].map(|e| error(system, plane, widths, e, Edition::Corrected));
     assert!(wide < 0.5 && narrow > 0.0, "{wide} {narrow}");
-    (wide / narrow).log2()
+    libm::log2(wide / narrow)
 }
 
 #[test]

@@ -110,10 +110,10 @@ impl TestReceiver {
         if !shape.contains(at[0], at[1]) {
             return 0.0;
         }
-        let across = (point[0] - at[0]).hypot(point[1] - at[1]);
-        let r = across.hypot(self.distance);
+        let across = libm::hypot(point[0] - at[0], point[1] - at[1]);
+        let r = libm::hypot(across, self.distance);
         let cosine = self.distance / r;
-        radiance * cosine.powf(exponent + 2.0) / (r * r) * self.passes(at, point)
+        radiance * libm::pow(cosine, exponent + 2.0) / (r * r) * self.passes(at, point)
     }
 }
 
