@@ -11,24 +11,23 @@ os.environ["RAYON_NUM_THREADS"] = "2"
 import numpy as np
 
 
-def serve(name, n, dtype):
+def serve(name, n):
     """A contender: one transform for each line of the input, its milliseconds as the answer; peak megabytes at the end."""
     import scipy.fft, pyfftw
 
-    complex_type = np.result_type(dtype, np.complex64)
-    reals = np.empty((n,) * 4, dtype)
+    reals = np.empty((n,) * 4)
     for i, block in enumerate(reals):  # no large array in passing: the peak counts
         block[...] = ((np.arange(n**3).reshape((n,) * 3) + i * n**3) * 0.618033988749895) % 1 - 0.5
     if name == "scipy":
         transform = lambda: scipy.fft.rfftn(reals, workers=2)
     elif name == "fftw":
-        source = pyfftw.empty_aligned(reals.shape, dtype)
-        spectrum = pyfftw.empty_aligned((n, n, n, n // 2 + 1), complex_type)
+        source = pyfftw.empty_aligned(reals.shape, "float64")
+        spectrum = pyfftw.empty_aligned((n, n, n, n // 2 + 1), "complex128")
         transform = pyfftw.FFTW(source, spectrum, axes=range(4), threads=2, flags=("FFTW_MEASURE",))
         source[...] = reals
     elif name == "fftw in place":
-        spectrum = pyfftw.empty_aligned((n, n, n, n // 2 + 1), complex_type)
-        source = spectrum.view(dtype)[..., :n]
+        spectrum = pyfftw.empty_aligned((n, n, n, n // 2 + 1), "complex128")
+        source = spectrum.view(np.float64)[..., :n]
         transform = pyfftw.FFTW(source, spectrum, axes=range(4), threads=2, flags=("FFTW_MEASURE",))
     for line in itertools.chain(["warm-up"], sys.stdin):
         if name == "fftw in place":
@@ -45,17 +44,16 @@ def serve(name, n, dtype):
 def check(program):
     """The largest difference from numpy.fft.rfftn, relative to its root mean square, over some shapes."""
     for shape in [(8, 8, 8, 8), (5, 6, 7, 9), (32, 24, 16, 20), (1, 13, 2, 31)]:
-        for kernels in ("native", "portable"):
-            reals = np.random.default_rng(1).uniform(-1, 1, shape)
-            with tempfile.TemporaryDirectory() as folder:
-                files = [os.path.join(folder, name) for name in ("in", "out")]
-                reals.tofile(files[0])
-                subprocess.run([program, "file", *map(str, shape), kernels, *files], check=True)
-                found = np.fromfile(files[1], np.complex128)
-            expected = np.fft.rfftn(reals)
-            error = np.abs(found.reshape(expected.shape) - expected).max() / np.sqrt(np.mean(np.abs(expected) ** 2))
-            print(f"{shape} {kernels}: {error:.1e}")
-            assert error < 1e-14  # rounding
+        reals = np.random.default_rng(1).uniform(-1, 1, shape)
+        with tempfile.TemporaryDirectory() as folder:
+            files = [os.path.join(folder, name) for name in ("in", "out")]
+            reals.tofile(files[0])
+            subprocess.run([program, "file", *map(str, shape), *files], check=True)
+            found = np.fromfile(files[1], np.complex128)
+        expected = np.fft.rfftn(reals)
+        error = np.abs(found.reshape(expected.shape) - expected).max() / np.sqrt(np.mean(np.abs(expected) ** 2))
+        print(f"{shape}: {error:.1e}")
+        assert error < 1e-14  # rounding
 
 
 class Contender:
@@ -73,13 +71,12 @@ class Contender:
         return float(self.process.stdout.readline())
 
 
-def race(program, rounds, n, dtype):
-    own = lambda *words: [program, "serve", str(n), {"float32": "f32", "float64": "f64"}[dtype], *words]
-    peer = lambda name: [sys.executable, __file__, "--serve", name, str(n), dtype]
+def race(program, rounds, n):
+    own = lambda memory: [program, "serve", str(n), memory]
+    peer = lambda name: [sys.executable, __file__, "--serve", name, str(n)]
     commands = {
-        "own, memory kept": own("native", "kept"),
-        "own, portable kernels, memory kept": own("portable", "kept"),
-        "own, new memory": own("native", "fresh"),
+        "own, memory kept": own("kept"),
+        "own, new memory": own("fresh"),
         "scipy (new memory)": peer("scipy"),
         "fftw, memory kept": peer("fftw"),
         "fftw in place, memory kept": peer("fftw in place"),
@@ -92,7 +89,7 @@ def race(program, rounds, n, dtype):
         for contender in contenders.values():
             contender.run()
     scipy = contenders["scipy (new memory)"].times
-    print(f"\n{n}^4 {dtype}, {rounds} rounds; load {os.getloadavg()[0]:.1f}")
+    print(f"\n{n}^4, {rounds} rounds; load {os.getloadavg()[0]:.1f}")
     print(f"{'':36}{'median ms':>10}{'least ms':>10}{'/ scipy':>10}{'peak MB':>10}")
     for name, contender in contenders.items():
         times = contender.times
@@ -102,9 +99,8 @@ def race(program, rounds, n, dtype):
 
 if __name__ == "__main__":
     if sys.argv[1] == "--serve":
-        serve(sys.argv[2], int(sys.argv[3]), sys.argv[4])
+        serve(sys.argv[2], int(sys.argv[3]))
     else:
         check(sys.argv[1])
         for n in map(int, sys.argv[3:] or ["64", "96"]):
-            for dtype in ("float32", "float64"):
-                race(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 9, n, dtype)
+            race(sys.argv[1], int(sys.argv[2]) if len(sys.argv) > 2 else 9, n)

@@ -12,6 +12,7 @@
 
 mod crossing;
 mod environment;
+pub mod fft;
 mod field_grid;
 mod frame;
 mod frequency;

@@ -1,17 +1,16 @@
 //! Times the 4D real transform, or transforms a file; the other side of `tests/peers/fft4d.py`.
 //!
 //!     cargo run --release -p etendue-spectrum --example fft4d -- time 64 [ROUNDS] [THREADS]
-//!     cargo run --release -p etendue-spectrum --example fft4d -- serve 64 f32|f64 native|portable kept|fresh
-//!     cargo run --release -p etendue-spectrum --example fft4d -- file NX NY NU NV native|portable IN OUT
+//!     cargo run --release -p etendue-spectrum --example fft4d -- serve 64 kept|fresh
+//!     cargo run --release -p etendue-spectrum --example fft4d -- file NX NY NU NV IN OUT
 //!
 //! `serve` answers each line of its input with the milliseconds of one transform, and the end of it with its peak
 //! memory in megabytes. `file` reads and writes raw little-endian f64.
 
 #![allow(clippy::print_stdout, reason = "its purpose")]
 
-use etendue_spectrum::field::{Kernels, RealFft4, real_mut};
-use rustfft::FftNum;
-use rustfft::num_complex::Complex;
+use etendue_field::Complex;
+use etendue_spectrum::field::{RealFft4, real_mut};
 use std::io::{BufRead, Write};
 use std::time::Instant;
 
@@ -25,40 +24,30 @@ fn main() -> Result<(), Failure> {
             let number = |i: usize, default| more.get(i).map_or(Ok(default), |s| s.parse());
             time(n.parse()?, number(0, 9)?, number(1, 2)?)
         }
-        ["serve", n, "f32", kernels, memory] => serve::<f32>(n.parse()?, kernels, memory),
-        ["serve", n, "f64", kernels, memory] => serve::<f64>(n.parse()?, kernels, memory),
-        ["file", nx, ny, nu, nv, kernels, from, to] => {
+        ["serve", n, memory] => serve(n.parse()?, memory),
+        ["file", nx, ny, nu, nv, from, to] => {
             let shape = [nx.parse()?, ny.parse()?, nu.parse()?, nv.parse()?];
-            file(shape, kernels, from, to)
+            file(shape, from, to)
         }
         _ => Err("see the head of this file for the arguments".into()),
     }
 }
 
-fn kernels(word: &str) -> Result<Kernels, Failure> {
-    match word {
-        "native" => Ok(Kernels::Native),
-        "portable" => Ok(Kernels::Portable),
-        _ => Err(format!("kernels are native or portable, not {word}").into()),
-    }
-}
-
 /// A transform with its input, n⁴ reals, and the memory it is done in.
-struct Job<T: FftNum> {
-    plan: RealFft4<T>,
-    input: Vec<T>,
-    place: Vec<Complex<T>>,
+struct Job {
+    plan: RealFft4,
+    input: Vec<f64>,
+    place: Vec<Complex>,
     /// Whether each transform is done in new memory.
     fresh: bool,
 }
 
-impl<T: FftNum> Job<T> {
-    fn new(n: usize, kernels: Kernels, fresh: bool) -> Self {
-        let plan = RealFft4::new([n; 4], kernels);
+impl Job {
+    fn new(n: usize, fresh: bool) -> Self {
+        let plan = RealFft4::new([n; 4]);
         let value = |i: usize| (i as f64 * 0.618_033_988_749_895).fract() - 0.5;
-        let input = (0..n.pow(4)).map(|i| T::from_f64(value(i)).unwrap_or_else(T::zero));
         Self {
-            input: input.collect(),
+            input: (0..n.pow(4)).map(value).collect(),
             place: Vec::new(),
             plan,
             fresh,
@@ -108,17 +97,12 @@ fn time(n: usize, rounds: usize, threads: usize) -> Result<(), Failure> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build_global()?;
-    for kernels in [Kernels::Native, Kernels::Portable] {
-        for fresh in [false, true] {
-            let mut single = Job::<f32>::new(n, kernels, fresh);
-            let mut double = Job::<f64>::new(n, kernels, fresh);
-            single.run();
-            double.run();
-            let times: Vec<[f64; 2]> = (0..rounds).map(|_| [single.run(), double.run()]).collect();
-            let [f32, f64] = [0, 1].map(|i| median(times.iter().map(|t| t[i]).collect()));
-            let memory = if fresh { "fresh" } else { "kept" };
-            println!("{n}^4 {kernels:?}, memory {memory}: f32 {f32:.1} ms, f64 {f64:.1} ms");
-        }
+    for fresh in [false, true] {
+        let mut job = Job::new(n, fresh);
+        job.run();
+        let milliseconds = median((0..rounds).map(|_| job.run()).collect());
+        let memory = if fresh { "fresh" } else { "kept" };
+        println!("{n}^4, memory {memory}: {milliseconds:.1} ms");
     }
     println!("peak {:.0} MB", peak());
     Ok(())
@@ -129,8 +113,8 @@ fn median(mut values: Vec<f64>) -> f64 {
     values[values.len() / 2]
 }
 
-fn serve<T: FftNum>(n: usize, word: &str, memory: &str) -> Result<(), Failure> {
-    let mut job = Job::<T>::new(n, kernels(word)?, memory == "fresh");
+fn serve(n: usize, memory: &str) -> Result<(), Failure> {
+    let mut job = Job::new(n, memory == "fresh");
     job.run();
     for line in std::io::stdin().lock().lines() {
         line?;
@@ -141,8 +125,8 @@ fn serve<T: FftNum>(n: usize, word: &str, memory: &str) -> Result<(), Failure> {
     Ok(())
 }
 
-fn file(shape: [usize; 4], word: &str, from: &str, to: &str) -> Result<(), Failure> {
-    let plan = RealFft4::<f64>::new(shape, kernels(word)?);
+fn file(shape: [usize; 4], from: &str, to: &str) -> Result<(), Failure> {
+    let plan = RealFft4::new(shape);
     let bytes = std::fs::read(from)?;
     let reals: Vec<f64> = bytes
         .as_chunks()

@@ -17,6 +17,6 @@ pub use aliasing::Aliasing;
 pub use bins::{RadialBins, full_radial_of};
 pub use cells::{FieldCells, FieldTransform};
 pub use cross::FullRadial;
-pub use fft::{Kernels, RealFft4, real, real_mut};
+pub use fft::{RealFft4, real, real_mut};
 pub use measure::{FieldMeasurement, FieldOptions, measure_field};
 pub use spectrum::FieldSpectrum;

@@ -1,17 +1,16 @@
 use super::kernel::{Kernel, WIDTH};
 use super::spread::Placement;
+use crate::fft::{COLUMNS, Fft, Row};
 use crate::{Complex, FrequencyAxis, SliceGrid};
 use ndarray::ArrayViewMut2;
-use rustfft::{Fft, FftPlannerScalar};
-use std::sync::Arc;
 
 /// From padded fine grids to slices: wrap, transform, keep the wanted frequencies, divide by the
 /// transform of the spreading kernel.
 pub(crate) struct FineTransform {
     placement: Placement,
     grid: SliceGrid,
-    along_row: Arc<dyn Fft<f64>>,
-    along_column: Arc<dyn Fft<f64>>,
+    along_column: Fft,
+    along_row: Fft,
     /// 1/kernel at ρ ≥ 0, and at all ν.
     correction: [Vec<f64>; 2],
 }
@@ -19,34 +18,30 @@ pub(crate) struct FineTransform {
 /// Memory for [`FineTransform::slices`].
 #[derive(Clone, Debug)]
 pub(crate) struct Workspace {
-    /// The fine grids of two azimuths, one real and one imaginary, [row, column].
-    cells: Vec<Complex>,
-    /// Their transform at the wanted ν, [ν, row].
-    columns: Vec<Complex>,
-    scratch: Vec<Complex>,
+    /// Eight columns of a transform, and its scratch memory.
+    eight: [Vec<Row>; 2],
+    /// The transform along columns at the wanted ρ, negative ones too: [ρ, column].
+    rows: Vec<Complex>,
+    /// That along rows as well, at the wanted ν: [ρ, ν].
+    frequencies: Vec<Complex>,
 }
 
 #[cfg(test)]
 impl Workspace {
     pub(crate) fn bytes(&self) -> usize {
         let Self {
-            cells,
-            columns,
-            scratch,
+            eight,
+            rows,
+            frequencies,
         } = self;
-        [cells, columns, scratch]
-            .map(|v| size_of_val(&**v))
-            .iter()
-            .sum()
+        let eight = eight.iter().map(|v| size_of_val(&**v)).sum::<usize>();
+        eight + size_of_val(&**rows) + size_of_val(&**frequencies)
     }
 }
 
 impl FineTransform {
     /// The transform of fine grids laid out as `placement`, at the frequencies of `grid`.
     pub(crate) fn new(kernel: &Kernel, placement: Placement, grid: SliceGrid) -> Self {
-        // The scalar planner: the automatic one picks other algorithms on other processors, and
-        // other bits.
-        let mut planner = FftPlannerScalar::new();
         let correction = |axis: &FrequencyAxis, cells: usize| -> Vec<f64> {
             let index = |i: usize| (i as f64 - axis.half as f64) / cells as f64;
             let values = (0..axis.count()).map(|i| 1.0 / kernel.transform(index(i)));
@@ -55,8 +50,8 @@ impl FineTransform {
         Self {
             placement,
             grid,
-            along_row: planner.plan_fft_forward(placement.columns),
-            along_column: planner.plan_fft_forward(placement.rows),
+            along_column: Fft::new(placement.rows),
+            along_row: Fft::new(placement.columns),
             correction: [
                 correction(&grid.rho, placement.rows).split_off(grid.rho.half),
                 correction(&grid.nu, placement.columns),
@@ -64,26 +59,29 @@ impl FineTransform {
         }
     }
 
-    /// Cells of a workspace.
-    pub(crate) fn workspace_cells(&self) -> usize {
-        let Placement { rows, columns, .. } = self.placement;
-        (columns + self.grid.nu.count()) * rows + self.scratch()
+    /// Complex numbers in the rows of a workspace, and among its frequencies.
+    fn sizes(&self) -> [usize; 2] {
+        [self.placement.columns, self.grid.nu.count()].map(|n| n * self.grid.rho.count())
     }
 
-    fn scratch(&self) -> usize {
-        usize::max(
-            self.along_row.get_inplace_scratch_len(),
-            self.along_column.get_inplace_scratch_len(),
-        )
+    /// Rows of eight columns: the longer way.
+    fn longest(&self) -> usize {
+        self.placement.rows.max(self.placement.columns)
+    }
+
+    /// Complex numbers of a workspace.
+    pub(crate) fn workspace_cells(&self) -> usize {
+        2 * COLUMNS * self.longest() + self.sizes().iter().sum::<usize>()
     }
 
     /// The memory it works in.
     pub(crate) fn workspace(&self) -> Workspace {
-        let Placement { rows, columns, .. } = self.placement;
+        let [rows, frequencies] = self.sizes().map(|n| vec![Complex::ZERO; n]);
+        let eight = || vec![Row::default(); self.longest()];
         Workspace {
-            cells: vec![Complex::ZERO; rows * columns],
-            columns: vec![Complex::ZERO; self.grid.nu.count() * rows],
-            scratch: vec![Complex::ZERO; self.scratch()],
+            eight: [eight(), eight()],
+            rows,
+            frequencies,
         }
     }
 
@@ -98,54 +96,78 @@ impl FineTransform {
         work: &mut Workspace,
         slices: [Option<ArrayViewMut2<'_, Complex>>; 2],
     ) {
-        self.wrap(fine, &mut work.cells);
-        self.along_row
-            .process_with_scratch(&mut work.cells, &mut work.scratch);
-        self.gather(&work.cells, &mut work.columns);
-        self.along_column
-            .process_with_scratch(&mut work.columns, &mut work.scratch);
+        self.columns(fine, &mut work.eight, &mut work.rows);
+        self.rows(&work.rows, &mut work.eight, &mut work.frequencies);
 
-        let rows = self.placement.rows;
-        let last = self.grid.nu.count() - 1;
+        let nus = self.grid.nu.count();
         // 1/2 for a, 1/(2i) for b.
         let factors = [Complex::new(0.5, 0.0), Complex::new(0.0, -0.5)];
         for ((slice, sign), factor) in slices.into_iter().zip([1.0, -1.0]).zip(factors) {
             let Some(mut slice) = slice else { continue };
             for ((m, n), value) in slice.indexed_iter_mut() {
-                let z = work.columns[n * rows + m];
-                let mirrored = work.columns[(last - n) * rows + (rows - m) % rows].conj();
+                let (up, down) = (self.grid.rho.half + m, self.grid.rho.half - m);
+                let z = work.frequencies[up * nus + n];
+                let mirrored = work.frequencies[down * nus + nus - 1 - n].conj();
                 let correction = scale * self.correction[0][m] * self.correction[1][n];
                 *value = (z + mirrored * sign) * factor * correction;
             }
         }
     }
 
-    /// Wraps two padded grids onto the period, as the real and imaginary parts of `cells`.
-    fn wrap(&self, [a, b]: [&[f64]; 2], cells: &mut [Complex]) {
+    /// Wraps two padded grids onto the period, as real and imaginary part of one, and transforms
+    /// its columns.
+    fn columns(&self, [a, b]: [&[f64]; 2], eight: &mut [Vec<Row>; 2], to: &mut [Complex]) {
         let Placement { rows, columns, .. } = self.placement;
         let stride = self.placement.padded()[1];
         // A point spreads from three cells before its own on.
         let before = WIDTH / 2 - 1;
-        cells.fill(Complex::ZERO);
-        for (i, (a, b)) in a
-            .chunks_exact(stride)
-            .zip(b.chunks_exact(stride))
-            .enumerate()
-        {
-            let row = (i + rows - before) % rows * columns;
-            for (j, (a, b)) in a.iter().zip(b).enumerate() {
-                cells[row + (j + columns - before) % columns] += Complex::new(*a, *b);
+        let [cells, scratch] = eight.each_mut().map(|v| &mut v[..rows]);
+        for first in (0..columns).step_by(COLUMNS) {
+            let count = COLUMNS.min(columns - first);
+            cells.fill(Row::default());
+            for (i, (a, b)) in a
+                .chunks_exact(stride)
+                .zip(b.chunks_exact(stride))
+                .enumerate()
+            {
+                let cell = &mut cells[(i + rows - before) % rows];
+                for c in 0..count {
+                    // Where the column lies in the padded row, once or, near an end, twice.
+                    let at = (first + c + before) % columns;
+                    for j in [at, at + columns].into_iter().filter(|j| *j < stride) {
+                        cell.re[c] += a[j];
+                        cell.im[c] += b[j];
+                    }
+                }
+            }
+            self.along_column.forward(cells, scratch);
+            for (m, row) in to.chunks_exact_mut(columns).enumerate() {
+                let from = &cells[(m + rows - self.grid.rho.half) % rows];
+                for (c, value) in row[first..first + count].iter_mut().enumerate() {
+                    *value = Complex::new(from.re[c], from.im[c]);
+                }
             }
         }
     }
 
-    /// Picks the wanted ν out of the transformed rows: [row, column] to [ν, row].
-    fn gather(&self, cells: &[Complex], picked: &mut [Complex]) {
-        let Placement { rows, columns, .. } = self.placement;
-        for (n, column) in picked.chunks_exact_mut(rows).enumerate() {
-            let from = (n + columns - self.grid.nu.half) % columns;
-            for (row, value) in column.iter_mut().enumerate() {
-                *value = cells[row * columns + from];
+    /// Transforms rows, eight at a time, and keeps the wanted ν.
+    fn rows(&self, rows: &[Complex], eight: &mut [Vec<Row>; 2], to: &mut [Complex]) {
+        let columns = self.placement.columns;
+        let nus = self.grid.nu.count();
+        let [cells, scratch] = eight.each_mut().map(|v| &mut v[..columns]);
+        let groups = rows.chunks(COLUMNS * columns);
+        for (rows, to) in groups.zip(to.chunks_mut(COLUMNS * nus)) {
+            for (c, row) in rows.chunks_exact(columns).enumerate() {
+                for (cell, value) in cells.iter_mut().zip(row) {
+                    (cell.re[c], cell.im[c]) = (value.re, value.im);
+                }
+            }
+            self.along_row.forward(cells, scratch);
+            for (c, row) in to.chunks_exact_mut(nus).enumerate() {
+                for (n, value) in row.iter_mut().enumerate() {
+                    let from = &cells[(n + columns - self.grid.nu.half) % columns];
+                    *value = Complex::new(from.re[c], from.im[c]);
+                }
             }
         }
     }

@@ -1,4 +1,4 @@
-use super::fft::{Kernels, RealFft4, real, real_mut};
+use super::fft::{RealFft4, real, real_mut};
 use super::spectrum::FieldSpectrum;
 use super::spline::{taps, transform};
 use etendue_field::{Assignment, Complex, FieldGrid, TwoPlane};
@@ -6,14 +6,11 @@ use ndarray::Array4;
 use rayon::prelude::*;
 
 /// The plan that takes weighted rays to a 4D grid and the grid to its spectrum.
-///
-/// Its transform uses [`Kernels::Portable`], so a spectrum has the same bits on every processor, as the slices
-/// have; [`Kernels::Native`] would save some 40 % of a transform's time.
 #[derive(Debug)]
 pub struct FieldTransform {
     grid: FieldGrid,
     assignment: Assignment,
-    fft: RealFft4<f64>,
+    fft: RealFft4,
     /// What each axis is multiplied by, at each index of the transform.
     factors: [Vec<f64>; 4],
 }
@@ -32,7 +29,7 @@ impl FieldTransform {
         Self {
             grid,
             assignment,
-            fft: RealFft4::new(grid.cells, Kernels::Portable),
+            fft: RealFft4::new(grid.cells),
             factors: axes.map(|axis| (0..grid.cells[axis]).map(|i| factor(axis, i)).collect()),
         }
     }
