@@ -1,0 +1,94 @@
+//! How long each stage of a run takes: photons, their sums on slices, and Fourier transforms.
+//!
+//!     cargo bench -p etendue-validation
+//!     cargo bench -p etendue-validation -- photons      # those whose name holds a word
+//!
+//! Throughput is in photons, crossings or cells a second, on one thread but for the 4D transform.
+
+#![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
+
+use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use etendue_field::transform::SliceTransform;
+use etendue_field::{Crossing, PhotonSource};
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::field::RealFft4;
+use etendue_trace::Tracer;
+use std::hint::black_box;
+use std::path::Path;
+
+/// Photons of a batch: a net of them, large enough that its first block does not count.
+const PHOTONS: u64 = 1 << 16;
+
+/// A scene of the repository, in batches of [`PHOTONS`].
+fn scene(name: &str) -> Scene {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
+    let text = std::fs::read_to_string(folder.join(format!("{name}.ron"))).unwrap();
+    let mut file = SceneFile::parse(&text).unwrap();
+    file.run.photons = PHOTONS * u64::from(file.run.batches);
+    resolve(name, file, &folder, u64::MAX).unwrap()
+}
+
+/// Emission, hits, bounces and crossings of all planes of a batch.
+fn photons(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("photons");
+    group.sample_size(20);
+    group.throughput(Throughput::Elements(PHOTONS));
+    for name in ["travel", "bench_peer", "fig9b", "fig10", "mesh_blocker"] {
+        let tracer = Tracer::new(&scene(name));
+        group.bench_function(name, |bencher| {
+            let mut record = |_, crossings: &[Crossing]| {
+                black_box(crossings);
+            };
+            bencher.iter(|| tracer.emit(0, &mut record, &|_| ()));
+        });
+    }
+    group.finish();
+}
+
+/// The crossings of a plane, deposited on the slices of its grid; and the slices made of the sum.
+fn slices(criterion: &mut Criterion) {
+    let scene = scene("bench_peer");
+    let mut rays = Vec::new();
+    let mut record = |_, crossings: &[Crossing]| rays.extend_from_slice(crossings);
+    Tracer::new(&scene).emit(0, &mut record, &|_| ());
+    let transform = SliceTransform::new(&scene.planes[0].grid);
+    let mut sum = transform.accumulator();
+
+    let mut group = criterion.benchmark_group("slices");
+    group.sample_size(20);
+    group.throughput(Throughput::Elements(rays.len() as u64));
+    group.bench_function("deposit", |bencher| {
+        bencher.iter(|| {
+            for crossing in &rays {
+                sum.deposit(&crossing.ray, crossing.weight);
+            }
+        });
+    });
+    let grid = &scene.planes[0].grid;
+    let cells = grid.azimuths * grid.rho.count() * grid.nu.count();
+    group.throughput(Throughput::Elements(cells as u64));
+    group.bench_function("transform", |bencher| bencher.iter(|| sum.finish(1.0)));
+    group.finish();
+}
+
+/// The 4D transform of a measured field, on all threads.
+fn field(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("field");
+    group.sample_size(10);
+    for n in [32, 48] {
+        let plan = RealFft4::new([n; 4]);
+        let mut data = plan.padded(&vec![1.0; n.pow(4)]);
+        group.throughput(Throughput::Elements(n.pow(4) as u64));
+        group.bench_function(format!("{n}^4"), |bencher| {
+            bencher.iter(|| {
+                plan.forward(&mut data);
+                // As large as before, or it would overflow in the end.
+                data.iter_mut().for_each(|z| *z /= n.pow(2) as f64);
+            });
+        });
+    }
+    group.finish();
+}
+
+criterion_group!(stages, photons, slices, field);
+criterion_main!(stages);
