@@ -480,6 +480,18 @@ fn decided_against_chain(name: &str) {
     });
 }
 
+/// Light that a blocker keeps from meeting a hollow surface again does not count before the blocker;
+/// what a floor inside it stops goes on from the floor.
+#[test]
+fn light_that_would_meet_its_surface_again_is_decided() {
+    for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
+        let scene = edited(name, &[MORE]);
+        let reference = by_reference(&scene, 0, &backward(&scene));
+        let judged = verdict(&scene, &photons(&scene), &reference);
+        assert_eq!(judged, Verdict::Pass, "{name}");
+    }
+}
+
 /// A plane on the surface after the one with a BRDF has coordinates of its own.
 #[test]
 fn a_plane_before_a_second_surface_is_decided() {
