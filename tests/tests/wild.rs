@@ -480,6 +480,49 @@ fn decided_against_chain(name: &str) {
     });
 }
 
+/// Light that a blocker keeps from meeting a hollow surface again does not count before the blocker;
+/// what a floor inside it stops goes on from the floor.
+#[test]
+fn light_that_would_meet_its_surface_again_is_decided() {
+    for name in ["stopped_in_a_hollow", "floor_in_a_hollow"] {
+        let scene = edited(name, &[MORE]);
+        let reference = by_reference(&scene, 0, &backward(&scene));
+        let judged = verdict(&scene, &photons(&scene), &reference);
+        assert_eq!(judged, Verdict::Pass, "{name}");
+    }
+}
+
+/// A window so narrow that hardly any ray lands in it which is aimed by the chain of affine maps:
+/// rays followed back from it as they go have next to no noise.
+#[test]
+fn a_narrow_window_is_decided() {
+    let scene = scene("pinhole_beyond_glass");
+    let prediction = as_it_is(&scene, 0);
+    let error = prediction.quadrature_error.unwrap();
+    assert!(error < 0.01, "{error}: a tenth of the resolution");
+    assert_eq!(
+        verdict(&scene, &backward(&scene), &prediction),
+        Verdict::Pass
+    );
+}
+
+/// Photons drawn by the sky alone hardly ever come from where a lobe looks: some are drawn by the
+/// cosine, and while a few of these carry the light they do not contradict the other tracer.
+#[test]
+fn a_dim_part_of_the_sky_is_found() {
+    let few = scene("dim_lobe_of_a_sky");
+    let reference = by_reference(&few, 0, &backward(&few));
+    let judged = verdict(&few, &photons(&few), &reference);
+    assert_eq!(judged, Verdict::Undecided);
+    let many = edited("dim_lobe_of_a_sky", &[MORE]);
+    let [found, there] = [photons(&many), backward(&many)].map(|measured| {
+        let batches = measured.at_plane(0).map(|batch| batch.slices.at_zero());
+        batches.sum::<f64>()
+    });
+    // Photons have a noise of 15 %; without those by the cosine they find 10⁻⁹ of the light.
+    assert!((found / there - 1.0).abs() < 0.5, "{found} of {there}");
+}
+
 /// A plane on the surface after the one with a BRDF has coordinates of its own.
 #[test]
 fn a_plane_before_a_second_surface_is_decided() {

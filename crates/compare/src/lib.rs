@@ -25,6 +25,7 @@ mod report;
 mod residuals;
 mod score;
 mod system;
+mod uneven;
 mod verdict;
 mod ways;
 mod work;

@@ -7,6 +7,7 @@ use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
 use crate::residuals::{Residuals, crossed_power};
 use crate::score::{ParameterReport, score};
+use crate::uneven::too_few;
 use crate::verdict::{Test, Verdict};
 use etendue_field::{SliceGrid, Slices, modulus, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
@@ -124,7 +125,7 @@ impl Compared<'_> {
             // Residuals that are all zero have no p.
             p_value.is_none_or(|p| p >= test.level) || self.agrees_within(0.0, test)
         };
-        let photons_needed = self.photons_needed(&agreement, test);
+        let photons_needed = self.photons_needed(&agreement, agrees, test);
         let open = self.open_question(&agreement, agrees, photons_needed, test);
         let verdict = match (&open, agrees) {
             (Some(_), _) => Verdict::Undecided,
@@ -179,6 +180,11 @@ impl Compared<'_> {
                 "too few photons in the window, {inside} in {batches} batches, or too few rays of \
                  the prediction: one batch holds none{needs}"
             ))
+        } else if let Some(each) = self.uneven(agrees) {
+            Some(format!(
+                "a few heavy photons, or rays of the prediction, carry the light, which varies as if \
+                 each batch held {each:.1}: too few to disagree{needs}"
+            ))
         } else if agreement.is_blurred(self.prediction, agrees) || !agrees && self.is_excused(test)
         {
             let error = percent(self.prediction.systematic_error().unwrap_or_default());
@@ -225,7 +231,7 @@ impl Compared<'_> {
     }
 
     /// Photons that would decide; `None` where that is not known, or more of them do not help.
-    fn photons_needed(&self, agreement: &Agreement, test: &Test) -> Option<f64> {
+    fn photons_needed(&self, agreement: &Agreement, agrees: bool, test: &Test) -> Option<f64> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         if self.predicted.is_dark() || inside == 0 {
             None
@@ -240,8 +246,21 @@ impl Compared<'_> {
             let less_noise = agreement.photons_needed(emitted, self.prediction, test);
             more.into_iter().chain(less_noise).max_by(f64::total_cmp)
         } else {
-            agreement.photons_needed(emitted, self.prediction, test)
+            let uneven = self.uneven(agrees);
+            let more = uneven.map(|each| (emitted as f64 * EACH / each).ceil());
+            let less_noise = agreement.photons_needed(emitted, self.prediction, test);
+            more.into_iter().chain(less_noise).max_by(f64::total_cmp)
         }
+    }
+
+    /// Where measured and predicted disagree: rays of equal weight that would vary like those of a
+    /// batch, or of a replicate of the prediction, if they are too few.
+    fn uneven(&self, agrees: bool) -> Option<f64> {
+        let batches = self.measurement.at_plane(self.index);
+        let measured = too_few(batches.map(|batch| &batch.slices));
+        let predicted = too_few(self.prediction.replicates.iter());
+        let fewest = measured.into_iter().chain(predicted);
+        fewest.min_by(f64::total_cmp).filter(|_| !agrees)
     }
 
     /// Whether photons brought no light, or so little that a prediction could not tell it from its

@@ -468,6 +468,46 @@ fn a_batch_without_photons_decides_nothing() {
     assert!(report.photons_needed.is_some() && report.undecided.is_some());
 }
 
+/// One heavy photon carries half of the light, be it of a batch or of a replicate of the prediction:
+/// others like it may not have come yet.
+#[test]
+fn light_of_a_few_heavy_photons_decides_nothing() {
+    let [truth, _] = spectrum(1.0);
+    let [quiet, dim] = [1.0, 0.1].map(|share| {
+        let mut truth = truth.clone();
+        truth.half.mapv_inplace(|f| f * share);
+        measurement(&truth, 0.002, 4)
+    });
+    let mut uneven = Measurement::new(dim.planes().to_vec());
+    for (i, batch) in dim.batches().enumerate() {
+        let mut batch = batch.clone();
+        if i == 7 {
+            batch.planes[0].slices.half.mapv_inplace(|f| f * 64.0);
+        }
+        uneven.insert(batch).unwrap();
+    }
+    let replicates = |of: &Measurement| {
+        let batches = of.at_plane(0).map(|batch| batch.slices.clone());
+        batches.collect::<Vec<Slices>>()
+    };
+    let judged = |measured: &Measurement, other: &Measurement| {
+        let reference = Prediction {
+            slices: etendue_spectrum::estimate::slices(other, 0).unwrap().mean,
+            replicates: replicates(other),
+            class: Class::Reference,
+            ..prediction(1.0)
+        };
+        compare(measured, 0, &reference, &TEST).unwrap().report
+    };
+    assert_eq!(judged(&dim, &quiet).verdict, Verdict::Fail);
+    for report in [judged(&uneven, &quiet), judged(&quiet, &uneven)] {
+        assert_eq!(report.verdict, Verdict::Undecided, "{report:?}");
+        let why = report.undecided.unwrap();
+        assert!(why.contains("heavy"), "{why}");
+        assert!(report.photons_needed.unwrap() > 6400.0);
+    }
+}
+
 /// Noise is held against the larger of both spectra: a prediction that is ten times too dim fails
 /// where one that is right passes, and agreement in more noise than the resolution is none.
 #[test]

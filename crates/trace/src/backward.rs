@@ -1,4 +1,5 @@
 mod connected;
+mod end;
 mod reflected;
 
 use crate::bounce::at;
@@ -14,10 +15,11 @@ use crate::targets::{Target, Targets};
 use crate::tracer::rounding;
 use connected::connection;
 pub use connected::finds;
+use end::End;
 use etendue_field::random::{self, Stream};
 use etendue_field::{
-    Crossing, Frame, Ledger, Light, Orientation, Patch, PhotonSource, Reflectance, Shape, Side,
-    Specular, TwoPlane, VirtualPlane,
+    Crossing, Frame, Ledger, Light, Orientation, Patch, PhotonSource, Reflectance, Shape, Specular,
+    TwoPlane, VirtualPlane,
 };
 use etendue_scene::{Event, Object, PatchObject, Scene};
 use glam::DVec3;
@@ -194,26 +196,25 @@ impl Backward {
         let Some((on_leg, area)) = on_leg else {
             return Crossing { ray, weight: 0.0 };
         };
-        let (distance, side) = (looker.station.distance, looker.station.side);
-        let found = self.incident(looker.leg, &on_leg, distance, side, 1, &words);
+        let found = self.incident(looker.leg, &on_leg, End::of(&looker.station), 1, &words);
         Crossing {
             ray,
             weight: area * found / density,
         }
     }
 
-    /// The radiance that arrives at `distance` along a ray of a leg, given where the leg begins; `block` numbers the random
+    /// The radiance that arrives at the end of a ray of a leg, given where the leg begins; `block` numbers the random
     /// numbers of the next surface on its way back.
     fn incident(
         &self,
         leg: usize,
         ray: &TwoPlane,
-        distance: f64,
-        side: Side,
+        end: End,
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
         let this = &self.legs[leg];
+        let (distance, side) = end.at();
         let Some(leaves) = &this.leaves else {
             let radiance = self.light.radiance(ray);
             if radiance <= 0.0 {
@@ -224,7 +225,7 @@ impl Backward {
                 .visibility(ray, 0.0, distance, side, |what| what.is(this.ends));
             return radiance * visible;
         };
-        let Some((begin, target)) = leaves.targets.last(ray) else {
+        let Some((begin, target)) = leaves.targets.last(ray, end.of_line()) else {
             return 0.0;
         };
         let from = begin + leaves.rounding;
@@ -300,14 +301,14 @@ impl Backward {
         if !matches!(this.ends, Some(Object::Surface(_))) {
             let leaves = this.leaves.as_ref();
             let from = leaves.map_or(0.0, |leaves| {
-                let left = leaves.targets.last(ray);
+                let left = leaves.targets.last(ray, end);
                 left.map_or(0.0, |(at, _)| at + leaves.rounding)
             });
             if this.obstacles.is_behind(this.ends, ray, from, end) {
                 return 0.0;
             }
         }
-        self.incident(leg, ray, end, Side::Before, block, words)
+        self.incident(leg, ray, End::Surface(end), block, words)
     }
 
     /// The irradiance at a point, with its normal, at the end of a leg, from one point of what light leaves at its beginning;
@@ -363,7 +364,7 @@ impl Backward {
         let nearer = |leaves: &Leaves| {
             leaves
                 .targets
-                .last(&ray)
+                .last(&ray, end.z)
                 .is_none_or(|(at, _)| at > begin.z + leaves.rounding)
         };
         if this.leaves.as_ref().is_some_and(nearer) {

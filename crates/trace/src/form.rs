@@ -52,15 +52,19 @@ impl Form {
         }
     }
 
-    /// The largest distance at which the line of a ray meets it, and the part that it meets.
-    pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, usize)> {
+    /// The largest distance below `until` at which the line of a ray meets it, and the part that it
+    /// meets.
+    pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         match self {
-            Self::Mesh(mesh) => mesh.last(ray),
+            Self::Mesh(mesh) => mesh.last(ray, until),
             Self::Smooth(patch) => {
                 let hits = smooth_hits(patch, ray).into_iter().rev();
-                hits.filter(|at| !at.is_nan()).map(|at| (at, 0)).next()
+                hits.filter(|at| *at < until).map(|at| (at, 0)).next()
             }
-            _ => self.first(ray, f64::NEG_INFINITY, f64::INFINITY),
+            _ => {
+                let met = self.first(ray, f64::NEG_INFINITY, until);
+                met.filter(|(at, _)| *at < until)
+            }
         }
     }
 

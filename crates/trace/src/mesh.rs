@@ -48,12 +48,12 @@ impl Mesh {
         first
     }
 
-    /// The last triangle on the line of a ray, as in [`Self::first`].
-    pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, usize)> {
+    /// The last triangle on the line of a ray before `until`, as in [`Self::first`].
+    pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, usize)> {
         let mut last: Option<(f64, Reverse<usize>)> = None;
-        self.along(ray, -1.0, [f64::INFINITY, f64::NEG_INFINITY], |at, i| {
+        self.along(ray, -1.0, [until, f64::NEG_INFINITY], |at, i| {
             let found = (at, Reverse(i));
-            if last.is_none_or(|last| found > last) {
+            if at < until && last.is_none_or(|last| found > last) {
                 last = Some(found);
             }
             last.map_or(f64::NEG_INFINITY, |(at, _)| at)
@@ -210,7 +210,11 @@ mod tests {
                     let ray = ray(&leg, r(0), r(1));
                     let all = mesh.in_turn(&ray);
                     let by = |a: &(f64, usize), b: &(f64, usize)| a.0.total_cmp(&b.0);
-                    assert_eq!(mesh.last(&ray), all.iter().copied().max_by(by), "{ray:?}");
+                    assert_eq!(
+                        mesh.last(&ray, f64::INFINITY),
+                        all.iter().copied().max_by(by),
+                        "{ray:?}"
+                    );
                     let mut told = Vec::new();
                     mesh.each(&ray, |at, i| told.push((at, i)));
                     told.sort_by_key(|(_, i)| *i);

@@ -191,6 +191,12 @@ impl Obstacles {
         met.product()
     }
 
+    /// Whether a ray meets an object anywhere beyond `from`, whatever it meets first.
+    pub(crate) fn meets(&self, object: Option<Object>, ray: &TwoPlane, from: f64) -> bool {
+        let other = |what: &Meeting| !what.is(object);
+        self.targets.blocks(ray, from, f64::INFINITY, false, other)
+    }
+
     /// Whether a point at a distance on a ray has another point of its own object before it, beyond `from`.
     pub(crate) fn is_behind(
         &self,

@@ -31,8 +31,9 @@ enum Choice {
 
 /// Directions drawn to see how many go forward.
 const TRIED: u64 = 1000;
-/// Some are always drawn by the light.
+/// Some are always drawn by the light, and some by the cosine.
 const MOST_BY_COSINE: f64 = 0.9;
+const LEAST_BY_COSINE: f64 = 0.1;
 
 /// Running sums of numbers.
 fn running(values: impl Iterator<Item = f64>) -> Vec<f64> {
@@ -96,7 +97,7 @@ impl Sky {
         let tried = (0..TRIED).map(|i| random::words(0, Stream::Even, i, 0).map(random::unit));
         let forward = tried.filter(|r| sky.sample(*r).z > FORWARD).count();
         let share = forward as f64 / TRIED as f64;
-        sky.by_cosine = (1.0 - 2.0 * share).clamp(0.0, MOST_BY_COSINE);
+        sky.by_cosine = (1.0 - 2.0 * share).clamp(LEAST_BY_COSINE, MOST_BY_COSINE);
         sky
     }
 

@@ -82,16 +82,16 @@ impl<T: Clone> Targets<T> {
         first.map(|(target, part)| (nearest, target.met(part)))
     }
 
-    /// The last target on the line of a ray, and at what distance; looked for backwards, from
-    /// beyond everything.
-    pub(crate) fn last(&self, ray: &TwoPlane) -> Option<(f64, Met<'_, T>)> {
+    /// The last target on the line of a ray before `until`, and at what distance; looked for
+    /// backwards from there.
+    pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, Met<'_, T>)> {
         let mut last = None;
         let mut farthest = f64::NEG_INFINITY;
-        let range = [f64::NEG_INFINITY, f64::INFINITY];
+        let range = [-until, f64::INFINITY];
         let (start, back) = (start(ray), -direction(ray));
         self.hierarchy.along(start, back, range, |i| {
             let target = &self.targets[i];
-            if let Some((distance, part)) = target.form.last(ray)
+            if let Some((distance, part)) = target.form.last(ray, until)
                 && distance > farthest
             {
                 farthest = distance;
@@ -228,7 +228,9 @@ mod tests {
                 );
                 hits += u32::from(first.is_finite());
                 let farthest = met.into_iter().fold(f64::NEG_INFINITY, f64::max);
-                let last = found.last(&ray).map_or(f64::NEG_INFINITY, |(at, _)| at);
+                let last = found
+                    .last(&ray, f64::INFINITY)
+                    .map_or(f64::NEG_INFINITY, |(at, _)| at);
                 assert!(last.total_cmp(&farthest).is_eq(), "{ray:?}: last");
                 for (distance, inclusive) in [(1.0, false), (1.0, true), (1.6, true), (2.0, false)]
                 {

@@ -249,6 +249,12 @@ impl Leg {
         crossings: &mut [Vec<Crossing>],
     ) {
         let Flight { ray, from, weight } = *flight;
+        // What would meet again what it has left is gone, even where something stops it before: no
+        // blocker beyond a plane lights it.
+        let stopped = self.leaves.is_some() && met.is_some();
+        if stopped && self.obstacles.meets(self.leaves, &ray, from) {
+            return;
+        }
         let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
         let on_path = met.is_some_and(|(_, target)| target.tag.is(self.ends));
         for station in &self.stations {

@@ -91,7 +91,7 @@ impl Scatterer<'_> {
     }
 
     /// What stands between a point of the surface and the plane; the surface itself wherever it is,
-    /// as photons that meet it again are gone.
+    /// as photons that would meet it again are gone, whatever stops them before.
     fn beyond(&self, ray: &Ray) -> Option<Meets> {
         let path = &self.scene.path;
         let across = path.legs[1].frame.travelled(path.along(self.plane));
@@ -100,8 +100,12 @@ impl Scatterer<'_> {
         let from = self.around.rounding(1);
         let ends = path.ends_at(1).map(|hit| hit.object);
         let met = self.around.first(ray, from, ends);
-        let met = met.filter(|(t, object)| *t < end || *object == self.hit.object);
-        let met = met.map(|(_, object)| self.named(object));
+        let met = met.filter(|(t, _)| *t < end);
+        let own = self.hit.object;
+        let again = self.around.meets(ray, from, own);
+        let met = met
+            .map(|(_, object)| self.named(object))
+            .or(again.then_some(Meets::Itself(own)));
         met.or_else(|| self.around.later_leg(ray, 1, from, end))
     }
 

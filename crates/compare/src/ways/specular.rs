@@ -231,12 +231,14 @@ impl Follower<'_> {
         let across = path.legs[leg].frame.travelled(path.along(self.plane));
         let local = ray.seen_from(&across);
         let end = -local.point.z / local.direction.z;
-        let mut unforeseen = match self.around.first(ray, from, ends) {
-            // A photon that meets again what it has left is gone, wherever the plane is.
-            Some((_, object)) if Some(object) == leaves && leg > 0 => Some(Meets::Itself(object)),
-            Some((t, object)) if t < end => Some(Meets::OutOfTurn(object)),
-            _ => None,
-        };
+        let nearer = self.around.first(ray, from, ends);
+        let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
+        // A photon that would meet again what it has left is gone, wherever the plane is and
+        // whatever stops it before.
+        let again = leaves.filter(|left| self.around.meets(ray, from, *left));
+        let mut unforeseen = nearer
+            .map(|(_, object)| Meets::OutOfTurn(object))
+            .or(again.map(Meets::Itself));
         if leg > 0 {
             unforeseen = unforeseen.or_else(|| self.around.later_leg(ray, leg, from, end));
         }

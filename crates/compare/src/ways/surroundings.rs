@@ -125,6 +125,12 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
+    /// Whether a ray meets an object anywhere beyond `from`, whatever it meets first.
+    pub(super) fn meets(&self, ray: &Ray, from: f64, what: Object) -> bool {
+        let forms = self.objects.iter().filter(|(object, _)| *object == what);
+        forms.flat_map(|(_, form)| form.hits(ray)).any(|t| t > from)
+    }
+
     /// The share of a ray of the first leg that passes the blockers before `end`; and that which
     /// passes those that theory puts before the plane.
     pub(super) fn first_leg(&self, ray: &Ray, end: f64) -> ([f64; 2], Option<Meets>) {

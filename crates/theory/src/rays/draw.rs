@@ -3,10 +3,12 @@
 //! To first order a ray of the light lands where the central ray's neighbourhood maps it. So a
 //! place in the window, or slopes there, tell which ray of the light to follow; where that ray
 //! really lands is found by following it. The density of what is drawn is known exactly, whatever
-//! the rays do.
+//! the rays do. A window that is narrow beside what the first order leaves out is met by few of
+//! them: rays of all four coordinates are followed back from it as they go.
 
-use super::System;
+use super::back::Back;
 use super::emission::{Emission, point_of};
+use super::{Plane, System};
 use crate::geometry::{Map, Matrix};
 use crate::nets::{DIMENSIONS, Density, Target};
 use etendue_field::{Shape, Window};
@@ -48,8 +50,13 @@ enum By {
         inverse: Matrix<2>,
         determinant: f64,
     },
-    /// All four.
+    /// All four, as rays go.
     Back {
+        window: Box<[Density; 4]>,
+        back: Back,
+    },
+    /// All four, to first order.
+    Map {
         targets: Box<[Target; 4]>,
         map: Map<4>,
         determinant: f64,
@@ -58,9 +65,9 @@ enum By {
 
 impl Draw {
     /// `center` is where the central ray lands and `jacobian` how that changes with the ray; `None`
-    /// where they do not tell rays apart.
+    /// where they do not tell rays apart. Without a plane all rays land as they tell.
     pub(super) fn new(
-        system: &System,
+        (system, plane): (&System, Option<&Plane>),
         window: &Window,
         (center, jacobian): &([f64; 4], Matrix<4>),
         strategy: RayStrategy,
@@ -89,6 +96,11 @@ impl Draw {
             RayStrategy::Slopes => aim(2)?,
             RayStrategy::Plane => {
                 emission.shape?;
+                if let Some(back) = plane.and_then(|plane| Back::new(system, plane)) {
+                    let window = Box::new(profiles.map(|profile| Density::of(&profile)));
+                    let by = By::Back { window, back };
+                    return Some(Self { emission, by });
+                }
                 let rays = Map {
                     matrix: *jacobian,
                     offset: *center,
@@ -96,7 +108,7 @@ impl Draw {
                 if !tells_apart(&rays) {
                     return None;
                 }
-                By::Back {
+                By::Map {
                     targets: Box::new(profiles.map(|profile| Target::new(&profile))),
                     map: rays.inverse()?,
                     determinant: rays.det().abs(),
@@ -140,7 +152,13 @@ impl Draw {
                 let density = first.value(s) * second.value(t) * determinant * of_light;
                 Some((ray, density))
             }
-            By::Back {
+            By::Back { window, back } => {
+                let drawn: [[f64; 2]; 4] = std::array::from_fn(|i| window[i].draw(at[i]));
+                let (ray, spread) = back.ray(drawn.map(|[z, _]| z))?;
+                let density: f64 = drawn.iter().map(|[_, density]| density).product();
+                self.emits(&ray).then_some((ray, density * spread))
+            }
+            By::Map {
                 targets,
                 map,
                 determinant,
@@ -148,14 +166,16 @@ impl Draw {
                 let shares = [a, b, c, d];
                 let z: [f64; 4] = std::array::from_fn(|i| targets[i].quantile(shares[i]));
                 let ray = map.apply(z);
-                let [x, y, ..] = ray;
                 let density: f64 = (0..4).map(|i| targets[i].value(z[i])).product();
-                let is_lit = shape
-                    .as_ref()
-                    .is_some_and(|shape: &Shape| shape.contains(x, y));
-                is_lit.then_some((ray, density * determinant))
+                self.emits(&ray).then_some((ray, density * determinant))
             }
         }
+    }
+
+    /// Whether a ray begins in the light.
+    fn emits(&self, [x, y, ..]: &[f64; 4]) -> bool {
+        let shape = self.emission.shape.as_ref();
+        shape.is_some_and(|shape: &Shape| shape.contains(*x, *y))
     }
 }
 

@@ -61,6 +61,7 @@
 //! assert!(off.abs() < 1e-3 && right.error < Some(1e-4));
 //! ```
 
+mod back;
 mod central;
 mod chain;
 mod coordinates;

@@ -1,9 +1,9 @@
 //! Slices behind specular surfaces.
 
-use super::System;
 use super::draw::{Draw, RayStrategy};
 use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
+use super::{Plane, System};
 use crate::geometry::SpectrumMap;
 use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over};
@@ -35,14 +35,15 @@ pub(crate) fn predict(
     budget: Budget,
 ) -> Predicted {
     let Observed { system, plane } = view;
+    let observed = (system, Some(plane));
     let masks = Masks::new(&system.layers);
     let field = exact_field(view, &masks);
     let way = neighbourhood(system, plane)
-        .and_then(|lands| Some((lands, best(&field, system, &lands, over)?)));
+        .and_then(|lands| Some((lands, best(&field, observed, &lands, over)?)));
     let budgets = [budget, FOR_PICTURES];
     Predicted {
         derivatives: derivatives(moved, over, way.map(|(_, strategy)| strategy)),
-        ..summed(&field, system, way, over, budgets)
+        ..summed(&field, observed, way, over, budgets)
     }
 }
 
@@ -60,12 +61,14 @@ pub fn linear(
     budget: Budget,
 ) -> Predicted {
     let system = &view.system;
+    // Rays land as the map has them.
+    let mapped = (system, None);
     let masks = Masks::new(&system.layers);
     let rays = map.rays();
     let lands = (rays.offset, rays.matrix);
     let field = linear_field(view, &masks, map);
-    let way = best(&field, system, &lands, over).map(|strategy| (lands, strategy));
-    summed(&field, system, way, over, [budget, NO_PICTURES])
+    let way = best(&field, mapped, &lands, over).map(|strategy| (lands, strategy));
+    summed(&field, mapped, way, over, [budget, NO_PICTURES])
 }
 
 fn derivatives(
@@ -84,7 +87,7 @@ fn derivatives(
     let draws: Option<Vec<Draw>> = sides()
         .map(|Observed { system, plane }| {
             let lands = neighbourhood(system, plane)?;
-            Draw::new(system, over.0, &lands, strategy)
+            Draw::new((system, Some(plane)), over.0, &lands, strategy)
         })
         .collect();
     let Some(draws) = draws else { return zeros() };
@@ -152,12 +155,13 @@ const NO_FREQUENCY: FrequencyAxis = FrequencyAxis {
 
 fn summed(
     field: &impl RayField,
-    system: &System,
+    observed: (&System, Option<&Plane>),
     way: Option<(Neighbourhood, RayStrategy)>,
     (window, grid, picture): Over<'_>,
     [of_slices, of_pictures]: [Budget; 2],
 ) -> Predicted {
-    let draw = way.and_then(|(lands, strategy)| Draw::new(system, window, &lands, strategy));
+    let draw = way.and_then(|(lands, strategy)| Draw::new(observed, window, &lands, strategy));
+    let (system, _) = observed;
     let (Some((lands, _)), Some(draw)) = (way, draw) else {
         return Predicted::dark(grid, picture);
     };
@@ -193,12 +197,12 @@ fn summed(
 /// What draws rays with the least error.
 fn best(
     field: &impl RayField,
-    system: &System,
+    observed: (&System, Option<&Plane>),
     lands: &Neighbourhood,
     (window, grid, _): Over<'_>,
 ) -> Option<RayStrategy> {
     let tried = RayStrategy::ALL.iter().filter_map(|&strategy| {
-        let draw = Draw::new(system, window, lands, strategy)?;
+        let draw = Draw::new(observed, window, lands, strategy)?;
         let drawn = [Drawn {
             field: Box::new(field),
             draw: &draw,

@@ -2,7 +2,7 @@
 //!
 //! From a point the way to such a light is known, so it is looked for there and nowhere else.
 
-use super::{Backward, Looker};
+use super::{Backward, End, Looker};
 use etendue_field::{Crossing, Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
@@ -67,7 +67,7 @@ impl Backward {
         };
         let nothing = |_| [0.0; 4];
         // A plane on a surface looks at all that arrives there, as photons are counted.
-        let found = self.incident(0, &at_light, station.distance, station.side, 1, &nothing);
+        let found = self.incident(0, &at_light, End::of(station), 1, &nothing);
         let weight = found * per_ray * area / density;
         let (ray, weight) = station.look(&at_light, weight)?;
         Some(Crossing { ray, weight })

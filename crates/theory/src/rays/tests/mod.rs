@@ -4,7 +4,7 @@ use crate::numerics::distance;
 use crate::{Budget, Model, Observed, Predicted};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Image, Orientation, Profile, ProjectionGrid, Quantity,
-    SliceGrid, Slices, Window,
+    Rectangle, Shape, SliceGrid, Slices, Window,
 };
 use glam::DVec3;
 
@@ -37,6 +37,7 @@ fn linear(
     super::linear(&view(system, plane), (window, grid, &picture), map, BUDGET)
 }
 
+mod back;
 mod kernel;
 mod known;
 mod order;
