@@ -451,6 +451,19 @@ fn a_wall_that_reaches_behind_the_light_is_decided() {
     assert_eq!(judged.verdict, Verdict::Fail);
 }
 
+/// A window that ends with a jump cuts the light of a projector: rules of few rays may agree on it
+/// by chance.
+#[test]
+fn a_box_before_a_projector_is_decided() {
+    let scene = scene("box_before_a_projector");
+    let prediction = by_theory(&scene, &scene.planes[0]);
+    assert!(!prediction.replicates.is_empty(), "nets predict it");
+    assert_eq!(
+        verdict(&scene, &photons(&scene), &prediction),
+        Verdict::Pass
+    );
+}
+
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {
