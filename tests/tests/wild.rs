@@ -451,6 +451,43 @@ fn a_wall_that_reaches_behind_the_light_is_decided() {
     assert_eq!(judged.verdict, Verdict::Fail);
 }
 
+/// A mirror so close to the light that a part of it stands before the mask: no ray drawn from the
+/// light to the mirror is likely to meet that part.
+#[test]
+fn a_mirror_close_to_the_light_is_decided() {
+    let scene = scene("close_to_the_mirror");
+    let theory = Applicability::new(&scene, &scene.planes[0]);
+    assert_eq!(theory.reasons, ["visibility of mask, partly beyond mirror"]);
+    let measured = backward(&scene);
+    let regardless = by_specular(&scene, 0, by_reference(&scene, 0, &measured));
+    let judged = report(&scene, &measured, 0, &regardless);
+    assert_eq!(judged.verdict, Verdict::Fail);
+}
+
+/// The light of a sky that comes into the window is looked after, however faint beside what shines
+/// from behind.
+#[test]
+fn a_sky_from_behind_is_decided() {
+    let scene = scene("sky_from_behind");
+    decided_by_reference(&scene, 0, |scene, reference| {
+        let view = scattered(scene, &scene.planes[0]).unwrap();
+        by_scattering(scene, &view, reference)
+    });
+}
+
+/// A window that ends with a jump cuts the light of a projector: rules of few rays may agree on it
+/// by chance.
+#[test]
+fn a_box_before_a_projector_is_decided() {
+    let scene = scene("box_before_a_projector");
+    let prediction = by_theory(&scene, &scene.planes[0]);
+    assert!(!prediction.replicates.is_empty(), "nets predict it");
+    assert_eq!(
+        verdict(&scene, &photons(&scene), &prediction),
+        Verdict::Pass
+    );
+}
+
 /// A cosine after a diffuse reflection has no closed form.
 #[test]
 fn irradiance_after_a_floor_is_decided() {

@@ -15,5 +15,5 @@ pub(crate) fn too_few<'a>(batches: impl Iterator<Item = &'a Slices>) -> Option<f
     let apart = light.iter().map(|light| (light - mean).powi(2));
     let variance = apart.sum::<f64>() / (count - 1.0);
     let each = mean * mean / variance;
-    (each < count.ln()).then_some(each)
+    (each < libm::log(count)).then_some(each)
 }

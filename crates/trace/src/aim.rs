@@ -159,7 +159,7 @@ impl FromSky {
 }
 
 /// Whether a plane lies across the first leg: what it sees need not have met anything.
-fn looks_across(plane: &VirtualPlane) -> bool {
+pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }
 

@@ -1,9 +1,9 @@
-use crate::aim::FromSky;
+use crate::aim::{FromSky, looks_across};
 use crate::proposal::{Follower, Proposal};
 use crate::reach::{looks_at_surface, outline, reach};
 use crate::sky;
 use crate::station::Station;
-use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, power, random};
+use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, Window, power, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -17,9 +17,9 @@ pub struct Emitter {
     proposals: Vec<[Proposal; 2]>,
     /// Those of light from far away.
     sky: Option<FromSky>,
-    /// What light without extent is drawn evenly from, in place of all these: lowest and highest slope along
-    /// x and y, or position of a beam.
-    even: Option<[[f64; 2]; 2]>,
+    /// What light without extent is drawn evenly from, in place of all these, each with an equal
+    /// share: slopes along x and y, or positions of a beam.
+    even: Vec<Bounds>,
 }
 
 impl Emitter {
@@ -80,12 +80,12 @@ impl Emitter {
             light,
             proposals,
             sky,
-            even: None,
+            even: Vec::new(),
         }
     }
 
-    /// The emitter of a scene with light without extent that shines evenly at all of the first surface,
-    /// whatever planes look at.
+    /// The emitter of a scene with light without extent that shines evenly at all of the first
+    /// surface, and at the windows of planes before it, whatever else planes look at.
     ///
     /// For any other light, and where the surface reaches back to the light, it is that of [`Self::new`].
     #[must_use]
@@ -110,7 +110,12 @@ impl Emitter {
             return sky.sample([words(0), words(1)]);
         }
         let r = words(0).map(random::unit);
-        if let Some(even) = &self.even {
+        let even = match self.even.as_slice() {
+            [] => None,
+            [only] => Some(only),
+            several => Some(&several[random::index(words(1)[3], several.len())]),
+        };
+        if let Some(even) = even {
             let [a, b] = [0, 1].map(|i| even[i][0] + r[i] * (even[i][1] - even[i][0]));
             let [x, y, u, v] = if self.light.is_distant() {
                 [a, b, 0.0, 0.0]
@@ -184,8 +189,14 @@ impl Emitter {
         if let Some(sky) = &self.sky {
             return sky.density(ray);
         }
-        if let Some([[left, right], [low, high]]) = self.even {
-            return 1.0 / ((right - left) * (high - low));
+        if !self.even.is_empty() {
+            let at = if self.light.is_distant() {
+                [ray.x, ray.y]
+            } else {
+                [ray.u, ray.v]
+            };
+            let densities = self.even.iter().map(|bounds| evenly_over(bounds, at));
+            return densities.sum::<f64>() / self.even.len() as f64;
         }
         if self.proposals.is_empty() {
             let secant_squared = ray.secant_squared();
@@ -262,27 +273,59 @@ pub(crate) fn by_cosine([a, b]: [f64; 2]) -> DVec3 {
     DVec3::new(across * cos, across * sin, up)
 }
 
-/// The slopes of a point or a projector, or positions of a beam, with which light meets the first surface.
-fn even(scene: &Scene) -> Option<[[f64; 2]; 2]> {
+/// Lowest and highest coordinate along two axes.
+type Bounds = [[f64; 2]; 2];
+
+/// The slopes of a point or a projector, or positions of a beam, with which light crosses the window
+/// of each plane before the first surface, and those with which it meets that surface, for other
+/// planes; none where that is not known.
+fn even(scene: &Scene) -> Vec<Bounds> {
     let light = &scene.light;
-    let corners = outline(scene, scene.path.ends_at(0)?.object);
-    if light.has_extent() || corners.iter().any(|corner| corner.z <= 0.0) {
-        return None;
+    if light.has_extent() {
+        return Vec::new();
     }
-    let bounds = |axis: usize| {
-        let at = |corner: &DVec3| corner[axis] / if light.is_distant() { 1.0 } else { corner.z };
-        let met = corners.iter().map(at);
-        let [low, high] = if light.is_distant() {
-            light.extent(axis)
-        } else {
-            [-1.0, 1.0].map(|side| side * light.steepest(axis))
-        };
-        [
-            met.clone().fold(f64::INFINITY, f64::min).max(low),
-            met.fold(f64::NEG_INFINITY, f64::max).min(high),
-        ]
+    let onto_surface = || {
+        let corners = outline(scene, scene.path.ends_at(0)?.object);
+        let per = |corner: &DVec3| if light.is_distant() { 1.0 } else { corner.z };
+        let is_ahead = corners.iter().all(|corner| corner.z > 0.0);
+        is_ahead.then(|| {
+            [0, 1].map(|axis| {
+                let met = corners.iter().map(|corner| corner[axis] / per(corner));
+                let low = met.clone().fold(f64::INFINITY, f64::min);
+                [low, met.fold(f64::NEG_INFINITY, f64::max)]
+            })
+        })
     };
-    Some([bounds(0), bounds(1)]).filter(|bounds| bounds.iter().all(|[low, high]| low < high))
+    let into_window = |Window { x, y, u, v }: &Window| {
+        let seen = if light.is_distant() { [x, y] } else { [u, v] };
+        seen.map(|profile| [-1.0, 1.0].map(|side| side * profile.half_width()))
+    };
+    let (across, beyond): (Vec<_>, Vec<_>) = scene.planes.iter().partition(|p| looks_across(p));
+    let windows = across.iter().map(|plane| Some(into_window(&plane.window)));
+    let surface = (!beyond.is_empty()).then(onto_surface);
+    let lit = |bounds: Bounds| {
+        let shone = [0, 1].map(|axis| {
+            let [low, high] = if light.is_distant() {
+                light.extent(axis)
+            } else {
+                [-1.0, 1.0].map(|side| side * light.steepest(axis))
+            };
+            [bounds[axis][0].max(low), bounds[axis][1].min(high)]
+        });
+        shone.iter().all(|[low, high]| low < high).then_some(shone)
+    };
+    let all: Option<Vec<Bounds>> = windows.chain(surface).map(|bounds| lit(bounds?)).collect();
+    all.unwrap_or_default()
+}
+
+/// An even density within bounds.
+fn evenly_over([[left, right], [low, high]]: &Bounds, [a, b]: [f64; 2]) -> f64 {
+    let inside = (*left..=*right).contains(&a) && (*low..=*high).contains(&b);
+    if inside {
+        1.0 / ((right - left) * (high - low))
+    } else {
+        0.0
+    }
 }
 
 /// The envelope of a picture, with an integral of 1.

@@ -86,8 +86,8 @@ impl Tracer {
     /// A second tracer of photons, for light without extent that no backward ray finds: it shares no random number and no
     /// aim of the emission with that of [`Self::new`].
     ///
-    /// It sends light evenly at all of the first surface. How photons are followed, and how scattered light is aimed, is the
-    /// same.
+    /// It sends light evenly at all of the first surface and at windows before that. How photons are
+    /// followed, and how scattered light is aimed, is the same.
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
         let plain = Self::new(scene);

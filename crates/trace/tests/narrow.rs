@@ -116,3 +116,17 @@ fn what_a_mirror_turns_first_is_sent_evenly() {
         agree(&scene, &Tracer::evenly(&scene), light);
     }
 }
+
+/// A plane at the light sees more than what meets a mirror that is small.
+#[test]
+fn windows_before_a_small_mirror_are_sent_evenly() {
+    let small = BALL
+        .replace("EVENT", "Mirror")
+        .replace("aperture: 0.5", "aperture: 0.1");
+    for light in &LIGHTS[..2] {
+        let planes = ["at: Emission", r#"at: After("s")"#];
+        let scene = scene(light, &small, r#""s""#, &planes);
+        assert!(!scene.planes.iter().any(|plane| finds(&scene, plane)));
+        agree(&scene, &Tracer::evenly(&scene), light);
+    }
+}

@@ -16,6 +16,15 @@ fn local(plane: &Plane, normal: DVec3) -> Frame {
     }
 }
 
+/// −1 where directions are turned about the normal.
+fn turned(plane: &Plane) -> f64 {
+    if plane.orientation == Orientation::Mirrored {
+        -1.0
+    } else {
+        1.0
+    }
+}
+
 /// The coordinates of a ray; `on_surface` is the point and the unit normal of the surface that the
 /// plane is on, where the plane needs them. `None` where the ray does not pass.
 pub(super) fn coordinates(
@@ -40,11 +49,7 @@ pub(super) fn coordinates(
         ray.direction
     };
     let away = frame.vector_to_local(away);
-    let turned = if plane.orientation == Orientation::Mirrored {
-        -1.0
-    } else {
-        1.0
-    };
+    let turned = turned(plane);
     (away.z > 0.0).then(|| TwoPlane {
         x: at.x,
         y: at.y,
@@ -61,14 +66,28 @@ pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3
             .frame
             .vector_to_world(DVec3::new(u, v, 1.0).normalize());
     }
-    let ((sin, cos), (up, across)) = (libm::sincos(u + plane.longitude), libm::sincos(v));
+    let turned = turned(plane);
+    let (sin, cos) = libm::sincos(turned * (u + plane.longitude));
+    let (up, across) = libm::sincos(turned * v);
     local(plane, normal).vector_to_world(DVec3::new(across * sin, up, across * cos))
 }
 
-/// The ray with these coordinates, (x, y, u, v), at a plane across its leg.
-pub(super) fn across(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Ray {
-    Ray {
-        point: plane.frame.to_world(DVec3::new(x, y, 0.0)),
-        direction: direction(plane, plane.frame.d, [u, v]),
+/// The ray with these coordinates, (x, y, u, v), at a plane; `None` where the plane is on a surface
+/// that is not there.
+pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Ray> {
+    let foot = plane.frame.to_world(DVec3::new(x, y, 0.0));
+    let (mut point, mut normal) = (foot, plane.frame.d);
+    if let Some(patch) = plane
+        .patch
+        .as_ref()
+        .filter(|_| plane.orientation.is_local())
+    {
+        let direction = plane.frame.d;
+        let down = Ray { point, direction }.back(patch);
+        point = down.at(down.theory_hit(patch)?);
+        normal = patch.normal(point);
     }
+    let away = direction(plane, normal, [u, v]);
+    let direction = if plane.arriving { -away } else { away };
+    Some(Ray { point, direction })
 }

@@ -1,7 +1,7 @@
 //! How far smooth meshes lead light beside where their osculating patches do.
 
 use super::coordinates::coordinates;
-use super::rays::{DARK, Ray};
+use super::rays::{Ray, bright};
 use super::specular::{Arrival, Follower, on};
 use etendue_field::{Profile, interpolated_normal};
 use etendue_scene::{MeshObject, Object};
@@ -44,16 +44,18 @@ impl Follower<'_> {
         let half = [window.x, window.y, window.u, window.v].map(|p| Profile::half_width(&p));
         let off = |(ray, emitted): (Ray, f64)| {
             let (z, share) = self.theory(ray)?;
-            let light = Some(emitted * share * window.value(&z)).filter(|light| *light > DARK)?;
+            let light = Some(emitted * share * window.value(&z)).filter(|light| *light > 0.0)?;
             let apart = self.by_triangles(ray).map_or(LOST, |(seen, _)| {
                 let apart = [seen.x - z.x, seen.y - z.y, seen.u - z.u, seen.v - z.v];
                 let shares = apart.iter().zip(half).map(|(d, half)| (d / half).abs());
                 shares.fold(0.0, f64::max).min(LOST)
             });
-            Some([light, light * apart * apart])
+            Some((light, apart))
         };
-        let lit = rays.filter_map(off).take(LIT);
-        let [light, squares] = lit.fold([0.0; 2], |sum, next| [sum[0] + next[0], sum[1] + next[1]]);
+        let lit = bright(rays.filter_map(off), LIT).into_iter();
+        let [light, squares] = lit.fold([0.0; 2], |[all, squares], (light, apart)| {
+            [all + light, squares + light * apart * apart]
+        });
         (light > 0.0).then(|| (squares / light).sqrt())
     }
 

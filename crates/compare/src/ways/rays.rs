@@ -9,15 +9,33 @@ const LIT: usize = 3000;
 /// Rays tried for these.
 const TRIED: u32 = 60_000;
 
-/// Light of less than this share of the strongest that is possible in the window changes no
-/// verdict.
-pub(super) const DARK: f64 = 1e-5;
+/// Light of less than this share of the strongest that comes into the window changes no verdict.
+const DARK: f64 = 1e-5;
 
-/// What rays meet that carry light into the window: `check` says it of ray number `index`, or that it
-/// carries none.
-pub(super) fn met<M>(check: impl Fn(u32) -> Option<Option<M>>) -> Vec<M> {
-    let lit = (0..TRIED).filter_map(check).take(LIT);
-    lit.flatten().collect()
+/// What rays meet that carry light into the window: `check` says it of ray number `index`, and how
+/// much that carries, or that it carries none.
+pub(super) fn met<M>(check: impl Fn(u32) -> Option<(f64, Option<M>)>) -> Vec<M> {
+    let lit = bright((0..TRIED).filter_map(check), LIT);
+    lit.into_iter().filter_map(|(_, meets)| meets).collect()
+}
+
+/// The first of rays that carry light into the window, `most` of them, without those that are dark
+/// beside others. What shines into the window alone says how strong light is there: the
+/// strongest of the sky may be behind it.
+pub(super) fn bright<T>(rays: impl Iterator<Item = (f64, T)>, most: usize) -> Vec<(f64, T)> {
+    let mut strongest = 0.0;
+    let mut found = Vec::new();
+    for (light, ray) in rays {
+        if light > DARK * strongest {
+            strongest = light.max(strongest);
+            found.push((light, ray));
+        }
+        if found.len() == most {
+            break;
+        }
+    }
+    found.retain(|(light, _)| *light > DARK * strongest);
+    found
 }
 
 /// A straight leg of a ray, in the frame at the light.
@@ -122,7 +140,7 @@ pub(super) fn centred(index: u32, r: f64) -> f64 {
     }
 }
 
-/// A ray of the light through a point, and its share of the strongest; `None` where none is.
+/// A ray of the light through a point, and how strong it is; `None` where none is.
 pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Option<(Ray, f64)> {
     let through = |from: DVec3| {
         let direction = (point - from).try_normalize()?;
@@ -155,12 +173,11 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
             Ray { point, direction }.begun()
         }
     };
-    let share = share(light, &ray);
-    (ray.direction.z > 0.0).then_some((ray, share))
+    (ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
 }
 
-/// The share of the strongest light that goes along a ray which begins at the light.
-pub(super) fn share(light: &Light, ray: &Ray) -> f64 {
+/// How strong the light is that goes along a ray which begins at the light, beside its other rays.
+pub(super) fn strength(light: &Light, ray: &Ray) -> f64 {
     let Ray { point, direction } = ray;
     match light {
         Light::Area { exponent, .. } => libm::pow(direction.z, *exponent),
@@ -169,15 +186,7 @@ pub(super) fn share(light: &Light, ray: &Ray) -> f64 {
             image.value(direction.x / direction.z, direction.y / direction.z)
         }
         Light::Beam { image, .. } => image.value(point.x, point.y),
-        Light::Environment { environment } => {
-            let most = match &environment.map {
-                EnvironmentMap::Lobes(lobes) => {
-                    lobes.iter().map(|lobe| lobe.radiance).fold(0.0, f64::max)
-                }
-                EnvironmentMap::LatLong(_) => 1.0,
-            };
-            environment.radiance(*direction) / most
-        }
+        Light::Environment { environment } => environment.radiance(*direction),
     }
 }
 

@@ -1,8 +1,8 @@
 //! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory
 //! looks.
 
-use super::coordinates::{across, coordinates, direction};
-use super::rays::{DARK, Ray, lattice, met, point_on, ray_to, within};
+use super::coordinates::{coordinates, direction, seen};
+use super::rays::{Ray, lattice, met, point_on, ray_to, within};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Hit, Scene};
@@ -41,9 +41,9 @@ struct Scatterer<'a> {
 }
 
 impl Scatterer<'_> {
-    /// What light number `index` meets on its way that theory does not know of, if anything; `None`
-    /// if it does not come into the window.
-    fn check(&self, index: u32) -> Option<Option<Meets>> {
+    /// How strong light number `index` is in the window, and what it meets on its way that theory
+    /// does not know of, if anything; `None` if it does not come there.
+    fn check(&self, index: u32) -> Option<(f64, Option<Meets>)> {
         let r = lattice(index);
         let leaving = self.leaving(index, r)?;
         let Ray { point, direction } = leaving;
@@ -54,8 +54,8 @@ impl Scatterer<'_> {
         let faces = arriving.direction.dot(normal) < 0.0 && direction.dot(normal) > 0.0;
         let end = (point - arriving.point).length();
         let ([photons, theory], meets) = self.around.first_leg(&arriving, end);
-        let share = photons.max(theory);
-        if !faces || emitted * share * window.value(&z) <= DARK {
+        let light = emitted * photons.max(theory) * window.value(&z);
+        if !faces || light <= 0.0 {
             return None;
         }
         let meets = self
@@ -64,7 +64,8 @@ impl Scatterer<'_> {
             .or_else(|| self.beyond(&leaving));
         let clear = meets.is_none();
         let itself = Meets::Itself(self.hit.object);
-        Some((clear != self.looks_at(&leaving)).then(|| meets.unwrap_or(itself)))
+        let is_wrong = clear != self.looks_at(&leaving);
+        Some((light, is_wrong.then(|| meets.unwrap_or(itself))))
     }
 
     /// A ray that leaves the surface: from a point of it, or, every other one across the leg, as it
@@ -73,7 +74,7 @@ impl Scatterer<'_> {
         let [x, y, u, v] = within(&self.plane.window, r);
         let patch = &self.system.patch;
         if self.at.orientation == Orientation::Orthogonal && index % 4 < 2 {
-            let seen = across(self.at, [x, y, u, v]);
+            let seen = seen(self.at, [x, y, u, v])?;
             let back = seen.back(patch);
             let point = back.at(back.theory_hit(patch)?);
             return Some(Ray { point, ..seen });

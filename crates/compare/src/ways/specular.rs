@@ -1,7 +1,7 @@
 //! Rays through specular surfaces: what photons meet, and where theory looks.
 
-use super::coordinates::{across, coordinates};
-use super::rays::{DARK, Ray, centred, lattice, met, point_on, ray_to, share, within};
+use super::coordinates::{coordinates, seen};
+use super::rays::{Ray, centred, lattice, met, point_on, ray_to, strength, within};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Light, Orientation, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
@@ -66,17 +66,17 @@ impl Follower<'_> {
         self.plane.leg == 0 && is_on_surface && corners.into_iter().any(|at| depth(at) <= 0.0)
     }
 
-    /// What a ray of the light meets on its way that theory does not know of, if anything; `None` if
-    /// it brings no light into the window.
-    fn check(&self, (ray, emitted): (Ray, f64)) -> Option<Option<Meets>> {
+    /// How much light a ray brings into the window, and what it meets on its way that theory does not
+    /// know of, if anything; `None` if it brings none.
+    fn check(&self, (ray, emitted): (Ray, f64)) -> Option<(f64, Option<Meets>)> {
         let (arrival, meets) = self.photon(ray);
-        let lit = |arrival: Arrival| {
-            arrival.is_some_and(|(z, share)| emitted * share * self.plane.window.value(&z) > DARK)
-        };
-        (lit(arrival) || lit(self.theory(ray))).then_some(meets)
+        let brought = [arrival, self.theory(ray)].into_iter().flatten();
+        let light = brought.map(|(z, share)| emitted * share * self.plane.window.value(&z));
+        let light = light.fold(0.0, f64::max);
+        (light > 0.0).then_some((light, meets))
     }
 
-    /// Ray number `index` of the light, towards the first surface, and its share of the strongest.
+    /// Ray number `index` of the light, towards the first surface, and how strong it is.
     pub(super) fn ray(&self, index: u32) -> Option<(Ray, f64)> {
         let r = lattice(index);
         let hit = self.scene.path.ends_at(0)?;
@@ -104,13 +104,14 @@ impl Follower<'_> {
     }
 
     /// Ray number `index` that theory has arrive in the window, from where a light with extent sends
-    /// it: hardly any ray of the light itself may come into a narrow one.
+    /// it: hardly any ray of the light itself may come into a narrow one, or onto a part of a wide
+    /// one that is close to the light.
     pub(super) fn ray_of_window(&self, index: u32) -> Option<(Ray, f64)> {
         let light = &self.system.light;
-        if self.at.orientation != Orientation::Orthogonal || !light.has_extent() {
+        if !light.has_extent() {
             return None;
         }
-        let mut ray = across(self.at, within(&self.plane.window, lattice(index)));
+        let mut ray = seen(self.at, within(&self.plane.window, lattice(index)))?;
         for (leg, element) in self.system.elements.iter().enumerate().rev() {
             let back = ray.back(&element.patch);
             let point = back.at(back.theory_hit(&element.patch)?);
@@ -125,7 +126,7 @@ impl Follower<'_> {
             Light::Area { shape, .. } => shape.contains(ray.point.x, ray.point.y),
             _ => true,
         };
-        (begins && ray.direction.z > 0.0).then(|| (ray, share(light, &ray)))
+        (begins && ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
     }
 
     /// Where theory has a ray arrive.

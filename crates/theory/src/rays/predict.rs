@@ -25,9 +25,9 @@ const FOR_PICTURES: Budget = Budget {
 
 /// What rays followed through the geometry as it is say, with the derivatives by what was moved.
 ///
-/// Of a projector, point or beam without opaque masks by a midpoint rule, where that converges;
-/// else over nets of rays. Derivatives are central differences, the rays of both sides drawn alike:
-/// good to about a per cent. The same bytes on any number of threads.
+/// Of a projector, point or beam by a midpoint rule, where nothing cuts its light with a sharp edge
+/// and the rule converges; else over nets of rays. Derivatives are central differences, the rays of
+/// both sides drawn alike: good to about a per cent. The same bytes on any number of threads.
 pub(crate) fn predict(
     view: &Observed<System>,
     moved: &[Moved<Observed<System>>],

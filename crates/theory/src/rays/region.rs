@@ -19,6 +19,8 @@ impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 const CELLS: usize = 32;
 /// Rays below this share of the strongest carry nothing.
 const NOTHING: f64 = 1e-13;
+/// Halvings of a cell that find an edge to rounding.
+const HALVINGS: usize = 40;
 /// Boxes tried before the last is taken.
 const ROUNDS: usize = 24;
 /// How much wider than the window the first box is.
@@ -113,15 +115,51 @@ impl<F: RayField> Finder<'_, F> {
         Some(region)
     }
 
+    /// How much light a ray at coordinates of the emission brings into the window.
+    fn strength(&self, inner: [f64; 2]) -> f64 {
+        self.node(self.ray(inner), 1.0).weight.abs()
+    }
+
+    /// What light is next to edges that cut it, as a share of all of it in a row of cells: that
+    /// over the number of nodes along a coordinate is an upper estimate of what a rule is off by.
+    pub(super) fn edges(&self) -> f64 {
+        let Some(region) = self.region() else {
+            return 0.0;
+        };
+        let at = |k: usize| middle(&region, (k / CELLS, k % CELLS));
+        let strengths: Vec<f64> = (0..CELLS * CELLS).map(|k| self.strength(at(k))).collect();
+        let dark = NOTHING * strengths.iter().copied().fold(0.0, f64::max);
+        let inner = |(i, j): &(usize, usize)| i + 1 < CELLS && j + 1 < CELLS;
+        let pairs = cells().filter(inner).flat_map(|(i, j)| {
+            let here = i * CELLS + j;
+            [[here, here + 1], [here, here + CELLS]]
+        });
+        let of_pair = |pair: [usize; 2]| {
+            let [a, b] = pair.map(|k| strengths[k] > dark);
+            let [lit, unlit] = if a { pair } else { [pair[1], pair[0]] };
+            (a != b).then(|| self.last_lit(at(lit), at(unlit), dark))
+        };
+        let next_to_edges: f64 = pairs.filter_map(of_pair).sum();
+        next_to_edges / strengths.iter().sum::<f64>() * CELLS as f64
+    }
+
+    /// How strong light is where it ends between a lit place and a dark one.
+    fn last_lit(&self, mut lit: [f64; 2], mut unlit: [f64; 2], dark: f64) -> f64 {
+        for _ in 0..HALVINGS {
+            let between = [0, 1].map(|axis| 0.5 * (lit[axis] + unlit[axis]));
+            if self.strength(between) > dark {
+                lit = between;
+            } else {
+                unlit = between;
+            }
+        }
+        self.strength(lit)
+    }
+
     /// First and last cell along each axis with light in them.
     fn lit(&self, region: &Region) -> Option<[[usize; 2]; 2]> {
-        let at = |axis: usize, i: usize| {
-            let [low, high] = region[axis];
-            low + (high - low) * (i as f64 + 0.5) / CELLS as f64
-        };
-        let cells = || (0..CELLS * CELLS).map(|i| (i / CELLS, i % CELLS));
         let strengths: Vec<f64> = cells()
-            .map(|(i, j)| self.node(self.ray([at(0, i), at(1, j)]), 1.0).weight.abs())
+            .map(|cell| self.strength(middle(region, cell)))
             .collect();
         let most = strengths.iter().copied().fold(0.0, f64::max);
         let mut found: Option<[[usize; 2]; 2]> = None;
@@ -156,6 +194,20 @@ impl<F: RayField> Finder<'_, F> {
         };
         (!corners.is_empty()).then(|| [along(0), along(1)])
     }
+}
+
+/// The cells of a region, row by row.
+fn cells() -> impl Iterator<Item = (usize, usize)> {
+    (0..CELLS * CELLS).map(|i| (i / CELLS, i % CELLS))
+}
+
+/// The middle of a cell.
+fn middle(region: &Region, (i, j): (usize, usize)) -> [f64; 2] {
+    let at = |axis: usize, i: usize| {
+        let [low, high] = region[axis];
+        low + (high - low) * (i as f64 + 0.5) / CELLS as f64
+    };
+    [at(0, i), at(1, j)]
 }
 
 /// The part of a convex polygon with n·p ≤ c.
