@@ -8,11 +8,12 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
+use etendue_field::random::Stream;
 use etendue_field::transform::SliceTransform;
-use etendue_field::{Crossing, PhotonSource};
+use etendue_field::{Crossing, Net, PhotonSource};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::field::RealFft4;
-use etendue_trace::Tracer;
+use etendue_trace::{Emitter, Tracer};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -21,11 +22,39 @@ const PHOTONS: u64 = 1 << 16;
 
 /// A scene of the repository, in batches of [`PHOTONS`].
 fn scene(name: &str) -> Scene {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../scenes");
-    let text = std::fs::read_to_string(folder.join(format!("{name}.ron"))).unwrap();
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../scenes/{name}.ron"));
+    let text = std::fs::read_to_string(&path).unwrap();
     let mut file = SceneFile::parse(&text).unwrap();
     file.run.photons = PHOTONS * u64::from(file.run.batches);
-    resolve(name, file, &folder, u64::MAX).unwrap()
+    resolve(name, file, path.parent().unwrap(), u64::MAX).unwrap()
+}
+
+/// Rays of a batch as they leave the light: points of a net, aimed rays of them, and their weights.
+fn emission(criterion: &mut Criterion) {
+    let mut group = criterion.benchmark_group("emission");
+    group.sample_size(20);
+    group.throughput(Throughput::Elements(PHOTONS));
+    let net = Net::new(1, Stream::Net, 0, 2);
+    let points = 0..u32::try_from(PHOTONS).unwrap();
+    group.bench_function("points", |bencher| {
+        bencher.iter(|| {
+            let words = points.clone().map(|point| net.words(point, 0)[0]);
+            words.fold(0, |all, word| all ^ word)
+        });
+    });
+    for name in ["travel", "fig9b", "table1/environment"] {
+        let emitter = Emitter::new(&scene(name));
+        group.bench_function(name, |bencher| {
+            bencher.iter(|| {
+                let rays = points.clone().filter_map(|point| {
+                    let ray = emitter.sample(|block| net.words(point, block))?;
+                    Some(emitter.weight(&ray))
+                });
+                rays.sum::<f64>()
+            });
+        });
+    }
+    group.finish();
 }
 
 /// Emission, hits, bounces and crossings of all planes of a batch.
@@ -90,5 +119,5 @@ fn field(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(stages, photons, slices, field);
+criterion_group!(stages, emission, photons, slices, field);
 criterion_main!(stages);

@@ -77,7 +77,7 @@ fn by_definition(v: f64, theta: f64) -> f64 {
     let upright = integrate(400, [0.0, height], |t| libm::exp(b * t - a / libm::tanh(t)));
     let level: Complex = integrate(400, [-0.5 * PI, 0.5 * PI], |t| {
         let t = Complex::new(t, height);
-        libm::exp(Complex::i() * (a * libm::tan(t) - b * t))
+        (Complex::i() * (a * t.tan() - b * t)).exp()
     });
     level.re - 2.0 * libm::sin(0.5 * PI * b) * upright
 }
