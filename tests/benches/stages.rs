@@ -13,7 +13,7 @@ use etendue_field::transform::SliceTransform;
 use etendue_field::{Crossing, Net, PhotonSource};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::field::RealFft4;
-use etendue_trace::{Emitter, Tracer};
+use etendue_trace::{ABREAST, Emitter, Tracer};
 use std::hint::black_box;
 use std::path::Path;
 
@@ -46,11 +46,12 @@ fn emission(criterion: &mut Criterion) {
         let emitter = Emitter::new(&scene(name));
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
-                let rays = points.clone().filter_map(|point| {
-                    let ray = emitter.sample(|block| net.words(point, block))?;
-                    Some(emitter.weight(&ray))
+                let groups = points.clone().step_by(ABREAST).map(|first| {
+                    let words =
+                        |i: usize, block| net.words(first + u32::try_from(i).unwrap(), block);
+                    emitter.emit(words).1[0]
                 });
-                rays.sum::<f64>()
+                groups.sum::<f64>()
             });
         });
     }

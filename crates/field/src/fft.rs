@@ -18,7 +18,7 @@ pub struct Row {
     pub im: [f64; COLUMNS],
 }
 
-/// The plan of F[k] = Σ f[j] e^(−2πi j k/n) over n rows, without a factor in front.
+/// The plan of F_k = Σ f_j e^(−2πi j k/n) over n rows, without a factor in front.
 ///
 /// Stockham's order (Cochran and others 1967, *What is the fast Fourier transform?*): each stage
 /// takes one factor of n and leaves its output sorted. Factors 4 and 2 have their own code; an odd
@@ -163,7 +163,7 @@ impl Stage {
         }
     }
 
-    /// F[l] = x₀ + Σ (x_k + x_{p−k}) Re r + i (x_k − x_{p−k}) Im r over k < p/2, r = e^(−2πi kl/p).
+    /// F_l = x₀ + Σ (x_k + x_{p−k}) Re r + i (x_k − x_{p−k}) Im r over k < p/2, r = e^(−2πi kl/p).
     #[inline(always)]
     fn odd<S: Simd>(
         &self,

@@ -119,8 +119,8 @@ impl FromSky {
             .get(random::index(words[1][3], self.ways.len().max(1)))?
         {
             Way::Window([along_x, along_y]) => {
-                let [x, u] = along_x.sample([r[0], r[1]]);
-                let [y, v] = along_y.sample([r[2], r[3]]);
+                let [[x], [u]] = along_x.samples([[r[0]], [r[1]]]);
+                let [[y], [v]] = along_y.samples([[r[2]], [r[3]]]);
                 Some(TwoPlane { x, y, u, v })
             }
             Way::Across { distance, position } => {
@@ -143,7 +143,9 @@ impl FromSky {
         let by_sky = self.sky.slope_density(ray);
         let densities = self.ways.iter().map(|way| match way {
             Way::Window([along_x, along_y]) => {
-                along_x.density([ray.x, ray.u]) * along_y.density([ray.y, ray.v])
+                let [x] = along_x.densities([&[ray.x], &[ray.u]]);
+                let [y] = along_y.densities([&[ray.y], &[ray.v]]);
+                x * y
             }
             Way::Across { distance, position } => {
                 let TwoPlane { x, y, .. } = ray.travelled(*distance);

@@ -1,10 +1,11 @@
 use crate::aim::{FromSky, looks_across};
-use crate::proposal::{Follower, Proposal};
+use crate::proposal::{Follower, Proposal, lanes};
 use crate::reach::{looks_at_surface, outline, reach};
 use crate::sky;
 use crate::station::Station;
 use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, Window, power, random};
 use etendue_scene::{Emission, Scene};
+use fearless_simd::{Level, dispatch};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -20,7 +21,14 @@ pub struct Emitter {
     /// What light without extent is drawn evenly from, in place of all these, each with an equal
     /// share: slopes along x and y, or positions of a beam.
     even: Vec<Bounds>,
+    level: Level,
 }
+
+/// Photons that are emitted side by side.
+pub const ABREAST: usize = 8;
+
+/// x, y, u and v of rays side by side.
+type Columns = [[f64; ABREAST]; 4];
 
 impl Emitter {
     /// The emitter of a scene.
@@ -81,6 +89,7 @@ impl Emitter {
             proposals,
             sky,
             even: Vec::new(),
+            level: Level::new(),
         }
     }
 
@@ -102,10 +111,78 @@ impl Emitter {
         if self.sky.is_some() { 2 } else { 1 }
     }
 
-    /// A ray from the random words of two blocks; `None` when what was drawn goes nowhere.
-    #[inline]
+    /// Rays of photons side by side and their weights: what each stands for in radiance space, zero
+    /// where it goes nowhere. `words` are those of a block of one of them.
     #[must_use]
-    pub fn sample(&self, words: impl Fn(u32) -> [u32; 4]) -> Option<TwoPlane> {
+    pub fn emit(
+        &self,
+        words: impl Fn(usize, u32) -> [u32; 4],
+    ) -> ([TwoPlane; ABREAST], [f64; ABREAST]) {
+        let mut rays = [TwoPlane::default(); ABREAST];
+        let mut weights = [0.0; ABREAST];
+        if self.proposals.is_empty() {
+            for (i, (to, weight)) in rays.iter_mut().zip(&mut weights).enumerate() {
+                if let Some(ray) = self.sample(|block| words(i, block)) {
+                    (*to, *weight) = (ray, self.weight(&ray, self.density(&ray)));
+                }
+            }
+        } else {
+            let [x, y, u, v] = self.aimed(words);
+            let densities = dispatch!(self.level, _simd => self.densities(&[x, y, u, v]));
+            for (i, ray) in rays.iter_mut().enumerate() {
+                let [x, y, u, v] = [x[i], y[i], u[i], v[i]];
+                *ray = TwoPlane { x, y, u, v };
+                weights[i] = self.weight(ray, densities[i]);
+            }
+        }
+        (rays, weights)
+    }
+
+    /// Rays aimed at planes, each of which is drawn as well: columns of x, y, u and v.
+    #[inline]
+    fn aimed(&self, words: impl Fn(usize, u32) -> [u32; 4]) -> Columns {
+        let mut numbers = [[0.0; 4]; ABREAST];
+        for (i, numbers) in numbers.iter_mut().enumerate() {
+            let words = words(i, 0);
+            *numbers = lanes(|k| random::unit(words[k]));
+        }
+        if let [[along_x, along_y]] = self.proposals.as_slice() {
+            let column = |k: usize| lanes(|i| numbers[i][k]);
+            let [a, b, c, d] = [column(0), column(1), column(2), column(3)];
+            return dispatch!(self.level, _simd => {
+                let ([x, u], [y, v]) = (along_x.samples([a, b]), along_y.samples([c, d]));
+                [x, y, u, v]
+            });
+        }
+        let mut rays = [[0.0; ABREAST]; 4];
+        for (i, [a, b, c, d]) in numbers.into_iter().enumerate() {
+            let plane = random::index(words(i, 1)[3], self.proposals.len());
+            let [along_x, along_y] = &self.proposals[plane];
+            let [[x], [u]] = along_x.samples([[a], [b]]);
+            let [[y], [v]] = along_y.samples([[c], [d]]);
+            for (to, from) in rays.iter_mut().zip([x, y, u, v]) {
+                to[i] = from;
+            }
+        }
+        rays
+    }
+
+    /// The densities of [`Self::aimed`] with respect to dx dy du dv; to du dv for a point.
+    #[inline(always)]
+    fn densities(&self, [x, y, u, v]: &Columns) -> [f64; ABREAST] {
+        let mut sums = [0.0; ABREAST];
+        for [along_x, along_y] in &self.proposals {
+            let (in_x, in_y) = (along_x.densities([x, u]), along_y.densities([y, v]));
+            for (i, sum) in sums.iter_mut().enumerate() {
+                *sum += in_x[i] * in_y[i];
+            }
+        }
+        lanes(|i| sums[i] / self.proposals.len() as f64)
+    }
+
+    /// A ray that is not aimed at windows one by one, from the random words of two blocks; `None` when what was drawn goes nowhere.
+    #[inline]
+    fn sample(&self, words: impl Fn(u32) -> [u32; 4]) -> Option<TwoPlane> {
         if let Some(sky) = &self.sky {
             return sky.sample([words(0), words(1)]);
         }
@@ -124,14 +201,7 @@ impl Emitter {
             };
             return Some(TwoPlane { x, y, u, v });
         }
-        let [along_x, along_y] = match self.proposals.as_slice() {
-            [] => return Some(self.plain(r)),
-            [only] => only,
-            several => &several[random::index(words(1)[3], several.len())],
-        };
-        let [x, u] = along_x.sample([r[0], r[1]]);
-        let [y, v] = along_y.sample([r[2], r[3]]);
-        Some(TwoPlane { x, y, u, v })
+        Some(self.plain(r))
     }
 
     /// Uniform over the light's area, by radiance and cosine over direction; a point's by solid angle, forwards.
@@ -182,10 +252,10 @@ impl Emitter {
         }
     }
 
-    /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point.
+    /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for light without extent, to
+    /// dx dy for a beam.
     #[inline]
-    #[must_use]
-    pub fn density(&self, ray: &TwoPlane) -> f64 {
+    fn density(&self, ray: &TwoPlane) -> f64 {
         if let Some(sky) = &self.sky {
             return sky.density(ray);
         }
@@ -198,38 +268,25 @@ impl Emitter {
             let densities = self.even.iter().map(|bounds| evenly_over(bounds, at));
             return densities.sum::<f64>() / self.even.len() as f64;
         }
-        if self.proposals.is_empty() {
-            let secant_squared = ray.secant_squared();
-            return match self.light {
-                // cos θ dω = du dv / (1 + u² + v²)², and ∫ cosⁿθ cos θ dω = 2π/(n + 2).
-                Light::Area {
-                    shape, exponent, ..
-                } => {
-                    let lobe =
-                        (exponent + 2.0) / TAU * power(secant_squared, -2.0 - 0.5 * exponent);
-                    lobe / shape.area()
-                }
-                Light::Point { .. } => 1.0 / (TAU * secant_squared * secant_squared.sqrt()),
-                Light::Projector { image, .. } => envelope(&image, ray.u, ray.v),
-                Light::Beam { image, .. } => envelope(&image, ray.x, ray.y),
-                Light::Environment { .. } => unreachable!("it has emission of its own"),
-            };
+        let secant_squared = ray.secant_squared();
+        match self.light {
+            // cos θ dω = du dv / (1 + u² + v²)², and ∫ cosⁿθ cos θ dω = 2π/(n + 2).
+            Light::Area {
+                shape, exponent, ..
+            } => {
+                let lobe = (exponent + 2.0) / TAU * power(secant_squared, -2.0 - 0.5 * exponent);
+                lobe / shape.area()
+            }
+            Light::Point { .. } => 1.0 / (TAU * secant_squared * secant_squared.sqrt()),
+            Light::Projector { image, .. } => envelope(&image, ray.u, ray.v),
+            Light::Beam { image, .. } => envelope(&image, ray.x, ray.y),
+            Light::Environment { .. } => unreachable!("it has emission of its own"),
         }
-        let sum: f64 = self
-            .proposals
-            .iter()
-            .map(|[along_x, along_y]| {
-                along_x.density([ray.x, ray.u]) * along_y.density([ray.y, ray.v])
-            })
-            .sum();
-        sum / self.proposals.len() as f64
     }
 
-    /// Radiance over density: what a sampled ray stands for in radiance space.
+    /// Radiance over density.
     #[inline]
-    #[must_use]
-    pub fn weight(&self, ray: &TwoPlane) -> f64 {
-        let density = self.density(ray);
+    fn weight(&self, ray: &TwoPlane, density: f64) -> f64 {
         // Rounding can put a ray on the very edge, where the density is zero: it carries nothing.
         if density > 0.0 {
             radiance(&self.light, ray) / density

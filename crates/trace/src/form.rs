@@ -1,5 +1,6 @@
 //! The forms of what ends a ray.
 
+use crate::grid::Grid;
 use crate::mesh::Mesh;
 use crate::obstacles::{direction, start};
 use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
@@ -11,6 +12,8 @@ use glam::DVec3;
 pub(crate) enum Form {
     /// A flat shape across the central ray.
     Flat { distance: f64, shape: Shape },
+    /// Many of these at one distance.
+    Grid(Box<Grid>),
     /// A flat shape in the plane of X and Y of a frame.
     Oblique { frame: Box<Frame>, shape: Shape },
     /// Triangles; what is met of it is the part with the number of a triangle.
@@ -29,6 +32,10 @@ impl Form {
             let at = ray.travelled(*distance);
             return shape.contains(at.x, at.y).then_some((*distance, 0));
         }
+        if let Self::Grid(grid) = self {
+            let at = ray.travelled(grid.distance);
+            return grid.contains(at.x, at.y).then_some((grid.distance, 0));
+        }
         self.first_elsewhere(ray, from, until)
     }
 
@@ -37,7 +44,7 @@ impl Form {
     fn first_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);
         match self {
-            Self::Flat { .. } => None,
+            Self::Flat { .. } | Self::Grid(_) => None,
             Self::Oblique { frame, shape } => {
                 let (start, direction) = (start(ray), direction(ray));
                 let distance = (frame.origin - start).dot(frame.d) / direction.dot(frame.d);
@@ -105,7 +112,7 @@ impl Form {
     /// A normal at a point of a part of it, of unit length.
     pub(crate) fn normal(&self, part: usize, point: DVec3) -> DVec3 {
         match self {
-            Self::Flat { .. } => DVec3::Z,
+            Self::Flat { .. } | Self::Grid(_) => DVec3::Z,
             Self::Oblique { frame, .. } => frame.d,
             Self::Mesh(mesh) => mesh.normal(part, point),
             Self::Smooth(patch) => patch.normal(point),
@@ -119,6 +126,10 @@ impl Form {
                 let bounds = shape.bounds();
                 let [x, y] = [bounds.extent(0), bounds.extent(1)];
                 [0, 1].map(|i| DVec3::new(x[i], y[i], *distance))
+            }
+            Self::Grid(grid) => {
+                let [x, y] = grid.bounds;
+                [0, 1].map(|i| DVec3::new(x[i], y[i], grid.distance))
             }
             Self::Oblique { frame, shape } => {
                 let bounds = shape.bounds();

@@ -13,6 +13,7 @@ mod bounce;
 pub mod brdf;
 mod emit;
 mod form;
+mod grid;
 mod ground;
 mod mesh;
 mod numbers;
@@ -28,5 +29,5 @@ mod targets;
 mod tracer;
 
 pub use backward::{Backward, LightNotFound, finds};
-pub use emit::Emitter;
+pub use emit::{ABREAST, Emitter};
 pub use tracer::Tracer;

@@ -1,4 +1,5 @@
 use crate::form::Form;
+use crate::grid::Grid;
 use crate::mesh::Mesh;
 use crate::targets::{Met, Target, Targets};
 use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
@@ -90,9 +91,9 @@ impl Obstacles {
                     shapes,
                     half_planes: halves,
                 } => {
-                    targets.extend(shapes.iter().map(|shape| Target {
-                        form: around.layer(distance, shape),
-                        tag: Meeting::Blocker,
+                    targets.extend(around.layer(distance, shapes).into_iter().map(|form| {
+                        let tag = Meeting::Blocker;
+                        Target { form, tag }
                     }));
                     half_planes.extend(halves.iter().map(|half| Layer {
                         distance,
@@ -284,10 +285,25 @@ pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
 pub(crate) struct Around(pub(crate) Frame);
 
 impl Around {
-    /// A shape in the plane of blockers.
-    fn layer(&self, distance: f64, shape: &Shape) -> Form {
-        let plane = Frame::IDENTITY.travelled(distance);
-        Self::flat(&self.0.decompose(&plane), shape)
+    /// The shapes in a plane of blockers.
+    fn layer(&self, distance: f64, shapes: &[Shape]) -> Vec<Form> {
+        let plane = self.0.decompose(&Frame::IDENTITY.travelled(distance));
+        let forms: Vec<Form> = shapes
+            .iter()
+            .map(|shape| Self::flat(&plane, shape))
+            .collect();
+        let flat = forms.iter().map_while(|form| match form {
+            Form::Flat { distance, shape } => Some((*distance, *shape)),
+            _ => None,
+        });
+        let (distances, flat): (Vec<f64>, Vec<Shape>) = flat.unzip();
+        match distances
+            .first()
+            .and_then(|distance| Grid::new(*distance, &flat))
+        {
+            Some(grid) if flat.len() == forms.len() => vec![Form::Grid(Box::new(grid))],
+            _ => forms,
+        }
     }
 
     pub(crate) fn surface(&self, surface: &Surface) -> Form {

@@ -42,13 +42,13 @@ impl Follower {
     }
 
     /// Sine of the angle with the largest slope.
-    #[inline]
+    #[inline(always)]
     fn sine(&self) -> f64 {
         self.half / (1.0 + self.half * self.half).sqrt()
     }
 
     /// Share of the density below `t`.
-    #[inline]
+    #[inline(always)]
     fn cumulative(&self, t: f64) -> f64 {
         let s = (t / self.half).clamp(-1.0, 1.0);
         match self.kind {
@@ -65,7 +65,7 @@ impl Follower {
     }
 
     /// Inverse of [`Self::cumulative`].
-    #[inline]
+    #[inline(always)]
     pub(crate) fn quantile(&self, p: f64) -> f64 {
         let s = match self.kind {
             Kind::Constant => 2.0 * p - 1.0,
@@ -83,7 +83,7 @@ impl Follower {
     }
 
     /// The density, with respect to dt.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn density(&self, t: f64) -> f64 {
         let s = (t / self.half).abs();
         if s >= 1.0 {
@@ -98,6 +98,28 @@ impl Follower {
             }
         }
     }
+
+    /// A function of this for each of some numbers. The kind is known within each of the loops, so
+    /// that they are done several numbers at a time.
+    #[inline(always)]
+    fn each<const N: usize>(&self, t: [f64; N], f: impl Fn(&Self, f64) -> f64) -> [f64; N] {
+        let of = |kind: Kind| Self { kind, ..*self };
+        match self.kind {
+            Kind::Constant => lanes(|i| f(&of(Kind::Constant), t[i])),
+            Kind::Tent => lanes(|i| f(&of(Kind::Tent), t[i])),
+            Kind::Cosine => lanes(|i| f(&of(Kind::Cosine), t[i])),
+        }
+    }
+}
+
+/// A number for each index. That of `std` is a call for each of them.
+#[inline(always)]
+pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
+    let mut all = [0.0; N];
+    for (i, number) in all.iter_mut().enumerate() {
+        *number = f(i);
+    }
+    all
 }
 
 /// Slopes along one axis, at a point of a surface, of rays that cross a window some way from it: by the window's profile
@@ -205,42 +227,52 @@ impl Proposal {
         self.light[1] <= self.light[0]
     }
 
-    /// Cumulative of the position in the window at the ends of the light's image at slope `u`.
-    #[inline]
-    fn image(&self, u: f64) -> [f64; 2] {
-        // One by one: `map` over the array is not inlined here, and this is asked of each photon four times.
-        let at = |x: f64| self.space.cumulative(x + self.distance * u);
+    /// Cumulative of the position in the window at the ends of the light's image at slopes `u`.
+    #[inline(always)]
+    fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
+        let at = |x: f64| {
+            let positions: [f64; N] = lanes(|i| x + self.distance * u[i]);
+            self.space.each(positions, Follower::cumulative)
+        };
         [at(self.light[0]), at(self.light[1])]
     }
 
-    /// Position on the light and slope, from two numbers in (0, 1).
-    #[inline]
-    pub(crate) fn sample(&self, random: [f64; 2]) -> [f64; 2] {
-        let between = |[low, high]: [f64; 2], r: f64| low + r * (high - low);
-        let u = self.slope.quantile(between(self.range, random[0]));
+    /// Positions on the light and slopes, each from two numbers in (0, 1).
+    #[inline(always)]
+    pub(crate) fn samples<const N: usize>(&self, [a, b]: [[f64; N]; 2]) -> [[f64; N]; 2] {
+        let between = |low: f64, high: f64, r: f64| low + r * (high - low);
+        let [low, high] = self.range;
+        let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
+        let u = self.slope.each(shares, Follower::quantile);
         if self.is_point() {
-            return [self.light[0], u];
+            return [[self.light[0]; N], u];
         }
-        let x = self.space.quantile(between(self.image(u), random[1]));
-        [x - self.distance * u, u]
+        let [low, high] = self.images(&u);
+        let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
+        let x = self.space.each(shares, Follower::quantile);
+        [lanes(|i| x[i] - self.distance * u[i]), u]
     }
 
-    /// The density of [`Self::sample`] with respect to dx du.
-    #[inline]
-    pub(crate) fn density(&self, [x, u]: [f64; 2]) -> f64 {
-        if x < self.light[0] || x > self.light[1] {
-            return 0.0;
-        }
-        let along_slope = self.slope.density(u) / (self.range[1] - self.range[0]);
+    /// The density of [`Self::samples`] with respect to dx du.
+    #[inline(always)]
+    pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
+        let [left, right] = self.light;
+        let share = self.range[1] - self.range[0];
+        let slope = self.slope.each(*u, Follower::density);
+        let seen: [f64; N] = lanes(|i| x[i] + self.distance * u[i]);
         if self.is_point() {
-            let seen = (x + self.distance * u).abs() < self.space.half;
-            return if seen { along_slope } else { 0.0 };
+            return lanes(|i| {
+                let is_seen = x[i] >= left && x[i] <= right && seen[i].abs() < self.space.half;
+                if is_seen { slope[i] / share } else { 0.0 }
+            });
         }
-        let [low, high] = self.image(u);
-        if high <= low {
-            return 0.0;
-        }
-        along_slope * self.space.density(x + self.distance * u) / (high - low)
+        let [low, high] = self.images(u);
+        let space = self.space.each(seen, Follower::density);
+        lanes(|i| {
+            let density = slope[i] / share * space[i] / (high[i] - low[i]);
+            let is_lit = x[i] >= left && x[i] <= right && high[i] > low[i];
+            if is_lit { density } else { 0.0 }
+        })
     }
 }
 
@@ -282,7 +314,7 @@ mod tests {
             let mut counts = vec![0.0; CELLS * CELLS];
             for index in 0..u64::from(SAMPLES) {
                 let r = random::words(9, Stream::Photon, index, 0).map(random::unit);
-                let [x, u] = proposal.sample([r[0], r[1]]);
+                let [[x], [u]] = proposal.samples([[r[0]], [r[1]]]);
                 let at = |t: f64, low: f64, high: f64| {
                     ((t - low) / (high - low) * CELLS as f64) as usize
                 };
@@ -298,7 +330,7 @@ mod tests {
                         let center = |c: usize, s: usize| (c * SUB + s) as f64 + 0.5;
                         let x = light[0] + (light[1] - light[0]) * center(i, k / SUB) / n as f64;
                         let u = half * (2.0 * center(j, k % SUB) / n as f64 - 1.0);
-                        p += proposal.density([x, u]);
+                        p += proposal.densities([&[x], &[u]])[0];
                     }
                     p *= (light[1] - light[0]) * 2.0 * half / (n * n) as f64;
                     total += p;

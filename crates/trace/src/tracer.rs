@@ -1,5 +1,5 @@
 use crate::bounce::Bounce;
-use crate::emit::Emitter;
+use crate::emit::{ABREAST, Emitter};
 use crate::numbers::Source;
 use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
 use crate::shares::{BLOCK, Shares};
@@ -102,18 +102,15 @@ impl Tracer {
         }
     }
 
-    /// The life of one photon.
+    /// The life of one photon, from how it is emitted on.
     #[inline]
     fn photon(
         &self,
+        (ray, weight): (TwoPlane, f64),
         words: impl Fn(u32) -> [u32; 4],
         crossings: &mut [Vec<Crossing>],
         ledger: &mut Ledger,
     ) {
-        let Some(ray) = self.emitter.sample(&words) else {
-            return;
-        };
-        let weight = self.emitter.weight(&ray);
         // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
         if weight <= 0.0 {
             return;
@@ -330,9 +327,15 @@ impl PhotonSource for Tracer {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
             let numbers = self.numbers.of(batch, first, start);
-            for index in start..end {
-                let words = |block| numbers.words(index, block);
-                self.photon(words, &mut crossings, &mut block);
+            for first in (start..end).step_by(ABREAST) {
+                // Beyond the end the last is emitted once more, and goes nowhere.
+                let index = |i: usize| (first + i as u64).min(end - 1);
+                let words = |i: usize, block: u32| numbers.words(index(i), block);
+                let (rays, weights) = self.emitter.emit(words);
+                let photons = rays.into_iter().zip(weights).enumerate();
+                for ((i, photon), _) in photons.zip(first..end) {
+                    self.photon(photon, |block| words(i, block), &mut crossings, &mut block);
+                }
             }
             for (plane, crossings) in crossings.iter_mut().enumerate() {
                 record(plane, crossings);

@@ -1,0 +1,169 @@
+use etendue_field::Shape;
+
+/// Flat shapes side by side in a plane across the leg, and a grid that tells which of them may hold
+/// a point.
+#[derive(Clone, Debug)]
+pub(crate) struct Grid {
+    /// Where the plane stands.
+    pub(crate) distance: f64,
+    /// Lowest and highest x, and y, of all shapes.
+    pub(crate) bounds: [[f64; 2]; 2],
+    counts: [usize; 2],
+    /// Cells to a metre, along x and y.
+    density: [f64; 2],
+    /// Where the shapes of each cell begin, [y, x], and where the last end.
+    starts: Vec<usize>,
+    /// Those of each cell, cell by cell.
+    shapes: Vec<Shape>,
+}
+
+/// Cells for each shape, so that most hold one or none.
+const FINENESS: f64 = 4.0;
+
+/// Times a shape may stand in the grid, on average: more where shapes lie on top of each other.
+const COPIES: usize = 16;
+
+/// The extent of a shape, and a little more: by rounding, its edge may hold a point beyond.
+fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
+    const ROUNDING: f64 = 1e-12;
+    let [low, high] = shape.bounds().extent(axis);
+    let more = ROUNDING * low.abs().max(high.abs());
+    [low - more, high + more]
+}
+
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "what is asked for is the whole part, 0 of negative numbers"
+)]
+fn whole(x: f64) -> usize {
+    x as usize
+}
+
+impl Grid {
+    /// `None` where a grid is of no help: for few shapes, and where many lie on top of each other.
+    pub(crate) fn new(distance: f64, shapes: &[Shape]) -> Option<Self> {
+        const FEW: usize = 8;
+        if shapes.len() < FEW {
+            return None;
+        }
+        let bounds = [0, 1].map(|axis| {
+            let extents = shapes.iter().map(|shape| reach(shape, axis));
+            extents.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], [a, b]| {
+                [low.min(a), high.max(b)]
+            })
+        });
+        let sides = bounds.map(|[low, high]| high - low);
+        if sides.iter().any(|side| *side <= 0.0) {
+            return None;
+        }
+        let cells = FINENESS * shapes.len() as f64;
+        let along = |axis: usize| (cells * sides[axis] / sides[1 - axis]).sqrt();
+        let mut grid = Self {
+            distance,
+            bounds,
+            counts: [0, 1].map(|axis| whole(along(axis).clamp(1.0, cells))),
+            density: [0.0; 2],
+            starts: Vec::new(),
+            shapes: Vec::new(),
+        };
+        grid.density = [0, 1].map(|axis| grid.counts[axis] as f64 / sides[axis]);
+        let mut cells = vec![Vec::new(); grid.counts[0] * grid.counts[1]];
+        let mut copies = 0;
+        for shape in shapes {
+            let [columns, rows] = [0, 1].map(|axis| {
+                let [first, last] = reach(shape, axis).map(|end| grid.cell(axis, end));
+                first..last + 1
+            });
+            copies += columns.len() * rows.len();
+            if copies > COPIES * shapes.len() {
+                return None;
+            }
+            for row in rows {
+                for column in columns.clone() {
+                    cells[row * grid.counts[0] + column].push(*shape);
+                }
+            }
+        }
+        grid.starts.push(0);
+        for cell in cells {
+            grid.shapes.extend(cell);
+            grid.starts.push(grid.shapes.len());
+        }
+        Some(grid)
+    }
+
+    /// The cell along an axis in which a coordinate within the bounds lies.
+    #[inline]
+    fn cell(&self, axis: usize, at: f64) -> usize {
+        let cell = (at - self.bounds[axis][0]) * self.density[axis];
+        whole(cell).min(self.counts[axis] - 1)
+    }
+
+    /// Whether a shape holds the point.
+    #[inline]
+    pub(crate) fn contains(&self, x: f64, y: f64) -> bool {
+        let [[left, right], [low, high]] = self.bounds;
+        if !(x >= left && x <= right && y >= low && y <= high) {
+            return false;
+        }
+        let cell = self.cell(1, y) * self.counts[0] + self.cell(0, x);
+        let shapes = &self.shapes[self.starts[cell]..self.starts[cell + 1]];
+        shapes.iter().any(|shape| shape.contains(x, y))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_field::random::{Stream, unit, words};
+    use etendue_field::{Disc, Rectangle};
+
+    /// Shapes of all sizes up to `size`, strewn over the unit square.
+    fn strewn(count: u64, size: f64) -> Vec<Shape> {
+        let shape = |i: u64| {
+            let [x, y, a, b] = words(5, Stream::Photon, i, 0).map(unit);
+            let center = [x, y];
+            if i.is_multiple_of(2) {
+                let size = [size * a, size * b];
+                Shape::Rectangle(Rectangle { center, size })
+            } else {
+                let radius = 0.5 * size * a;
+                Shape::Disc(Disc { center, radius })
+            }
+        };
+        (0..count).map(shape).collect()
+    }
+
+    #[test]
+    fn it_finds_what_holds_a_point() {
+        for (count, size) in [(8, 0.5), (100, 0.1), (3000, 0.02)] {
+            let shapes = strewn(count, size);
+            let grid = Grid::new(1.0, &shapes).unwrap();
+            let mut held = 0;
+            for i in 0..20_000 {
+                let [x, y, ..] = words(6, Stream::Photon, i, 0).map(|w| 1.4 * unit(w) - 0.2);
+                let expected = shapes.iter().any(|shape| shape.contains(x, y));
+                assert_eq!(grid.contains(x, y), expected, "({x}, {y}) of {count}");
+                held += usize::from(expected);
+            }
+            assert!(held > 500, "{held}");
+            // Corners and edges are held.
+            for shape in &shapes {
+                let [[left, right], [low, high]] = [0, 1].map(|axis| shape.bounds().extent(axis));
+                let [x, y] = [0.5 * (left + right), 0.5 * (low + high)];
+                for (x, y) in [(left, y), (right, y), (x, low), (x, high), (right, high)] {
+                    assert_eq!(grid.contains(x, y), shapes.iter().any(|s| s.contains(x, y)));
+                }
+            }
+            assert!(!grid.contains(f64::NAN, 0.5) && !grid.contains(f64::INFINITY, 0.5));
+        }
+    }
+
+    #[test]
+    fn shapes_on_top_of_each_other_have_none() {
+        assert!(Grid::new(1.0, &strewn(2000, 1.0)).is_none());
+        assert!(Grid::new(1.0, &strewn(7, 0.1)).is_none());
+    }
+}
