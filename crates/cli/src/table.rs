@@ -14,7 +14,7 @@ pub(crate) fn print(summary: &Summary, folder: &Path) {
 fn text(summary: &Summary) -> String {
     let ledger = summary.ledger_imbalance.map(|imbalance| {
         let imbalance = imbalance.abs();
-        format!(", ledger closes to {imbalance:.0e}")
+        format!(", flux accounted for to {imbalance:.0e}")
     });
     let mut lines = vec![
         format!(
