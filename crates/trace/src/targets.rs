@@ -29,6 +29,9 @@ pub(crate) struct Targets<T> {
     targets: Vec<Target<T>>,
 }
 
+/// Targets that are tried in turn: as fast as a hierarchy takes to begin.
+const FEW: usize = 4;
+
 impl<T> Target<T> {
     pub(crate) fn met(&self, part: usize) -> Met<'_, T> {
         let Self { form, tag } = self;
@@ -66,10 +69,8 @@ impl<T: Clone> Targets<T> {
     pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, Met<'_, T>)> {
         let mut first = None;
         let mut nearest = f64::INFINITY;
-        let range = [from, nearest];
-        let (start, direction) = (start(ray), direction(ray));
-        self.hierarchy.along(start, direction, range, |i| {
-            let target = &self.targets[i];
+        let mut try_one = |i: usize| {
+            let target: &Target<T> = &self.targets[i];
             if let Some((distance, part)) = target.form.first(ray, from, nearest)
                 && distance < nearest
                 && distance > from
@@ -78,7 +79,16 @@ impl<T: Clone> Targets<T> {
                 first = Some((target, part));
             }
             nearest
-        });
+        };
+        if self.targets.len() <= FEW {
+            (0..self.targets.len()).for_each(|i| {
+                try_one(i);
+            });
+        } else {
+            let (start, direction) = (start(ray), direction(ray));
+            self.hierarchy
+                .along(start, direction, [from, f64::INFINITY], try_one);
+        }
         first.map(|(target, part)| (nearest, target.met(part)))
     }
 
