@@ -3,7 +3,7 @@
 use super::coordinates::{coordinates, seen};
 use super::rays::{Ray, centred, lattice, met, point_on, ray_to, strength, within};
 use super::surroundings::{Meets, Surroundings, in_words};
-use etendue_field::{Light, Orientation, Patch, TwoPlane, VirtualPlane};
+use etendue_field::{Light, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::Observed;
 use etendue_theory::rays::{Plane, System};
@@ -26,9 +26,6 @@ pub(crate) fn unforeseen_by_rays(
     let mut found = met(|index| follower.check(follower.ray(index)?));
     found.extend(met(|index| follower.check(follower.ray_of_window(index)?)));
     let mut found = in_words(found, scene);
-    if follower.looks_behind_light() {
-        found.push("a window that reaches behind the light".to_owned());
-    }
     let off = follower.off_patches().filter(|off| *off > OFF_PATCHES);
     found.extend(off.map(|off| {
         let percent = 100.0 * off;
@@ -56,16 +53,6 @@ pub(super) type Arrival = Option<(TwoPlane, f64)>;
 const SAME: f64 = 1e-6;
 
 impl Follower<'_> {
-    /// Whether the window of a plane on the first surface holds points to which no light goes
-    /// forward: theory has it come along the whole line of a ray.
-    fn looks_behind_light(&self) -> bool {
-        let [x, y] = [self.plane.window.x, self.plane.window.y].map(|p| p.half_width());
-        let corners = [[x, y], [x, -y], [-x, y], [-x, -y]];
-        let depth = |[x, y]: [f64; 2]| self.at.frame.to_world(DVec3::new(x, y, 0.0)).z;
-        let is_on_surface = self.at.orientation != Orientation::Orthogonal;
-        self.plane.leg == 0 && is_on_surface && corners.into_iter().any(|at| depth(at) <= 0.0)
-    }
-
     /// How much light a ray brings into the window, and what it meets on its way that theory does not
     /// know of, if anything; `None` if it brings none.
     fn check(&self, (ray, emitted): (Ray, f64)) -> Option<(f64, Option<Meets>)> {
