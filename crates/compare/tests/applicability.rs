@@ -273,7 +273,7 @@ fn a_smooth_mesh_is_flat_or_finely_curved() {
     };
     assert_eq!(of(0.0, 30), Class::FirstOrder);
     assert_eq!(of(0.001, 30), Class::FirstOrder);
-    assert_eq!(of(3.0, 100), Class::FirstOrder);
+    assert_eq!(of(3.0, 300), Class::FirstOrder);
     assert_eq!(of(3.0, 10), Class::Reference);
 }
 

@@ -189,7 +189,8 @@ fn seen_of_patch(
             }
         }
     }
-    if rays.iter().any(|[_, along]| along.z.abs() < LEAST) {
+    // What leaves along the surface or behind it has come from no part of it that has an end.
+    if rays.iter().any(|[_, along]| along.z < LEAST) {
         return None;
     }
     let corners = patch.corners().map(|p| at.to_local(p));

@@ -2,6 +2,7 @@ use crate::obstacles::{direction, ray_through, start};
 use etendue_field::{Frame, Orientation, Patch, Side, TwoPlane, VirtualPlane, Window};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
 
 /// Where a plane stands on its leg, and how it looks at rays of the leg.
 #[derive(Clone, Copy, Debug)]
@@ -195,9 +196,12 @@ impl View {
     /// The inverse of [`Self::seen`].
     fn away(&self, frame: &Frame, [u, v]: [f64; 2]) -> Option<DVec3> {
         let turned = if self.mirrored { -1.0 } else { 1.0 };
-        let (sin, cos) = libm::sincos(turned * (u + self.longitude));
-        let (up, across) = libm::sincos(turned * v);
-        (across > 0.0 && cos > 0.0)
+        let angles = [turned * (u + self.longitude), turned * v];
+        let [(sin, cos), (up, across)] = angles.map(libm::sincos);
+        // A turn further the same direction has no other coordinates.
+        angles
+            .iter()
+            .all(|angle| angle.abs() < FRAC_PI_2)
             .then(|| frame.vector_to_world(DVec3::new(across * sin, up, across * cos)))
     }
 

@@ -112,6 +112,15 @@ fn leaving() {
     );
 }
 
+/// Some slopes of a window may look along a tilted wall, or at its back: what is seen of it has no
+/// end there.
+#[test]
+fn leaving_along_the_wall() {
+    let wall = r#"Smooth(name: "s", center: (0, 0, 1.5), facing: (0.93, 0, -0.36), form: Plane, aperture: 4.2, event: Reflects(brdf: (lobe: Lambertian)))"#;
+    let window = "(x: Box(0.2), u: Hann(2.1))";
+    agree_in(window, "\"s\"", wall, &["at: Distance(1.6)"]);
+}
+
 /// Narrow slopes, too, are found from all of a wide light.
 #[test]
 fn narrow_slopes() {

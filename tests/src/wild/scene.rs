@@ -26,6 +26,10 @@ pub(crate) fn scene(seed: u64, index: u64, photons: u64, folder: &Path) -> io::R
     if draw.one_in(10) {
         file.surfaces
             .push(passed(&mut draw, "beside".into(), first));
+        // On an earlier leg the path would have to visit it.
+        if central_ray(&file, folder).is_none() {
+            file.surfaces.pop();
+        }
     }
     // What was put beside the way may shorten its last leg.
     let path = central_ray(&file, folder).unwrap_or(path);

@@ -4,6 +4,7 @@ use super::rays::Ray;
 use etendue_field::{Frame, Orientation, TwoPlane};
 use etendue_theory::rays::Plane;
 use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
 
 /// The frame that angles are counted from on a surface, where its unit normal is known.
 fn local(plane: &Plane, normal: DVec3) -> Frame {
@@ -75,6 +76,11 @@ pub(super) fn direction(plane: &Plane, normal: DVec3, [u, v]: [f64; 2]) -> DVec3
 /// The ray with these coordinates, (x, y, u, v), at a plane; `None` where the plane is on a surface
 /// that is not there.
 pub(super) fn seen(plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Ray> {
+    let on_surface = plane.orientation != Orientation::Orthogonal;
+    // A turn further the same direction has no other coordinates.
+    if on_surface && (u + plane.longitude).abs().max(v.abs()) >= FRAC_PI_2 {
+        return None;
+    }
     let foot = plane.frame.to_world(DVec3::new(x, y, 0.0));
     let (mut point, mut normal) = (foot, plane.frame.d);
     if let Some(patch) = plane

@@ -1,24 +1,23 @@
-//! Rays of a plane across the central ray, followed back to the light as they go.
+//! Rays of a plane, followed back to the light as they go.
 
 use super::trace::Ray;
 use super::{Element, Plane, System};
-use etendue_field::{Frame, Orientation, Specular};
+use etendue_field::Specular;
 use glam::DVec3;
 
 /// A plane, and the surfaces on the way back from it.
 #[derive(Clone, Debug)]
 pub(super) struct Back {
-    frame: Frame,
+    plane: Plane,
     elements: Vec<Element>,
 }
 
 impl Back {
-    /// `None` on a surface: its coordinates do not say where a ray is.
-    pub(super) fn new(system: &System, plane: &Plane) -> Option<Self> {
-        (plane.orientation == Orientation::Orthogonal).then(|| Self {
-            frame: plane.frame,
+    pub(super) fn new(system: &System, plane: &Plane) -> Self {
+        Self {
+            plane: *plane,
             elements: system.elements.clone(),
-        })
+        }
     }
 
     /// The ray (x, y, u, v) of the light's plane that arrives at z, and |∂z/∂ray|. `None` where none
@@ -26,13 +25,23 @@ impl Back {
     ///
     /// Surfaces keep n² dx dy du dv / (1 + u² + v²)² of rays (docs/theory.md (29)).
     pub(super) fn ray(&self, z: [f64; 4]) -> Option<([f64; 4], f64)> {
-        let mut ray = self.last_leg(z);
+        let (last, etendue) = self.plane.ray(z)?;
+        let mut after = last.direction;
         let mut spread = 1.0;
+        let mut ray = None;
         for element in self.elements.iter().rev() {
-            let before = element.follow(&ray)?;
-            spread *= element.spread(&before, -ray.direction);
-            ray = before;
+            let before = match ray {
+                None => self.off_last(element, &last)?,
+                Some(ray) => element.follow(&ray)?,
+            };
+            spread *= element.spread(&before, after);
+            after = -before.direction;
+            ray = Some(before);
         }
+        let ray = ray.unwrap_or(Ray {
+            direction: -last.direction,
+            ..last
+        });
         let travel = -ray.point.z / ray.direction.z;
         // Light begins in the plane z = 0 and goes forward.
         if travel <= 0.0 || ray.direction.z >= 0.0 {
@@ -40,24 +49,23 @@ impl Back {
         }
         let at = ray.point + travel * ray.direction;
         let [u, v] = [ray.direction.x, ray.direction.y].map(|d| d / ray.direction.z);
-        let emission = [at.x, at.y, u, v];
-        let widths = secant_squared(z) / secant_squared(emission);
-        Some((emission, spread * widths * widths))
+        let secant_squared = 1.0 + u * u + v * v;
+        let width = etendue * secant_squared * secant_squared;
+        Some(([at.x, at.y, u, v], spread / width))
     }
 
-    /// The ray back along z, from beyond all that it can meet of the last surface: half of a plane at
-    /// an oblique surface lies behind that.
-    fn last_leg(&self, [x, y, u, v]: [f64; 4]) -> Ray {
-        let point = self.frame.to_world(DVec3::new(x, y, 0.0));
-        let along = self.frame.vector_to_world(DVec3::new(u, v, 1.0));
-        let along = along.normalize();
-        let far = self.elements.last().map_or(0.0, |Element { patch, .. }| {
-            4.0 * patch.aperture + (point - patch.frame.origin).length()
-        });
-        Ray {
-            point: point + far * along,
-            direction: -along,
+    /// What comes back of the last leg from the last surface. The leg is followed from beyond all
+    /// that it can meet of that: half of a plane at an oblique surface lies behind the surface. On a
+    /// curved surface itself the point is known.
+    fn off_last(&self, element: &Element, last: &Ray) -> Option<Ray> {
+        let Element { patch, .. } = element;
+        let back = -last.direction;
+        if self.plane.patch.is_some() && !self.plane.arriving {
+            let normal = patch.gradient(patch.frame.to_local(last.point));
+            let normal = patch.frame.vector_to_world(normal.try_normalize()?);
+            return element.turned(back, last.point, normal);
         }
+        element.follow(&Ray::back(patch, last.point, last.direction))
     }
 }
 
@@ -84,9 +92,4 @@ impl Element {
             }
         }
     }
-}
-
-/// 1 + u² + v².
-fn secant_squared([.., u, v]: [f64; 4]) -> f64 {
-    1.0 + u * u + v * v
 }

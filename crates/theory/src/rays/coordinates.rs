@@ -2,8 +2,9 @@
 
 use super::Plane;
 use super::trace::Ray;
-use etendue_field::{Frame, Orientation, Quantity, TwoPlane};
+use etendue_field::{Frame, Orientation, Patch, Quantity, TwoPlane};
 use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
 
 impl Plane {
     /// The coordinates of a ray that is on its last leg, and the quantity in ray space per flux.
@@ -21,6 +22,53 @@ impl Plane {
                 self.on_surface([at.x, at.y], ray.direction, &self.frame.turned_to(normal))
             }
         }
+    }
+
+    /// The inverse of [`Self::coordinates`]: a ray, light going along it, from a point of the plane,
+    /// or of the surface it is on; and étendue over dx dy du dv there. `None` where there is none.
+    pub(super) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(Ray, f64)> {
+        let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
+        if self.orientation == Orientation::Orthogonal {
+            let along = DVec3::new(u, v, 1.0);
+            let ray = Ray {
+                point: foot,
+                direction: self.frame.vector_to_world(along.normalize()),
+            };
+            return Some((ray, along.length_squared().powi(-2)));
+        }
+        let (point, normal) = match &self.patch {
+            None => (foot, self.frame.d),
+            Some(patch) => self.above(foot, patch)?,
+        };
+        let away = self.away([u, v])?;
+        let towards = self.frame.turned_to(normal).vector_to_world(away);
+        let direction = if self.arriving { -towards } else { towards };
+        // Of a curved surface an area is seen of which dx dy is what lies below it.
+        let etendue = away.z * libm::cos(v) / normal.dot(self.frame.d);
+        Some((Ray { point, direction }, etendue))
+    }
+
+    /// The direction with two angles of a plane on a surface, seen from the normal. `None` beyond a
+    /// right angle: a turn further the same direction has no other coordinates.
+    pub(crate) fn away(&self, [u, v]: [f64; 2]) -> Option<DVec3> {
+        let turned = if self.orientation == Orientation::Mirrored {
+            -1.0
+        } else {
+            1.0
+        };
+        let angles = [turned * (u + self.longitude), turned * v];
+        let [(sin, cos), (up, across)] = angles.map(libm::sincos);
+        let is_in_front = angles.iter().all(|angle| angle.abs() < FRAC_PI_2);
+        is_in_front.then(|| DVec3::new(across * sin, up, across * cos))
+    }
+
+    /// The point of a patch over one of the tangent plane, and its normal on the side of D.
+    fn above(&self, foot: DVec3, patch: &Patch) -> Option<(DVec3, DVec3)> {
+        let d = self.frame.d;
+        let down = Ray::back(patch, foot, d);
+        let (distance, normal) = down.met(patch)?;
+        let side = normal.dot(d).signum();
+        Some((down.point - distance * d, normal * side))
     }
 
     /// What the quantity multiplies radiance by at a ray in the plane's coordinates.

@@ -96,7 +96,8 @@ impl Draw {
             RayStrategy::Slopes => aim(2)?,
             RayStrategy::Plane => {
                 emission.shape?;
-                if let Some(back) = plane.and_then(|plane| Back::new(system, plane)) {
+                if let Some(plane) = plane {
+                    let back = Back::new(system, plane);
                     let window = Box::new(profiles.map(|profile| Density::of(&profile)));
                     let by = By::Back { window, back };
                     return Some(Self { emission, by });

@@ -111,13 +111,17 @@ fn derivatives(
 
 fn exact_field<'a>(view: &'a Observed<System>, masks: &'a Masks<'a>) -> impl RayField + 'a {
     let Observed { system, plane } = view;
+    // Light begins in the plane z = 0: a surface that reaches back beside it is dark there. Points
+    // of a curved one are ahead that a ray meets.
+    let on_first_leg = plane.arriving && system.elements.is_empty() && plane.patch.is_none();
     move |ray| {
         let flux = flux(system, masks, ray);
         if flux <= 0.0 {
             return None;
         }
         let (z, per_flux) = plane.coordinates(&system.follow(ray)?)?;
-        Some((z, flux * per_flux))
+        let lit = !on_first_leg || plane.frame.to_world(DVec3::new(z[0], z[1], 0.0)).z > 0.0;
+        lit.then_some((z, flux * per_flux))
     }
 }
 

@@ -22,6 +22,16 @@ impl Ray {
         }
     }
 
+    /// The line through a point along a unit vector, gone back from beyond all that it can meet of
+    /// a patch.
+    pub(crate) fn back(patch: &Patch, through: DVec3, along: DVec3) -> Self {
+        let far = 4.0 * patch.aperture + (through - patch.frame.origin).length();
+        Self {
+            point: through + along * far,
+            direction: -along,
+        }
+    }
+
     /// The distance to a patch, and the unit normal there on the side of the patch's D. `None` if
     /// the patch is missed or behind.
     ///
@@ -66,7 +76,13 @@ impl Element {
     pub(super) fn follow(&self, ray: &Ray) -> Option<Ray> {
         let (distance, normal) = ray.met(&self.patch)?;
         let point = ray.point + ray.direction * distance;
-        let direction = self.bend(ray.direction, point, normal)?;
+        self.turned(ray.direction, point, normal)
+    }
+
+    /// The ray that goes on where one along `direction` hits `point`; `normal` is on the side of
+    /// the patch's D.
+    pub(super) fn turned(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<Ray> {
+        let direction = self.bend(direction, point, normal)?;
         Some(Ray { point, direction })
     }
 

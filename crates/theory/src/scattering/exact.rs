@@ -23,20 +23,17 @@ impl System {
     pub(super) fn leaving(&self, plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Leaving> {
         let frame = &plane.frame;
         let foot = frame.to_world(DVec3::new(x, y, 0.0));
-        let away = || {
-            let ((sin, cos), (up, across)) = (libm::sincos(u + plane.longitude), libm::sincos(v));
-            DVec3::new(across * sin, up, across * cos)
-        };
+        let away = || plane.away([u, v]);
         let (point, normal, direction) = match plane.orientation {
             Orientation::Orthogonal => {
                 let along = DVec3::new(u, v, 1.0).normalize();
                 self.on_line(foot, frame.vector_to_world(along))?
             }
-            Orientation::Tangent => self.on_line(foot, frame.vector_to_world(away()))?,
+            Orientation::Tangent => self.on_line(foot, frame.vector_to_world(away()?))?,
             Orientation::LocalNormals | Orientation::Mirrored => {
                 let (point, normal, _) = self.on_line(foot, frame.d)?;
                 let local = frame.turned_to(normal);
-                (point, normal, local.vector_to_world(away()))
+                (point, normal, local.vector_to_world(away()?))
             }
         };
         let leaves = direction.dot(normal) > 0.0;
@@ -49,12 +46,7 @@ impl System {
 
     /// Where a line goes out through the surface: point, normal and the line's direction.
     fn on_line(&self, at: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
-        // From far out, so that all of the surface is ahead.
-        let far = 4.0 * self.patch.aperture + (at - self.patch.frame.origin).length();
-        let ray = Ray {
-            point: at + direction * far,
-            direction: -direction,
-        };
+        let ray = Ray::back(&self.patch, at, direction);
         let (distance, normal) = ray.met(&self.patch)?;
         Some((ray.point - direction * distance, normal, direction))
     }

@@ -4,15 +4,8 @@ use super::super::back::Back;
 use super::*;
 use crate::geometry::{Map, from_fn};
 
-/// Through glass aslant, a hollow mirror and a lens: forward again they land where they were drawn,
-/// and |∂z/∂ray| is that of differences.
-#[test]
-fn rays_come_back_to_where_they_were_drawn() {
-    let glass = Specular::Refraction {
-        front: 1.0,
-        back: 1.5,
-    };
-    let lens = Specular::ThinLens { focal_length: 0.7 };
+/// An area light, and surfaces that light meets aslant.
+fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> System {
     let light = Light::Area {
         shape: Shape::Rectangle(Rectangle {
             center: [0.0; 2],
@@ -22,17 +15,32 @@ fn rays_come_back_to_where_they_were_drawn() {
         exponent: 0.0,
     };
     let mut system = system(light, vec![]);
-    for (name, event, theta0, curvature) in [
-        ("glass", glass, 0.6, [0.3, 0.1, 0.05]),
-        ("mirror", Specular::Mirror, 0.4, [-0.2, -0.3, -0.1]),
-        ("lens", lens, 0.2, [0.0; 3]),
-    ] {
+    for (name, event, theta0, curvature) in surfaces {
         let leg = after(&system, 0.0).frame;
-        let patch = placed(&leg, 0.8, theta0, [0.3, 0.2], curvature);
-        system.elements.push(element(name, patch, event));
+        let patch = Patch {
+            aperture: 1.0,
+            ..placed(&leg, 0.8, *theta0, [0.3, 0.2], *curvature)
+        };
+        system.elements.push(element(name, patch, *event));
     }
-    let plane = after(&system, 0.5);
-    let back = Back::new(&system, &plane).unwrap();
+    system
+}
+
+const GLASS: (&str, Specular, f64, [f64; 3]) = (
+    "glass",
+    Specular::Refraction {
+        front: 1.0,
+        back: 1.5,
+    },
+    0.6,
+    [0.3, 0.1, 0.05],
+);
+const MIRROR: (&str, Specular, f64, [f64; 3]) =
+    ("mirror", Specular::Mirror, 0.4, [-0.2, -0.3, -0.1]);
+
+/// Forward again rays land where they were drawn, and |∂z/∂ray| is that of differences.
+fn come_back(system: &System, plane: &Plane) {
+    let back = Back::new(system, plane);
     for z in [
         [0.0; 4],
         [0.02, -0.01, 0.03, 0.05],
@@ -56,7 +64,48 @@ fn rays_come_back_to_where_they_were_drawn() {
         // Differences are good to step² times third derivatives.
         assert!(
             (spread / expected - 1.0).abs() < 1e-7,
-            "{spread} {expected}"
+            "{plane:?}: {spread} {expected}"
         );
+    }
+}
+
+/// Through glass aslant, a hollow mirror and a lens.
+#[test]
+fn rays_come_back_to_where_they_were_drawn() {
+    let lens = Specular::ThinLens { focal_length: 0.7 };
+    let system = bent(&[GLASS, MIRROR, ("lens", lens, 0.2, [0.0; 3])]);
+    come_back(&system, &after(&system, 0.5));
+}
+
+/// From planes on surfaces, for light that leaves one or arrives at the next.
+#[test]
+fn rays_come_back_from_surfaces() {
+    let through = bent(&[MIRROR, GLASS]);
+    let before = bent(&[MIRROR]);
+    for arriving in [false, true] {
+        let incidence = through.hits().unwrap()[1].incidence;
+        let patch = through.elements[1].patch;
+        let side = if arriving { 1.0 } else { -1.0 };
+        let normal = side * patch.frame.d;
+        let origin = patch.frame.origin;
+        for orientation in [
+            Orientation::Tangent,
+            Orientation::LocalNormals,
+            Orientation::Mirrored,
+        ] {
+            let is_local = orientation != Orientation::Tangent;
+            let mut plane = Plane {
+                frame: Frame::new(origin, normal, incidence.b.cross(normal)).unwrap(),
+                orientation,
+                longitude: 0.0,
+                patch: is_local.then_some(patch),
+                arriving,
+                quantity: Quantity::Radiance,
+            };
+            let system = if arriving { &before } else { &through };
+            let central = system.follow([0.0; 4]).unwrap();
+            plane.longitude = plane.coordinates(&central).unwrap().0[2];
+            come_back(system, &plane);
+        }
     }
 }
