@@ -14,14 +14,22 @@ use std::f64::consts::{PI, TAU};
 #[derive(Debug)]
 pub struct Emitter {
     light: Light,
-    /// One proposal for each plane, as factors over (x, u) and (y, v); empty for plain emission.
-    proposals: Vec<[Proposal; 2]>,
-    /// Those of light from far away.
-    sky: Option<FromSky>,
-    /// What light without extent is drawn evenly from, in place of all these, each with an equal
-    /// share: slopes along x and y, or positions of a beam.
-    even: Vec<Bounds>,
+    way: Way,
     level: Level,
+}
+
+/// What rays are drawn by.
+#[derive(Debug)]
+enum Way {
+    /// One proposal for each plane, as factors over (x, u) and (y, v).
+    Aimed(Vec<[Proposal; 2]>),
+    /// Light from far away.
+    Sky(FromSky),
+    /// Light without extent: each of these with an equal share, slopes along x and y, or positions of
+    /// a beam.
+    Even(Vec<Bounds>),
+    /// As the light shines.
+    Plain,
 }
 
 /// Photons that are emitted side by side.
@@ -72,23 +80,23 @@ impl Emitter {
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };
-        let sky = match &light {
-            Light::Environment { environment } => Some(FromSky::new(scene, environment)),
-            _ => None,
-        };
-        // Pictures have their own proposal.
-        let proposals = match scene.run.emission {
-            Emission::Aimed if !light.is_picture() && sky.is_none() => {
+        let way = match (&light, scene.run.emission) {
+            (Light::Environment { environment }, _) => Way::Sky(FromSky::new(scene, environment)),
+            // Pictures have their own proposal.
+            (_, Emission::Aimed) if !light.is_picture() => {
                 let planes = scene.planes.iter().enumerate();
-                planes.filter_map(proposal).collect()
+                let proposals: Vec<_> = planes.filter_map(proposal).collect();
+                if proposals.is_empty() {
+                    Way::Plain
+                } else {
+                    Way::Aimed(proposals)
+                }
             }
-            Emission::Aimed | Emission::Plain => Vec::new(),
+            _ => Way::Plain,
         };
         Self {
             light,
-            proposals,
-            sky,
-            even: Vec::new(),
+            way,
             level: Level::new(),
         }
     }
@@ -99,16 +107,20 @@ impl Emitter {
     /// For any other light, and where the surface reaches back to the light, it is that of [`Self::new`].
     #[must_use]
     pub fn evenly(scene: &Scene) -> Self {
-        Self {
-            even: even(scene),
-            ..Self::new(scene)
+        let plain = Self::new(scene);
+        match even(scene) {
+            even if even.is_empty() => plain,
+            even => Self {
+                way: Way::Even(even),
+                ..plain
+            },
         }
     }
 
     /// The block of words from which on a photon's bounces take theirs. Of block 1 the emission takes
     /// the last word, which says at which plane a ray is aimed; light from far away takes them all.
     pub(crate) fn bounces_from(&self) -> u32 {
-        if self.sky.is_some() { 2 } else { 1 }
+        if let Way::Sky(_) = self.way { 2 } else { 1 }
     }
 
     /// Rays of photons side by side and their weights: what each stands for in radiance space, zero
@@ -120,19 +132,19 @@ impl Emitter {
     ) -> ([TwoPlane; ABREAST], [f64; ABREAST]) {
         let mut rays = [TwoPlane::default(); ABREAST];
         let mut weights = [0.0; ABREAST];
-        if self.proposals.is_empty() {
-            for (i, (to, weight)) in rays.iter_mut().zip(&mut weights).enumerate() {
-                if let Some(ray) = self.sample(|block| words(i, block)) {
-                    (*to, *weight) = (ray, self.weight(&ray, self.density(&ray)));
-                }
-            }
-        } else {
-            let [x, y, u, v] = self.aimed(words);
-            let densities = dispatch!(self.level, _simd => self.densities(&[x, y, u, v]));
+        if let Way::Aimed(proposals) = &self.way {
+            let [x, y, u, v] = self.aimed(proposals, words);
+            let densities = dispatch!(self.level, _simd => densities(proposals, &[x, y, u, v]));
             for (i, ray) in rays.iter_mut().enumerate() {
                 let [x, y, u, v] = [x[i], y[i], u[i], v[i]];
                 *ray = TwoPlane { x, y, u, v };
                 weights[i] = self.weight(ray, densities[i]);
+            }
+        } else {
+            for (i, (to, weight)) in rays.iter_mut().zip(&mut weights).enumerate() {
+                if let Some((ray, density)) = self.one(|block| words(i, block)) {
+                    (*to, *weight) = (ray, self.weight(&ray, density));
+                }
             }
         }
         (rays, weights)
@@ -140,13 +152,17 @@ impl Emitter {
 
     /// Rays aimed at planes, each of which is drawn as well: columns of x, y, u and v.
     #[inline]
-    fn aimed(&self, words: impl Fn(usize, u32) -> [u32; 4]) -> Columns {
+    fn aimed(
+        &self,
+        proposals: &[[Proposal; 2]],
+        words: impl Fn(usize, u32) -> [u32; 4],
+    ) -> Columns {
         let mut numbers = [[0.0; 4]; ABREAST];
         for (i, numbers) in numbers.iter_mut().enumerate() {
             let words = words(i, 0);
             *numbers = lanes(|k| random::unit(words[k]));
         }
-        if let [[along_x, along_y]] = self.proposals.as_slice() {
+        if let [[along_x, along_y]] = proposals {
             let column = |k: usize| lanes(|i| numbers[i][k]);
             let [a, b, c, d] = [column(0), column(1), column(2), column(3)];
             return dispatch!(self.level, _simd => {
@@ -156,8 +172,7 @@ impl Emitter {
         }
         let mut rays = [[0.0; ABREAST]; 4];
         for (i, [a, b, c, d]) in numbers.into_iter().enumerate() {
-            let plane = random::index(words(i, 1)[3], self.proposals.len());
-            let [along_x, along_y] = &self.proposals[plane];
+            let [along_x, along_y] = &proposals[random::index(words(i, 1)[3], proposals.len())];
             let [[x], [u]] = along_x.samples([[a], [b]]);
             let [[y], [v]] = along_y.samples([[c], [d]]);
             for (to, from) in rays.iter_mut().zip([x, y, u, v]) {
@@ -167,41 +182,37 @@ impl Emitter {
         rays
     }
 
-    /// The densities of [`Self::aimed`] with respect to dx dy du dv; to du dv for a point.
-    #[inline(always)]
-    fn densities(&self, [x, y, u, v]: &Columns) -> [f64; ABREAST] {
-        let mut sums = [0.0; ABREAST];
-        for [along_x, along_y] in &self.proposals {
-            let (in_x, in_y) = (along_x.densities([x, u]), along_y.densities([y, v]));
-            for (i, sum) in sums.iter_mut().enumerate() {
-                *sum += in_x[i] * in_y[i];
+    /// A ray that is not aimed at windows, from the random words of two blocks, and its density with
+    /// respect to dx dy du dv; to du dv for a point or a projector, to dx dy for a beam. `None` when
+    /// what was drawn goes nowhere.
+    #[inline]
+    fn one(&self, words: impl Fn(u32) -> [u32; 4]) -> Option<(TwoPlane, f64)> {
+        match &self.way {
+            Way::Sky(sky) => {
+                let ray = sky.sample([words(0), words(1)])?;
+                Some((ray, sky.density(&ray)))
+            }
+            Way::Even(all) => {
+                let bounds = match all.as_slice() {
+                    [only] => only,
+                    several => &several[random::index(words(1)[3], several.len())],
+                };
+                let r = words(0).map(random::unit);
+                let at = [0, 1].map(|i| bounds[i][0] + r[i] * (bounds[i][1] - bounds[i][0]));
+                let densities = all.iter().map(|bounds| evenly_over(bounds, at));
+                let density = densities.sum::<f64>() / all.len() as f64;
+                let [x, y, u, v] = if self.light.is_distant() {
+                    [at[0], at[1], 0.0, 0.0]
+                } else {
+                    [0.0, 0.0, at[0], at[1]]
+                };
+                Some((TwoPlane { x, y, u, v }, density))
+            }
+            Way::Aimed(_) | Way::Plain => {
+                let ray = self.plain(words(0).map(random::unit));
+                Some((ray, self.plain_density(&ray)))
             }
         }
-        lanes(|i| sums[i] / self.proposals.len() as f64)
-    }
-
-    /// A ray that is not aimed at windows one by one, from the random words of two blocks; `None` when what was drawn goes nowhere.
-    #[inline]
-    fn sample(&self, words: impl Fn(u32) -> [u32; 4]) -> Option<TwoPlane> {
-        if let Some(sky) = &self.sky {
-            return sky.sample([words(0), words(1)]);
-        }
-        let r = words(0).map(random::unit);
-        let even = match self.even.as_slice() {
-            [] => None,
-            [only] => Some(only),
-            several => Some(&several[random::index(words(1)[3], several.len())]),
-        };
-        if let Some(even) = even {
-            let [a, b] = [0, 1].map(|i| even[i][0] + r[i] * (even[i][1] - even[i][0]));
-            let [x, y, u, v] = if self.light.is_distant() {
-                [a, b, 0.0, 0.0]
-            } else {
-                [0.0, 0.0, a, b]
-            };
-            return Some(TwoPlane { x, y, u, v });
-        }
-        Some(self.plain(r))
     }
 
     /// Uniform over the light's area, by radiance and cosine over direction; a point's by solid angle, forwards.
@@ -252,22 +263,9 @@ impl Emitter {
         }
     }
 
-    /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for light without extent, to
-    /// dx dy for a beam.
+    /// The density of [`Self::plain`].
     #[inline]
-    fn density(&self, ray: &TwoPlane) -> f64 {
-        if let Some(sky) = &self.sky {
-            return sky.density(ray);
-        }
-        if !self.even.is_empty() {
-            let at = if self.light.is_distant() {
-                [ray.x, ray.y]
-            } else {
-                [ray.u, ray.v]
-            };
-            let densities = self.even.iter().map(|bounds| evenly_over(bounds, at));
-            return densities.sum::<f64>() / self.even.len() as f64;
-        }
+    fn plain_density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();
         match self.light {
             // cos θ dω = du dv / (1 + u² + v²)², and ∫ cosⁿθ cos θ dω = 2π/(n + 2).
@@ -294,6 +292,20 @@ impl Emitter {
             0.0
         }
     }
+}
+
+/// The density of rays aimed by several proposals, with respect to dx dy du dv; to du dv for a
+/// point.
+#[inline(always)]
+fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREAST] {
+    let mut sums = [0.0; ABREAST];
+    for [along_x, along_y] in proposals {
+        let (in_x, in_y) = (along_x.densities([x, u]), along_y.densities([y, v]));
+        for (i, sum) in sums.iter_mut().enumerate() {
+            *sum += in_x[i] * in_y[i];
+        }
+    }
+    lanes(|i| sums[i] / proposals.len() as f64)
 }
 
 /// Radiance on a ray given at the light; for a point, with respect to du dv alone, for a beam to dx dy: dω is

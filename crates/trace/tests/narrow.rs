@@ -7,8 +7,9 @@ mod common;
 
 use common::estimates;
 use etendue_field::PhotonSource;
+use etendue_field::random::{Stream, words};
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_trace::{Backward, Tracer, finds};
+use etendue_trace::{Backward, Emitter, Tracer, finds};
 
 const LIGHTS: [&str; 3] = [
     "Point(center: (0, 0, 0), intensity: 2)",
@@ -129,4 +130,22 @@ fn windows_before_a_small_mirror_are_sent_evenly() {
         assert!(!scene.planes.iter().any(|plane| finds(&scene, plane)));
         agree(&scene, &Tracer::evenly(&scene), light);
     }
+}
+
+/// A point sent evenly is not aimed: its judge would share the aim of what it judges.
+#[test]
+fn what_is_sent_evenly_has_one_density() {
+    let mirror = BALL.replace("EVENT", "Mirror");
+    let scene = scene(LIGHTS[0], &mirror, r#""s""#, &[r#"at: After("s")"#]);
+    let spread = |emitter: &Emitter| {
+        let (rays, weights) = emitter.emit(|i, block| words(1, Stream::Photon, i as u64, block));
+        let densities = rays.iter().zip(weights);
+        let densities = densities.map(|(ray, weight)| ray.secant_squared().sqrt() / weight);
+        let (low, high) = densities.fold((f64::INFINITY, 0.0_f64), |(low, high), density| {
+            (low.min(density), high.max(density))
+        });
+        high / low - 1.0
+    };
+    assert!(spread(&Emitter::evenly(&scene)) < 1e-14); // rounding
+    assert!(spread(&Emitter::new(&scene)) > 0.01);
 }
