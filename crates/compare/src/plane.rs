@@ -5,11 +5,11 @@ use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
 use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
-use crate::residuals::{Residuals, crossed_power};
+use crate::residuals::{Residuals, crossed_power, largest};
 use crate::score::{ParameterReport, score};
 use crate::uneven::too_few;
 use crate::verdict::{Test, Verdict};
-use etendue_field::{SliceGrid, Slices, modulus, tidy};
+use etendue_field::{SliceGrid, Slices, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
     BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, second_moment,
@@ -266,9 +266,7 @@ impl Compared<'_> {
     /// Whether photons brought no light, or so little that a prediction could not tell it from its
     /// rounding.
     fn is_dark(&self) -> bool {
-        let light = self.residuals.mean();
-        let light = light.iter().map(|s| modulus(*s)).fold(0.0, f64::max);
-        light <= self.prediction.unblocked * DARK
+        largest(&self.residuals.mean()) <= self.prediction.unblocked * DARK
     }
 
     fn inside(&self) -> u64 {
@@ -385,8 +383,7 @@ fn rounded(photons: f64) -> f64 {
 /// The predicted slices, set to zero where they are the rounding errors of a dark field.
 fn without_rounding(prediction: &Prediction) -> Slices {
     let least = prediction.unblocked * DARK;
-    let dark = prediction.slices.half.iter().all(|f| modulus(*f) <= least);
-    if dark {
+    if largest(&prediction.slices.half) <= least {
         Slices::zeros(prediction.slices.grid)
     } else {
         prediction.slices.clone()

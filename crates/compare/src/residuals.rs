@@ -90,12 +90,7 @@ impl Residuals {
     /// more than `error`|F| at each frequency, and than the fast transform is of the largest F.
     pub(crate) fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
-        let largest = prediction
-            .half
-            .iter()
-            .map(|f| modulus(*f))
-            .fold(0.0, f64::max);
-        let of_transform = TRANSFORM * largest;
+        let of_transform = TRANSFORM * largest(&prediction.half);
         moved.zip_mut_with(&prediction.half, |mean, f| {
             let distance = modulus(*mean);
             if distance > 0.0 {
@@ -365,6 +360,12 @@ fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
     signs.truncate(count);
     signs
 }
+
+/// The largest modulus of some slices.
+pub(crate) fn largest(slices: &Array3<Complex>) -> f64 {
+    slices.iter().map(|s| modulus(*s)).fold(0.0, f64::max)
+}
+
 /// Σ a b in eight sums side by side. The matrix products of libraries round as the processor at
 /// hand does best, these on every processor alike.
 fn dot(a: &[f64], b: &[f64]) -> f64 {

@@ -1,4 +1,4 @@
-//! Numbers as people read them.
+//! Numbers as people read them, and whole parts.
 
 /// The shortest text that is right to twelve significant digits: without the last digits that arithmetic leaves.
 #[must_use]
@@ -6,6 +6,18 @@ pub fn tidy(x: f64) -> String {
     let rounded: f64 = format!("{x:.11e}").parse().unwrap_or(x);
     // Adding 0 turns −0 into 0.
     (rounded + 0.0).to_string()
+}
+
+/// The whole part of a number: 0 of negative ones and of NaN, the largest there is beyond.
+#[inline]
+#[must_use]
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "what is asked for is the whole part"
+)]
+pub fn whole(x: f64) -> usize {
+    x as usize
 }
 
 #[cfg(test)]

@@ -13,7 +13,7 @@ pub fn cis(angle: f64) -> Complex {
     Complex::new(cos, sin)
 }
 
-/// x to the power of y for x ≥ 0, twice as fast as `libm::pow`. Its relative error is y ln x times that
+/// x to the power of y for x ≥ 0, in fewer steps than `libm::pow`. Its relative error is y ln x times that
 /// of a rounding, about 10⁻¹³ where it is worst.
 #[inline]
 #[must_use]

@@ -1,4 +1,6 @@
-use etendue_field::Shape;
+//! Which of many flat shapes holds a point.
+
+use etendue_field::{Shape, whole};
 
 /// Flat shapes side by side in a plane across the leg, and a grid that tells which of them may hold
 /// a point.
@@ -29,16 +31,6 @@ fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
     let [low, high] = shape.bounds().extent(axis);
     let more = ROUNDING * low.abs().max(high.abs());
     [low - more, high + more]
-}
-
-#[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "what is asked for is the whole part, 0 of negative numbers"
-)]
-fn whole(x: f64) -> usize {
-    x as usize
 }
 
 impl Grid {

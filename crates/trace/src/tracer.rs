@@ -39,6 +39,8 @@ struct Leg {
     /// What the leg begins and ends on.
     leaves: Option<Object>,
     ends: Option<Object>,
+    /// What it begins on, if light may meet that again: a flat surface is left for good.
+    rejoins: Option<Object>,
     /// Distances that are zero but for rounding.
     rounding: f64,
 }
@@ -215,6 +217,7 @@ impl Leg {
         let this = &scene.path.legs[leg];
         let planes = scene.planes.iter().enumerate();
         let stations = planes.filter(|(_, plane)| plane.leg == leg);
+        let leaves = this.leaves.map(|hit| hit.object);
         Self {
             frame: this.frame,
             obstacles: Obstacles::new(scene, this),
@@ -222,7 +225,8 @@ impl Leg {
                 .map(|(i, plane)| Station::new(scene, i, plane))
                 .collect(),
             bounce: Bounce::new(scene, leg),
-            leaves: this.leaves.map(|hit| hit.object),
+            leaves,
+            rejoins: leaves.filter(|object| bends(scene, *object)),
             ends: scene.path.ends_at(leg).map(|hit| hit.object),
             rounding: rounding(this),
         }
@@ -248,8 +252,8 @@ impl Leg {
         let Flight { ray, from, weight } = *flight;
         // What would meet again what it has left is gone, even where something stops it before: no
         // blocker beyond a plane lights it.
-        let stopped = self.leaves.is_some() && met.is_some();
-        if stopped && self.obstacles.meets(self.leaves, &ray, from) {
+        let stopped = self.rejoins.is_some() && met.is_some();
+        if stopped && self.obstacles.meets(self.rejoins, &ray, from) {
             return;
         }
         let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
@@ -287,6 +291,15 @@ pub(crate) fn rounding(leg: &etendue_scene::Leg) -> f64 {
     match leg.leaves {
         None => 0.0,
         Some(hit) => SHARE * (hit.point.length() + leg.start),
+    }
+}
+
+/// Whether a line may meet an object twice.
+fn bends(scene: &Scene, object: Object) -> bool {
+    match object {
+        Object::Surface(_) => false,
+        Object::Patch(i) => scene.patches[i].patch.curvature[..2] != [0.0; 2],
+        Object::Mesh(_) => true,
     }
 }
 

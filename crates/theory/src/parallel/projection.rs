@@ -6,7 +6,7 @@ use crate::parallel::polygon::{Polygon, cross};
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
 use crate::parallel::weighted_rectangle::DiscResolution;
-use etendue_field::{CosineTerm, Grating, Mask, Projection, ProjectionGrid, Window};
+use etendue_field::{CosineTerm, Grating, Mask, Projection, ProjectionGrid, Window, whole};
 use ndarray::Array2;
 use rayon::prelude::*;
 use std::f64::consts::TAU;
@@ -251,15 +251,6 @@ impl<'a> Cells<'a> {
         }
         terms[0] + cos * next - last
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "never negative, and small"
-)]
-fn whole(value: f64) -> usize {
-    value as usize
 }
 
 #[cfg(test)]

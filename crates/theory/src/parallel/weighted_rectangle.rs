@@ -2,7 +2,7 @@ use crate::parallel::chain::Path;
 use crate::parallel::disc::Discs;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::slope::Slope;
-use etendue_field::{HalfPlane, Mask, Profile, Rectangle, Shape, Window};
+use etendue_field::{HalfPlane, Mask, Profile, Rectangle, Shape, Window, whole};
 use std::f64::consts::PI;
 
 /// Nodes of the rule for discs beyond π R Ω.
@@ -205,15 +205,6 @@ impl EdgeBandwidth {
         let farthest = meets.fold(0.0, f64::max).min(FARTHEST * widest);
         own.max(FAR_SHARE * farthest)
     }
-}
-
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "small and positive"
-)]
-fn whole(count: f64) -> usize {
-    count as usize
 }
 
 /// The largest radius of a disc; 0 if there is none.

@@ -7,7 +7,7 @@
 use crate::numerics::quadrature::integrate;
 use crate::numerics::sinc::sinc;
 use crate::shading::g_hat;
-use etendue_field::Complex;
+use etendue_field::{Complex, whole};
 use std::f64::consts::{PI, TAU};
 
 /// The window exp(−π(x²/a² + v²/b²)).
@@ -97,7 +97,7 @@ pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 
     let Travelled { p, q, .. } = travelled;
     let half = 0.5 * width;
     // Enough for the oscillation, and for the Gaussian where it is narrower than the light.
-    let nodes = 16 + count(2.0 * width * (big_q.abs() + p.sqrt()));
+    let nodes = 16 + whole((2.0 * width * (big_q.abs() + p.sqrt())).ceil());
     let integral = integrate(nodes, [-half, half], |y| {
         Complex::from_polar(libm::exp(-PI * p * y * y), -TAU * big_q * y)
     });
@@ -143,7 +143,7 @@ pub(crate) fn disc_light(
     let [[omega_x, q_x], [omega_y, q_y]] = [[x, u], [y, v]].map(|k| travelled.frequencies(k));
     let Travelled { p, q, .. } = travelled;
     let (omega, big_q) = (libm::hypot(omega_x, omega_y), libm::hypot(q_x, q_y));
-    let nodes = 16 + count(4.0 * radius * (big_q + p.sqrt()));
+    let nodes = 16 + whole((4.0 * radius * (big_q + p.sqrt())).ceil());
     let integral = integrate(nodes, [0.0, radius], |r| {
         r * libm::exp(-PI * p * r * r) * libm::j0(TAU * big_q * r)
     });
@@ -178,7 +178,9 @@ pub(crate) fn half_planes(field: &Tilted, [x, v]: [f64; 2]) -> [Complex; 3] {
 
 /// Dawson's integral exp(−x²) ∫₀ˣ exp(t²) dt, by a Gauss rule: the integrand is entire.
 fn dawson(x: f64) -> f64 {
-    integrate(24 + count(x * x), [0.0, x], |t| libm::exp(t * t - x * x))
+    integrate(24 + whole((x * x).ceil()), [0.0, x], |t| {
+        libm::exp(t * t - x * x)
+    })
 }
 
 /// The same light seen through a grating: Σ cₙ I(D; Ωx − n f, Ωv + n f d) a distance d below it.
@@ -206,8 +208,8 @@ pub(crate) fn blocked_by_strip(
     [omega_x, omega_v]: [f64; 2],
 ) -> Complex {
     let half = 0.5 * bench.light;
-    let nodes =
-        32 + count(2.0 * (bench.light + strip[1] - strip[0]) * libm::hypot(omega_x, omega_v));
+    let nodes = 32
+        + whole((2.0 * (bench.light + strip[1] - strip[0]) * libm::hypot(omega_x, omega_v)).ceil());
     let sum: Complex = integrate(nodes, strip, |y| {
         integrate(nodes, [-half, half], |origin| {
             let v = (y - origin) / bench.to_blockers;
@@ -252,14 +254,4 @@ pub(crate) fn irradiance(bench: &GaussianBlock, grating: &Grating, x: f64) -> Co
     lines
         .map(|(f, c)| c * w * sinc(w * (x - f)) * g_hat(distance * x - bench.to_blockers * f))
         .sum()
-}
-
-/// A number of nodes.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "a small positive number, rounded up"
-)]
-fn count(nodes: f64) -> usize {
-    nodes.ceil() as usize
 }
