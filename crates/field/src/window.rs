@@ -43,13 +43,17 @@ const COSINE: [f64; TERMS] = {
     terms
 };
 
-/// cos(π s/2) on |s| ≤ 1, to 4·10⁻¹⁶. The window is asked of each photon four times, and this takes
-/// a third of the time of a library's cosine, with the same bits on every machine.
+/// cos²(π s/2) on |s| ≤ 1, of several at a time, to 8·10⁻¹⁶. The window is asked of each photon, and this
+/// takes a small part of the time of a library's cosine, with the same bits on every machine.
 #[inline]
-fn quarter_cosine(s: f64) -> f64 {
-    let square = s * s;
-    let last_first = COSINE.iter().rev();
-    last_first.fold(0.0, |sum, term| sum * square + term)
+fn hann<const N: usize>(s: [f64; N]) -> [f64; N] {
+    let mut cosines = [0.0; N];
+    for term in COSINE.iter().rev() {
+        for (cosine, s) in cosines.iter_mut().zip(s) {
+            *cosine = *cosine * (s * s) + term;
+        }
+    }
+    cosines.map(|c| c * c)
 }
 
 impl Profile {
@@ -72,8 +76,8 @@ impl Profile {
         }
         match *self {
             Self::Hann(h) => {
-                let c = quarter_cosine(t / h);
-                c * c
+                let [value] = hann([t / h]);
+                value
             }
             Self::Box(_) => 1.0,
             Self::Gaussian { width, .. } => libm::exp(-std::f64::consts::PI * (t / width).powi(2)),
@@ -160,7 +164,13 @@ impl Window {
         if !self.contains(z) {
             return 0.0;
         }
-        self.x.value(z.x) * self.y.value(z.y) * self.u.value(z.u) * self.v.value(z.v)
+        let [x, y, u, v] = match [self.x, self.y, self.u, self.v] {
+            [Profile::Hann(a), Profile::Hann(b), Profile::Hann(c), Profile::Hann(d)] => {
+                hann([z.x / a, z.y / b, z.u / c, z.v / d])
+            }
+            [x, y, u, v] => [x.value(z.x), y.value(z.y), u.value(z.u), v.value(z.v)],
+        };
+        x * y * u * v
     }
 
     /// Whether a ray is inside the support.
@@ -179,12 +189,12 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_quarter_of_a_cosine_is_right_to_rounding() {
+    fn hann_is_right_to_rounding() {
         for i in -1000..=1000 {
             let s = f64::from(i) / 1000.0;
-            let exact = libm::cos(std::f64::consts::FRAC_PI_2 * s);
-            // Two roundings of numbers up to 1.3, of steps of 2.2·10⁻¹⁶.
-            assert!((quarter_cosine(s) - exact).abs() < 4e-16, "at {s}");
+            let exact = libm::cos(std::f64::consts::FRAC_PI_2 * s).powi(2);
+            // Twice two roundings of numbers up to 1.3, of steps of 2.2·10⁻¹⁶.
+            assert!((hann([0.5, s])[1] - exact).abs() < 8e-16, "at {s}");
         }
     }
 
