@@ -1,4 +1,5 @@
 use crate::method::Method;
+use crate::sweep::values::{Setting, Sweep, setting, sweep};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use etendue_scene::RunFile;
 use std::ops::Range;
@@ -15,6 +16,7 @@ use std::path::PathBuf;
   etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05
   etendue check scenes/fig9b.ron                        what the scene says, nothing traced
   etendue measure | predict | compare                   the stages of run, over files
+  etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:8
 
 Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted), 4 undecided"
 )]
@@ -37,6 +39,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Shrink the neighbourhood of the central ray: how fast the first-order chain comes to the exact prediction.
     Converge(ConvergeArgs),
+    /// Run a scene with fields that take several values: one table of every plane's numbers, and curves.
+    Sweep(SweepArgs),
     /// How fast a glossy reflection changes with angle: the paper's criteria, corrected and as printed, and measured.
     Bandwidth(BandwidthArgs),
     /// Write a scene for another program, which then can be asked for the same light field.
@@ -282,6 +286,47 @@ pub(crate) struct ExportArgs {
 
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
+  etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:8
+  etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:4log --set blockers.0.fill=0.3,0.6 --photons 2^20
+  etendue sweep scenes/fig9b.ron --together --set surfaces.0.center.2=1.5,2,3 --set surfaces.0.albedo=0.2,0.5,0.8
+
+Leaves in its folder sweep.csv, a row for each number of each plane at each point, and the curves bandwidth_rho, bandwidth_nu
+and slope. Each point is a run of its own, whose summary.json is below points/: the same command again goes on where it
+was stopped, and one with other values runs only what is new.")]
+pub(crate) struct SweepArgs {
+    /// Scene file, in RON
+    #[arg(value_name = "SCENE.ron")]
+    pub(crate) path: PathBuf,
+
+    /// Set a field to a value, to N values from A to B (A..B:N; A..B:Nlog by equal factors) or to those of
+    /// a list (A,B,C); may be repeated
+    #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
+    pub(crate) set: Vec<Setting>,
+
+    /// Several fields go in step, instead of in all combinations
+    #[arg(long)]
+    pub(crate) together: bool,
+
+    /// Folder for the results [default: out/NAME-sweep]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
   etendue bandwidth scenes/bandwidth.ron
   etendue bandwidth scenes/bandwidth.ron --measure --sweep surfaces.0.form.Sphere=-0.3..0.5:9
   etendue bandwidth scenes/bandwidth.ron --sweep surfaces.0.facing.0=0..1:5      tan of the angle of incidence
@@ -303,8 +348,9 @@ pub(crate) struct BandwidthArgs {
     #[arg(long)]
     pub(crate) measure: bool,
 
-    /// Set a field to N values from A to B; may be repeated
-    #[arg(long, value_name = "PATH=A..B:N", value_parser = sweep)]
+    /// Set a field to N values from A to B (A..B:N; A..B:Nlog by equal factors) or to those of a list (A,B,C);
+    /// may be repeated
+    #[arg(long, value_name = "PATH=VALUES", value_parser = sweep)]
     pub(crate) sweep: Vec<Sweep>,
 
     /// Write the table into this file too, with all digits
@@ -323,37 +369,6 @@ pub(crate) struct BandwidthArgs {
     /// No progress bars
     #[arg(long)]
     pub(crate) quiet: bool,
-}
-
-/// Values of a field, evenly spaced.
-#[derive(Clone, Debug)]
-pub(crate) struct Sweep {
-    pub(crate) path: String,
-    pub(crate) from: f64,
-    pub(crate) to: f64,
-    pub(crate) count: u32,
-}
-
-fn sweep(text: &str) -> Result<Sweep, String> {
-    let parsed = || {
-        let (path, values) = text.split_once('=')?;
-        let (ends, count) = values.split_once(':')?;
-        let (from, to) = ends.split_once("..")?;
-        let [from, to] =
-            [from, to].map(|end| end.trim().parse::<f64>().ok().filter(|x| x.is_finite()));
-        let count = count
-            .trim()
-            .parse()
-            .ok()
-            .filter(|n| (1..=1000).contains(n))?;
-        Some(Sweep {
-            path: path.trim().to_owned(),
-            from: from?,
-            to: to?,
-            count,
-        })
-    };
-    parsed().ok_or_else(|| "must be PATH=A..B:N, numbers A and B and 1 to 1000 values".to_owned())
 }
 
 /// What `--to` knows.

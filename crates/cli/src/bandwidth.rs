@@ -1,7 +1,8 @@
-use crate::args::{BandwidthArgs, SceneArgs, Sweep};
+use crate::args::BandwidthArgs;
 use crate::failure::Failure;
 use crate::measure::measured;
 use crate::output::OutputFile;
+use crate::sweep::values::{Point, points, said_at, shown};
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{deliver, limits, load, method, progress, say};
@@ -13,27 +14,9 @@ use std::path::PathBuf;
 
 /// `etendue bandwidth`: returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
-    let points = points(&args.sweep)?;
-    let scenes: Result<Vec<Scene>, Failure> = points
-        .iter()
-        .map(|point| {
-            let mut set = args.scene.set.clone();
-            set.extend(
-                point
-                    .iter()
-                    .map(|(path, value)| (path.clone(), format!("{value:?}"))),
-            );
-            let scene = SceneArgs {
-                path: args.scene.path.clone(),
-                set,
-            };
-            load::scene(&scene, |run| args.photons.set(run)).map_err(|failure| Failure {
-                message: said_at(point, failure.message),
-                ..failure
-            })
-        })
-        .collect();
-    let scenes = scenes?;
+    let points = points(&args.sweep, true)?;
+    let at = |point| load::scene_at(&args.scene, point, |run| args.photons.set(run));
+    let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
     if args.measure {
         for scene in &scenes {
             let theories = Applicability::of_planes(scene);
@@ -67,7 +50,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     }
     let header = header(args);
     if let Some(file) = csv {
-        file.write(csv_text(&header, &rows).as_bytes())?;
+        file.write(&csv_of(&header, &rows)?)?;
     }
     let mut warnings: Vec<&String> = rows.iter().flat_map(|row| &row.warnings).collect();
     warnings.dedup();
@@ -138,52 +121,20 @@ impl Row {
 }
 
 /// The table as CSV.
-fn csv_text(header: &[String], rows: &[Row]) -> String {
-    let line = |cells: &[String]| {
-        let cells: Vec<String> = cells.iter().map(|cell| quoted(cell)).collect();
-        cells.join(",") + "\n"
-    };
-    let lines = rows.iter().map(|row| line(&row.record()));
-    std::iter::once(line(header)).chain(lines).collect()
-}
-
-/// A cell of a CSV file.
-fn quoted(cell: &str) -> String {
-    if cell.contains(['"', ',', '\n', '\r']) {
-        format!("\"{}\"", cell.replace('"', "\"\""))
-    } else {
-        cell.to_owned()
+fn csv_of(header: &[String], rows: &[Row]) -> Result<Vec<u8>, Failure> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    let lines = rows.iter().map(Row::record);
+    for line in std::iter::once(header.to_vec()).chain(lines) {
+        writer.write_record(line).map_err(Failure::cannot_run)?;
     }
-}
-
-/// The values of all sweeps, which go in step.
-fn points(sweeps: &[Sweep]) -> Result<Vec<Vec<(String, f64)>>, Failure> {
-    let count = sweeps.first().map_or(1, |sweep| sweep.count);
-    if sweeps.iter().any(|sweep| sweep.count != count) {
-        let message = "--sweep: several sweeps go in step and have the same number of values";
-        return Err(Failure::bad_input(message));
-    }
-    let value = |sweep: &Sweep, i: u32| {
-        let share = if count > 1 {
-            f64::from(i) / f64::from(count - 1)
-        } else {
-            0.0
-        };
-        (
-            sweep.path.clone(),
-            sweep.from + share * (sweep.to - sweep.from),
-        )
-    };
-    Ok((0..count)
-        .map(|i| sweeps.iter().map(|sweep| value(sweep, i)).collect())
-        .collect())
+    writer.into_inner().map_err(Failure::cannot_run)
 }
 
 /// A row for each plane with a criterion.
 fn of(
     args: &BandwidthArgs,
     scene: &Scene,
-    point: &[(String, f64)],
+    point: &Point,
     quiet: bool,
 ) -> Result<Vec<Row>, Failure> {
     let theories = Applicability::of_planes(scene);
@@ -231,21 +182,6 @@ fn of(
         Ok(row)
     };
     planes.into_iter().map(row).collect()
-}
-
-/// Where a sweep is, for texts.
-fn shown(point: &[(String, f64)]) -> String {
-    let parts: Vec<String> = point.iter().map(|(p, x)| format!("{p}={x:?}")).collect();
-    parts.join(", ")
-}
-
-/// A text about a point of the sweep, which it then names.
-fn said_at(point: &[(String, f64)], text: String) -> String {
-    if point.is_empty() || text.contains(&shown(point)) {
-        text
-    } else {
-        format!("{}: {text}", shown(point))
-    }
 }
 
 /// What the criteria do not know of.

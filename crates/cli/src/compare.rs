@@ -2,7 +2,7 @@ use crate::args::CompareArgs;
 use crate::batches::{self, Held};
 use crate::conclude::{Case, Ending, conclude, plan};
 use crate::failure::Failure;
-use crate::results::{MEASUREMENT, PREDICTION, Results};
+use crate::results::{MEASUREMENT, PREDICTION, Results, SUMMARY};
 use crate::stored::{Stored, check_earlier};
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
@@ -25,7 +25,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     stage.finish_and_clear();
     watch.lap("read");
     let plan = plan(&case.scene, &[], inputs, args.force.force);
-    check_earlier(&args.out, &case.scene, args.force.force)?;
+    check_earlier(&args.out, SUMMARY, &case.scene, args.force.force)?;
     let results = Results::claim(&args.out, plan)?;
     let (held, all) = (case.measurement.batches().len(), case.scene.run.batches);
     if !args.quiet && held < all as usize {

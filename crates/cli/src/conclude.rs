@@ -69,8 +69,7 @@ pub(crate) fn conclude(
     mut watch: Stopwatch,
 ) -> Result<u8, Failure> {
     let stage = progress::stage("comparing", ending.quiet);
-    let mut planes = compared(case)?;
-    aimed::leave_open(case, &mut planes);
+    let planes = judged(case)?;
     watch.lap("compare");
     let inquiries = stage.suspend(|| inquire(case, &planes, ending.quiet))?;
     stage.set_message("writing results");
@@ -120,15 +119,16 @@ fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
     }
 }
 
-fn compared(case: &Case) -> Result<Vec<PlaneComparison>, Failure> {
+/// Each plane compared, with its verdict.
+pub(crate) fn judged(case: &Case) -> Result<Vec<PlaneComparison>, Failure> {
     let test = Test::of(&case.scene);
-    case.predictions
-        .iter()
-        .enumerate()
-        .map(|(i, prediction)| {
-            compare(&case.measurement, i, prediction, &test).map_err(Failure::cannot_run)
-        })
-        .collect()
+    let each = case.predictions.iter().enumerate();
+    let compared = each.map(|(i, prediction)| {
+        compare(&case.measurement, i, prediction, &test).map_err(Failure::cannot_run)
+    });
+    let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
+    aimed::leave_open(case, &mut planes);
+    Ok(planes)
 }
 
 /// Writes everything; the summary last.

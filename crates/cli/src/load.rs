@@ -3,6 +3,7 @@ use crate::failure::Failure;
 use crate::machine;
 use crate::results::{Plan, Results};
 use crate::stored::copy_of;
+use crate::sweep::values::{Point, said_at};
 use etendue_scene::{
     RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
 };
@@ -38,6 +39,28 @@ pub(crate) fn scene(
         let lines = error.in_text(text, &set);
         let lines = lines.lines().map(|line| format!("{shown}: {line}"));
         refusal(&error, lines.collect::<Vec<_>>().join("\n"))
+    })
+}
+
+/// The scene with some fields set to numbers besides.
+pub(crate) fn scene_at(
+    args: &SceneArgs,
+    point: &Point,
+    options: impl FnOnce(&mut RunFile),
+) -> Result<Scene, Failure> {
+    let mut set = args.set.clone();
+    set.extend(
+        point
+            .iter()
+            .map(|(path, value)| (path.clone(), format!("{value:?}"))),
+    );
+    let args = SceneArgs {
+        path: args.path.clone(),
+        set,
+    };
+    scene(&args, options).map_err(|failure| Failure {
+        message: said_at(point, failure.message),
+        ..failure
     })
 }
 

@@ -37,6 +37,7 @@ mod run;
 mod sealed;
 mod stored;
 mod summary;
+mod sweep;
 mod table;
 mod target;
 mod threads;
@@ -59,6 +60,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
         Command::Converge(args) => converge::converge(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),
     });

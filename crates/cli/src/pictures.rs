@@ -252,7 +252,7 @@ pub(crate) fn drawn_scene(scene: &Scene, path: &Path) -> Result<Vec<u8>, Failure
 }
 
 /// Writes a figure as PNG, SVG and the numbers behind it.
-fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), Failure> {
+pub(crate) fn write(results: &mut Results, name: &str, figure: &Figure) -> Result<(), Failure> {
     let png = figure.png().map_err(Failure::cannot_run)?;
     results.write(&format!("{name}.png"), &png)?;
     results.write(&format!("{name}.svg"), figure.svg.as_bytes())?;

@@ -3,7 +3,7 @@ use crate::conclude::{Case, Ending, conclude, plan};
 use crate::failure::Failure;
 use crate::measure::measured;
 use crate::predict::predicted;
-use crate::results::Results;
+use crate::results::{Results, SUMMARY};
 use crate::stored::check_earlier;
 use crate::summary::Stopwatch;
 use crate::threads::on_threads;
@@ -29,7 +29,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
         if args.save.contains(&Save::Field) {
             field::check_memory(&scene)?;
         }
-        check_earlier(&folder, &scene, args.force.force)?;
+        check_earlier(&folder, SUMMARY, &scene, args.force.force)?;
         let results = Results::claim(&folder, plan)?;
         stages(args, scene, theories, results)
     })

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::npz::NpzFile;
-use crate::results::{Finished, MOST_INDEX, Results, SUMMARY};
+use crate::results::{Finished, MOST_INDEX, Results};
 use crate::summary::json;
 use crate::{load, machine, sealed};
 use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
@@ -201,8 +201,13 @@ impl<T> Stored<T> {
 
 /// Fails where a folder holds a result of another scene, so that no result takes the place of one
 /// that only shares its name. How a scene was measured does not count.
-pub(crate) fn check_earlier(folder: &Path, scene: &Scene, force: bool) -> Result<(), Failure> {
-    let path = folder.join(SUMMARY);
+pub(crate) fn check_earlier(
+    folder: &Path,
+    index: &str,
+    scene: &Scene,
+    force: bool,
+) -> Result<(), Failure> {
+    let path = folder.join(index);
     let earlier = read_file(&path, MOST_INDEX).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let Some(mut earlier) =

@@ -272,7 +272,7 @@ fn number(value: Option<f64>, digits: usize) -> String {
 }
 
 /// With so many decimals, and never −0.
-fn fixed(value: f64, digits: usize) -> String {
+pub(crate) fn fixed(value: f64, digits: usize) -> String {
     let text = format!("{value:.digits$}");
     let zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
     if zero { text.replace('-', "") } else { text }
@@ -294,7 +294,7 @@ fn small_percent(share: f64) -> String {
 }
 
 /// Value ± error, to two digits of the error.
-fn uncertain(value: f64, error: f64) -> String {
+pub(crate) fn uncertain(value: f64, error: f64) -> String {
     if !(error > 0.0 && error.is_finite()) {
         return format!("{value}");
     }

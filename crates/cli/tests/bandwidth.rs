@@ -64,7 +64,7 @@ fn bad_sweeps_and_scenes_are_refused() {
         ),
         (
             "bandwidth glossy.ron --csv out --sweep surfaces.0.form.Sphere=0..1:3 --sweep surfaces.0.facing.0=0..1:2",
-            &["--sweep", "same number"],
+            &["go in step", "same number"],
         ),
         (
             "bandwidth small.ron --csv out",

@@ -165,9 +165,12 @@ impl Window {
             return 0.0;
         }
         let [x, y, u, v] = match [self.x, self.y, self.u, self.v] {
-            [Profile::Hann(a), Profile::Hann(b), Profile::Hann(c), Profile::Hann(d)] => {
-                hann([z.x / a, z.y / b, z.u / c, z.v / d])
-            }
+            [
+                Profile::Hann(a),
+                Profile::Hann(b),
+                Profile::Hann(c),
+                Profile::Hann(d),
+            ] => hann([z.x / a, z.y / b, z.u / c, z.v / d]),
             [x, y, u, v] => [x.value(z.x), y.value(z.y), u.value(z.u), v.value(z.v)],
         };
         x * y * u * v

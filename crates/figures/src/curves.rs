@@ -40,7 +40,7 @@ pub struct CurvePanel {
     pub curves: Vec<Curve>,
 }
 
-/// Panels of curves that show one quantity; each has scales of its own, and y begins at 0.
+/// Panels of curves that show one quantity; each has scales of its own, and y = 0 is in it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// Markup.
@@ -137,6 +137,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
     });
     let margin = 0.04 * (high - low);
     let most = points().map(|p| p[1] + p[2]).fold(0.0, f64::max);
+    let least = points().map(|p| p[1] - p[2]).fold(0.0, f64::min);
     let frame = Panel {
         area,
         x: &Axis {
@@ -146,7 +147,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
         },
         y: &Axis {
             quantity: y.clone(),
-            min: 0.0,
+            min: 1.06 * least,
             max: 1.06 * most,
         },
         label_y: true,

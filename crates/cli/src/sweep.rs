@@ -1,0 +1,255 @@
+//! `etendue sweep`: fields of a scene over ranges; every plane's numbers as one table, and curves.
+//!
+//! Each point is a run of its own, kept below `points` in a folder named by the hash of its scene. A
+//! sweep that was stopped, or that has other values now, goes on from what is there.
+
+mod pictures;
+mod table;
+pub(crate) mod values;
+
+use crate::args::{SceneArgs, SweepArgs};
+use crate::conclude::{Case, judged};
+use crate::failure::Failure;
+use crate::measure::measured;
+use crate::predict::predicted;
+use crate::results::{MOST_INDEX, Plan, Results, SUMMARY, SWEEP};
+use crate::stored::{VERSION, check_earlier};
+use crate::summary::{Summary, json};
+use crate::table::{aligned, fixed, uncertain};
+use crate::threads::on_threads;
+use crate::{limits, load, method, progress, say, sealed, warnings};
+use etendue_compare::Applicability;
+use etendue_scene::{Scene, SceneFile, read_file};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use table::{BANDWIDTHS, Found, SLOPE};
+use values::{Point, Setting, Sweep, points, shown};
+
+const TABLE: &str = "sweep.csv";
+
+/// `etendue sweep`: returns the exit code.
+pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
+    let (set, sweeps) = settings(&args.set);
+    if sweeps.is_empty() {
+        let message =
+            "nothing is swept: --set PATH=A..B:N, such as --set blockers.0.pitch=0.05..0.4:8";
+        return Err(Failure::bad_input(message));
+    }
+    let scene = SceneArgs {
+        path: args.path.clone(),
+        set,
+    };
+    let base = load::scene(&scene, |run| args.photons.set(run))?;
+    let points = points(&sweeps, args.together)?;
+    let at = |point| load::scene_at(&scene, point, |run| args.photons.set(run));
+    let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
+    let folder = args.out.clone();
+    let folder = folder.unwrap_or_else(|| Path::new("out").join(format!("{}-sweep", base.name)));
+    on_threads(&args.threads, || {
+        for scene in &scenes {
+            let theories = Applicability::of_planes(scene);
+            method::check(scene, args.photons.method)?;
+            limits::check(scene, &theories, rayon::current_num_threads())?;
+        }
+        warnings::tell(&base, args.quiet);
+        check_earlier(&folder, SWEEP, &base, args.force.force)?;
+        let inputs = load::inputs(&scene, &base);
+        // Before the work, and once more for the table: each point claims a folder of its own.
+        drop(Results::claim(&folder, plan(&inputs, args.force.force))?);
+        let found = run_all(args, &folder, &inputs, points.into_iter().zip(&scenes))?;
+        let results = Results::claim(&folder, plan(&inputs, args.force.force))?;
+        finish(args, &base, &sweeps, &found, results)
+    })
+}
+
+/// What is set to one value, and what is swept.
+fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
+    let (mut set, mut sweeps) = (Vec::new(), Vec::new());
+    for setting in all {
+        match setting {
+            Setting::Value(path, value) => set.push((path.clone(), value.clone())),
+            Setting::Sweep(sweep) => sweeps.push(sweep.clone()),
+        }
+    }
+    (set, sweeps)
+}
+
+fn plan(inputs: &[PathBuf], force: bool) -> Plan {
+    let pictures = pictures::NAMES.iter();
+    let pictures =
+        pictures.flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
+    Plan {
+        index: SWEEP,
+        files: pictures.chain([TABLE.to_owned()]).collect(),
+        inputs: inputs.to_vec(),
+        force,
+    }
+}
+
+/// What each point gives, run now or before.
+fn run_all<'a>(
+    args: &SweepArgs,
+    folder: &Path,
+    inputs: &[PathBuf],
+    points: impl ExactSizeIterator<Item = (Point, &'a Scene)>,
+) -> Result<Vec<Found>, Failure> {
+    let bar = progress::steps("running", points.len(), "points", args.quiet);
+    let found = points.map(|(point, scene)| {
+        bar.set_message(shown(&point));
+        let name = format!("points/{}", &scene.hash()[..16]);
+        let there = folder.join(&name);
+        let summary = match earlier(&there, scene, args) {
+            Some(summary) => summary,
+            None => run(args, scene, &there, inputs)?,
+        };
+        bar.inc(1);
+        Ok(Found {
+            point,
+            folder: name,
+            summary,
+        })
+    });
+    let found = found.collect();
+    bar.finish_and_clear();
+    found
+}
+
+/// The summary of a run of this very scene, by the same method and version.
+fn earlier(folder: &Path, scene: &Scene, args: &SweepArgs) -> Option<Value> {
+    let bytes = read_file(&folder.join(SUMMARY), MOST_INDEX).ok()?;
+    let summary: Value = serde_json::from_slice(&bytes).ok()?;
+    let method = serde_json::to_value(args.photons.method).ok()?;
+    let same = summary["scene_hash"] == scene.hash()
+        && summary["version"] == VERSION
+        && summary["method"] == method;
+    (sealed::is_sealed(&bytes) && same).then_some(summary)
+}
+
+/// Runs a scene, and leaves its summary in the folder.
+fn run(
+    args: &SweepArgs,
+    scene: &Scene,
+    folder: &Path,
+    inputs: &[PathBuf],
+) -> Result<Value, Failure> {
+    let plan = Plan {
+        index: SUMMARY,
+        files: Vec::new(),
+        inputs: inputs.to_vec(),
+        force: args.force.force,
+    };
+    let results = Results::claim(folder, plan)?;
+    let method = args.photons.method;
+    let theories = Applicability::of_planes(scene);
+    let measurement = measured(scene, method, 0..scene.run.batches, true)?;
+    let predictions = predicted(scene, &theories, method, true)?;
+    let case = Case {
+        scene: scene.clone(),
+        theories,
+        method,
+        measurement,
+        predictions,
+    };
+    let summary = Summary::new(&case, &judged(&case)?, Vec::new());
+    results.finish(|files| summary.json(files))?;
+    serde_json::to_value(&summary).map_err(Failure::cannot_run)
+}
+
+/// `sweep.json`, all but the hashes of the files.
+#[derive(Debug, Serialize)]
+struct Index<'a> {
+    scene: &'a str,
+    version: &'a str,
+    /// The scene without the fields that are swept.
+    scene_file: &'a SceneFile,
+    /// Whether the fields go in step.
+    together: bool,
+    sweeps: BTreeMap<&'a str, &'a [f64]>,
+    /// Folders of the points, in the order of the table.
+    points: Vec<&'a str>,
+    files: &'a BTreeMap<String, String>,
+}
+
+/// Writes the table and the pictures; returns the exit code.
+fn finish(
+    args: &SweepArgs,
+    base: &Scene,
+    sweeps: &[Sweep],
+    found: &[Found],
+    mut results: Results,
+) -> Result<u8, Failure> {
+    let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
+    results.write(TABLE, &table::csv(&paths, found)?)?;
+    let figures = pictures::drawn(&base.name, found, args.together)?;
+    for (name, figure) in pictures::NAMES.iter().zip(&figures) {
+        crate::pictures::write(&mut results, name, figure)?;
+    }
+    let finished = results.finish(|files| {
+        json(&Index {
+            scene: &base.name,
+            version: VERSION,
+            scene_file: &base.file,
+            together: args.together,
+            sweeps: sweeps
+                .iter()
+                .map(|s| (s.path.as_str(), s.values.as_slice()))
+                .collect(),
+            points: found.iter().map(|at| at.folder.as_str()).collect(),
+            files,
+        })
+    })?;
+    finished.tell_replaced(args.quiet);
+    if !args.quiet {
+        say(&aligned(rows(&paths, found)).join("\n"));
+        if figures.is_empty() {
+            say("no curves: they would have more than 24 panels");
+        }
+        say(&format!("sweep in {}", finished.folder.display()));
+    }
+    let any = |verdict: &str| found.iter().any(|at| at.summary["verdict"] == verdict);
+    Ok(match (any("fail"), any("undecided")) {
+        (true, _) => 1,
+        (false, true) => 4,
+        (false, false) => 0,
+    })
+}
+
+/// The table for the terminal: a row for each plane at each point.
+fn rows(paths: &[String], found: &[Found]) -> Vec<Vec<String>> {
+    let shown = [
+        (BANDWIDTHS[0], "95 % of ρ [1/m]"),
+        (BANDWIDTHS[1], "95 % of ν"),
+        (SLOPE, "shear slope [m]"),
+    ];
+    let mut header = paths.to_vec();
+    header.extend(["plane", "verdict", "p"].map(str::to_owned));
+    header.extend(
+        shown
+            .iter()
+            .flat_map(|(_, name)| [(*name).to_owned(), "predicted".to_owned()]),
+    );
+    let row = |at: &Found, plane: &Value| {
+        let mut row: Vec<String> = at.point.iter().map(|(_, x)| x.to_string()).collect();
+        let words = ["name", "verdict"].map(|key| plane[key].as_str().unwrap_or_default());
+        row.extend(words.map(str::to_owned));
+        row.push(
+            plane["p_value"]
+                .as_f64()
+                .map_or("–".to_owned(), |p| format!("{p:.4}")),
+        );
+        let numbers = table::numbers(plane);
+        for (quantity, _) in shown {
+            let number = numbers.iter().find(|number| number.quantity == quantity);
+            let measured = number.and_then(|n| Some(uncertain(n.measured?, n.error?)));
+            let predicted = number.and_then(|n| n.predicted).map(|x| fixed(x, 4));
+            row.extend([measured, predicted].map(|cell| cell.unwrap_or("–".to_owned())));
+        }
+        row
+    };
+    let rows = found
+        .iter()
+        .flat_map(|at| at.planes().map(move |plane| row(at, plane)));
+    std::iter::once(header).chain(rows).collect()
+}

@@ -1,0 +1,165 @@
+//! `etendue sweep`.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{SCENE, call, files, json, refused};
+use std::collections::BTreeMap;
+use std::fs;
+use std::os::unix::fs::MetadataExt;
+use std::path::Path;
+
+const PITCH: &str = "sweep small.ron --photons 4096 --out s --set blockers.0.pitch=0.05..0.2:4";
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    folder
+}
+
+/// The rows of a table, by the names in its head.
+fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
+    let mut reader = csv::Reader::from_path(file).unwrap();
+    reader.deserialize().map(Result::unwrap).collect()
+}
+
+#[test]
+fn the_table_has_what_a_run_says_of_each_point() {
+    let folder = folder();
+    let path = folder.path();
+    let output = call(path, PITCH);
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let rows = rows(&path.join("s/sweep.csv"));
+    let run = "run small.ron --photons 4096 --out r --set blockers.0.pitch=0.15";
+    assert_eq!(call(path, run).status.code(), Some(0));
+    let summary = json(&path.join("r/summary.json"));
+    for plane in summary["planes"].as_array().unwrap() {
+        let mut at = rows.iter().filter(|row| {
+            row["blockers.0.pitch"] == "0.15" && *row["plane"] == *plane["name"].as_str().unwrap()
+        });
+        let nu = at.find(|row| row["quantity"] == "bandwidth_95 nu").unwrap();
+        let expected = &plane["bandwidth_95"]["nu"];
+        for name in ["measured", "predicted", "error"] {
+            assert_eq!(
+                nu[name].parse::<f64>().ok(),
+                expected[name].as_f64(),
+                "{name}"
+            );
+        }
+        assert_eq!(nu["p_value"].parse::<f64>().ok(), plane["p_value"].as_f64());
+    }
+    let points: Vec<&String> = rows.iter().map(|row| &row["blockers.0.pitch"]).collect();
+    let mut distinct = points.clone();
+    distinct.dedup();
+    assert_eq!(distinct, ["0.05", "0.1", "0.15", "0.2"]);
+}
+
+#[test]
+fn a_sweep_goes_on_from_what_is_there() {
+    let folder = folder();
+    let path = folder.path();
+    assert_eq!(call(path, PITCH).status.code(), Some(0));
+    let whole = files(&path.join("s"));
+    let points = json(&path.join("s/sweep.json"))["points"].clone();
+    let summary = |i: usize| {
+        path.join("s")
+            .join(points[i].as_str().unwrap())
+            .join("summary.json")
+    };
+    let made = |i: usize| fs::metadata(summary(i)).unwrap().ino();
+    let before = [0, 1, 3].map(made);
+    // One is lost, another was changed by hand.
+    fs::remove_file(summary(2)).unwrap();
+    fs::write(summary(3), "{}").unwrap();
+    let refused = call(path, PITCH);
+    assert_eq!(
+        refused.status.code(),
+        Some(3),
+        "not etendue's file is not replaced"
+    );
+    fs::remove_file(summary(3)).unwrap();
+    assert_eq!(call(path, PITCH).status.code(), Some(0));
+    assert_eq!([0, 1].map(made), before[..2], "not run again");
+    assert!(files(&path.join("s")) == whole, "the same bytes");
+    // More values run only what is new.
+    let more = PITCH.replace(":4", ":7");
+    assert_eq!(call(path, &more).status.code(), Some(0));
+    assert_eq!([0, 1].map(made), before[..2]);
+    assert_eq!(fs::read_dir(path.join("s/points")).unwrap().count(), 7);
+}
+
+#[test]
+fn a_grid_and_fields_in_step() {
+    let folder = folder();
+    let path = folder.path();
+    let both = "sweep small.ron --photons 4096 --set blockers.0.pitch=0.1,0.2 --set blockers.0.fill=0.3..0.6:2";
+    assert_eq!(
+        call(path, &format!("{both} --out grid")).status.code(),
+        Some(0)
+    );
+    assert_eq!(
+        call(path, &format!("{both} --together --out step"))
+            .status
+            .code(),
+        Some(0)
+    );
+    let points = |name: &str| json(&path.join(name))["points"].as_array().unwrap().clone();
+    let (grid, step) = (points("grid/sweep.json"), points("step/sweep.json"));
+    assert_eq!(grid.len(), 4);
+    assert_eq!(step, [grid[0].clone(), grid[3].clone()]);
+    // The curves of a grid have a panel for each plane and each fill.
+    let curves = rows(&path.join("grid/slope.csv"));
+    let panels: std::collections::BTreeSet<&String> = curves.iter().map(|r| &r["panel"]).collect();
+    assert_eq!(panels.len(), 4, "{panels:?}");
+    assert!(panels.contains(&"receiver, blockers.0.fill=0.6".to_owned()));
+}
+
+#[test]
+fn bad_sweeps_are_refused() {
+    let folder = folder();
+    let path = folder.path();
+    let set = "sweep small.ron --out out --set";
+    for (arguments, parts) in [
+        (
+            "sweep small.ron --out out".to_owned(),
+            &["nothing is swept"][..],
+        ),
+        (
+            format!("{set} blockers.0.pith=1,2"),
+            &["pith=1", "did you mean pitch"],
+        ),
+        (
+            format!("{set} blockers.0.fill=0.5,2"),
+            &["blockers.0.fill=2", "allowed"],
+        ),
+        (
+            format!("{set} blockers.0.fill=0.1..0.9:500 --set blockers.0.pitch=1..2:3"),
+            &["1000"],
+        ),
+        (
+            format!("{set} blockers.0.fill=0.1..0.9:5 --together --set blockers.0.pitch=1..2:3"),
+            &["same number"],
+        ),
+    ] {
+        refused(path, &arguments, parts);
+    }
+    let output = call(path, &format!("{set} blockers.0.fill=0.1..0.9"));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(2), "{message}");
+    assert!(message.contains("PATH=A..B:N"), "{message}");
+    // A sweep of another scene is not replaced.
+    assert_eq!(call(path, PITCH).status.code(), Some(0));
+    let other = format!("{PITCH} --set blockers.0.fill=0.3");
+    let output = call(path, &other);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("blockers.0.JitteredSquares.fill")
+    );
+    assert_eq!(
+        call(path, &format!("{other} --force")).status.code(),
+        Some(0)
+    );
+}
