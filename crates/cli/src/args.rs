@@ -1,3 +1,4 @@
+use crate::figure::Quality;
 use crate::method::Method;
 use crate::sweep::values::{Setting, Sweep, setting, sweep};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -39,6 +40,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Shrink the neighbourhood of the central ray: how fast the first-order chain comes to the exact prediction.
     Converge(ConvergeArgs),
+    /// Make figures of Durand et al. 2005 anew: measured and predicted, with data and recipe.
+    Figure(FigureArgs),
     /// Run a scene with fields that take several values: one table of every plane's numbers, and curves.
     Sweep(SweepArgs),
     /// How fast a glossy reflection changes with angle: the paper's criteria, corrected and as printed, and measured.
@@ -282,6 +285,38 @@ pub(crate) struct ExportArgs {
 
     #[command(flatten)]
     pub(crate) force: ForceArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue figure 9
+  etendue figure all --quality draft --out out/figures
+
+Figures 1, 4, 5, 6, 7, 9, 10, 11 and 12. Each has a folder with figure.png, .svg and .pdf (at most the 7 inches of two columns wide, text
+as text), the arrays behind it in figure.npz (of curves: figure.csv), the scenes it is made of, and figure.json, which says whether each
+plane agrees with theory, and the command that makes it again.")]
+pub(crate) struct FigureArgs {
+    /// Number of the figure in the paper, or all
+    #[arg(value_name = "NAME")]
+    pub(crate) name: String,
+
+    /// Folder of the figures
+    #[arg(long, value_name = "DIR", default_value = crate::figure::FOLDER)]
+    pub(crate) out: PathBuf,
+
+    /// How much work goes into it
+    #[arg(long, value_name = "QUALITY", default_value = "print")]
+    pub(crate) quality: Quality,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
 }
 
 #[derive(Debug, Args)]

@@ -145,7 +145,7 @@ fn written(
         files::write(&mut results, summary, plane)?;
         pictures::plane(&mut results, summary, prediction, at, plane)?;
     }
-    pictures::path(&mut results, summary, case, planes)?;
+    pictures::path(&mut results, case, planes)?;
     if ending.save.contains(&Save::Photons) {
         photons::save(&mut results, case)?;
     }

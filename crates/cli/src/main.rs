@@ -15,6 +15,7 @@ mod drawing;
 mod export;
 mod failure;
 mod field;
+mod figure;
 mod files;
 mod inquiry;
 mod interrupt;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),
         Command::Converge(args) => converge::converge(&args),
+        Command::Figure(args) => figure::figure(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),

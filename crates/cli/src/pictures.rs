@@ -98,23 +98,45 @@ pub(crate) fn plane(
     )
 }
 
-/// The strip along the path: the planes in the order in which light meets them.
+/// The strip along the path.
 pub(crate) fn path(
     results: &mut Results,
-    summary: &Summary,
     case: &Case,
     planes: &[PlaneComparison],
 ) -> Result<(), Failure> {
-    let scene = &case.scene;
-    let of_planes = planes.iter().zip(&case.theories);
-    let mut along: Vec<_> = scene.planes.iter().zip(of_planes).collect();
+    write(
+        results,
+        "path",
+        &strip_of(&case.scene, &case.theories, planes, false)?,
+    )
+}
+
+/// The planes in the order in which light meets them; with their predicted spectra below, if these are wanted.
+pub(crate) fn strip_of(
+    scene: &Scene,
+    theories: &[Applicability],
+    planes: &[PlaneComparison],
+    predicted: bool,
+) -> Result<Figure, Failure> {
+    let mut along: Vec<_> = scene
+        .planes
+        .iter()
+        .zip(planes.iter().zip(theories))
+        .collect();
     along.sort_by(|(a, _), (b, _)| {
         let place = |plane: &VirtualPlane| (plane.distance, plane.side == Side::After);
         place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal)
     });
-    let columns = along
-        .iter()
-        .map(|(plane, (compared, theory))| column(scene, plane, theory, compared));
+    let columns = along.iter().map(|(plane, (compared, theory))| {
+        let mut column = column(scene, plane, theory, compared);
+        if predicted {
+            column.predicted = Some(Picture {
+                values: compared.predicted_radial.view(),
+                ..column.spectrum.clone()
+            });
+        }
+        column
+    });
     let columns: Vec<Column<'_>> = columns.collect();
     let most = columns.iter().map(|column| column.guides.len()).max();
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
@@ -126,24 +148,23 @@ pub(crate) fn path(
             " Dashed: where the chain puts the light, in the plane of incidence and across it."
         }
     };
-    let figure = strip(&Strip {
+    strip(&Strip {
         title: &format!(
             "{}: the light field along the path, and its spectrum",
             scene.name
         ),
         note: &format!(
             "{} photons, seed {}; spectra are means over azimuths.{dashed}",
-            grouped(summary.photons),
-            summary.seed
+            grouped(scene.run.photons),
+            scene.run.seed
         ),
         section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),
         columns,
-        light_field: Words::ACROSS.light_field_quantity(),
+        light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
         floor: FLOOR,
     })
-    .map_err(Failure::cannot_run)?;
-    write(results, "path", &figure)
+    .map_err(Failure::cannot_run)
 }
 
 /// What is shown under a plane.
@@ -168,6 +189,7 @@ fn column<'a>(
             y: nu,
             values: compared.radial.power.view(),
         },
+        predicted: None,
         verdict: verdict_line(compared),
         guides: match (&applicability.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
@@ -311,19 +333,49 @@ impl Words {
     }
 }
 
-fn spectrum_quantity() -> Quantity {
+/// The axes of the light field of a plane, (x, u) across its ray.
+pub(crate) fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+    Words::of(plane).projection_axes(grid)
+}
+
+/// The axes of its spectrum, (ρ, ν).
+pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
+    Words::of(plane).frequency_axes(&plane.grid)
+}
+
+/// What a light field across the ray holds.
+pub(crate) fn light_field_quantity() -> Quantity {
+    Words::ACROSS.light_field_quantity()
+}
+
+/// What a radial spectrum holds.
+pub(crate) fn spectrum_quantity() -> Quantity {
     Quantity::new("⟨|*S*_{φ}|^{2}⟩", "")
 }
 
 fn verdict_line(plane: &PlaneComparison) -> String {
-    let p = match plane.report.p_value {
+    let p = p_value(plane);
+    let chi2 = chi2(plane).map_or(String::new(), |chi2| format!(", {chi2}"));
+    format!("{p}{chi2}, {}", word(plane.report.verdict))
+}
+
+/// The same in two lines.
+pub(crate) fn verdict_lines(plane: &PlaneComparison) -> [String; 2] {
+    let first = format!("{}, {}", p_value(plane), word(plane.report.verdict));
+    [first, chi2(plane).unwrap_or_default()]
+}
+
+fn p_value(plane: &PlaneComparison) -> String {
+    match plane.report.p_value {
         None => "no photons".to_owned(),
         Some(p) if p < 0.001 => "*p* < 0.001".to_owned(),
         Some(p) => format!("*p* = {p:.3}"),
-    };
+    }
+}
+
+fn chi2(plane: &PlaneComparison) -> Option<String> {
     let chi2 = plane.report.chi2_per_dof;
-    let chi2 = chi2.map_or(String::new(), |t| format!(", *χ*^{{2}}/dof = {t:.3}"));
-    format!("{p}{chi2}, {}", word(plane.report.verdict))
+    chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}"))
 }
 
 /// A name as read: underscores are spaces.

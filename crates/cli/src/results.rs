@@ -24,6 +24,8 @@ pub(crate) const MEASUREMENT: &str = "measurement.json";
 pub(crate) const PREDICTION: &str = "prediction.json";
 /// The index of `etendue export`.
 pub(crate) const EXPORT: &str = "export.json";
+/// The index of a figure.
+pub(crate) const FIGURE: &str = "figure.json";
 /// The index of `etendue sweep`.
 pub(crate) const SWEEP: &str = "sweep.json";
 /// Seconds of a comparison: beside the index, since they are never the same twice.
@@ -209,7 +211,7 @@ impl Results {
 
     /// The index whose files have begun to move.
     fn ready_index(&self) -> Option<&'static str> {
-        let mut indices = [SUMMARY, MEASUREMENT, PREDICTION, EXPORT, SWEEP].into_iter();
+        let mut indices = [SUMMARY, MEASUREMENT, PREDICTION, EXPORT, SWEEP, FIGURE].into_iter();
         indices.find(|index| listed(&self.ready(index)).is_some())
     }
 }

@@ -3,7 +3,7 @@
 use crate::say;
 use crate::summary::Summary;
 use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, Verdict, sidak};
-use etendue_field::tidy;
+use etendue_field::{fixed, tidy};
 use std::path::Path;
 
 pub(crate) fn print(summary: &Summary, folder: &Path) {
@@ -160,7 +160,7 @@ fn measured(parameter: &ParameterReport) -> [String; 2] {
     let change = if share > 1.0 {
         number(None, 0)
     } else {
-        small_percent(share)
+        etendue_field::percent(share, 2)
     };
     if share > 1.0 || parameter.error > parameter.measured.abs() {
         [number(None, 0), change]
@@ -271,26 +271,8 @@ fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |v| fixed(v, digits))
 }
 
-/// With so many decimals, and never −0.
-pub(crate) fn fixed(value: f64, digits: usize) -> String {
-    let text = format!("{value:.digits$}");
-    let zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
-    if zero { text.replace('-', "") } else { text }
-}
-
 pub(crate) fn percent(value: Option<f64>) -> String {
-    value.map_or("–".to_owned(), |v| format!("{:.3} %", 100.0 * v))
-}
-
-/// Two decimals, more where there would not be two digits.
-fn small_percent(share: f64) -> String {
-    let percent = 100.0 * share;
-    let digits = if percent > 0.0 {
-        decimals(percent).max(2)
-    } else {
-        2
-    };
-    fixed(percent, digits) + " %"
+    value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
 }
 
 /// Value ± error, to two digits of the error.

@@ -9,7 +9,7 @@ use crate::residuals::{Residuals, crossed_power, largest};
 use crate::score::{ParameterReport, score};
 use crate::uneven::too_few;
 use crate::verdict::{Test, Verdict};
-use etendue_field::{SliceGrid, Slices, tidy};
+use etendue_field::{SliceGrid, Slices, percent, tidy};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{
     BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, second_moment,
@@ -162,7 +162,7 @@ impl Compared<'_> {
         let (inside, emitted) = (self.inside(), self.measurement.emitted());
         let needs = photons_needed.map(|needed| format!("; needs {:.0e} photons", rounded(needed)));
         let needs = needs.unwrap_or_default();
-        let percent = |share: f64| format!("{:.3} %", 100.0 * share);
+        let percent = |share: f64| percent(share, 3);
         let noise = agreement.resolution();
         if self.predicted.is_dark() {
             // Theory shows why no light comes. That no ray was found is no proof.
@@ -398,9 +398,9 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
     let mut warnings = Vec::new();
     if let Some((error, noise)) = blur.filter(|(error, noise)| *error > UNSEEN * noise) {
         warnings.push(format!(
-            "the prediction's quadrature may be off by {:.4} % of the spectrum; noise is {:.4} %",
-            100.0 * error,
-            100.0 * noise
+            "the prediction's quadrature may be off by {} of the spectrum; noise is {}",
+            percent(error, 4),
+            percent(noise, 4)
         ));
     }
     let peak = predicted.iter().copied().fold(0.0, f64::max);

@@ -8,6 +8,29 @@ pub fn tidy(x: f64) -> String {
     (rounded + 0.0).to_string()
 }
 
+/// A share in per cent, to `places` decimals, or more where there would not be two digits.
+#[must_use]
+pub fn percent(share: f64, places: usize) -> String {
+    /// Of a share of rounding.
+    const MOST: f64 = 17.0;
+    let percent = 100.0 * share;
+    let of_two_digits = 1.0 - libm::log10(percent.abs()).floor();
+    let places = if percent == 0.0 || !percent.is_finite() {
+        places
+    } else {
+        places.max(whole(of_two_digits.min(MOST)))
+    };
+    fixed(percent, places) + " %"
+}
+
+/// With so many decimals, and never −0.
+#[must_use]
+pub fn fixed(value: f64, places: usize) -> String {
+    let text = format!("{value:.places$}");
+    let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
+    if is_zero { text.replace('-', "") } else { text }
+}
+
 /// The whole part of a number: 0 of negative ones and of NaN, the largest there is beyond.
 #[inline]
 #[must_use]
@@ -22,7 +45,18 @@ pub fn whole(x: f64) -> usize {
 
 #[cfg(test)]
 mod tests {
-    use super::tidy;
+    use super::{percent, tidy};
+
+    #[test]
+    fn shares_have_two_digits_at_least() {
+        assert_eq!(percent(0.00472, 3), "0.472 %");
+        assert_eq!(percent(-0.25, 3), "-25.000 %");
+        assert_eq!(percent(2.9e-6, 3), "0.00029 %");
+        assert_eq!(percent(0.001, 2), "0.10 %");
+        assert_eq!(percent(-0.0, 3), "0.000 %");
+        assert_eq!(percent(f64::INFINITY, 3), "inf %");
+        assert_eq!(percent(1e-300, 2), "0.00000000000000000 %");
+    }
 
     #[test]
     fn what_arithmetic_leaves_is_not_shown() {

@@ -152,7 +152,7 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64, size: f64) -> Vec<Tick> {
             .fold(0.0, f64::max);
         ticks.windows(2).all(|pair| {
             let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
-            step * length >= widest + 7.0
+            step * length >= widest + 4.0
         })
     };
     let candidates = (1..=8).rev().map(|most| axis.ticks(f64::from(most)));

@@ -13,6 +13,8 @@ pub enum Scale {
         /// Lower end of the colors, in decibels, below 0.
         floor: f64,
     },
+    /// Degrees, once around the circle.
+    Phase,
 }
 
 /// Red, green, blue.
@@ -28,6 +30,8 @@ pub(crate) enum Colors {
     Sequential,
     /// Blue, white, red.
     Diverging,
+    /// The same at both ends.
+    Cyclic,
 }
 
 impl Colors {
@@ -36,6 +40,7 @@ impl Colors {
         let color = match self {
             Self::Sequential => colorous::INFERNO.eval_continuous(t),
             Self::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - t),
+            Self::Cyclic => colorous::SINEBOW.eval_continuous(t),
         };
         color.as_array()
     }
@@ -62,6 +67,14 @@ impl Shading {
             reference: None,
             beyond: [false; 2],
         }
+    }
+
+    /// Degrees, once around the circle.
+    pub(crate) fn phase(name: &str) -> Self {
+        Self::linear(
+            Colors::Cyclic,
+            Axis::edges(name, "degrees", [-180.0, 180.0]),
+        )
     }
 
     /// Decibels below `peak` on an axis from `floor` to 0.

@@ -126,6 +126,7 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
             );
             Shading::decibel(&name, floor, largest(predicted))
         }
+        Scale::Phase => Shading::phase(&comparison.quantity.name),
     };
     shading.showing(measured).showing(predicted)
 }

@@ -1,3 +1,7 @@
+use krilla::Document;
+use krilla::geom::Size;
+use krilla::page::PageSettings;
+use krilla_svg::{SurfaceExt, SvgSettings};
 use resvg::{tiny_skia, usvg};
 use std::sync::Arc;
 
@@ -29,6 +33,9 @@ pub enum Error {
     /// The raster could not be written.
     #[error("the figure cannot be written as PNG: {0}")]
     Raster(String),
+    /// The page could not be written.
+    #[error("the figure cannot be written as PDF: {0}")]
+    Page(String),
     /// The numbers could not be written.
     #[error("the figure's numbers cannot be written as CSV: {0}")]
     Csv(String),
@@ -53,6 +60,36 @@ impl Figure {
         pixels
             .encode_png()
             .map_err(|error| Error::Raster(error.to_string()))
+    }
+}
+
+/// Points of the text width of two columns, 7 inches: no page is wider.
+const PAGE: f32 = 504.0;
+/// Points of a unit of the SVG.
+const POINT: f32 = 0.75;
+
+impl Figure {
+    /// The drawing as a PDF page at natural size, at most as wide as two columns of a journal. Text
+    /// stays text.
+    ///
+    /// # Errors
+    /// When the SVG cannot be read back or the page cannot be written.
+    pub fn pdf(&self) -> Result<Vec<u8>, Error> {
+        let tree = usvg::Tree::from_str(&self.svg, &options())?;
+        let [width, height] = [tree.size().width(), tree.size().height()];
+        let scale = POINT.min(PAGE / width);
+        let too_large = || Error::Page(format!("a page of {width} × {height} units"));
+        let page = Size::from_wh(scale * width, scale * height).ok_or_else(too_large)?;
+        let mut document = Document::new();
+        let mut sheet = document.start_page_with(PageSettings::new(page));
+        let mut surface = sheet.surface();
+        let drawn = surface.draw_svg(&tree, page, SvgSettings::default());
+        surface.finish();
+        sheet.finish();
+        drawn.ok_or_else(|| Error::Page("its drawing is not one of PDF".to_owned()))?;
+        document
+            .finish()
+            .map_err(|error| Error::Page(format!("{error:?}")))
     }
 }
 

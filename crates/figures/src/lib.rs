@@ -6,6 +6,7 @@
 //!
 //! * [`comparison()`]: one quantity, measured | predicted | difference in σ;
 //! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
+//! * [`plate()`]: pictures in rows and columns;
 //! * [`section()`]: that cut alone;
 //! * [`curves()`]: curves and measured points, panel beside panel.
 //!
@@ -43,6 +44,7 @@ mod cut;
 mod figure;
 mod image;
 mod panel;
+mod plate;
 mod section;
 mod strip;
 mod style;
@@ -54,5 +56,6 @@ pub use color::Scale;
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
 pub use figure::{Error, Figure};
+pub use plate::{Bars, Plate, PlateRow, plate};
 pub use section::{PlaneMark, Section, Segment, SegmentKind, section};
 pub use strip::{Column, Guide, Picture, Strip, strip};

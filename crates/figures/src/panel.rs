@@ -51,6 +51,12 @@ impl Panel<'_> {
         ]
     }
 
+    /// Frame and y axis, where x has no numbers.
+    pub(crate) fn frame(&self, svg: &mut Svg) {
+        svg.frame(self.area);
+        self.y_axis(svg);
+    }
+
     fn x_axis(&self, svg: &mut Svg) {
         let bottom = self.area.bottom();
         for tick in spaced_ticks(self.x, self.area.width, TICK_TEXT) {
@@ -72,7 +78,7 @@ impl Panel<'_> {
     fn y_axis(&self, svg: &mut Svg) {
         let left = self.area.x;
         let mut widest: f64 = 0.0;
-        for tick in self.y.ticks(self.area.height / 36.0) {
+        for tick in self.y.ticks((self.area.height / 36.0).max(4.0)) {
             let [_, at] = self.point(0.0, tick.value);
             svg.line([left - TICK, at], [left, at], Stroke::FRAME);
             if self.label_y {

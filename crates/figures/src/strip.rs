@@ -38,6 +38,8 @@ pub struct Column<'a> {
     pub light_field: Picture<'a>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
+    /// The predicted one. There is a row of them if each column has one.
+    pub predicted: Option<Picture<'a>>,
     /// A line below, such as "*p* = 0.43, pass", markup; may be empty.
     pub verdict: String,
     /// Dashed lines over the spectrum.
@@ -68,23 +70,35 @@ pub struct Strip<'a> {
 enum Row {
     LightField,
     Spectrum,
+    Predicted,
 }
 
 impl Row {
-    const ALL: [Self; 2] = [Self::LightField, Self::Spectrum];
+    /// Those of a strip.
+    fn of(strip: &Strip<'_>) -> Vec<Self> {
+        let predicted = strip
+            .columns
+            .iter()
+            .all(|column| column.predicted.is_some());
+        let mut rows = vec![Self::LightField, Self::Spectrum];
+        rows.extend(predicted.then_some(Self::Predicted));
+        rows
+    }
 
     fn name(self) -> &'static str {
         match self {
             Self::LightField => "light field",
             Self::Spectrum => "spectrum",
+            Self::Predicted => "predicted",
         }
     }
 
     /// Its picture in a column.
     fn picture<'a, 'b>(self, column: &'b Column<'a>) -> &'b Picture<'a> {
-        match self {
-            Self::LightField => &column.light_field,
-            Self::Spectrum => &column.spectrum,
+        match (self, &column.predicted) {
+            (Self::LightField, _) => &column.light_field,
+            (Self::Predicted, Some(predicted)) => predicted,
+            (Self::Spectrum | Self::Predicted, _) => &column.spectrum,
         }
     }
 
@@ -92,7 +106,7 @@ impl Row {
     fn quantity<'b>(self, strip: &'b Strip<'_>) -> &'b Quantity {
         match self {
             Self::LightField => &strip.light_field,
-            Self::Spectrum => &strip.spectrum,
+            Self::Spectrum | Self::Predicted => &strip.spectrum,
         }
     }
 }
@@ -128,11 +142,12 @@ pub fn strip(strip: &Strip<'_>) -> Result<Figure, Error> {
         cut.heading(&mut svg, column, point, layout.panel + layout.gap - 8.0);
     }
     let first = heads + Cut::HEADING;
-    for (index, row) in Row::ALL.into_iter().enumerate() {
+    let rows = Row::of(strip);
+    for (index, row) in rows.iter().copied().enumerate() {
         let y = first + index as f64 * (layout.panel + ROW_GAP);
         draw_row(&mut svg, strip, &layout, row, y)?;
     }
-    let bottom = first + 2.0 * layout.panel + ROW_GAP + LABEL_BASELINE;
+    let bottom = first + rows.len() as f64 * (layout.panel + ROW_GAP) - ROW_GAP + LABEL_BASELINE;
     let bottom = footer(&mut svg, strip, &layout, bottom);
     Ok(Figure {
         svg: svg.finish(LEFT + layout.inner + RIGHT, bottom),
@@ -159,7 +174,7 @@ fn numbers(strip: &Strip<'_>) -> Result<String, Error> {
             Some(plane) => (plane.name.clone(), decimal(&plane.distance)),
             None => ((index + 1).to_string(), String::new()),
         };
-        for row in Row::ALL {
+        for row in Row::of(strip) {
             let Picture { x, y, values } = row.picture(column);
             let (columns, lines) = values.dim();
             let heads = [x, y].map(|axis| axis.quantity.heading());

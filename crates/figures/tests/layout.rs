@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{DECIBEL, compare, corner, path, scene};
+use common::{DECIBEL, compare, corner, grid, path, scene};
 use etendue_field::Side;
 use etendue_figures::{
     Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, curves, section,
@@ -33,6 +33,10 @@ fn gallery() -> Vec<Figure> {
         scene.length = 2e-4;
         figures.push(path(&scene, tiny.view()));
         figures.push(section(&scene, &"A long title ".repeat(20), "").unwrap());
+    }
+    for count in 1..=6 {
+        figures.push(grid(count, values.view()));
+        figures.push(grid(count, tiny.view()));
     }
     for count in [1, 3, 5] {
         figures.push(curves(&lines(count)).unwrap());

@@ -42,18 +42,20 @@ pub(super) struct Layout {
     start: f64,
     /// Width of the cut and of all pictures.
     pub(super) inner: f64,
-    /// For each row, whether all columns have the same y axis.
-    shared: [bool; 2],
+    /// Rows in which all columns have the same y axis.
+    shared: Vec<Row>,
 }
 
 impl Layout {
     pub(super) fn new(strip: &Strip<'_>) -> Self {
         let count = strip.columns.len().max(1) as f64;
-        let shared = Row::ALL.map(|row| {
+        let rows = Row::of(strip);
+        let is_shared = |row: &Row| {
             let axes: Vec<&Axis> = strip.columns.iter().map(|c| &row.picture(c).y).collect();
             axes.windows(2).all(|pair| pair[0] == pair[1])
-        });
-        let gap = if shared == [true; 2] { 34.0 } else { 76.0 };
+        };
+        let shared: Vec<Row> = rows.iter().copied().filter(is_shared).collect();
+        let gap = if shared == rows { 34.0 } else { 76.0 };
         let panel = ((900.0 - gap * (count - 1.0)) / count)
             .clamp(140.0, 190.0)
             .floor();
@@ -82,7 +84,7 @@ impl Layout {
     }
 
     fn is_shared(&self, row: Row) -> bool {
-        self.shared[row as usize]
+        self.shared.contains(&row)
     }
 
     pub(super) fn middle(&self, column: usize) -> f64 {
@@ -98,7 +100,7 @@ fn shading(strip: &Strip<'_>, row: Row, peak: f64) -> Shading {
             let top = if peak > 0.0 { peak } else { 1.0 };
             Shading::linear(Colors::Sequential, Axis::edges(name, "", [0.0, top]))
         }
-        Row::Spectrum => Shading::decibel(name, strip.floor, peak),
+        Row::Spectrum | Row::Predicted => Shading::decibel(name, strip.floor, peak),
     }
 }
 
@@ -122,7 +124,7 @@ pub(super) fn draw_row(
         let shading = shading(strip, row, largest(picture.values)).showing(picture.values);
         bar.beyond[0] |= shading.beyond[0];
         panel.heat_map(svg, picture.values, &shading)?;
-        if row == Row::Spectrum {
+        if row != Row::LightField {
             guides(svg, &panel, &column.guides);
         }
         panel.axes(svg);

@@ -10,8 +10,8 @@
 use base64::Engine;
 use etendue_field::Side;
 use etendue_figures::{
-    Axis, Column, Comparison, Figure, Guide, Picture, PlaneMark, Quantity, Scale, Section, Segment,
-    SegmentKind, Strip, comparison, strip,
+    Axis, Bars, Column, Comparison, Figure, Guide, Picture, PlaneMark, Plate, PlateRow, Quantity,
+    Scale, Section, Segment, SegmentKind, Strip, comparison, plate, strip,
 };
 use ndarray::{Array2, ArrayView2};
 
@@ -123,6 +123,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
     let column = || Column {
         light_field: picture(),
         spectrum: picture(),
+        predicted: None,
         verdict: "*p* = 0.5, pass".to_owned(),
         guides: vec![Guide {
             through: [0.0, 0.0],
@@ -146,4 +147,47 @@ pub fn corner() -> Array2<f64> {
     let mut values = Array2::zeros((5, 3));
     values[[4, 2]] = 1.0;
     values
+}
+
+/// A plate of so many columns, with long texts and bars.
+pub fn grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
+    let picture = || Picture {
+        x: Axis::edges("*ρ*", "cycles/m", [-16.5, 16.5]),
+        y: Axis::edges("*ν*", "cycles per unit slope", [-32.5, 32.5]),
+        values,
+    };
+    let row = |name: &'static str, scale, shared| PlateRow {
+        name,
+        quantity: Quantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m"),
+        scale,
+        shared,
+        pictures: (0..count).map(|_| picture()).collect(),
+    };
+    let some = |value: f64| vec![Some(value); count];
+    plate(&Plate {
+        title: "A plate",
+        note: "and a note below it",
+        heads: (0..count)
+            .map(|i| format!("a column of number {i}"))
+            .collect(),
+        rows: vec![
+            row("light field", Scale::Linear, true),
+            row("predicted", DECIBEL, false),
+            row("phase", Scale::Phase, true),
+        ],
+        feet: vec![
+            vec![
+                "*p* = 0.123, pass".to_owned(),
+                "*χ*^{2}/dof = 1.002".to_owned()
+            ];
+            count
+        ],
+        bars: Some(Bars {
+            quantity: Quantity::new("*H* above 1.33 cycles/m", "%"),
+            measured: some(1.5),
+            errors: some(0.2),
+            predicted: some(1.4),
+        }),
+    })
+    .unwrap()
 }

@@ -1,0 +1,87 @@
+//! A scene of the repository, run for a figure.
+
+use crate::conclude::{Case, judged};
+use crate::failure::Failure;
+use crate::figure::Quality;
+use crate::measure::measured;
+use crate::method::Method;
+use crate::npz::Npz;
+use crate::predict::predicted;
+use crate::{limits, load};
+use etendue_compare::{Applicability, PlaneComparison};
+use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
+use etendue_scene::{Scene, SceneFile};
+use ndarray::{Axis, arr1};
+use std::path::Path;
+
+/// A scene that was measured, predicted and compared, at finer frequencies than it asks for.
+#[derive(Debug)]
+pub(crate) struct Shot {
+    pub(crate) scene: Scene,
+    pub(crate) theories: Vec<Applicability>,
+    pub(crate) planes: Vec<PlaneComparison>,
+}
+
+impl Shot {
+    /// Runs a scene.
+    pub(crate) fn take(
+        name: &str,
+        text: &str,
+        quality: Quality,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
+        let mut file = SceneFile::parse(text).map_err(Failure::bad_input)?;
+        file.run.photons = quality.photons(file.run.photons);
+        let mut scene = load::resolved(name, file, Path::new(""), name)?;
+        for plane in &mut scene.planes {
+            for axis in [&mut plane.grid.rho, &mut plane.grid.nu] {
+                *axis = FrequencyAxis {
+                    half: quality.finer() * axis.half,
+                    spacing: axis.spacing / quality.finer() as f64,
+                };
+            }
+        }
+        let theories = Applicability::of_planes(&scene);
+        limits::check(&scene, &theories, rayon::current_num_threads())?;
+        let method = Method::Photons;
+        let measurement = measured(&scene, method, 0..scene.run.batches, quiet)?;
+        let predictions = predicted(&scene, &theories, method, quiet)?;
+        let case = Case {
+            scene,
+            theories,
+            method,
+            measurement,
+            predictions,
+        };
+        let planes = judged(&case)?;
+        Ok(Self {
+            scene: case.scene,
+            theories: case.theories,
+            planes,
+        })
+    }
+}
+
+/// What was found, as NPZ: for each plane its light field, its radial spectra and the slices at azimuth 0, with their
+/// axes. Names are SCENE.PLANE.ARRAY.
+pub(crate) fn arrays(shots: &[Shot]) -> Result<Vec<u8>, Failure> {
+    let mut npz = Npz::new();
+    for shot in shots {
+        for (plane, found) in shot.scene.planes.iter().zip(&shot.planes) {
+            let name = |array: &str| format!("{}.{}.{array}", shot.scene.name, plane.name);
+            let light_field = &found.projection.mean;
+            let ProjectionGrid { half_x, half_u, .. } = light_field.grid;
+            let [measured, predicted] = [&found.measured, &found.predicted].map(Slices::full);
+            npz = npz
+                .add(&name("light_field"), &light_field.values)?
+                .add(&name("half_widths"), &arr1(&[half_x, half_u]))?
+                .add(&name("measured"), &found.radial.power)?
+                .add(&name("predicted"), &found.predicted_radial)?
+                .add(&name("measured_slice"), &measured.index_axis(Axis(0), 0))?
+                .add(&name("predicted_slice"), &predicted.index_axis(Axis(0), 0))?
+                .add(&name("rho"), &arr1(&plane.grid.rho.values()))?
+                .add(&name("nu"), &arr1(&plane.grid.nu.values()))?;
+        }
+    }
+    npz.bytes()
+}

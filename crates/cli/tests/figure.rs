@@ -1,0 +1,88 @@
+//! `etendue figure`.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{array, call, files, json, refused};
+use etendue_field::Complex;
+use ndarray::{Array1, Array2};
+use std::fs;
+
+#[test]
+fn a_figure_is_pictures_arrays_and_recipe() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    for threads in [1, 3] {
+        let arguments = format!("figure 7 --quality draft --out f{threads} --threads {threads}");
+        let output = call(path, &arguments);
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        assert!(output.stdout.is_empty() && output.stderr.is_empty());
+    }
+    let all = files(&path.join("f1"));
+    assert!(
+        all == files(&path.join("f3")),
+        "the same bytes on any number of threads"
+    );
+    let start = |name: &str| &all[&format!("7/figure.{name}")][..4];
+    assert_eq!(start("png"), b"\x89PNG");
+    assert_eq!(start("pdf"), b"%PDF");
+    assert_eq!(start("svg"), b"<svg");
+    let index = json(&path.join("f1/7/figure.json"));
+    assert_eq!(index["command"], "etendue figure 7 --quality draft");
+    // Both occluders together leave no light, as theory says.
+    let dark = &index["planes"][5];
+    assert_eq!(
+        [&dark["scene"], &dark["plane"]],
+        ["fig7_two", "after_occluders"]
+    );
+    assert_eq!(dark["verdict"], "pass");
+    let npz = path.join("f1/7/figure.npz");
+    let slice = |scene: &str| -> Array2<Complex> {
+        array(&npz, &format!("{scene}.after_occluders.measured_slice"))
+    };
+    let rho: Array1<f64> = array(&npz, "fig7_one.after_occluders.rho");
+    let (one, other, both) = (slice("fig7_one"), slice("fig7_other"), slice("fig7_two"));
+    assert_eq!(one.dim().0, rho.len());
+    assert!(both.iter().all(|s| s.norm() == 0.0));
+    // The occluders are mirror images: so are their slices, S(−ρ, −ν) = S*(ρ, ν), but for noise.
+    let peak = one.iter().map(|s| s.norm()).fold(0.0, f64::max);
+    let off = (&one - &other.mapv(|s| s.conj()))
+        .iter()
+        .map(|s| s.norm())
+        .fold(0.0, f64::max);
+    assert!(off < 0.02 * peak, "{off} of {peak}"); // noise of 2^19 photons is below 1 %
+    let odd = one.iter().map(|s| s.im.abs()).fold(0.0, f64::max);
+    assert!(odd > 0.2 * peak, "one occluder alone has phases");
+}
+
+#[test]
+fn curves_have_a_table() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = call(folder.path(), "figure 5 --out f");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let csv = fs::read_to_string(folder.path().join("f/5/figure.csv")).unwrap();
+    // ĝ(0) = 2, Ĝ(0) = π.
+    let at_zero = |name: &str| {
+        let mut rows = csv
+            .lines()
+            .filter(|row| row.starts_with("transforms,") && row.contains(name));
+        rows.find_map(|row| {
+            let cells: Vec<&str> = row.split(',').collect();
+            let number = |i: usize| cells[cells.len() - i].parse::<f64>().ok();
+            (number(3)?.abs() < 1e-12).then(|| number(2)).flatten()
+        })
+    };
+    assert!((at_zero("2D").unwrap() - 2.0).abs() < 1e-9);
+    assert!((at_zero("3D").unwrap() - std::f64::consts::PI).abs() < 1e-9);
+}
+
+#[test]
+fn an_unknown_figure_is_refused_and_names_those_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    refused(
+        folder.path(),
+        "figure 16 --out out",
+        &["no figure 16", "1, 4, 5", "all"],
+    );
+}
