@@ -360,9 +360,9 @@ fn verdict_line(plane: &PlaneComparison) -> String {
 }
 
 /// The same in two lines.
-pub(crate) fn verdict_lines(plane: &PlaneComparison) -> [String; 2] {
+pub(crate) fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     let first = format!("{}, {}", p_value(plane), word(plane.report.verdict));
-    [first, chi2(plane).unwrap_or_default()]
+    std::iter::once(first).chain(chi2(plane)).collect()
 }
 
 fn p_value(plane: &PlaneComparison) -> String {

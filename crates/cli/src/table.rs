@@ -3,7 +3,7 @@
 use crate::say;
 use crate::summary::Summary;
 use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, Verdict, sidak};
-use etendue_field::{fixed, tidy};
+use etendue_field::{decimals, fixed, tidy, uncertain};
 use std::path::Path;
 
 pub(crate) fn print(summary: &Summary, folder: &Path) {
@@ -249,16 +249,6 @@ fn predicted(plane: &PlaneReport) -> String {
     }
 }
 
-/// Decimals that show two digits of an error.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "between 0 and 17"
-)]
-fn decimals(error: f64) -> usize {
-    (1.0 - libm::log10(error).floor()).clamp(0.0, 17.0) as usize
-}
-
 pub(crate) fn word(verdict: Verdict) -> &'static str {
     match verdict {
         Verdict::Pass => "pass",
@@ -273,15 +263,6 @@ fn number(value: Option<f64>, digits: usize) -> String {
 
 pub(crate) fn percent(value: Option<f64>) -> String {
     value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
-}
-
-/// Value ± error, to two digits of the error.
-pub(crate) fn uncertain(value: f64, error: f64) -> String {
-    if !(error > 0.0 && error.is_finite()) {
-        return format!("{value}");
-    }
-    let digits = decimals(error);
-    format!("{} ± {error:.digits$}", fixed(value, digits))
 }
 
 /// 10000000 as 10 000 000.

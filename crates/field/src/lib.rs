@@ -42,7 +42,7 @@ pub use frequency::{FrequencyAxis, SliceGrid};
 pub use image::Image;
 pub use light::Light;
 pub use net::{Net, sobol_directions};
-pub use number::{fixed, percent, tidy, whole};
+pub use number::{decimals, fixed, percent, tidy, uncertain, whole};
 pub use patch::{Patch, Specular};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
 pub use portable::{Complex, cis, modulus, power, square_root};

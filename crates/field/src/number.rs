@@ -11,14 +11,11 @@ pub fn tidy(x: f64) -> String {
 /// A share in per cent, to `places` decimals, or more where there would not be two digits.
 #[must_use]
 pub fn percent(share: f64, places: usize) -> String {
-    /// Of a share of rounding.
-    const MOST: f64 = 17.0;
     let percent = 100.0 * share;
-    let of_two_digits = 1.0 - libm::log10(percent.abs()).floor();
     let places = if percent == 0.0 || !percent.is_finite() {
         places
     } else {
-        places.max(whole(of_two_digits.min(MOST)))
+        places.max(decimals(percent.abs()))
     };
     fixed(percent, places) + " %"
 }
@@ -29,6 +26,22 @@ pub fn fixed(value: f64, places: usize) -> String {
     let text = format!("{value:.places$}");
     let is_zero = text.bytes().all(|b| matches!(b, b'-' | b'0' | b'.'));
     if is_zero { text.replace('-', "") } else { text }
+}
+
+/// Decimals that show two digits of a number above 0.
+#[must_use]
+pub fn decimals(x: f64) -> usize {
+    whole((1.0 - libm::log10(x).floor()).clamp(0.0, 17.0))
+}
+
+/// Value ± error, to two digits of the error.
+#[must_use]
+pub fn uncertain(value: f64, error: f64) -> String {
+    if !(error > 0.0 && error.is_finite()) {
+        return format!("{value}");
+    }
+    let digits = decimals(error);
+    format!("{} ± {error:.digits$}", fixed(value, digits))
 }
 
 /// The whole part of a number: 0 of negative ones and of NaN, the largest there is beyond.

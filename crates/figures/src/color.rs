@@ -1,6 +1,7 @@
 //! From values to colors.
 
 use crate::axis::Axis;
+use etendue_field::whole;
 use ndarray::ArrayView2;
 
 /// How values are laid on the colors.
@@ -30,9 +31,21 @@ pub(crate) enum Colors {
     Sequential,
     /// Blue, white, red.
     Diverging,
-    /// The same at both ends.
+    /// The same at both ends: pale, blue, dark, red, pale.
     Cyclic,
 }
+
+/// Eight colors of the circle, between which others lie evenly.
+const CIRCLE: [[f64; 3]; 8] = [
+    [226.0, 217.0, 226.0],
+    [150.0, 182.0, 203.0],
+    [97.0, 118.0, 186.0],
+    [89.0, 49.0, 140.0],
+    [47.0, 20.0, 54.0],
+    [120.0, 32.0, 76.0],
+    [178.0, 91.0, 80.0],
+    [205.0, 164.0, 145.0],
+];
 
 impl Colors {
     pub(crate) fn at(self, t: f64) -> Rgb {
@@ -40,10 +53,24 @@ impl Colors {
         let color = match self {
             Self::Sequential => colorous::INFERNO.eval_continuous(t),
             Self::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - t),
-            Self::Cyclic => colorous::SINEBOW.eval_continuous(t),
+            Self::Cyclic => return on_circle(t),
         };
         color.as_array()
     }
+}
+
+/// A color of the circle.
+fn on_circle(t: f64) -> Rgb {
+    let place = t * CIRCLE.len() as f64;
+    let before = whole(place);
+    let share = place - before as f64;
+    let [a, b] = [before, before + 1].map(|i| CIRCLE[i % CIRCLE.len()]);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between two numbers of a byte"
+    )]
+    [0, 1, 2].map(|i| ((1.0 - share) * a[i] + share * b[i]).round() as u8)
 }
 
 /// A color for every value, shared by the panels and their color bar.
@@ -157,6 +184,19 @@ mod tests {
         let ([hot, _, cold], [r, _, b]) = (shading.color(4.0), shading.color(-4.0));
         assert!(hot > cold && b > r);
         assert_eq!(shading.color(9.0), shading.color(4.0));
+    }
+
+    #[test]
+    fn the_circle_of_phases_is_closed_and_turns_evenly() {
+        let at = |degrees: f64| Shading::phase("").color(degrees).map(f64::from);
+        let apart =
+            |a: [f64; 3], b: [f64; 3]| (0..3).map(|i| (a[i] - b[i]).abs()).fold(0.0, f64::max);
+        assert!(apart(at(-180.0), at(180.0)) < 0.5);
+        for degrees in -180..180 {
+            let step = apart(at(f64::from(degrees)), at(f64::from(degrees + 1)));
+            assert!(step < 3.0, "{step} at {degrees}"); // 77 in 45 degrees, and rounding
+        }
+        assert!(apart(at(-90.0), at(90.0)) > 50.0, "signs are told apart");
     }
 
     #[test]

@@ -9,6 +9,7 @@ use crate::strip::Picture;
 use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, SOFT, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::plain;
+use etendue_field::uncertain;
 
 /// A row of pictures that share colors.
 #[derive(Clone, Debug)]
@@ -183,7 +184,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middle: &dyn Fn(usize) -> f
     let highest = ends
         .chain(bars.predicted.iter().flatten().copied())
         .fold(0.0, f64::max);
-    let top = if highest > 0.0 { 1.08 * highest } else { 1.0 };
+    let top = if highest > 0.0 { 1.25 * highest } else { 1.0 };
     let panel = Panel {
         area,
         x: &Axis::edges("", "", [0.0, 1.0]),
@@ -207,9 +208,9 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middle: &dyn Fn(usize) -> f
             svg.fill(bar, FAINT);
         }
         if let (Some(value), Some(error)) = (value, bars.errors[column]) {
-            let text = minus(&format!("{value:.3} ± {error:.3}"));
-            let beside = [x + 0.75 * BAR, (at(*value) + 4.0).min(area.bottom() - 5.0)];
-            svg.text(Text::new(beside, TICK_TEXT, Anchor::Start), &text);
+            let above = [x, at(value + error) - 5.0];
+            let text = minus(&uncertain(*value, error));
+            svg.text(Text::new(above, TICK_TEXT, Anchor::Middle), &text);
             svg.line(
                 [x, at(value - error)],
                 [x, at(value + error)],

@@ -116,9 +116,7 @@ fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
 }
 
 fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {
-    seen.iter()
-        .map(|seen| verdict_lines(seen.found).to_vec())
-        .collect()
+    seen.iter().map(|seen| verdict_lines(seen.found)).collect()
 }
 
 fn drawn(of: &Plate<'_>) -> Result<Figure, Failure> {
@@ -225,7 +223,7 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
         ),
     ];
     let both = |seen: &Seen<'_>| {
-        let mut lines = verdict_lines(seen.found).to_vec();
+        let mut lines = verdict_lines(seen.found);
         if seen.found.predicted.is_dark() {
             lines.push("dark, as predicted".to_owned());
         }
