@@ -495,6 +495,15 @@ fn a_sky_from_behind_is_decided() {
     });
 }
 
+/// Photons are counted where they first meet a surface that turns by more than a right angle, and at the coordinates
+/// that backward rays have there.
+#[test]
+fn a_ridge_under_a_sky_is_decided() {
+    let scene = scene("ridge_under_a_sky");
+    let reference = by_reference(&scene, 0, &backward(&scene));
+    assert_eq!(verdict(&scene, &photons(&scene), &reference), Verdict::Pass);
+}
+
 /// A window that ends with a jump cuts the light of a projector: rules of few rays may agree on it
 /// by chance.
 #[test]

@@ -36,17 +36,20 @@ const MARGIN: f64 = 1.1;
 /// Light that comes at larger angles to the central ray, in radians, is not aimed by its slopes.
 const WIDE: f64 = 0.8;
 
-/// The point of a line on a patch that is nearest to another point.
-fn nearest(patch: &Patch, start: DVec3, along: DVec3, to: DVec3) -> Option<DVec3> {
+/// The points of a line on a patch.
+fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
     let hits = patch.hits(
         patch.frame.to_local(start),
         patch.frame.vector_to_local(along),
     );
-    let points = hits
-        .into_iter()
-        .filter(|t| !t.is_nan())
-        .map(|t| start + t * along);
-    points.min_by(|a, b| a.distance(to).total_cmp(&b.distance(to)))
+    let met = hits.into_iter().filter(|t| !t.is_nan());
+    met.map(move |t| start + t * along)
+}
+
+/// The point of a line on a patch that is nearest to another point.
+fn nearest(patch: &Patch, start: DVec3, along: DVec3, to: DVec3) -> Option<DVec3> {
+    let near = |a: &DVec3, b: &DVec3| a.distance(to).total_cmp(&b.distance(to));
+    points(patch, start, along).min_by(near)
 }
 
 impl Station {
@@ -129,23 +132,42 @@ impl Station {
 }
 
 impl View {
-    /// The frame of the local normal at a point, on the side of the one at the central hit.
-    fn local(&self, patch: &Patch, point: DVec3) -> Frame {
-        let normal = patch.normal(point);
-        self.frame
-            .turned_to(normal.dot(self.frame.d).signum() * normal)
+    /// The frame of the local normal at a point, on the side of the one at the central hit; `None` where the surface has
+    /// turned by a right angle: it folds back over its own coordinates.
+    fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
+        let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
+        let normal = side * patch.normal(point);
+        (normal.dot(self.frame.d) > 0.0).then(|| self.frame.turned_to(normal))
     }
 
-    /// The point of the surface at (x, y), and the frame of its normal.
+    /// The point of the surface at (x, y), and the frame of its normal: of two along the normal of the plane the one nearer to it.
     fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, Frame)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
-        match &self.patch {
-            None => Some((foot, self.frame)),
-            Some(patch) => {
-                let point = nearest(patch, foot, self.frame.d, foot)?;
-                Some((point, self.local(patch, point)))
-            }
-        }
+        let Some(patch) = &self.patch else {
+            return Some((foot, self.frame));
+        };
+        let point = nearest(patch, foot, self.frame.d, foot)?;
+        Some((point, self.local(patch, point)?))
+    }
+
+    /// Where a ray meets the surface from the side the plane looks at, and the frame of the normal there; `None` where that is
+    /// not the point at its coordinates.
+    fn met(&self, start: DVec3, along: DVec3) -> Option<(DVec3, Frame)> {
+        let Some(patch) = &self.patch else {
+            let t = (self.frame.origin - start).dot(self.frame.d) / along.dot(self.frame.d);
+            return Some((start + t * along, self.frame));
+        };
+        let away = if self.arriving { -along } else { along };
+        let normal = self.frame.d;
+        points(patch, start, along).find_map(|point| {
+            let DVec3 { x, y, .. } = self.frame.to_local(point);
+            let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
+            // Of those at its coordinates, which it is but for rounding.
+            let it = nearest(patch, foot, normal, point);
+            let frame = self.local(patch, point)?;
+            let is_seen = it == nearest(patch, foot, normal, foot) && frame.d.dot(away) > 0.0;
+            is_seen.then_some((point, frame))
+        })
     }
 
     /// The inverse of [`Self::look`].
@@ -158,17 +180,7 @@ impl View {
 
     fn look(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
         let along = direction(ray);
-        let (point, frame) = match &self.patch {
-            None => {
-                let t =
-                    (self.frame.origin - start(ray)).dot(self.frame.d) / along.dot(self.frame.d);
-                (start(ray) + t * along, self.frame)
-            }
-            Some(patch) => {
-                let point = nearest(patch, start(ray), along, self.frame.origin)?;
-                (point, self.local(patch, point))
-            }
-        };
+        let (point, frame) = self.met(start(ray), along)?;
         let away = if self.arriving { -along } else { along };
         let ([u, v], measure) = self.seen(&frame, away)?;
         let at = self.frame.to_local(point);
@@ -231,21 +243,21 @@ impl View {
     }
 
     /// What angles are counted from at a point of the surface.
-    fn frame_at(&self, point: DVec3) -> Frame {
+    fn frame_at(&self, point: DVec3) -> Option<Frame> {
         match &self.patch {
-            None => self.frame,
+            None => Some(self.frame),
             Some(patch) => self.local(patch, point),
         }
     }
 
     /// The direction of a ray that leaves a point of the surface and has these coordinates, (u, v).
     pub(crate) fn direction(&self, point: DVec3, seen: [f64; 2]) -> Option<DVec3> {
-        self.away(&self.frame_at(point), seen)
+        self.away(&self.frame_at(point)?, seen)
     }
 
     /// The inverse of [`Self::direction`].
     pub(crate) fn angles(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
-        let (seen, _) = self.seen(&self.frame_at(point), direction)?;
+        let (seen, _) = self.seen(&self.frame_at(point)?, direction)?;
         Some(seen)
     }
 }
