@@ -40,6 +40,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Shrink the neighbourhood of the central ray: how fast the first-order chain comes to the exact prediction.
     Converge(ConvergeArgs),
+    /// Put the pages of several results side by side.
+    Report(ReportArgs),
     /// Make figures of Durand et al. 2005 anew: measured and predicted, with data and recipe.
     Figure(FigureArgs),
     /// Run a scene with fields that take several values: one table of every plane's numbers, and curves.
@@ -282,6 +284,24 @@ pub(crate) struct ExportArgs {
     /// Folder for its files [default: out/NAME-mitsuba]
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  etendue report out/fig9a out/fig9b out/fig9c --out out/fig9.html
+
+Each run leaves such a page of its own, report.html, among its results. It holds all it shows and asks nothing of the network.")]
+pub(crate) struct ReportArgs {
+    /// Folders of `etendue run` or `compare`
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+
+    /// The page
+    #[arg(long, value_name = "FILE", default_value = "out/report.html")]
+    pub(crate) out: PathBuf,
 
     #[command(flatten)]
     pub(crate) force: ForceArgs,

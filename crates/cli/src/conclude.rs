@@ -4,7 +4,7 @@ use crate::inquiry::inquire;
 use crate::method::Method;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
-use crate::{aimed, field, files, photons, pictures, progress, say, table, target};
+use crate::{aimed, field, files, photons, pictures, progress, report, say, table, target};
 use etendue_compare::{
     Applicability, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare,
 };
@@ -47,7 +47,9 @@ pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bo
         let names = names.map(|name| format!("{}/{name}", plane.name));
         names.collect::<Vec<_>>()
     };
-    let beside = pictures::PATH_NAMES.into_iter().chain([TIMING]);
+    let beside = pictures::PATH_NAMES
+        .into_iter()
+        .chain([TIMING, report::NAME]);
     Plan {
         index: SUMMARY,
         files: scene
@@ -145,7 +147,12 @@ fn written(
         files::write(&mut results, summary, plane)?;
         pictures::plane(&mut results, summary, prediction, at, plane)?;
     }
-    pictures::path(&mut results, case, planes)?;
+    let path = pictures::path(&mut results, case, planes)?;
+    let data = report::data(case, summary, planes, &path);
+    results.write(
+        report::NAME,
+        report::page(&case.scene.name, &[data]).as_bytes(),
+    )?;
     if ending.save.contains(&Save::Photons) {
         photons::save(&mut results, case)?;
     }

@@ -33,6 +33,7 @@ mod pictures;
 mod predict;
 mod predictions;
 mod progress;
+mod report;
 mod results;
 mod run;
 mod sealed;
@@ -62,6 +63,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::check(&args),
         Command::Converge(args) => converge::converge(&args),
         Command::Figure(args) => figure::figure(&args),
+        Command::Report(args) => report::report(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),

@@ -98,17 +98,15 @@ pub(crate) fn plane(
     )
 }
 
-/// The strip along the path.
+/// The strip along the path; returns it as SVG.
 pub(crate) fn path(
     results: &mut Results,
     case: &Case,
     planes: &[PlaneComparison],
-) -> Result<(), Failure> {
-    write(
-        results,
-        "path",
-        &strip_of(&case.scene, &case.theories, planes, false)?,
-    )
+) -> Result<String, Failure> {
+    let figure = strip_of(&case.scene, &case.theories, planes, false)?;
+    write(results, "path", &figure)?;
+    Ok(figure.svg)
 }
 
 /// The planes in the order in which light meets them; with their predicted spectra below, if these are wanted.

@@ -240,6 +240,11 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
     files.collect()
 }
 
+/// The hash that the index of a whole result has for a file.
+pub(crate) fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
+    listed(&folder.join(index))?.remove(name)
+}
+
 /// Whether a path is a regular file itself, not a link to one.
 fn is_regular(path: &Path) -> bool {
     fs::symlink_metadata(path).is_ok_and(|found| found.is_file())

@@ -197,7 +197,8 @@ pub(crate) fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
     rows.iter().map(line).collect()
 }
 
-fn verdict_text(summary: &Summary) -> String {
+/// The verdict of a run in a sentence, with its reasons.
+pub(crate) fn verdict_text(summary: &Summary) -> String {
     let with = |verdict: Verdict| -> Vec<&PlaneReport> {
         let planes = summary.planes.iter();
         planes.filter(|p| p.verdict == verdict).collect()

@@ -162,6 +162,14 @@ pub(crate) fn spaced_ticks(axis: &Axis, length: f64, size: f64) -> Vec<Tick> {
         .unwrap_or_default()
 }
 
+/// Ticks along an upright axis: one for each 36 units of its height, or closer together where there would not be three.
+pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
+    let most = (height / 36.0).max(2.0);
+    let closer = (0..7).map(|more| axis.ticks(most + f64::from(more)));
+    let mut enough = closer.filter(|ticks| ticks.len() >= 3);
+    enough.next().unwrap_or_else(|| axis.ticks(most))
+}
+
 /// The smallest of 1, 2, 5 × 10ⁿ that is not below `least` > 0.
 fn step(least: f64) -> f64 {
     let decade = 10_f64.powi(order(least));
@@ -206,6 +214,18 @@ mod tests {
         assert_eq!(texts([-16.5, 16.5], 5.0), ["−10", "0", "10"]);
         assert_eq!(texts([-60.0, 0.0], 3.0), ["−60", "−40", "−20", "0"]);
         assert_eq!(texts([0.0, 2.0], 10.0).len(), 11);
+    }
+
+    #[test]
+    fn an_upright_axis_has_three_ticks() {
+        for (range, height) in [
+            ([-4.33, 4.33], 152.0),
+            ([-32.5, 32.5], 80.0),
+            ([0.0, 1.0], 60.0),
+        ] {
+            let ticks = upright_ticks(&Axis::edges("y", "", range), height);
+            assert!((3..=6).contains(&ticks.len()), "{range:?}: {ticks:?}");
+        }
     }
 
     #[test]

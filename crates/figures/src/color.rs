@@ -59,6 +59,15 @@ impl Colors {
     }
 }
 
+/// The colors of magnitudes, dark to pale, and of differences, blue to red: 256 of each, as red, green and blue.
+#[must_use]
+pub fn palettes() -> [Vec<u8>; 2] {
+    [Colors::Sequential, Colors::Diverging].map(|colors| {
+        let levels = (0..=255u8).map(|level| f64::from(level) / 255.0);
+        levels.flat_map(|t| colors.at(t)).collect()
+    })
+}
+
 /// A color of the circle.
 fn on_circle(t: f64) -> Rgb {
     let place = t * CIRCLE.len() as f64;

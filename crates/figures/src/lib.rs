@@ -52,7 +52,7 @@ mod svg;
 mod text;
 
 pub use axis::{Axis, Quantity};
-pub use color::Scale;
+pub use color::{Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
 pub use figure::{Error, Figure};

@@ -1,6 +1,6 @@
 //! A heat map in its frame, with ticks and axis labels.
 
-use crate::axis::{Axis, spaced_ticks};
+use crate::axis::{Axis, spaced_ticks, upright_ticks};
 use crate::color::Shading;
 use crate::figure::Error;
 use crate::image::heat_map;
@@ -78,7 +78,7 @@ impl Panel<'_> {
     fn y_axis(&self, svg: &mut Svg) {
         let left = self.area.x;
         let mut widest: f64 = 0.0;
-        for tick in self.y.ticks((self.area.height / 36.0).max(4.0)) {
+        for tick in upright_ticks(self.y, self.area.height) {
             let [_, at] = self.point(0.0, tick.value);
             svg.line([left - TICK, at], [left, at], Stroke::FRAME);
             if self.label_y {

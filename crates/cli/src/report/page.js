@@ -1,0 +1,259 @@
+"use strict";
+// Draws the runs whose data stand in this page. Spectra are held for ρ ≥ 0: S(−ρ, −ν) = S*(ρ, ν).
+const read = (element) => JSON.parse(element.textContent);
+const runs = [...document.querySelectorAll("script.run-data")].map(read);
+const colors = read(document.getElementById("colors"));
+const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+const floats = (text) => new Float32Array(bytes(text).buffer);
+const sequential = bytes(colors.sequential);
+const diverging = bytes(colors.diverging);
+const MISSING = [158, 158, 158];
+/** Differences beyond this many σ keep the last color. */
+const MOST_SIGMA = 4;
+
+const make = (name, content, parent, attributes = {}) => {
+  const element = document.createElement(name);
+  if (content !== null) element.textContent = content;
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (parent) parent.append(element);
+  return element;
+};
+const digits = (x, n = 4) => (x === null || x === undefined ? "–" : Number(x.toPrecision(n)).toString());
+const percent = (x) => (x === null || x === undefined ? "–" : digits(100 * x, 3) + " %");
+const color = (table, t) => {
+  const i = 3 * Math.round(255 * Math.min(1, Math.max(0, t)));
+  return [table[i], table[i + 1], table[i + 2]];
+};
+
+/** Everything that is drawn again when the controls change. */
+const pictures = [];
+const state = { floor: -50, azimuth: "", at: {} };
+
+/** A grid of values with its axes: [x, y] in row-major order, both ascending. */
+class Grid {
+  constructor(axes, values) {
+    [this.x, this.y] = axes;
+    this.values = values;
+  }
+  /** The value at cell (i, j). */
+  value(i, j) {
+    return this.values[i * this.y.count + j];
+  }
+}
+
+/** One that holds ρ ≥ 0 alone. */
+class HalfGrid extends Grid {
+  value(i, j) {
+    const half = (this.x.count - 1) / 2;
+    const [a, b] = i >= half ? [i - half, j] : [half - i, this.y.count - 1 - j];
+    return this.values[a * this.y.count + b];
+  }
+}
+
+const place = (axis, i) => axis.min + ((i + 0.5) * (axis.max - axis.min)) / axis.count;
+const cell = (axis, value) =>
+  Math.min(axis.count - 1, Math.max(0, Math.floor(((value - axis.min) / (axis.max - axis.min)) * axis.count)));
+
+/** A canvas with a mark; `kind` links it with others, `grids()` are what it stands beside. */
+class Picture {
+  constructor(kind, which, panel, parent, caption) {
+    Object.assign(this, { kind, which, panel });
+    const figure = make("figure", null, parent);
+    make("figcaption", caption, figure);
+    this.canvas = make("canvas", null, figure, { tabindex: "0", role: "img", "aria-label": `${panel.name}: ${caption}` });
+    this.canvas.addEventListener("pointermove", (event) => this.point(event));
+    this.canvas.addEventListener("pointerdown", (event) => this.point(event));
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+    pictures.push(this);
+  }
+  grid() {
+    return this.panel.grids()[this.which];
+  }
+  point(event) {
+    const box = this.canvas.getBoundingClientRect();
+    const { x, y } = this.grid();
+    const share = [(event.clientX - box.left) / box.width, 1 - (event.clientY - box.top) / box.height];
+    mark(this.kind, [x.min + share[0] * (x.max - x.min), y.min + share[1] * (y.max - y.min)]);
+  }
+  key(event) {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const { x, y } = this.grid();
+    const at = state.at[this.kind] || [0, 0];
+    const moved = [cell(x, at[0]) + step[0], cell(y, at[1]) + step[1]];
+    mark(this.kind, [place(x, Math.min(x.count - 1, Math.max(0, moved[0]))), place(y, Math.min(y.count - 1, Math.max(0, moved[1])))]);
+  }
+  shade(value) {
+    if (Number.isNaN(value)) return MISSING;
+    if (this.which === "z") return color(diverging, 0.5 + (0.5 * value) / MOST_SIGMA);
+    const peak = this.panel.peak();
+    if (this.kind === "field") return color(sequential, peak > 0 ? value / peak : 0);
+    const level = value > 0 && peak > 0 ? 10 * Math.log10(value / peak) : -Infinity;
+    return color(sequential, 1 - level / state.floor);
+  }
+  draw() {
+    const grid = this.grid();
+    const [w, h] = [grid.x.count, grid.y.count];
+    if (this.canvas.width !== w || this.canvas.height !== h) Object.assign(this.canvas, { width: w, height: h });
+    const context = this.canvas.getContext("2d");
+    const image = context.createImageData(w, h);
+    for (let i = 0; i < w; i++) {
+      for (let j = 0; j < h; j++) {
+        image.data.set([...this.shade(grid.value(i, j)), 255], 4 * ((h - 1 - j) * w + i));
+      }
+    }
+    context.putImageData(image, 0, 0);
+    const at = state.at[this.kind];
+    if (!at) return;
+    const [i, j] = [cell(grid.x, at[0]), h - 1 - cell(grid.y, at[1])];
+    context.fillStyle = "rgba(127, 224, 255, 0.55)";
+    context.fillRect(i, 0, 1, h);
+    context.fillRect(0, j, w, 1);
+  }
+}
+
+/** Measured, predicted and difference of a plane. */
+class Panel {
+  constructor(plane, kind, parent, captions) {
+    Object.assign(this, { plane, kind, name: plane.report.name });
+    const box = make("div", null, parent, { class: "pictures" });
+    for (const [which, caption] of captions) new Picture(kind, which, this, box, caption);
+    const { x, y } = this.grids().measured;
+    const range = (axis) => `${axis.name} from ${digits(axis.min, 3)} to ${digits(axis.max, 3)} ${axis.unit}`;
+    make("figcaption", `→ ${range(x)}, ↑ ${range(y)}`, parent);
+    this.line = make("div", "", parent, { class: "value", "aria-live": "polite" });
+    panels.push(this);
+  }
+  grids() {
+    if (this.kind === "field") return this.plane.field;
+    const slices = this.plane.slices;
+    return state.azimuth !== "" && slices ? slices[Math.min(slices.length - 1, Number(state.azimuth))] : this.plane.radial;
+  }
+  peak() {
+    const { predicted, measured } = this.grids();
+    const of = (grid) => grid.values.reduce((a, b) => (b > a ? b : a), 0);
+    return of(predicted) || of(measured);
+  }
+  tell() {
+    const at = state.at[this.kind];
+    if (!at) return;
+    const grids = this.grids();
+    const { x, y } = grids.measured;
+    const [i, j] = [cell(x, at[0]), cell(y, at[1])];
+    const [m, p, z] = ["measured", "predicted", "z"].map((which) => grids[which].value(i, j));
+    const peak = this.peak();
+    const shown = (value) =>
+      this.kind === "field" ? digits(value) : value > 0 && peak > 0 ? (10 * Math.log10(value / peak)).toFixed(2) + " dB" : "below 0";
+    this.line.textContent =
+      `${x.name} = ${digits(place(x, i))} ${x.unit}, ${y.name} = ${digits(place(y, j))} ${y.unit}: ` +
+      `measured ${shown(m)}, predicted ${shown(p)}, difference ${Number.isNaN(z) ? "–" : z.toFixed(2) + " σ"}`;
+  }
+}
+const panels = [];
+
+const mark = (kind, at) => {
+  state.at[kind] = at;
+  refresh(kind);
+};
+const refresh = (kind) => {
+  for (const picture of pictures) if (!kind || picture.kind === kind) picture.draw();
+  for (const panel of panels) if (!kind || panel.kind === kind) panel.tell();
+};
+
+const decoded = (plane) => {
+  const { x, u, rho, nu } = plane.axes;
+  const grids = (Kind, axes, of) => ({
+    measured: new Kind(axes, floats(of.measured)),
+    predicted: new Kind(axes, floats(of.predicted)),
+    z: new Kind(axes, floats(of.z)),
+  });
+  plane.field = grids(Grid, [x, u], plane.field);
+  plane.radial = grids(HalfGrid, [rho, nu], plane.radial);
+  plane.slices = plane.slices && plane.slices.map((slice) => grids(HalfGrid, [rho, nu], slice));
+};
+
+const table = (parent, header, rows) => {
+  const table = make("table", null, parent);
+  const head = make("tr", null, make("thead", null, table));
+  for (const name of header) make("th", name, head, { scope: "col" });
+  const body = make("tbody", null, table);
+  for (const row of rows) {
+    const line = make("tr", null, body);
+    for (const cell of row) make("td", cell, line);
+  }
+};
+
+const showPlane = (plane, parent) => {
+  decoded(plane);
+  const report = plane.report;
+  const section = make("section", null, parent);
+  make("h3", report.name.replaceAll("_", " "), section);
+  make("p", `${report.verdict}${report.p_value === null ? "" : `, p = ${digits(report.p_value, 3)}`}`, section, {
+    class: `verdict ${report.verdict}`,
+  });
+  if (report.undecided) make("p", report.undecided, section);
+  const captions = (what) => [
+    ["measured", `${what}, measured`],
+    ["predicted", "predicted"],
+    ["z", `difference in σ, ±${MOST_SIGMA}`],
+  ];
+  new Panel(plane, "spectrum", section, captions("spectrum"));
+  new Panel(plane, "field", section, captions(`light field in (${plane.axes.x.name}, ${plane.axes.u.name})`));
+  const chain = make("details", null, section);
+  make("summary", `prediction: ${report.class.replace("_", " ")}`, chain);
+  make("pre", report.chain.join("\n"), chain);
+  for (const warning of report.warnings) make("p", `warning: ${warning}`, section);
+};
+
+const showRun = (run) => {
+  const article = make("article", null, document.getElementById("runs"), { class: "run" });
+  make("h2", run.scene, article);
+  make("p", run.words, article, { class: `verdict ${run.verdict}` });
+  const drawing = make("div", null, article, { class: "path" });
+  // An SVG of Étendue's own making: it has no script and names nothing outside.
+  drawing.innerHTML = run.path;
+  table(
+    article,
+    ["plane", "class", "in window", "χ²/dof", "p", "rel. error", "noise alone", "verdict"],
+    run.planes.map(({ report: r }) => [
+      r.name, r.class.replace("_", " "), String(r.in_window), digits(r.chi2_per_dof, 3), digits(r.p_value, 3),
+      percent(r.relative_error), percent(r.noise_limit), r.verdict,
+    ]),
+  );
+  for (const plane of run.planes) showPlane(plane, article);
+  make("h3", "Parameters, measured from the spectra alone", article);
+  const rows = run.planes.flatMap(({ report: r }) =>
+    r.parameters.map((p) => [
+      r.name, `${p.name}${p.unit ? ` [${p.unit}]` : ""}`, digits(p.scene, 6), digits(p.measured, 6), digits(p.error, 2),
+      p.error === null ? "–" : digits((p.measured - p.scene) / p.error, 2),
+    ]),
+  );
+  table(article, ["plane", "parameter", "scene", "measured", "± error", "off, in errors"], rows);
+  make("h3", "Where it comes from", article);
+  make("pre", run.provenance, article);
+  const scene = make("details", null, article);
+  make("summary", "the scene as it was run", scene);
+  make("pre", JSON.stringify(run.scene_file, null, 2), scene);
+};
+
+runs.forEach(showRun);
+const azimuth = document.getElementById("azimuth");
+const most = runs.flatMap((run) => run.planes.map((plane) => plane.azimuths)).sort((a, b) => b.length - a.length)[0] || [];
+if (runs.some((run) => run.planes.some((plane) => plane.slices))) {
+  most.forEach((angle, k) => make("option", `azimuth ${digits((angle * 180) / Math.PI, 4)}°`, azimuth, { value: String(k) }));
+} else {
+  azimuth.title = "the slices of each azimuth are too large for this page: they are in slices.npz";
+}
+azimuth.addEventListener("input", () => {
+  state.azimuth = azimuth.value;
+  refresh();
+});
+const level = document.getElementById("floor");
+level.addEventListener("input", () => {
+  state.floor = Number(level.value);
+  document.getElementById("level").textContent = `${level.value.replace("-", "−")} dB`;
+  refresh();
+});
+refresh();
+document.documentElement.dataset.drawn = String(pictures.length);

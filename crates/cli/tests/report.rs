@@ -1,0 +1,130 @@
+//! `report.html` and `etendue report`.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{SCENE, call, json};
+use std::fs;
+use std::path::Path;
+
+/// Runs of the small scene in `a` and, with another pitch and a name that would end the data of a page, in `b`.
+fn runs() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("small.ron"), SCENE).unwrap();
+    fs::write(
+        path.join("a<b>&.ron"),
+        SCENE.replace("\"floor\"", "\"</script><!--\""),
+    )
+    .unwrap();
+    for arguments in [
+        "run small.ron --photons 4096 --out a",
+        "run a<b>&.ron --photons 4096 --out b --set blockers.0.pitch=0.15",
+    ] {
+        let output = call(path, arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments}: {output:?}");
+    }
+    folder
+}
+
+/// What stands in a page between the tags of data, each parsed.
+fn data(page: &Path) -> Vec<serde_json::Value> {
+    let text = fs::read_to_string(page).unwrap();
+    let blocks = text.split("class=\"run-data\">").skip(1);
+    let blocks = blocks.map(|rest| rest.split("</script>").next().unwrap());
+    blocks
+        .map(|block| serde_json::from_str(block).unwrap())
+        .collect()
+}
+
+#[test]
+fn a_page_holds_what_its_run_found() {
+    let folder = runs();
+    let page = folder.path().join("a/report.html");
+    let [run] = &data(&page)[..] else {
+        panic!("one run")
+    };
+    let summary = json(&folder.path().join("a/summary.json"));
+    for (plane, expected) in run["planes"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .zip(summary["planes"].as_array().unwrap())
+    {
+        assert_eq!(plane["report"], *expected);
+    }
+    assert_eq!(run["scene_file"], summary["scene_file"]);
+    assert!(run["path"].as_str().unwrap().starts_with("<svg"));
+    // It names nothing outside of itself but the namespace of SVG.
+    let text = fs::read_to_string(&page)
+        .unwrap()
+        .replace("http://www.w3.org/2000/svg", "");
+    assert!(!text.contains("http:") && !text.contains("https:") && !text.contains(" src="));
+}
+
+#[test]
+fn runs_stand_side_by_side() {
+    let folder = runs();
+    let path = folder.path();
+    let output = call_report(path, "report a b --out both.html");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let runs = data(&path.join("both.html"));
+    let alone: Vec<_> = ["a", "b"]
+        .map(|name| data(&path.join(name).join("report.html")))
+        .concat();
+    assert_eq!(runs, alone);
+    assert_eq!(runs[1]["scene"], "a<b>&");
+    assert_eq!(runs[1]["scene_file"]["path"]["visits"][0], "</script><!--");
+    let page = fs::read_to_string(path.join("b/report.html")).unwrap();
+    assert!(page.contains("<title>Étendue: a&lt;b&gt;&amp;</title>"));
+    assert_eq!(
+        page.matches("</script>").count(),
+        3,
+        "data, colors and script end once each"
+    );
+}
+
+#[test]
+fn what_is_no_whole_result_is_refused() {
+    let folder = runs();
+    let path = folder.path();
+    let output = call_report(path, "report a absent --out out");
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("absent is no whole result")
+    );
+    let page = path.join("b/report.html");
+    let changed = fs::read_to_string(&page).unwrap().replace("4096", "4097");
+    fs::write(page, changed).unwrap();
+    let output = call_report(path, "report b --out out");
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    assert!(
+        String::from_utf8(output.stderr)
+            .unwrap()
+            .contains("damaged")
+    );
+    assert!(!path.join("out").exists());
+    // A page of another is not replaced, and none that is read.
+    assert_eq!(
+        call_report(path, "report a --out small.ron").status.code(),
+        Some(3)
+    );
+    assert_eq!(
+        call_report(path, "report a --out a/report.html --force")
+            .status
+            .code(),
+        Some(2)
+    );
+}
+
+fn call_report(path: &Path, arguments: &str) -> std::process::Output {
+    let mut command = common::etendue();
+    command
+        .current_dir(path)
+        .args(arguments.split(' '))
+        .output()
+        .unwrap()
+}
