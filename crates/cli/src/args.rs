@@ -312,7 +312,7 @@ pub(crate) struct ReportArgs {
   etendue figure 9
   etendue figure all --quality draft --out out/figures
 
-Figures 1, 4, 5, 6, 7, 9, 10, 11 and 12. Each has a folder with figure.png, .svg and .pdf (at most the 7 inches of two columns wide, text
+Figures 1, 4, 5, 6, 7, 8, 9, 10, 11 and 12. Each has a folder with figure.png, .svg and .pdf (at most the 7 inches of two columns wide, text
 as text), the arrays behind it in figure.npz (of curves: figure.csv), the scenes it is made of, and figure.json, which says whether each
 plane agrees with theory, and the command that makes it again.")]
 pub(crate) struct FigureArgs {

@@ -6,7 +6,7 @@ use crate::pictures::{
     light_field_axes, light_field_quantity, spectrum_axes, spectrum_quantity, verdict_lines,
 };
 use etendue_compare::PlaneComparison;
-use etendue_field::{Slices, VirtualPlane};
+use etendue_field::{Slices, VirtualPlane, percent};
 use etendue_figures::{Bars, Figure, Picture, Plate, PlateRow, Quantity, Scale, plate};
 use ndarray::{Array2, ArrayView2, Axis as Along};
 
@@ -237,6 +237,32 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
             .to_vec(),
         rows,
         feet: seen.iter().map(both).collect(),
+        bars: None,
+    })
+}
+
+/// Fig. 8: slopes and angles at the receiver. The chain takes one for the other, and its error is what the paper calls
+/// not significant.
+pub(crate) fn parameterisations(shots: &[Shot]) -> Result<Figure, Failure> {
+    let seen = [
+        Seen::at(&shots[0], "slopes")?,
+        Seen::at(&shots[0], "angles")?,
+    ];
+    let mut feet = feet(&seen);
+    if let Some(first_order) = &seen[1].found.report.first_order {
+        let said = |share: Option<f64>| share.map_or("–".to_owned(), |share| percent(share, 2));
+        let (found, error) = (
+            said(first_order.excess),
+            said(Some(first_order.chain.error)),
+        );
+        feet[1].push(format!("*u* for *θ*: off by {found}, computed {error}"));
+    }
+    drawn(&Plate {
+        title: "Two parameterisations",
+        note: "Angles are counted along T, which is against X here: the shear has the other sign.",
+        heads: ["by slopes", "by angles"].map(str::to_owned).to_vec(),
+        rows: compared(&seen, false),
+        feet,
         bars: None,
     })
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use crate::figure::kernels;
-use crate::figure::plates::{blockers, lights, occluders, steps};
+use crate::figure::plates::{blockers, lights, occluders, parameterisations, steps};
 use crate::figure::shot::Shot;
 use crate::pictures;
 use etendue_figures::Figure;
@@ -64,6 +64,12 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig7_two", scene!("fig7_two")),
         ],
         draw: occluders,
+    },
+    Recipe {
+        name: "8",
+        about: "the receiver by slopes and by angles: what taking one for the other costs",
+        scenes: &[("fig8", scene!("fig8"))],
+        draw: parameterisations,
     },
     Recipe {
         name: "9",
