@@ -312,11 +312,15 @@ pub(crate) struct ReportArgs {
   etendue figure 9
   etendue figure all --quality draft --out out/figures
 
-Figures 1, 4, 5, 6, 7, 8, 9, 10, 11 and 12. Each has a folder with figure.png, .svg and .pdf (at most the 7 inches of two columns wide, text
-as text), the arrays behind it in figure.npz (of curves: figure.csv), the scenes it is made of, and figure.json, which says whether each
-plane agrees with theory, and the command that makes it again.")]
+Figures of Durand et al. 2005: 1, 4, 5, 6, 7, 8, 9, 10, 11 and 12. Those of kernels, 5 and 12, are theory alone; all others are measured,
+and predicted beside it. Each has a folder with
+  figure.png, .svg, .pdf   the PDF at most 7 inches wide, two columns of a journal; text is text
+  figure.npz               light fields and spectra of all planes (docs/conventions.md)
+  figure.csv               the numbers of curves and bars
+  figure.json              whether each plane agrees with theory, and the command that makes the figure again
+  NAME.ron                 its scenes")]
 pub(crate) struct FigureArgs {
-    /// Number of the figure in the paper, or all
+    /// Number of the figure in the paper (1, 4 to 12), or all
     #[arg(value_name = "NAME")]
     pub(crate) name: String,
 
@@ -345,9 +349,14 @@ pub(crate) struct FigureArgs {
   etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:4log --set blockers.0.fill=0.3,0.6 --photons 2^20
   etendue sweep scenes/fig9b.ron --together --set surfaces.0.center.2=1.5,2,3 --set surfaces.0.albedo=0.2,0.5,0.8
 
-Leaves in its folder sweep.csv, a row for each number of each plane at each point, and the curves bandwidth_rho, bandwidth_nu
-and slope. Each point is a run of its own, whose summary.json is below points/: the same command again goes on where it
-was stopped, and one with other values runs only what is new.")]
+Leaves in its folder
+  sweep.csv                            a row for each plane at each point and each number: the frequencies that hold 95 % of the power,
+                                       the shear slope, and each parameter, measured with its standard error and predicted
+  bandwidth_rho, bandwidth_nu, slope   curves over the field that is named first, as PNG, SVG and CSV; a grid with more than 24
+                                       panels has none
+  points/                              a run for each point: the same command goes on where it was stopped, and one with other
+                                       values of the same fields runs only what is new
+Values are numbers. Exit codes are those of run, of the worst point: one true point in a hundred fails by chance.")]
 pub(crate) struct SweepArgs {
     /// Scene file, in RON
     #[arg(value_name = "SCENE.ron")]
@@ -358,7 +367,7 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
-    /// Several fields go in step, instead of in all combinations
+    /// Several fields take their values in step, instead of in all combinations; each must have as many
     #[arg(long)]
     pub(crate) together: bool,
 

@@ -24,7 +24,7 @@ use std::time::Instant;
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Quality {
-    /// An eighth of the photons of the scenes, twice as many frequencies along each axis
+    /// An eighth of the photons of the scenes, twice as many frequencies as they ask for along each axis
     Draft,
     /// The photons of the scenes, four times as many frequencies
     Print,
@@ -95,8 +95,11 @@ struct Index<'a> {
     command: String,
     version: &'a str,
     quality: Quality,
-    /// The hash of each scene as it was run.
+    /// Frequencies along each axis for one of the scene.
+    finer: usize,
+    /// The hash of each scene with the photons of this quality, at its own frequencies.
     scenes: BTreeMap<&'a str, String>,
+    photons: BTreeMap<&'a str, u64>,
     planes: Vec<Judged<'a>>,
     files: &'a BTreeMap<String, String>,
 }
@@ -107,10 +110,11 @@ struct Judged<'a> {
     plane: &'a str,
     verdict: Verdict,
     p_value: Option<f64>,
+    chi2_per_dof: Option<f64>,
     high_frequency_share: &'a [HighFrequencyShare],
 }
 
-/// Makes a figure; returns the verdict on all planes in it.
+/// Makes a figure; returns the verdict on all planes of its scenes.
 fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
     let endings = ["png", "svg", "pdf", "csv", "npz"].map(|end| format!("figure.{end}"));
     let scenes = recipe.scenes.iter().map(|(name, _)| format!("{name}.ron"));
@@ -130,9 +134,11 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;
-    if shots.is_empty() {
+    // Strips have a row for each cell there, which the arrays hold in less.
+    if recipe.has_table {
         results.write("figure.csv", figure.csv.as_bytes())?;
-    } else {
+    }
+    if !shots.is_empty() {
         results.write("figure.npz", &shot::arrays(&shots)?)?;
     }
     for (name, text) in recipe.scenes {
@@ -150,6 +156,7 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
             plane: &report.name,
             verdict: report.verdict,
             p_value: report.p_value,
+            chi2_per_dof: report.chi2_per_dof,
             high_frequency_share: &report.high_frequency_share,
         });
         json(&Index {
@@ -158,6 +165,11 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
             command: format!("etendue figure {} --quality {quality}", recipe.name),
             version: VERSION,
             quality: args.quality,
+            finer: args.quality.finer(),
+            photons: shots
+                .iter()
+                .map(|shot| (shot.scene.name.as_str(), shot.scene.run.photons))
+                .collect(),
             scenes: shots
                 .iter()
                 .map(|s| (s.scene.name.as_str(), s.scene.hash()))

@@ -13,6 +13,14 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 /// What waits to become a result, and the lock on its folder. Global as signals are.
 static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
+/// What to say at the end instead, where something is kept.
+static KEPT: Mutex<Option<&str>> = Mutex::new(None);
+
+/// From now on an interrupted command says this.
+pub(crate) fn keeps(message: &'static str) {
+    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
+}
+
 fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
     UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
 }
@@ -44,7 +52,10 @@ fn end() -> ! {
     use std::sync::mpsc;
     use std::time::Duration;
     let unfinished = unfinished();
-    let message = if unfinished.first().is_some_and(|first| first.exists()) {
+    let kept = *KEPT.lock().unwrap_or_else(PoisonError::into_inner);
+    let message = if let Some(kept) = kept {
+        kept
+    } else if unfinished.first().is_some_and(|first| first.exists()) {
         "interrupted: no result was written"
     } else {
         "interrupted"

@@ -146,13 +146,21 @@ pub(crate) fn strip_of(
             " Dashed: where the chain puts the light, in the plane of incidence and across it."
         }
     };
+    let crowded = along
+        .windows(3)
+        .any(|three| three[2].0.distance - three[0].0.distance <= 0.0);
+    let apart = if crowded {
+        " Planes at one *z* are drawn apart."
+    } else {
+        ""
+    };
     strip(&Strip {
         title: &format!(
             "{}: the light field along the path, and its spectrum",
             scene.name
         ),
         note: &format!(
-            "{} photons, seed {}; spectra are means over azimuths.{dashed}",
+            "{} photons, seed {}; spectra are means over azimuths.{dashed}{apart}",
             grouped(scene.run.photons),
             scene.run.seed
         ),

@@ -17,13 +17,13 @@ use crate::stored::{VERSION, check_earlier};
 use crate::summary::{Summary, json};
 use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{limits, load, method, progress, say, sealed, warnings};
+use crate::{interrupt, limits, load, method, progress, say, sealed, warnings};
 use etendue_compare::Applicability;
-use etendue_field::{fixed, uncertain};
+use etendue_field::{decimals, fixed, uncertain};
 use etendue_scene::{Scene, SceneFile, read_file};
 use serde::Serialize;
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use table::{BANDWIDTHS, Found, SLOPE};
 use values::{Point, Setting, Sweep, points, shown};
@@ -33,11 +33,7 @@ const TABLE: &str = "sweep.csv";
 /// `etendue sweep`: returns the exit code.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
     let (set, sweeps) = settings(&args.set);
-    if sweeps.is_empty() {
-        let message =
-            "nothing is swept: --set PATH=A..B:N, such as --set blockers.0.pitch=0.05..0.4:8";
-        return Err(Failure::bad_input(message));
-    }
+    check(args, &set, &sweeps)?;
     let scene = SceneArgs {
         path: args.path.clone(),
         set,
@@ -54,15 +50,76 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
             method::check(scene, args.photons.method)?;
             limits::check(scene, &theories, rayon::current_num_threads())?;
         }
-        warnings::tell(&base, args.quiet);
+        if !args.quiet {
+            warnings::tell_at(&points, &scenes);
+        }
         check_earlier(&folder, SWEEP, &base, args.force.force)?;
+        check_fields(&folder, &sweeps, args.force.force)?;
         let inputs = load::inputs(&scene, &base);
         // Before the work, and once more for the table: each point claims a folder of its own.
         drop(Results::claim(&folder, plan(&inputs, args.force.force))?);
+        interrupt::keeps(
+            "interrupted: the points that are done are kept, and the same command goes on from them",
+        );
         let found = run_all(args, &folder, &inputs, points.into_iter().zip(&scenes))?;
         let results = Results::claim(&folder, plan(&inputs, args.force.force))?;
         finish(args, &base, &sweeps, &found, results)
     })
+}
+
+/// Fails where nothing is swept, or a field is given its values twice.
+fn check(args: &SweepArgs, set: &[(String, String)], sweeps: &[Sweep]) -> Result<(), Failure> {
+    if sweeps.is_empty() {
+        let given: Vec<String> = set
+            .iter()
+            .map(|(path, value)| format!("{path}={value} is one value; "))
+            .collect();
+        let message = format!(
+            "nothing is swept: {}--set PATH=A..B:N or PATH=A,B,C gives a field several, such as --set blockers.0.pitch=0.05..0.4:8",
+            given.concat()
+        );
+        return Err(Failure::bad_input(message));
+    }
+    let options = [
+        ("run.photons", args.photons.photons.is_some()),
+        ("run.seed", args.photons.seed.is_some()),
+    ];
+    let options = options
+        .iter()
+        .filter(|(_, given)| *given)
+        .map(|(path, _)| *path);
+    let fixed = set.iter().map(|(path, _)| path.as_str()).chain(options);
+    let mut given: Vec<&str> = fixed
+        .chain(sweeps.iter().map(|sweep| sweep.path.as_str()))
+        .collect();
+    given.sort_unstable();
+    match given.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(Failure::bad_input(format!("{} is given twice", pair[0]))),
+        None => Ok(()),
+    }
+}
+
+/// Fails where the folder holds a sweep of other fields.
+fn check_fields(folder: &Path, sweeps: &[Sweep], force: bool) -> Result<(), Failure> {
+    let earlier = read_file(&folder.join(SWEEP), MOST_INDEX).ok();
+    let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let Some(fields) = earlier
+        .as_ref()
+        .and_then(|index| index["sweeps"].as_object())
+    else {
+        return Ok(());
+    };
+    let now: BTreeSet<&str> = sweeps.iter().map(|sweep| sweep.path.as_str()).collect();
+    let earlier: BTreeSet<&str> = fields.keys().map(String::as_str).collect();
+    if force || now == earlier {
+        return Ok(());
+    }
+    let earlier: Vec<&str> = earlier.into_iter().collect();
+    Err(Failure::cannot_run(format!(
+        "{} holds a sweep of {}: choose another folder with --out, or replace it with --force",
+        folder.display(),
+        earlier.join(", ")
+    )))
 }
 
 /// What is set to one value, and what is swept.
@@ -99,7 +156,7 @@ fn run_all<'a>(
     let bar = progress::steps("running", points.len(), "points", args.quiet);
     let found = points.map(|(point, scene)| {
         bar.set_message(shown(&point));
-        let name = format!("points/{}", &scene.hash()[..16]);
+        let name = format!("points/{}", name_of(scene, args));
         let there = folder.join(&name);
         let summary = match earlier(&there, scene, args) {
             Some(summary) => summary,
@@ -115,6 +172,12 @@ fn run_all<'a>(
     let found = found.collect();
     bar.finish_and_clear();
     found
+}
+
+/// The name of a point: the same for the same scene and method.
+fn name_of(scene: &Scene, args: &SweepArgs) -> String {
+    let what = format!("{} {}", scene.hash(), args.photons.method.words());
+    blake3::hash(what.as_bytes()).to_hex()[..16].to_owned()
 }
 
 /// The summary of a run of this very scene, by the same method and version.
@@ -207,6 +270,17 @@ fn finish(
         if figures.is_empty() {
             say("no curves: they would have more than 24 panels");
         }
+        let count = |verdict: &str| {
+            found
+                .iter()
+                .filter(|at| at.summary["verdict"] == verdict)
+                .count()
+        };
+        let [pass, fail, undecided] = ["pass", "fail", "undecided"].map(count);
+        say(&format!(
+            "{} points: {pass} pass, {fail} fail, {undecided} undecided",
+            found.len()
+        ));
         say(&format!("sweep in {}", finished.folder.display()));
     }
     let any = |verdict: &str| found.iter().any(|at| at.summary["verdict"] == verdict);
@@ -220,8 +294,8 @@ fn finish(
 /// The table for the terminal: a row for each plane at each point.
 fn rows(paths: &[String], found: &[Found]) -> Vec<Vec<String>> {
     let shown = [
-        (BANDWIDTHS[0], "95 % of ρ [1/m]"),
-        (BANDWIDTHS[1], "95 % of ν"),
+        (BANDWIDTHS[0], "ρ of 95 % [cycles/m]"),
+        (BANDWIDTHS[1], "ν of 95 % [cycles/slope]"),
         (SLOPE, "shear slope [m]"),
     ];
     let mut header = paths.to_vec();
@@ -244,7 +318,10 @@ fn rows(paths: &[String], found: &[Found]) -> Vec<Vec<String>> {
         for (quantity, _) in shown {
             let number = numbers.iter().find(|number| number.quantity == quantity);
             let measured = number.and_then(|n| Some(uncertain(n.measured?, n.error?)));
-            let predicted = number.and_then(|n| n.predicted).map(|x| fixed(x, 4));
+            let predicted = number.and_then(|n| {
+                let places = n.error.filter(|e| *e > 0.0).map_or(4, decimals);
+                Some(fixed(n.predicted?, places))
+            });
             row.extend([measured, predicted].map(|cell| cell.unwrap_or("–".to_owned())));
         }
         row

@@ -1,5 +1,6 @@
 //! The warnings of a scene, each on a line of its own.
 
+use crate::sweep::values::{Point, shown};
 use etendue_scene::Scene;
 use std::io::Write;
 
@@ -9,5 +10,24 @@ pub(crate) fn tell(scene: &Scene, quiet: bool) {
     for warning in warnings {
         // A reader that has gone changes nothing.
         let _ = writeln!(std::io::stderr(), "warning: {warning}");
+    }
+}
+
+/// Those of the scenes at the points of a sweep, each once, with the first point it is about.
+pub(crate) fn tell_at(points: &[Point], scenes: &[Scene]) {
+    let mut told: Vec<String> = Vec::new();
+    for (point, scene) in points.iter().zip(scenes) {
+        for warning in scene.warnings() {
+            // The same words with other numbers are told once.
+            let words: String = warning
+                .chars()
+                .filter(|c| !c.is_ascii_digit() && *c != '.')
+                .collect();
+            if !told.contains(&words) {
+                // A reader that has gone changes nothing.
+                let _ = writeln!(std::io::stderr(), "warning: at {}: {warning}", shown(point));
+                told.push(words);
+            }
+        }
     }
 }

@@ -38,7 +38,7 @@ fn the_table_has_what_a_run_says_of_each_point() {
         let mut at = rows.iter().filter(|row| {
             row["blockers.0.pitch"] == "0.15" && *row["plane"] == *plane["name"].as_str().unwrap()
         });
-        let nu = at.find(|row| row["quantity"] == "bandwidth_95 nu").unwrap();
+        let nu = at.find(|row| row["quantity"] == "bandwidth_95_nu").unwrap();
         let expected = &plane["bandwidth_95"]["nu"];
         for name in ["measured", "predicted", "error"] {
             assert_eq!(
@@ -148,7 +148,26 @@ fn bad_sweeps_are_refused() {
     let message = String::from_utf8(output.stderr).unwrap();
     assert_eq!(output.status.code(), Some(2), "{message}");
     assert!(message.contains("PATH=A..B:N"), "{message}");
-    // A sweep of another scene is not replaced.
+    for (twice, field) in [
+        (
+            "blockers.0.pitch=0.1,0.2 --set blockers.0.pitch=0.3",
+            "blockers.0.pitch is given twice",
+        ),
+        (
+            "run.photons=1024,2048 --photons 4096",
+            "run.photons is given twice",
+        ),
+        (
+            "blockers.0.pitch=0.05-0.4:3",
+            "pitch=0.05-0.4:3 is one value",
+        ),
+    ] {
+        let output = call(path, &format!("{set} {twice}"));
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{message}");
+        assert!(message.contains(field), "{message}");
+    }
+    // A sweep of another scene, or of other fields, is not replaced.
     assert_eq!(call(path, PITCH).status.code(), Some(0));
     let other = format!("{PITCH} --set blockers.0.fill=0.3");
     let output = call(path, &other);
@@ -157,6 +176,14 @@ fn bad_sweeps_are_refused() {
         String::from_utf8(output.stderr)
             .unwrap()
             .contains("blockers.0.JitteredSquares.fill")
+    );
+    let fields = "sweep small.ron --photons 4096 --out s --set blockers.0.fill=0.3,0.5";
+    let output = call(path, fields);
+    assert_eq!(output.status.code(), Some(3), "{output:?}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        message.contains("holds a sweep of blockers.0.pitch"),
+        "{message}"
     );
     assert_eq!(
         call(path, &format!("{other} --force")).status.code(),

@@ -1,9 +1,9 @@
 //! Curves and measured points over one axis, panel beside panel.
 
-use crate::axis::{Axis, Quantity};
+use crate::axis::{Axis, Quantity, upright_ticks};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::panel::Panel;
-use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT};
+use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, THEORY_COLOR, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::{plain, width};
 
@@ -57,10 +57,12 @@ const ACROSS: usize = 3;
 const SIZE: [f64; 2] = [262.0, 190.0];
 const LEFT: f64 = 62.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
+/// Width of numbers beside an axis for which there is room.
+const USUAL: f64 = 28.0;
 const RADIUS: f64 = 3.0;
 /// Half of the stroke at the end of an error bar.
 const CAP: f64 = 3.0;
-const THEORY: Stroke = Stroke::solid("#1f6fb4", 1.8);
+const THEORY: Stroke = Stroke::solid(THEORY_COLOR, 1.8);
 const RIVAL: Stroke = Stroke {
     color: "#c8502e",
     width: 1.6,
@@ -76,16 +78,26 @@ const SAMPLE: f64 = 30.0;
 /// When the numbers cannot be written.
 pub fn curves(curves: &Curves) -> Result<Figure, Error> {
     let columns = curves.panels.len().clamp(1, ACROSS);
-    let inner = columns as f64 * (SIZE[0] + BETWEEN[0]) - BETWEEN[0];
+    // Long numbers beside an axis move its name.
+    let ticks = curves.panels.iter().flat_map(|panel| {
+        let [_, y] = axes(panel, &curves.y);
+        upright_ticks(&y, SIZE[1])
+    });
+    let widest = ticks
+        .map(|tick| width(&tick.text, TICK_TEXT))
+        .fold(0.0, f64::max);
+    let more = (widest - USUAL).max(0.0);
+    let (left, between) = (LEFT + more, BETWEEN[0] + more);
+    let inner = columns as f64 * (SIZE[0] + between) - between;
     let mut svg = Svg::default();
-    let top = svg.title(LEFT, inner, &curves.title, &curves.note);
-    let key_right = key(&mut svg, curves, [LEFT, top + 16.0]);
+    let top = svg.title(left, inner, &curves.title, &curves.note);
+    let key_right = key(&mut svg, curves, [left, top + 16.0]);
     let top = top + 58.0;
     let mut bottom = top;
     for (i, panel) in curves.panels.iter().enumerate() {
         let [column, row] = [i % ACROSS, i / ACROSS].map(|n| n as f64);
         let area = Area {
-            x: LEFT + column * (SIZE[0] + BETWEEN[0]),
+            x: left + column * (SIZE[0] + between),
             y: top + row * (SIZE[1] + BETWEEN[1]),
             width: SIZE[0],
             height: SIZE[1],
@@ -95,7 +107,7 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
     }
     Ok(Figure {
         svg: svg.finish(
-            (LEFT + inner).max(key_right) + 24.0,
+            (left + inner).max(key_right) + 24.0,
             bottom + LABEL_BASELINE + 14.0,
         ),
         csv: numbers(curves)?,
@@ -130,7 +142,8 @@ fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) -> f64 {
     x - 30.0
 }
 
-fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
+/// The axes around all points of a panel, and around y = 0.
+fn axes(panel: &CurvePanel, y: &Quantity) -> [Axis; 2] {
     let points = || panel.curves.iter().flat_map(|c| &c.points);
     let [low, high] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
         [a.min(p[0]), b.max(p[0])]
@@ -138,18 +151,23 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
     let margin = 0.04 * (high - low);
     let most = points().map(|p| p[1] + p[2]).fold(0.0, f64::max);
     let least = points().map(|p| p[1] - p[2]).fold(0.0, f64::min);
+    let axis = |quantity: &Quantity, min, max| Axis {
+        quantity: quantity.clone(),
+        min,
+        max,
+    };
+    [
+        axis(&panel.x, low - margin, high + margin),
+        axis(y, 1.06 * least, 1.06 * most),
+    ]
+}
+
+fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
+    let [x, y] = axes(panel, y);
     let frame = Panel {
         area,
-        x: &Axis {
-            quantity: panel.x.clone(),
-            min: low - margin,
-            max: high + margin,
-        },
-        y: &Axis {
-            quantity: y.clone(),
-            min: 1.06 * least,
-            max: 1.06 * most,
-        },
+        x: &x,
+        y: &y,
         label_y: true,
     };
     svg.clipped(area, |svg| {

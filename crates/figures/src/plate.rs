@@ -6,7 +6,7 @@ use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::panel::Panel;
 use crate::strip::Picture;
-use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, SOFT, TICK_TEXT};
+use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::plain;
 use etendue_field::uncertain;
@@ -48,6 +48,8 @@ pub struct Plate<'a> {
 pub struct Bars {
     /// What it is.
     pub quantity: Quantity,
+    /// The same in words, markup.
+    pub about: String,
     /// Heights of the bars.
     pub measured: Vec<Option<f64>>,
     /// Their standard errors.
@@ -72,7 +74,7 @@ const BAR: f64 = 60.0;
 
 /// Draws a plate of one to about six columns.
 ///
-/// The CSV has a row for each cell of each picture.
+/// The CSV has the numbers of the bars; it is empty without bars.
 ///
 /// # Errors
 /// When a heat map or the numbers cannot be written.
@@ -149,7 +151,7 @@ fn draw_row(svg: &mut Svg, row: &PlateRow<'_>, area: &dyn Fn(usize) -> Area) -> 
     let mut bar = if row.shared {
         shading(row, &row.quantity.name, highest)
     } else {
-        shading(row, "of each peak", 1.0)
+        shading(row, &format!("{} / peak", row.quantity.name), 1.0)
     };
     for (column, picture) in row.pictures.iter().enumerate() {
         let panel = Panel {
@@ -177,7 +179,7 @@ fn draw_row(svg: &mut Svg, row: &PlateRow<'_>, area: &dyn Fn(usize) -> Area) -> 
     bar::draw(svg, &bar, area(last).right() + 12.0, area(last))
 }
 
-/// Bars from 0, a key at their right.
+/// Bars from 0, a key below them.
 fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middle: &dyn Fn(usize) -> f64) {
     let measured = bars.measured.iter().zip(&bars.errors);
     let ends = measured.map(|(m, e)| m.unwrap_or(0.0) + e.unwrap_or(0.0));
@@ -199,33 +201,42 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middle: &dyn Fn(usize) -> f
     for (column, value) in bars.measured.iter().enumerate() {
         let x = middle(column);
         if let Some(value) = value {
-            let bar = Area {
+            // A share whose noise has been taken off may be below 0.
+            let y = at(value.max(0.0));
+            let filled = Area {
                 x: x - 0.5 * BAR,
-                y: at(*value),
+                y,
                 width: BAR,
-                height: area.bottom() - at(*value),
+                height: area.bottom() - y,
             };
-            svg.fill(bar, FAINT);
+            svg.fill(filled, FAINT);
         }
         if let (Some(value), Some(error)) = (value, bars.errors[column]) {
             let above = [x, at(value + error) - 5.0];
             let text = minus(&uncertain(*value, error));
             svg.text(Text::new(above, TICK_TEXT, Anchor::Middle), &text);
             svg.line(
-                [x, at(value - error)],
-                [x, at(value + error)],
+                [x, at((value - error).max(0.0))],
+                [x, at((value + error).max(0.0))],
                 Stroke::solid(INK, 1.4),
             );
         }
         if let Some(predicted) = bars.predicted[column] {
             let ends = [x - 0.7 * BAR, x + 0.7 * BAR].map(|x| [x, at(predicted)]);
-            svg.line(ends[0], ends[1], Stroke::solid("#1f6fb4", 1.8));
+            svg.line(ends[0], ends[1], Stroke::solid(THEORY_COLOR, 1.8));
         }
     }
     panel.frame(svg);
     let at = [area.x, area.bottom() + 15.0];
-    let key = "Bars: measured, with standard errors. Lines: predicted.";
-    svg.text(Text::new(at, TICK_TEXT, Anchor::Start).fill(SOFT), key);
+    let key = format!(
+        "Bars: {}, measured, with standard errors. Lines: predicted.",
+        bars.about
+    );
+    svg.fitted(
+        Text::new(at, TICK_TEXT, Anchor::Start).fill(SOFT),
+        &key,
+        area.width,
+    );
 }
 
 /// The colors of a picture whose largest value is `peak`.
@@ -245,49 +256,22 @@ fn shading(row: &PlateRow<'_>, name: &str, peak: f64) -> Shading {
     }
 }
 
+/// The table: what the bars show.
 fn numbers(plate: &Plate<'_>) -> Result<String, Error> {
+    let Some(bars) = &plate.bars else {
+        return Ok(String::new());
+    };
+    let quantity = bars.quantity.heading();
     let header = [
-        "column", "picture", "x axis", "x", "y axis", "y", "quantity", "value",
+        "column".to_owned(),
+        format!("measured {quantity}"),
+        "error".to_owned(),
+        "predicted".to_owned(),
     ];
-    let mut rows = Vec::new();
-    for row in &plate.rows {
-        for (head, Picture { x, y, values }) in plate.heads.iter().zip(&row.pictures) {
-            let (columns, lines) = values.dim();
-            for ((i, j), value) in values.indexed_iter() {
-                rows.push(vec![
-                    plain(head),
-                    row.name.to_owned(),
-                    x.quantity.heading(),
-                    decimal(&x.center(i, columns)),
-                    y.quantity.heading(),
-                    decimal(&y.center(j, lines)),
-                    row.quantity.heading(),
-                    decimal(value),
-                ]);
-            }
-        }
-    }
-    if let Some(bars) = &plate.bars {
-        let of = [
-            ("measured", &bars.measured),
-            ("error", &bars.errors),
-            ("predicted", &bars.predicted),
-        ];
-        for (name, values) in of {
-            for (head, value) in plate.heads.iter().zip(values) {
-                let empty = || String::new();
-                rows.push(vec![
-                    plain(head),
-                    format!("bar, {name}"),
-                    empty(),
-                    empty(),
-                    empty(),
-                    empty(),
-                    bars.quantity.heading(),
-                    value.as_ref().map_or_else(empty, decimal),
-                ]);
-            }
-        }
-    }
-    csv_text(&header.map(str::to_owned), rows)
+    let rows = plate.heads.iter().enumerate().map(|(i, head)| {
+        let numbers = [bars.measured[i], bars.errors[i], bars.predicted[i]];
+        let cells = numbers.map(|x| x.as_ref().map_or(String::new(), decimal));
+        std::iter::once(plain(head)).chain(cells).collect()
+    });
+    csv_text(&header, rows)
 }

@@ -6,6 +6,8 @@ pub(crate) const INK: &str = "#222222";
 pub(crate) const SOFT: &str = "#555555";
 /// Leader lines.
 pub(crate) const FAINT: &str = "#9a9a9a";
+/// Lines of theory.
+pub(crate) const THEORY_COLOR: &str = "#1f6fb4";
 /// Frames, ticks and axis lines.
 pub(crate) const STROKE: f64 = 0.8;
 /// Length of a tick.

@@ -13,7 +13,7 @@ use ndarray::{Array2, ArrayView2, Axis as Along};
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
 /// Powers below this share of the largest have no phase worth showing.
-const FAINT: f64 = 1e-5;
+const LEAST: f64 = 1e-5;
 
 /// A plane of a scene with what was found there.
 #[derive(Clone, Copy)]
@@ -63,7 +63,7 @@ fn power(slices: &Slices) -> Array2<f64> {
 /// In degrees.
 fn phase(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, most| {
-        if s.norm_sqr() > FAINT * most {
+        if s.norm_sqr() > LEAST * most {
             libm::atan2(s.im, s.re).to_degrees()
         } else {
             f64::NAN
@@ -285,7 +285,7 @@ pub(crate) fn blockers(shots: &[Shot]) -> Result<Figure, Failure> {
             .collect::<Vec<_>>()
     };
     drawn(&Plate {
-        title: "Blockers of three sizes",
+        title: "Blockers of three sizes, seen from the receiver",
         note: "The receiver sees most high frequencies behind blockers of middle size: replicas of the smallest are sheared out of its reach.",
         heads: ["pitch 2 m", "pitch 0.2 m", "pitch 0.04 m"]
             .map(str::to_owned)
@@ -293,7 +293,10 @@ pub(crate) fn blockers(shots: &[Shot]) -> Result<Figure, Failure> {
         rows: compared(&seen, true),
         feet: feet(&seen),
         bars: Some(Bars {
-            quantity: Quantity::new(&format!("*H* above {cut:.2} cycles/m"), "%"),
+            quantity: Quantity::new("*H*", "%"),
+            about: format!(
+                "*H*, the share of the energy of the irradiance above {cut:.2} cycles/m, where light leaves the receiver"
+            ),
             measured: each(&|share| share.measured),
             errors: each(&|share| share.error),
             predicted: each(&|share| share.predicted),

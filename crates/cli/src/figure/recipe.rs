@@ -16,6 +16,8 @@ pub(crate) struct Recipe {
     pub(crate) about: &'static str,
     /// Names and texts of the scene files.
     pub(crate) scenes: &'static [(&'static str, &'static str)],
+    /// Whether it shows curves or bars, which are kept as a table.
+    pub(crate) has_table: bool,
     pub(crate) draw: fn(&[Shot]) -> Result<Figure, Failure>,
 }
 
@@ -32,6 +34,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "1",
         about: "spectra along a path, from the light to what leaves a diffuse receiver",
         scenes: &[("fig1", scene!("fig1"))],
+        has_table: false,
         draw: strip,
     },
     Recipe {
@@ -41,18 +44,21 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig4_point", scene!("fig4_point")),
             ("fig4_spot", scene!("fig4_spot")),
         ],
+        has_table: false,
         draw: lights,
     },
     Recipe {
         name: "5",
         about: "the cosine over slopes, g, and its transforms in 2D and 3D",
         scenes: &[],
+        has_table: true,
         draw: |_| kernels::slopes(),
     },
     Recipe {
         name: "6",
         about: "all steps of diffuse shading: 2D slice, measured and predicted radial spectrum",
         scenes: &[("fig1", scene!("fig1"))],
+        has_table: false,
         draw: steps,
     },
     Recipe {
@@ -63,40 +69,46 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig7_other", scene!("fig7_other")),
             ("fig7_two", scene!("fig7_two")),
         ],
+        has_table: false,
         draw: occluders,
     },
     Recipe {
         name: "8",
         about: "the receiver by slopes and by angles: what taking one for the other costs",
         scenes: &[("fig8", scene!("fig8"))],
+        has_table: false,
         draw: parameterisations,
     },
     Recipe {
         name: "9",
-        about: "blockers of three sizes, and the share of high frequencies at the receiver",
+        about: "light behind blockers of three sizes, and the share of high frequencies that leaves the receiver",
         scenes: &[
             ("fig9a", scene!("fig9a")),
             ("fig9b", scene!("fig9b")),
             ("fig9c", scene!("fig9c")),
         ],
+        has_table: true,
         draw: blockers,
     },
     Recipe {
         name: "10",
         about: "the seven steps of shading a curved glossy receiver",
         scenes: &[("fig10", scene!("fig10"))],
+        has_table: false,
         draw: strip,
     },
     Recipe {
         name: "11",
         about: "a caustic: a beam on a hollow mirror",
         scenes: &[("solar_oven", scene!("table1/solar_oven"))],
+        has_table: false,
         draw: strip,
     },
     Recipe {
         name: "12",
         about: "transforms of the clamped cosine, alone and with Fresnel factors",
         scenes: &[],
+        has_table: true,
         draw: |_| kernels::fresnel(),
     },
 ];

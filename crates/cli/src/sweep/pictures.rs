@@ -39,6 +39,15 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
         ),
         (SLOPE, Quantity::new("shear slope", "m")),
     ];
+    let fields: Vec<&str> = found[0]
+        .point
+        .iter()
+        .map(|(path, _)| path.as_str())
+        .collect();
+    let mut note = "Error bars: one standard error.".to_owned();
+    if together && fields.len() > 1 {
+        note += &format!(" In step with {}.", fields[1..].join(", "));
+    }
     let figure = |(quantity, y): (&str, Quantity)| {
         let panel = |(plane, others): &(String, Point)| {
             let at = found
@@ -51,16 +60,14 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
                     .find(|n| n.quantity == quantity)?;
                 Some((at.point[0].1, number))
             };
-            panel(
-                plane,
-                others,
-                &found[0].point[0].0,
-                &at.filter_map(of_plane).collect::<Vec<_>>(),
-            )
+            let mut numbers: Vec<(f64, Number)> = at.filter_map(of_plane).collect();
+            // Lists come in any order.
+            numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
+            panel(plane, others, &found[0].point[0].0, &numbers)
         };
         curves(&Curves {
             title: format!("{}: {}", spaced(scene), y.name),
-            note: String::new(),
+            note: note.clone(),
             y,
             panels: panels.iter().map(panel).collect(),
         })

@@ -30,7 +30,7 @@ impl Found {
 }
 
 /// Names of the numbers that every plane has.
-pub(crate) const BANDWIDTHS: [&str; 2] = ["bandwidth_95 rho", "bandwidth_95 nu"];
+pub(crate) const BANDWIDTHS: [&str; 2] = ["bandwidth_95_rho", "bandwidth_95_nu"];
 pub(crate) const SLOPE: &str = "slope";
 
 /// The numbers of a plane: of its whole spectrum, and each parameter.
@@ -46,7 +46,12 @@ pub(crate) fn numbers(plane: &Value) -> Vec<Number> {
     let text = |value: &Value| value.as_str().unwrap_or_default().to_owned();
     let mut numbers = vec![
         of(BANDWIDTHS[0], "cycles/m", &bandwidth["rho"], "predicted"),
-        of(BANDWIDTHS[1], "cycles/slope", &bandwidth["nu"], "predicted"),
+        of(
+            BANDWIDTHS[1],
+            "cycles per unit slope, on surfaces per radian",
+            &bandwidth["nu"],
+            "predicted",
+        ),
         of(SLOPE, "m", &plane["slope"], "predicted"),
     ];
     let parameters = plane["parameters"].as_array().into_iter().flatten();
@@ -82,7 +87,7 @@ pub(crate) fn csv(paths: &[String], found: &[Found]) -> Result<Vec<u8>, Failure>
     for at in found {
         for plane in at.planes() {
             for number in numbers(plane) {
-                let mut row: Vec<String> = at.point.iter().map(|(_, x)| digits(Some(*x))).collect();
+                let mut row: Vec<String> = at.point.iter().map(|(_, x)| x.to_string()).collect();
                 row.push(at.folder.clone());
                 let words = ["name", "class", "verdict"].map(|key| plane[key].as_str());
                 row.extend(words.map(|word| word.unwrap_or_default().to_owned()));

@@ -26,92 +26,110 @@ const MOST: usize = 1000;
 /// What `--set` of a sweep takes.
 pub(crate) fn setting(text: &str) -> Result<Setting, String> {
     let (path, values) = text.split_once('=').ok_or("must be PATH=VALUE")?;
-    let first = values.split([',', '.']).next().unwrap_or_default();
-    let is_range = values.contains("..") && number(first).is_ok();
-    let is_list = values.contains(',') && values.split(',').all(|value| number(value).is_ok());
-    if is_range || is_list {
+    let [path, values] = [path, values].map(|part| part.trim().to_owned());
+    let is_plain = !values.contains(['(', '[', '"']);
+    let is_range = is_plain
+        && values
+            .split_once("..")
+            .is_some_and(|(from, _)| !from.contains('/') && !from.is_empty());
+    if is_range || is_list(&values) {
         return sweep(text).map(Setting::Sweep);
     }
-    let [path, value] = [path, values].map(|part| part.trim().to_owned());
-    Ok(Setting::Value(path, value))
+    Ok(Setting::Value(path, values))
+}
+
+/// Whether there is a comma outside of parentheses and quotes, which no single value has.
+fn is_list(text: &str) -> bool {
+    let (mut depth, mut quoted) = (0, false);
+    text.chars().any(|c| {
+        match c {
+            '"' => quoted = !quoted,
+            '(' | '[' if !quoted => depth += 1,
+            ')' | ']' if !quoted => depth -= 1,
+            _ => {}
+        }
+        c == ',' && depth == 0 && !quoted
+    })
 }
 
 /// `PATH=A..B:N`, evenly spaced, `PATH=A..B:Nlog`, by equal factors, or `PATH=A,B,C`.
 pub(crate) fn sweep(text: &str) -> Result<Sweep, String> {
-    const ALLOWED: &str = "must be PATH=A..B:N, PATH=A..B:Nlog with A and B of one sign, or PATH=A,B,C: \
-                           numbers, and 1 to 1000 values";
-    let fault = || ALLOWED.to_owned();
-    let (path, values) = text.split_once('=').ok_or_else(fault)?;
+    let (path, values) = text
+        .split_once('=')
+        .ok_or_else(|| allowed("no field is named"))?;
     let values = match values.split_once("..") {
         None => values.split(',').map(number).collect::<Result<_, _>>(),
-        Some((from, rest)) => {
-            let (to, count) = rest.split_once(':').ok_or_else(fault)?;
-            let (count, is_log) = match count.strip_suffix("log") {
-                Some(count) => (count, true),
-                None => (count, false),
-            };
-            let count = count.trim().parse().map_err(|_| fault())?;
-            let ends = [
-                number(from).map_err(|()| fault())?,
-                number(to).map_err(|()| fault())?,
-            ];
-            spread(ends, count, is_log)
-        }
+        Some((from, rest)) => range(from, rest),
     };
-    let values = values
-        .ok()
-        .filter(|values| (1..=MOST).contains(&values.len()));
     Ok(Sweep {
         path: path.trim().to_owned(),
-        values: values.ok_or_else(fault)?,
+        values: values.map_err(|why| allowed(&why))?,
     })
 }
 
-fn number(text: &str) -> Result<f64, ()> {
-    let number = text.trim().parse().map_err(|_| ())?;
-    if f64::is_finite(number) {
-        Ok(number)
-    } else {
-        Err(())
-    }
+fn allowed(why: &str) -> String {
+    format!(
+        "{why}; allowed: PATH=A..B:N, PATH=A..B:Nlog by equal factors, or PATH=A,B,C, numbers and at most {MOST} of them"
+    )
 }
 
-/// `count` values from one end to the other, by equal steps or equal factors, as people write them.
-fn spread([from, to]: [f64; 2], count: usize, is_log: bool) -> Result<Vec<f64>, ()> {
-    if count > MOST || is_log && from * to <= 0.0 {
-        return Err(());
-    }
-    let value = |i: usize| {
-        let share = if count > 1 {
-            i as f64 / (count - 1) as f64
-        } else {
-            0.0
-        };
-        let value = if is_log {
-            from * libm::pow(to / from, share)
-        } else {
-            (1.0 - share) * from + share * to
-        };
-        tidy(value).parse().map_err(|_| ())
+fn number(text: &str) -> Result<f64, String> {
+    let number = text.trim().parse().ok().filter(|x: &f64| x.is_finite());
+    number.ok_or_else(|| format!("`{}` is no number", text.trim()))
+}
+
+/// The values of a range, from what stands before and after the dots.
+fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
+    let (to, count) = rest
+        .split_once(':')
+        .ok_or("the number of values, `:N`, is missing")?;
+    let ends = [number(from)?, number(to)?];
+    let (count, is_log) = match count.trim().strip_suffix("log") {
+        Some(count) => (count, true),
+        None => (count.trim(), false),
     };
-    (0..count).map(value).collect()
+    let wanted = count.trim().parse().ok().filter(|n| (2..=MOST).contains(n));
+    let count =
+        wanted.ok_or_else(|| format!("`{count}` is no number of values from 2 to {MOST}"))?;
+    if is_log && ends[0] * ends[1] <= 0.0 {
+        return Err("equal factors do not lead from one sign to another, or to zero".to_owned());
+    }
+    Ok((0..count)
+        .map(|i| between(ends, i, count, is_log))
+        .collect())
+}
+
+/// Value `i` of `count` from one end to the other, by equal steps or equal factors, as people write it.
+fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
+    let share = i as f64 / (count - 1) as f64;
+    let value = if is_log {
+        from * libm::pow(to / from, share)
+    } else {
+        (1.0 - share) * from + share * to
+    };
+    tidy(value).parse().unwrap_or(value)
 }
 
 /// The points of all sweeps: in step, or all combinations, the last field fastest.
 pub(crate) fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Failure> {
-    let counts = sweeps.iter().map(|sweep| sweep.values.len());
+    let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
     let at = |sweep: &Sweep, i: usize| (sweep.path.clone(), sweep.values[i]);
     if together {
-        let count = counts.clone().next().unwrap_or(1);
-        if counts.clone().any(|other| other != count) {
-            let message = "sweeps that go in step must have the same number of values";
+        let count = counts.first().copied().unwrap_or(1);
+        if counts.iter().any(|other| *other != count) {
+            let message = format!(
+                "sweeps that go in step must have the same number of values, not {counts:?}"
+            );
             return Err(Failure::bad_input(message));
         }
         return Ok((0..count)
             .map(|i| sweeps.iter().map(|sweep| at(sweep, i)).collect())
             .collect());
     }
-    if counts.map(|n| n as f64).product::<f64>() > MOST as f64 {
+    let all = counts
+        .iter()
+        .try_fold(1, |all: usize, n| all.checked_mul(*n));
+    if all.is_none_or(|all| all > MOST) {
         let message = format!("a sweep has at most {MOST} points in all");
         return Err(Failure::bad_input(message));
     }
@@ -158,7 +176,7 @@ mod tests {
         assert_eq!(values("1..1000:4log"), Some(vec![1.0, 10.0, 100.0, 1000.0]));
         assert_eq!(values("-4..-1:3log"), Some(vec![-4.0, -2.0, -1.0]));
         assert_eq!(values("3, 1e-2"), Some(vec![3.0, 0.01]));
-        assert_eq!(values("2..5:1"), Some(vec![2.0]));
+        assert_eq!(values(".5..-.5:3"), Some(vec![0.5, 0.0, -0.5]));
         for wrong in [
             "0..1",
             "0..1:0",
@@ -177,7 +195,13 @@ mod tests {
     fn what_is_no_range_is_a_value() {
         let value = |text: &str| matches!(setting(text), Ok(Setting::Value(..)));
         assert!(value("a=1") && value("a=(1,2)") && value("a=File(\"../b.ply\")"));
+        assert!(value("a=../b.ply") && value("a=\"x,y\"") && value("a=Box(0.3)"));
         assert!(matches!(setting("a=1,2"), Ok(Setting::Sweep(_))));
+        let why = |text: &str| setting(text).unwrap_err();
+        assert!(why("a=0.1,,0.2").starts_with("`` is no number"));
+        assert!(why("a=Box(0.3),Hann(0.3)").starts_with("`Box(0.3)` is no number"));
+        assert!(why("a=0.1..x:3").starts_with("`x` is no number"));
+        assert!(why("a=-1..1:3log").starts_with("equal factors"));
         assert!(
             setting("a=0.1..0.4").is_err(),
             "a range without a number of values"

@@ -184,6 +184,7 @@ pub fn grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
         ],
         bars: Some(Bars {
             quantity: Quantity::new("*H* above 1.33 cycles/m", "%"),
+            about: "*H*, the share of something".to_owned(),
             measured: some(1.5),
             errors: some(0.2),
             predicted: some(1.4),
