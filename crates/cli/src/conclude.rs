@@ -1,7 +1,9 @@
 use crate::args::{Expect, Save};
 use crate::failure::Failure;
 use crate::inquiry::inquire;
+use crate::measure::measured;
 use crate::method::Method;
+use crate::predict::predicted;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
 use crate::{aimed, field, files, photons, pictures, progress, report, say, table, target};
@@ -23,6 +25,26 @@ pub(crate) struct Case {
     pub(crate) measurement: Measurement,
     /// One for each plane, in their order.
     pub(crate) predictions: Vec<Prediction>,
+}
+
+impl Case {
+    /// Measures a scene and predicts it.
+    pub(crate) fn of(
+        scene: Scene,
+        theories: Vec<Applicability>,
+        method: Method,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
+        let measurement = measured(&scene, method, 0..scene.run.batches, quiet)?;
+        let predictions = predicted(&scene, &theories, method, quiet)?;
+        Ok(Self {
+            scene,
+            theories,
+            method,
+            measurement,
+            predictions,
+        })
+    }
 }
 
 /// What the user wants beside the result.

@@ -10,8 +10,6 @@ pub(crate) mod values;
 use crate::args::{SceneArgs, SweepArgs};
 use crate::conclude::{Case, judged};
 use crate::failure::Failure;
-use crate::measure::measured;
-use crate::predict::predicted;
 use crate::results::{MOST_INDEX, Plan, Results, SUMMARY, SWEEP};
 use crate::stored::{VERSION, check_earlier};
 use crate::summary::{Summary, json};
@@ -205,17 +203,8 @@ fn run(
         force: args.force.force,
     };
     let results = Results::claim(folder, plan)?;
-    let method = args.photons.method;
     let theories = Applicability::of_planes(scene);
-    let measurement = measured(scene, method, 0..scene.run.batches, true)?;
-    let predictions = predicted(scene, &theories, method, true)?;
-    let case = Case {
-        scene: scene.clone(),
-        theories,
-        method,
-        measurement,
-        predictions,
-    };
+    let case = Case::of(scene.clone(), theories, args.photons.method, true)?;
     let summary = Summary::new(&case, &judged(&case)?, Vec::new());
     results.finish(|files| summary.json(files))?;
     serde_json::to_value(&summary).map_err(Failure::cannot_run)

@@ -46,12 +46,6 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
     met.map(move |t| start + t * along)
 }
 
-/// The point of a line on a patch that is nearest to another point.
-fn nearest(patch: &Patch, start: DVec3, along: DVec3, to: DVec3) -> Option<DVec3> {
-    let near = |a: &DVec3, b: &DVec3| a.distance(to).total_cmp(&b.distance(to));
-    points(patch, start, along).min_by(near)
-}
-
 impl Station {
     /// The ray of the leg, where it begins, that the plane has as `seen`, and dA over dx dy there; `None` if there is none.
     ///
@@ -133,41 +127,36 @@ impl Station {
 
 impl View {
     /// The frame of the local normal at a point, on the side of the one at the central hit; `None` where the surface has
-    /// turned by a right angle: it folds back over its own coordinates.
+    /// turned by a right angle or more. So of two points over the same coordinates one is left: a line meets the surface from
+    /// one side and then from the other.
     fn local(&self, patch: &Patch, point: DVec3) -> Option<Frame> {
         let side = patch.normal(self.frame.origin).dot(self.frame.d).signum();
         let normal = side * patch.normal(point);
         (normal.dot(self.frame.d) > 0.0).then(|| self.frame.turned_to(normal))
     }
 
-    /// The point of the surface at (x, y), and the frame of its normal: of two along the normal of the plane the one nearer to it.
+    /// The point of the surface at (x, y), and the frame of its normal.
     fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, Frame)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         let Some(patch) = &self.patch else {
             return Some((foot, self.frame));
         };
-        let point = nearest(patch, foot, self.frame.d, foot)?;
-        Some((point, self.local(patch, point)?))
+        let mut over = points(patch, foot, self.frame.d);
+        over.find_map(|point| Some((point, self.local(patch, point)?)))
     }
 
-    /// Where a ray meets the surface from the side the plane looks at, and the frame of the normal there; `None` where that is
-    /// not the point at its coordinates.
+    /// Where a ray meets the surface from the side the plane looks at, and the frame of the normal there.
     fn met(&self, start: DVec3, along: DVec3) -> Option<(DVec3, Frame)> {
         let Some(patch) = &self.patch else {
             let t = (self.frame.origin - start).dot(self.frame.d) / along.dot(self.frame.d);
             return Some((start + t * along, self.frame));
         };
         let away = if self.arriving { -along } else { along };
-        let normal = self.frame.d;
-        points(patch, start, along).find_map(|point| {
-            let DVec3 { x, y, .. } = self.frame.to_local(point);
-            let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
-            // Of those at its coordinates, which it is but for rounding.
-            let it = nearest(patch, foot, normal, point);
-            let frame = self.local(patch, point)?;
-            let is_seen = it == nearest(patch, foot, normal, foot) && frame.d.dot(away) > 0.0;
-            is_seen.then_some((point, frame))
-        })
+        let frame = |point| {
+            self.local(patch, point)
+                .filter(|frame| frame.d.dot(away) > 0.0)
+        };
+        points(patch, start, along).find_map(|point| Some((point, frame(point)?)))
     }
 
     /// The inverse of [`Self::look`].

@@ -3,10 +3,8 @@
 use crate::conclude::{Case, judged};
 use crate::failure::Failure;
 use crate::figure::Quality;
-use crate::measure::measured;
 use crate::method::Method;
 use crate::npz::Npz;
-use crate::predict::predicted;
 use crate::{limits, load};
 use etendue_compare::{Applicability, PlaneComparison};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
@@ -43,16 +41,7 @@ impl Shot {
         }
         let theories = Applicability::of_planes(&scene);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
-        let method = Method::Photons;
-        let measurement = measured(&scene, method, 0..scene.run.batches, quiet)?;
-        let predictions = predicted(&scene, &theories, method, quiet)?;
-        let case = Case {
-            scene,
-            theories,
-            method,
-            measurement,
-            predictions,
-        };
+        let case = Case::of(scene, theories, Method::Photons, quiet)?;
         let planes = judged(&case)?;
         Ok(Self {
             scene: case.scene,
