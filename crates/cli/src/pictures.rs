@@ -7,7 +7,9 @@ use crate::files::{radial_z, z};
 use crate::results::Results;
 use crate::summary::Summary;
 use crate::table::{grouped, word};
-use etendue_compare::{Applicability, Class, PlaneComparison, Prediction, Theory, stands_before};
+use etendue_compare::{
+    Applicability, Class, PlaneComparison, Prediction, Theory, Verdict, stands_before,
+};
 use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, Side, SliceGrid, VirtualPlane};
 use etendue_figures::{
     Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
@@ -360,9 +362,11 @@ pub(crate) fn spectrum_quantity() -> Quantity {
 }
 
 fn verdict_line(plane: &PlaneComparison) -> String {
-    let p = p_value(plane);
-    let chi2 = chi2(plane).map_or(String::new(), |chi2| format!(", {chi2}"));
-    format!("{p}{chi2}, {}", word(plane.report.verdict))
+    let (p, verdict) = (p_value(plane), plane.report.verdict);
+    // The longest word takes the room of χ².
+    let chi2 = chi2(plane).filter(|_| verdict != Verdict::Undecided);
+    let chi2 = chi2.map_or(String::new(), |chi2| format!(", {chi2}"));
+    format!("{p}{chi2}, {}", word(verdict))
 }
 
 /// The same in two lines.
