@@ -128,22 +128,7 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
     let shots = recipe.scenes.iter();
     let shots = shots.map(|(name, text)| Shot::take(name, text, args.quality, args.quiet));
     let shots: Vec<Shot> = shots.collect::<Result<_, _>>()?;
-    let figure = (recipe.draw)(&shots)?;
-    let pdf = figure.pdf().map_err(Failure::cannot_run)?;
-    let png = figure.png().map_err(Failure::cannot_run)?;
-    results.write("figure.pdf", &pdf)?;
-    results.write("figure.png", &png)?;
-    results.write("figure.svg", figure.svg.as_bytes())?;
-    // Strips have a row for each cell there, which the arrays hold in less.
-    if recipe.has_table {
-        results.write("figure.csv", figure.csv.as_bytes())?;
-    }
-    if !shots.is_empty() {
-        results.write("figure.npz", &shot::arrays(&shots)?)?;
-    }
-    for (name, text) in recipe.scenes {
-        results.write(&format!("{name}.ron"), text.as_bytes())?;
-    }
+    write(&mut results, recipe, &shots)?;
     let all = shots
         .iter()
         .flat_map(|shot| shot.planes.iter().map(move |plane| (shot, plane)));
@@ -168,7 +153,7 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
             finer: args.quality.finer(),
             photons: shots
                 .iter()
-                .map(|shot| (shot.scene.name.as_str(), shot.scene.run.photons))
+                .map(|shot| (shot.scene.name.as_str(), shot.photons))
                 .collect(),
             scenes: shots
                 .iter()
@@ -181,4 +166,25 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
     finished.tell_replaced(args.quiet);
     let verdicts = all.iter().map(|(_, report)| report.verdict);
     Ok(verdicts.fold(Verdict::Pass, Verdict::and))
+}
+
+/// The picture of a figure, what is behind it, and its scenes.
+fn write(results: &mut Results, recipe: &Recipe, shots: &[Shot]) -> Result<(), Failure> {
+    let figure = (recipe.draw)(shots)?;
+    let pdf = figure.pdf().map_err(Failure::cannot_run)?;
+    let png = figure.png().map_err(Failure::cannot_run)?;
+    results.write("figure.pdf", &pdf)?;
+    results.write("figure.png", &png)?;
+    results.write("figure.svg", figure.svg.as_bytes())?;
+    // Strips have a row for each cell there, which the arrays hold in less.
+    if recipe.has_table {
+        results.write("figure.csv", figure.csv.as_bytes())?;
+    }
+    if !shots.is_empty() {
+        results.write("figure.npz", &shot::arrays(shots)?)?;
+    }
+    for (name, text) in recipe.scenes {
+        results.write(&format!("{name}.ron"), text.as_bytes())?;
+    }
+    Ok(())
 }

@@ -106,14 +106,17 @@ pub(crate) fn path(
     case: &Case,
     planes: &[PlaneComparison],
 ) -> Result<String, Failure> {
-    let figure = strip_of(&case.scene, &case.theories, planes, false)?;
+    let photons = case.measurement.emitted();
+    let figure = strip_of(&case.scene, photons, &case.theories, planes, false)?;
     write(results, "path", &figure)?;
     Ok(figure.svg)
 }
 
-/// The planes in the order in which light meets them; with their predicted spectra below, if these are wanted.
+/// The planes in the order in which light meets them; with their predicted spectra below, if these
+/// are wanted. `photons` are those emitted: parts of a measurement are less than the scene asks for.
 pub(crate) fn strip_of(
     scene: &Scene,
+    photons: u64,
     theories: &[Applicability],
     planes: &[PlaneComparison],
     predicted: bool,
@@ -163,7 +166,7 @@ pub(crate) fn strip_of(
         ),
         note: &format!(
             "{} photons, seed {}; spectra are means over azimuths.{dashed}{apart}",
-            grouped(scene.run.photons),
+            grouped(photons),
             scene.run.seed
         ),
         section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),

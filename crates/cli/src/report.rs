@@ -1,5 +1,5 @@
-//! A result as one page that any browser shows, without network: `report.html` of each run, and `etendue report`, which puts
-//! several of them side by side.
+//! A result as one page that any browser shows, without network: `report.html` of each run, and
+//! `etendue report`, which puts several of them side by side.
 
 mod data;
 

@@ -43,11 +43,13 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
     let folder = args.out.clone();
     let folder = folder.unwrap_or_else(|| Path::new("out").join(format!("{}-sweep", base.name)));
     on_threads(&args.threads, || {
-        for scene in &scenes {
+        let checked = |scene| {
             let theories = Applicability::of_planes(scene);
             method::check(scene, args.photons.method)?;
             limits::check(scene, &theories, rayon::current_num_threads())?;
-        }
+            Ok((scene, theories))
+        };
+        let checked: Vec<_> = scenes.iter().map(checked).collect::<Result<_, Failure>>()?;
         if !args.quiet {
             warnings::tell_at(&points, &scenes);
         }
@@ -59,7 +61,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
         interrupt::keeps(
             "interrupted: the points that are done are kept, and the same command goes on from them",
         );
-        let found = run_all(args, &folder, &inputs, points.into_iter().zip(&scenes))?;
+        let found = run_all(args, &folder, &inputs, points.into_iter().zip(checked))?;
         let results = Results::claim(&folder, plan(&inputs, args.force.force))?;
         finish(args, &base, &sweeps, &found, results)
     })
@@ -149,16 +151,16 @@ fn run_all<'a>(
     args: &SweepArgs,
     folder: &Path,
     inputs: &[PathBuf],
-    points: impl ExactSizeIterator<Item = (Point, &'a Scene)>,
+    points: impl ExactSizeIterator<Item = (Point, (&'a Scene, Vec<Applicability>))>,
 ) -> Result<Vec<Found>, Failure> {
     let bar = progress::steps("running", points.len(), "points", args.quiet);
-    let found = points.map(|(point, scene)| {
+    let found = points.map(|(point, (scene, theories))| {
         bar.set_message(shown(&point));
         let name = format!("points/{}", name_of(scene, args));
         let there = folder.join(&name);
         let summary = match earlier(&there, scene, args) {
             Some(summary) => summary,
-            None => run(args, scene, &there, inputs)?,
+            None => run(args, scene, theories, &there, inputs)?,
         };
         bar.inc(1);
         Ok(Found {
@@ -193,6 +195,7 @@ fn earlier(folder: &Path, scene: &Scene, args: &SweepArgs) -> Option<Value> {
 fn run(
     args: &SweepArgs,
     scene: &Scene,
+    theories: Vec<Applicability>,
     folder: &Path,
     inputs: &[PathBuf],
 ) -> Result<Value, Failure> {
@@ -203,7 +206,6 @@ fn run(
         force: args.force.force,
     };
     let results = Results::claim(folder, plan)?;
-    let theories = Applicability::of_planes(scene);
     let case = Case::of(scene.clone(), theories, args.photons.method, true)?;
     let summary = Summary::new(&case, &judged(&case)?, Vec::new());
     results.finish(|files| summary.json(files))?;

@@ -193,3 +193,15 @@ fn bad_arguments_are_refused() {
         assert!(!folder.join("out").exists(), "{arguments}");
     }
 }
+
+/// A part of a measurement has fewer photons than its scene asks for, and the picture says how many.
+#[test]
+fn the_picture_of_a_part_tells_its_own_photons() {
+    let folder = stages();
+    let path = folder.path();
+    let output = call(path, "compare --measured b --predicted p --out part");
+    assert!(output.stderr.is_empty(), "{output:?}");
+    assert_eq!(json(&path.join("part/summary.json"))["photons"], 13_750);
+    let svg = fs::read_to_string(path.join("part/path.svg")).unwrap();
+    assert!(svg.contains("13 750 photons"), "44 of 64 batches of 20 000");
+}

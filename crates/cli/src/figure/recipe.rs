@@ -127,8 +127,9 @@ pub(crate) fn named(name: &str) -> Result<&'static Recipe, Failure> {
 fn strip(shots: &[Shot]) -> Result<Figure, Failure> {
     let Shot {
         scene,
+        photons,
         theories,
         planes,
     } = &shots[0];
-    pictures::strip_of(scene, theories, planes, true)
+    pictures::strip_of(scene, *photons, theories, planes, true)
 }

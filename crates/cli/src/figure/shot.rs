@@ -16,6 +16,8 @@ use std::path::Path;
 #[derive(Debug)]
 pub(crate) struct Shot {
     pub(crate) scene: Scene,
+    /// Photons emitted.
+    pub(crate) photons: u64,
     pub(crate) theories: Vec<Applicability>,
     pub(crate) planes: Vec<PlaneComparison>,
 }
@@ -44,6 +46,7 @@ impl Shot {
         let case = Case::of(scene, theories, Method::Photons, quiet)?;
         let planes = judged(&case)?;
         Ok(Self {
+            photons: case.measurement.emitted(),
             scene: case.scene,
             theories: case.theories,
             planes,
@@ -51,8 +54,8 @@ impl Shot {
     }
 }
 
-/// What was found, as NPZ: for each plane its light field, its radial spectra and the slices at azimuth 0, with their
-/// axes. Names are SCENE.PLANE.ARRAY.
+/// What was found, as NPZ: for each plane its light field, its radial spectra and the slices at
+/// azimuth 0, with their axes. Names are SCENE.PLANE.ARRAY.
 pub(crate) fn arrays(shots: &[Shot]) -> Result<Vec<u8>, Failure> {
     let mut npz = Npz::new();
     for shot in shots {
