@@ -1,5 +1,6 @@
 //! Over many seeds p must be uniform, χ²/dof must be 1 and pulls must have unit variance.
 
+use crate::progress::progress;
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section};
 use crate::scenes::{fig9b, predicted, sampled, traced, words};
@@ -89,10 +90,13 @@ fn planted(measurement: &Measurement, fault: Fault) -> Measurement {
 /// What the seeds give with each of the faults, or without.
 fn sample(seeds: Range<u64>, scene: &Scene, faults: &[Option<Fault>]) -> Vec<Vec<Plane>> {
     let predictions = predicted(scene, None);
+    let bar = progress(seeds.end - seeds.start, "seeds");
     let reports: Vec<Vec<Vec<PlaneReport>>> = seeds
         .into_par_iter()
         .map(|seed| reports(scene.clone(), seed, &predictions, faults))
+        .inspect(|_| bar.one())
         .collect();
+    bar.end();
     let plane = |fault: usize, i: usize| {
         let of_plane = || reports.iter().map(move |r| &r[fault][i]);
         Plane {

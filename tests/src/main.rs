@@ -16,6 +16,7 @@ mod kills;
 mod nets;
 mod noise;
 mod predicted;
+mod progress;
 mod report;
 mod rows;
 mod scenes;

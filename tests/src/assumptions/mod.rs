@@ -6,7 +6,7 @@ mod kind;
 mod tally;
 mod trial;
 
-use crate::hostile::progress;
+use crate::progress::progress;
 use crate::report::Section;
 use crate::scenes::emit;
 use crate::wild;
@@ -48,7 +48,7 @@ pub(crate) fn assumptions(options: &Options) -> io::Result<Section> {
         for trial in found.iter().flatten() {
             bar.suspend(|| told(&name, trial));
         }
-        bar.inc(1);
+        bar.one();
         (name, found)
     };
     let numbers = options.first..options.first + options.scenes;
@@ -63,7 +63,7 @@ pub(crate) fn assumptions(options: &Options) -> io::Result<Section> {
             tried(name.into_owned(), kept(path, options.photons))
         })
         .collect();
-    bar.finish_and_clear();
+    bar.end();
     Ok(section(options, &random?, &kept))
 }
 

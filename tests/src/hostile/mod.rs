@@ -17,10 +17,10 @@ pub(crate) mod stages;
 mod table;
 mod text;
 
+use crate::progress::progress;
 use crate::report::Section;
 use case::{Attack, Kind, Outcome};
 use dice::Dice;
-use indicatif::{ProgressBar, ProgressStyle};
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -113,11 +113,11 @@ pub(crate) fn hostile(options: &Options) -> io::Result<Section> {
             if let Ok(mut tallies) = tallies.lock() {
                 tallies.add(number, &outcome);
             }
-            bar.inc(1);
+            bar.one();
         }
     };
     on_threads(options.threads, worker)?;
-    bar.finish_and_clear();
+    bar.end();
     let tallies = tallies.into_inner().unwrap_or_default();
     Ok(tallies.section(options.seed))
 }
@@ -138,16 +138,6 @@ pub(crate) fn on_threads(
             joined.unwrap_or_else(|_| Err(io::Error::other("a thread has panicked")))
         })
     })
-}
-
-/// How many are done, and the time left.
-pub(crate) fn progress(count: u64, things: &str) -> ProgressBar {
-    let bar = ProgressBar::new(count);
-    let style = format!("{{bar:40}} {{human_pos}} of {{human_len}} {things}  {{eta}} left");
-    match ProgressStyle::with_template(&style) {
-        Ok(style) => bar.with_style(style),
-        Err(_) => bar,
-    }
 }
 
 /// Keeps the input of a case, and what became of it.

@@ -8,7 +8,7 @@ mod trial;
 
 use crate::hostile::child;
 use crate::hostile::dice::Dice;
-use crate::hostile::progress;
+use crate::progress::progress;
 use crate::report::{Check, Row, Section};
 use disk::FullDisk;
 use std::io;
@@ -69,9 +69,9 @@ pub(crate) fn kills(options: &Options) -> io::Result<Section> {
                 ));
             }
         }
-        bar.inc(1);
+        bar.one();
     }
-    bar.finish_and_clear();
+    bar.end();
     Ok(section(options, &counts, &told))
 }
 

@@ -20,7 +20,8 @@ mod tally;
 pub(crate) use judge::HANDFUL;
 pub(crate) use scene::scene;
 
-use crate::hostile::{child, on_threads, progress};
+use crate::hostile::{child, on_threads};
+use crate::progress::progress;
 use crate::report::Section;
 use judge::{Judged, judge};
 use run::{Runner, text};
@@ -90,11 +91,11 @@ pub(crate) fn wild(options: &Options) -> io::Result<Section> {
                 }
             }
             fs::remove_dir_all(&at)?;
-            bar.inc(1);
+            bar.one();
         }
     };
     on_threads(options.threads, worker)?;
-    bar.finish_and_clear();
+    bar.end();
     let tally = tally.into_inner().unwrap_or_default();
     Ok(tally.section(options.seed))
 }

@@ -1,0 +1,52 @@
+//! How far long work is: a bar on a terminal, and a line at each twentieth of the work elsewhere.
+
+use indicatif::{ProgressBar, ProgressStyle};
+use std::time::Duration;
+
+/// Lines from beginning to end where there is no terminal.
+const LINES: u64 = 20;
+
+/// Things done of a known number.
+#[derive(Clone)]
+pub(crate) struct Progress {
+    bar: ProgressBar,
+    things: &'static str,
+}
+
+/// Begins work on `count` things.
+pub(crate) fn progress(count: u64, things: &'static str) -> Progress {
+    let bar = ProgressBar::new(count);
+    let style = format!("{{bar:40}} {{human_pos}} of {{human_len}} {things}  {{eta}} left");
+    if let Ok(style) = ProgressStyle::with_template(&style) {
+        bar.set_style(style);
+    }
+    Progress { bar, things }
+}
+
+impl Progress {
+    /// One more is done.
+    #[expect(clippy::print_stderr, reason = "the report goes to standard output")]
+    pub(crate) fn one(&self) {
+        self.bar.inc(1);
+        if !self.bar.is_hidden() {
+            return;
+        }
+        let (done, count) = (self.bar.position(), self.bar.length().unwrap_or(0));
+        let lines = |done: u64| done * LINES / count.max(1);
+        if lines(done) > lines(done - 1) {
+            let left = self.bar.elapsed().as_secs_f64() * (count - done) as f64 / done as f64;
+            let left = indicatif::HumanDuration(Duration::from_secs_f64(left));
+            eprintln!("{done} of {count} {}, {left:#} left", self.things);
+        }
+    }
+
+    /// Writes something else to the terminal.
+    pub(crate) fn suspend(&self, tell: impl FnOnce()) {
+        self.bar.suspend(tell);
+    }
+
+    /// All is done.
+    pub(crate) fn end(&self) {
+        self.bar.finish_and_clear();
+    }
+}
