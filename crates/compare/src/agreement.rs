@@ -6,10 +6,6 @@ use crate::verdict::Test;
 use etendue_field::Slices;
 use ndarray::Array3;
 
-/// The largest error of a quadrature, as a share of the noise, with which agreement means
-/// something. It is an upper estimate, and adds a quarter to χ² at the most.
-const BLURRED: f64 = 0.5;
-
 /// The largest error of a quadrature that cannot be seen, as a share of the noise: it adds a
 /// thousandth to χ², and goes without a warning.
 pub(crate) const UNSEEN: f64 = 1.0 / 30.0;
@@ -73,16 +69,17 @@ impl Agreement {
     }
 
     /// Whether the error of a prediction without replicates leaves nothing to be decided:
-    /// agreement, if the error is not below the noise, or disagreement, if the error may be all of
-    /// it.
-    pub(crate) fn is_blurred(&self, prediction: &Prediction, agrees: bool) -> bool {
+    /// agreement, if the error is above the resolution, or disagreement, if the error may be all
+    /// of it. An error below the resolution takes nothing from an agreement, which is one with the
+    /// prediction as it is, to the noise.
+    pub(crate) fn is_blurred(&self, prediction: &Prediction, agrees: bool, test: &Test) -> bool {
         let error = prediction.systematic_error();
         let (Some(error), Some(noise), Some(excess)) = (error, self.noise_limit(), self.excess())
         else {
             return false;
         };
         if agrees {
-            error > BLURRED * noise
+            error > test.resolution
         } else {
             error > excess.max(UNSEEN * noise)
         }

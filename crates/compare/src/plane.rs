@@ -185,7 +185,8 @@ impl Compared<'_> {
                 "a few heavy photons, or rays of the prediction, carry the light, which varies as if \
                  each batch held {each:.1}: too few to disagree{needs}"
             ))
-        } else if agreement.is_blurred(self.prediction, agrees) || !agrees && self.is_excused(test)
+        } else if agreement.is_blurred(self.prediction, agrees, test)
+            || !agrees && self.is_excused(test)
         {
             let error = percent(self.prediction.systematic_error().unwrap_or_default());
             let what = if self.prediction.class == Class::Reference {

@@ -335,8 +335,8 @@ fn a_wrong_parameter_is_rejected_and_measured() {
     );
 }
 
-/// A quadrature whose error is as large as the disagreement, or not below the noise where there is
-/// none, decides nothing; smaller ones change nothing.
+/// A quadrature whose error is as large as the disagreement, or above the resolution where there is
+/// none, decides nothing; smaller ones change nothing, those above the noise among them.
 #[test]
 fn a_coarse_quadrature_decides_nothing() {
     let judged = |truth: f64, share: f64| {
@@ -356,7 +356,8 @@ fn a_coarse_quadrature_decides_nothing() {
     };
     for (truth, share, verdict) in [
         (1.0, 0.4, Verdict::Pass),
-        (1.0, 0.6, Verdict::Undecided),
+        (1.0, 1.6, Verdict::Pass),
+        (1.0, 70.0, Verdict::Undecided),
         (1.02, 0.9, Verdict::Fail),
         (1.02, 1.1, Verdict::Undecided),
     ] {
