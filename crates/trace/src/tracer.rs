@@ -1,6 +1,6 @@
 use crate::bounce::Bounce;
 use crate::emit::{ABREAST, Emitter};
-use crate::numbers::Source;
+use crate::numbers::{Numbers, Source};
 use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
 use crate::shares::{BLOCK, Shares};
 use crate::station::Station;
@@ -9,6 +9,7 @@ use etendue_field::random::Stream;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
+use std::ops::Range;
 
 /// The forward tracer of a scene.
 ///
@@ -53,6 +54,15 @@ pub(crate) struct Flight {
     pub(crate) from: f64,
     /// What it adds to radiance space.
     pub(crate) weight: f64,
+}
+
+/// A photon of a block, on the leg that the block has come to.
+#[derive(Debug)]
+struct Photon {
+    index: u64,
+    flight: Flight,
+    /// Whether the ledger is told of it.
+    counts: bool,
 }
 
 /// A photon at a point of a surface, in the frame of a leg.
@@ -104,73 +114,89 @@ impl Tracer {
         }
     }
 
-    /// The life of one photon, from how it is emitted on.
+    /// Emits the photons of a block, of which those drawn beside the light are none.
     #[inline]
-    fn photon(
+    fn emit_block(
         &self,
-        (ray, weight): (TwoPlane, f64),
-        words: impl Fn(u32) -> [u32; 4],
-        crossings: &mut [Vec<Crossing>],
+        range: Range<u64>,
+        numbers: &Numbers,
+        photons: &mut Vec<Photon>,
         ledger: &mut Ledger,
     ) {
-        // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
-        if weight <= 0.0 {
-            return;
+        for first in range.clone().step_by(ABREAST) {
+            // Beyond the end the last is emitted once more, and goes nowhere.
+            let index = |i: usize| (first + i as u64).min(range.end - 1);
+            let (rays, weights) = self.emitter.emit(|i, block| numbers.words(index(i), block));
+            for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
+                // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
+                if weight > 0.0 {
+                    ledger.emitted += weight / cosines(&ray);
+                    let from = 0.0;
+                    photons.push(Photon {
+                        index,
+                        flight: Flight { ray, from, weight },
+                        counts: true,
+                    });
+                }
+            }
         }
-        ledger.emitted += weight / cosines(&ray);
-        let from = 0.0;
-        let mut flight = Flight { ray, from, weight };
+    }
+
+    /// Follows a photon over a leg: what it meets, the planes it crosses before that, and how it
+    /// begins the next leg. False where it ends.
+    #[inline]
+    fn follow(
+        &self,
+        leg: usize,
+        photon: &mut Photon,
+        words: impl Fn() -> [u32; 4],
+        crossings: &mut [Vec<Crossing>],
+        ledger: &mut Ledger,
+    ) -> bool {
+        let this = &self.legs[leg];
         // Scattered light is aimed at windows: what becomes of it is in no account.
         let mut beyond = Ledger::default();
-        let mut account = ledger;
-        for ((i, this), block) in self
-            .legs
-            .iter()
-            .enumerate()
-            .zip(self.emitter.bounces_from()..)
-        {
-            let Flight { ray, from, weight } = flight;
-            let met = this.obstacles.first(&ray, from);
-            if met.is_some_and(|(_, target)| target.tag.is(this.leaves)) {
-                account.stopped += weight / cosines(&ray);
-                return;
-            }
-            this.record(&flight, met, crossings);
-            let flux = weight / cosines(&ray);
-            let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
-            let arrives = flux * this.obstacles.transmittance(&ray, from, end, Side::Before);
-            account.absorbed += flux - arrives;
-            let Some((distance, target)) = met else {
-                account.escaped += arrives;
-                return;
-            };
-            let Meeting::Surface { material, .. } = *target.tag else {
-                account.absorbed += arrives;
-                return;
-            };
-            let next = self.legs.get(i + 1).filter(|_| target.tag.is(this.ends));
-            let arrival = || Arrival::new(&ray, distance, target, arrives);
-            if let Material::Lambertian { albedo } = material {
-                account.stopped += albedo * arrives;
-                account.absorbed += (1.0 - albedo) * arrives;
-                account = &mut beyond;
-            } else if material == Material::Reflects {
-                if arrival().is_on_front() {
-                    account.stopped += arrives;
-                } else {
-                    account.absorbed += arrives;
-                }
-                account = &mut beyond;
-            }
-            let onwards = next.and_then(|next| next.begin(this, &arrival(), words(block)));
-            let Some(next) = onwards else {
-                if let Material::Specular(_) = material {
-                    account.stopped += arrives;
-                }
-                return;
-            };
-            flight = next;
+        let account = if photon.counts { ledger } else { &mut beyond };
+        let Flight { ray, from, weight } = photon.flight;
+        let flux = weight / cosines(&ray);
+        let met = this.obstacles.first(&ray, from);
+        if met.is_some_and(|(_, target)| target.tag.is(this.leaves)) {
+            account.stopped += flux;
+            return false;
         }
+        this.record(&photon.flight, met, crossings);
+        let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
+        let arrives = flux * this.obstacles.transmittance(&ray, from, end, Side::Before);
+        account.absorbed += flux - arrives;
+        let Some((distance, target)) = met else {
+            account.escaped += arrives;
+            return false;
+        };
+        let Meeting::Surface { material, .. } = *target.tag else {
+            account.absorbed += arrives;
+            return false;
+        };
+        let next = self.legs.get(leg + 1).filter(|_| target.tag.is(this.ends));
+        let arrival = || Arrival::new(&ray, distance, target, arrives);
+        if let Material::Lambertian { albedo } = material {
+            account.stopped += albedo * arrives;
+            account.absorbed += (1.0 - albedo) * arrives;
+            photon.counts = false;
+        } else if material == Material::Reflects {
+            if arrival().is_on_front() {
+                account.stopped += arrives;
+            } else {
+                account.absorbed += arrives;
+            }
+            photon.counts = false;
+        }
+        let onwards = next.and_then(|next| next.begin(this, &arrival(), words()));
+        match onwards {
+            Some(flight) => photon.flight = flight,
+            None if matches!(material, Material::Specular(_)) => account.stopped += arrives,
+            None => {}
+        }
+        onwards.is_some()
     }
 }
 
@@ -332,6 +358,7 @@ impl PhotonSource for Tracer {
         record: &mut dyn FnMut(usize, &[Crossing]),
         progress: &dyn Fn(u64),
     ) -> Ledger {
+        let mut photons = Vec::with_capacity(BLOCK);
         let mut crossings = vec![Vec::with_capacity(BLOCK); self.planes];
         let mut total = Ledger::default();
         let first = self.shares.of(batch).start;
@@ -340,16 +367,15 @@ impl PhotonSource for Tracer {
             let end = range.end.min(start + BLOCK as u64);
             let mut block = Ledger::default();
             let numbers = self.numbers.of(batch, first, start);
-            for first in (start..end).step_by(ABREAST) {
-                // Beyond the end the last is emitted once more, and goes nowhere.
-                let index = |i: usize| (first + i as u64).min(end - 1);
-                let words = |i: usize, block: u32| numbers.words(index(i), block);
-                let (rays, weights) = self.emitter.emit(words);
-                let photons = rays.into_iter().zip(weights).enumerate();
-                for ((i, photon), _) in photons.zip(first..end) {
-                    self.photon(photon, |block| words(i, block), &mut crossings, &mut block);
-                }
+            self.emit_block(start..end, &numbers, &mut photons, &mut block);
+            for (leg, bounce) in (0..self.legs.len()).zip(self.emitter.bounces_from()..) {
+                photons.retain_mut(|photon| {
+                    let index = photon.index;
+                    let words = || numbers.words(index, bounce);
+                    self.follow(leg, photon, words, &mut crossings, &mut block)
+                });
             }
+            photons.clear();
             for (plane, crossings) in crossings.iter_mut().enumerate() {
                 record(plane, crossings);
                 crossings.clear();
