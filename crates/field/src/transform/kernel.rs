@@ -1,5 +1,5 @@
 use crate::gauss_legendre;
-use fearless_simd::{Simd, f64x4, prelude::*};
+use fearless_simd::{Simd, f64x8, prelude::*};
 use std::f64::consts::{PI, TAU};
 
 /// Cells of the fine grid that a point is spread over, along each axis.
@@ -56,33 +56,16 @@ impl Kernel {
         kernel
     }
 
-    /// The eight taps of one point a fraction `f` of a cell beyond its cell, in two halves.
+    /// The eight taps of eight points, each a fraction `f` of a cell beyond its cell: lane i of tap
+    /// j belongs to point i.
     #[inline(always)]
-    pub(crate) fn taps<S: Simd>(&self, simd: S, f: f64) -> [f64x4<S>; 2] {
-        let t = 2.0 * f - 1.0;
-        let square = t * t;
-        let mut even = f64x4::load_array_ref(simd, &self.even[TERMS - 1]);
-        let mut odd = f64x4::load_array_ref(simd, &self.odd[TERMS - 1]);
-        for i in (0..TERMS - 1).rev() {
-            even = even * square + f64x4::load_array_ref(simd, &self.even[i]);
-            odd = odd * square + f64x4::load_array_ref(simd, &self.odd[i]);
-        }
-        let odd = odd * t;
-        [even + odd, (even - odd).reverse()]
-    }
-
-    /// The eight taps of four points at once: lane i of tap j belongs to point i.
-    ///
-    /// Shorter chains of dependent steps than four times [`taps`](Self::taps), where the layout
-    /// allows it.
-    #[inline(always)]
-    pub(crate) fn taps_of_four<S: Simd>(&self, simd: S, f: f64x4<S>) -> [f64x4<S>; WIDTH] {
+    pub(crate) fn taps<S: Simd>(&self, simd: S, f: f64x8<S>) -> [f64x8<S>; WIDTH] {
         let t = f * 2.0 - 1.0;
         let square = t * t;
         let mut taps = [t; WIDTH];
         for tap in 0..HALF {
-            let mut even = f64x4::splat(simd, self.even[TERMS - 1][tap]);
-            let mut odd = f64x4::splat(simd, self.odd[TERMS - 1][tap]);
+            let mut even = f64x8::splat(simd, self.even[TERMS - 1][tap]);
+            let mut odd = f64x8::splat(simd, self.odd[TERMS - 1][tap]);
             for i in (0..TERMS - 1).rev() {
                 even = even * square + self.even[i][tap];
                 odd = odd * square + self.odd[i][tap];
@@ -121,6 +104,19 @@ impl Kernel {
         }
         sum
     }
+}
+
+/// Eight rows of eight as their columns: three perfect shuffles, each of which moves the last of six
+/// bits of a place to the front.
+#[inline(always)]
+pub(crate) fn transposed<S: Simd>(mut rows: [f64x8<S>; WIDTH]) -> [f64x8<S>; WIDTH] {
+    for _ in 0..3 {
+        let before = rows;
+        for i in 0..HALF {
+            (rows[2 * i], rows[2 * i + 1]) = before[i].interleave(before[i + HALF]);
+        }
+    }
+    rows
 }
 
 /// Tap `tap` from the kernel's formula.
@@ -165,19 +161,20 @@ mod tests {
         let mut worst: f64 = 0.0;
         for i in 0..=1000 {
             let f = f64::from(i) / 1000.0;
-            let (one, four) = dispatch!(Level::new(), simd => {
-                let one = kernel.taps(simd, f).map(|half| half.to_array());
-                let four = kernel.taps_of_four(simd, f64x4::splat(simd, f)).map(|tap| tap.to_array());
-                (one, four)
+            let [all, each] = dispatch!(Level::new(), simd => {
+                let lanes: [f64; 8] = std::array::from_fn(|i| f / (i + 1) as f64);
+                let taps = kernel.taps(simd, f64x8::load_array(simd, lanes));
+                [taps, transposed(taps)].map(|taps| taps.map(|tap| tap.to_array()))
             });
-            for (j, tap) in one.as_flattened().iter().enumerate() {
+            for (j, tap) in each[0].iter().enumerate() {
                 worst = worst.max((tap - exact(j, f)).abs());
-                assert_eq!(four[j].map(f64::to_bits), [tap.to_bits(); 4]);
             }
-            for (j, tap) in one[0].iter().enumerate() {
+            for (j, tap) in each[0][..HALF].iter().enumerate() {
                 // The same sums, a zero added first.
                 assert!((kernel.tap(j, f) - tap).abs() <= 1e-16);
             }
+            let turned: [[f64; 8]; 8] = std::array::from_fn(|i| all.map(|tap| tap[i]));
+            assert_eq!(each, turned);
         }
         assert!(worst < 5e-8, "{worst:e}"); // the bound stated at `Kernel`
     }

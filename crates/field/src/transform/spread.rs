@@ -1,6 +1,6 @@
 use super::block::{Block, GROUP};
-use super::kernel::{Kernel, WIDTH};
-use fearless_simd::{Simd, f64x4, f64x8, prelude::*};
+use super::kernel::{Kernel, WIDTH, transposed};
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// How the rays of one azimuth φ fall on its fine grid, a period of `rows` × `columns` cells.
 ///
@@ -26,6 +26,9 @@ impl Placement {
         [self.rows + WIDTH, self.columns + WIDTH]
     }
 }
+
+/// Rays whose taps are worked out side by side.
+const EIGHT: usize = 8;
 
 /// A group of rays on the fine grid.
 struct Group {
@@ -105,19 +108,18 @@ fn cell(a: f64, b: f64, along: [f64; 2], count: usize) -> (usize, f64) {
 /// Works out the taps.
 #[inline(always)]
 fn weigh<S: Simd>(simd: S, group: &mut Group, kernel: &Kernel, weight: &[f64]) {
-    for i in (0..GROUP).step_by(4) {
-        let four = i..i + 4;
-        let taps = kernel.taps_of_four(simd, f64x4::from_slice(simd, &group.row[four.clone()]));
-        let weight = f64x4::from_slice(simd, &weight[four.clone()]);
-        for (down, tap) in group.down.iter_mut().zip(taps) {
-            (tap * weight).store_slice(&mut down[four.clone()]);
+    for i in (0..GROUP).step_by(EIGHT) {
+        let eight = i..i + EIGHT;
+        let row = f64x8::from_slice(simd, &group.row[eight.clone()]);
+        let column = f64x8::from_slice(simd, &group.column[eight.clone()]);
+        let weight = f64x8::from_slice(simd, &weight[eight.clone()]);
+        for (down, tap) in group.down.iter_mut().zip(kernel.taps(simd, row)) {
+            (tap * weight).store_slice(&mut down[eight.clone()]);
         }
-    }
-    for (across, f) in group.across.iter_mut().zip(group.column) {
-        let [a, b] = kernel.taps(simd, f);
-        let (left, right) = across.split_at_mut(WIDTH / 2);
-        a.store_slice(left);
-        b.store_slice(right);
+        let across = transposed(kernel.taps(simd, column));
+        for (to, across) in group.across[eight.clone()].iter_mut().zip(across) {
+            across.store_slice(to);
+        }
     }
 }
 
