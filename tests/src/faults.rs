@@ -1,5 +1,7 @@
 //! Faults planted in the prediction or in the photons: a comparison is judged by what it rejects.
 
+mod smallest;
+
 use crate::report::Bound::{AtLeast, Below};
 use crate::report::{Check, Row, Section};
 use crate::scenes::{fig9b, measured, named, traced};
@@ -11,6 +13,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::{Chain, Model, Operator, Parameter};
 use etendue_trace::Tracer;
+pub(crate) use smallest::smallest;
 
 /// All planted faults at one number of photons; the first row is the scene without a fault.
 pub(crate) fn planted(photons: u64, seed: u64) -> Section {
@@ -364,7 +367,7 @@ fn each_layer(chain: &mut Chain, mut change: impl FnMut(&mut Vec<Shape>)) {
     }
 }
 
-fn each_rectangle(chain: &mut Chain, change: fn(&mut Rectangle)) {
+fn each_rectangle(chain: &mut Chain, change: impl Fn(&mut Rectangle)) {
     each_layer(chain, |shapes| {
         for shape in shapes {
             if let Shape::Rectangle(rectangle) = shape {

@@ -282,7 +282,7 @@ fn sections(command: &Command) -> Vec<Section> {
             first,
             photons,
         } => calibrations(first..first + seeds, photons),
-        Command::Faults { photons } => vec![faults::planted(photons, SEED)],
+        Command::Faults { photons } => faults(photons),
         Command::Suite { photons } => {
             let mut sections = suite::suite(photons);
             sections.push(faults::planted_elsewhere(photons.unwrap_or(1 << 22), SEED));
@@ -302,10 +302,17 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Main | Command::All => {
             let mut sections = noise(1 << 30);
             sections.extend(calibrations(1..1001, 100_000));
-            sections.push(faults::planted(1 << 23, SEED));
+            sections.extend(faults(1 << 23));
             sections
         }
     }
+}
+
+fn faults(photons: u64) -> Vec<Section> {
+    vec![
+        faults::planted(photons, SEED),
+        faults::smallest(photons, SEED),
+    ]
 }
 
 /// By both kinds of numbers.

@@ -1,0 +1,144 @@
+//! How small a fault of the main scene is still rejected.
+
+use super::{Predict, Tampered, chained, each_rectangle, scale_travel, shifted, unchanged};
+use crate::progress::progress;
+use crate::report::Bound::Below;
+use crate::report::{Check, Row, Section};
+use crate::scenes::{fig9b, measured, sampled, traced};
+use etendue_compare::{Residuals, sidak};
+use etendue_field::{Crossing, VirtualPlane};
+use etendue_scene::{Sampling, Scene};
+use etendue_spectrum::Measurement;
+use etendue_trace::Tracer;
+
+/// The largest size tried, and how many halves of it.
+const LARGEST: f64 = 0.01;
+const HALVES: i32 = 10;
+
+/// A fault of a size: what is predicted instead, or how photons are tampered with.
+enum Fault {
+    Predicted(fn(f64) -> Box<Predict>),
+    Photons(fn(f64, Crossing) -> Crossing),
+}
+
+const FAULTS: [(&str, Fault); 7] = [
+    (
+        "first travel too long",
+        Fault::Predicted(|size| chained(move |c| scale_travel(c, 0, 1.0 + size))),
+    ),
+    (
+        "second travel too long",
+        Fault::Predicted(|size| chained(move |c| scale_travel(c, 1, 1.0 + size))),
+    ),
+    (
+        "blockers too wide",
+        Fault::Predicted(|size| {
+            chained(move |c| each_rectangle(c, |r| r.size = r.size.map(|side| side * (1.0 + size))))
+        }),
+    ),
+    (
+        "window too wide in x and y",
+        Fault::Predicted(|size| widened(size, 0.0)),
+    ),
+    (
+        "window too wide in u and v",
+        Fault::Predicted(|size| widened(0.0, size)),
+    ),
+    (
+        "field moved along x, of the half-width",
+        Fault::Predicted(|size| {
+            Box::new(move |scene, plane| {
+                let shift = plane.window.x.half_width() * size;
+                Some(shifted(unchanged(scene, plane)?, shift))
+            })
+        }),
+    ),
+    (
+        "flux of photons with x > 0 too large",
+        Fault::Photons(|size, mut crossing| {
+            if crossing.ray.x > 0.0 {
+                crossing.weight *= 1.0 + size;
+            }
+            crossing
+        }),
+    ),
+];
+
+/// A prediction through wider windows.
+fn widened(space: f64, slope: f64) -> Box<Predict> {
+    Box::new(move |scene, plane| {
+        let mut wide = plane.clone();
+        for profile in [&mut wide.window.x, &mut wide.window.y] {
+            *profile = profile.scaled(1.0 + space);
+        }
+        for profile in [&mut wide.window.u, &mut wide.window.v] {
+            *profile = profile.scaled(1.0 + slope);
+        }
+        unchanged(scene, &wide)
+    })
+}
+
+/// Faults of 1 % and its halves: the smallest that is rejected, and all larger ones too.
+pub(crate) fn smallest(photons: u64, seed: u64) -> Section {
+    let kinds = [Sampling::Net, Sampling::Random];
+    let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));
+    let sound: Vec<Measurement> = scenes.iter().map(traced).collect();
+    let bar = progress((FAULTS.len() * kinds.len()) as u64, "faults");
+    let mut rows = Vec::new();
+    for (name, fault) in &FAULTS {
+        let sizes = scenes.iter().zip(&sound).map(|(scene, sound)| {
+            let size = rejected(fault, scene, sound);
+            bar.one();
+            size
+        });
+        let sizes: Vec<Option<f64>> = sizes.collect();
+        let checks = sizes.iter().map(|size| {
+            let size = size.unwrap_or(f64::INFINITY);
+            Check::new("size", size, Below(LARGEST), "what was rejected before")
+        });
+        let shown = sizes
+            .iter()
+            .map(|size| size.map_or("–".to_owned(), |s| format!("{:.3} %", 100.0 * s)));
+        let cells = std::iter::once((*name).to_owned()).chain(shown).collect();
+        rows.push(Row::new(cells, checks.collect()));
+    }
+    bar.end();
+    Section {
+        title: format!("The smallest faults at {:.0e} photons", photons as f64),
+        text: format!(
+            "Each fault is planted with a size of 1 % and {HALVES} times with half of the size before. The table has the smallest \
+             that is rejected together with all larger ones, for photons of nets and of random numbers. Required: smaller than 1 %."
+        ),
+        header: vec!["fault", "nets", "random numbers"],
+        rows,
+        checks: Vec::new(),
+    }
+}
+
+/// The smallest size that is rejected.
+fn rejected(fault: &Fault, scene: &Scene, sound: &Measurement) -> Option<f64> {
+    let sizes = (0..=HALVES).map(|halves| LARGEST * 0.5_f64.powi(halves));
+    sizes
+        .take_while(|size| match fault {
+            Fault::Predicted(predict) => is_rejected(scene, sound, &*predict(*size)),
+            Fault::Photons(tamper) => {
+                let tampered = Tampered {
+                    tracer: &Tracer::new(scene),
+                    crossing: |_, crossing| Some(tamper(*size, crossing)),
+                };
+                is_rejected(scene, &measured(scene, &tampered), &unchanged)
+            }
+        })
+        .last()
+}
+
+/// Whether a plane disagrees.
+fn is_rejected(scene: &Scene, measurement: &Measurement, predict: &Predict) -> bool {
+    let level = sidak(scene.run.alpha, scene.planes.len());
+    let p_value = |(i, plane): (usize, &VirtualPlane)| {
+        let prediction = predict(scene, plane)?;
+        Residuals::new(measurement, i, &prediction).p_value(scene.run.seed)
+    };
+    let mut p_values = scene.planes.iter().enumerate().filter_map(p_value);
+    p_values.any(|p| p < level)
+}
