@@ -1,6 +1,6 @@
 //! Whether photons that are aimed at the window of a plane reach it.
 
-use crate::conclude::Case;
+use crate::case::Case;
 use crate::method::Method;
 use etendue_compare::{Class, EACH, PlaneComparison, Verdict};
 use etendue_field::{Crossing, PhotonSource};

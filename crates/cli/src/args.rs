@@ -1,6 +1,6 @@
 use crate::figure::Quality;
 use crate::method::Method;
-use crate::sweep::values::{Setting, Sweep, setting, sweep};
+use crate::values::{Setting, Sweep, setting, sweep};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use etendue_scene::RunFile;
 use std::ops::Range;

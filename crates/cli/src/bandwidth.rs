@@ -1,10 +1,10 @@
 use crate::args::BandwidthArgs;
 use crate::failure::Failure;
 use crate::measure::measured;
-use crate::output::OutputFile;
-use crate::sweep::values::{Point, points, said_at, shown};
+use crate::results::output::OutputFile;
 use crate::table::aligned;
 use crate::threads::on_threads;
+use crate::values::{Point, points, said_at, shown};
 use crate::{deliver, limits, load, method, progress, say};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_field::VirtualPlane;

@@ -1,7 +1,7 @@
 use crate::args::CheckArgs;
 use crate::failure::Failure;
 use crate::method::Method;
-use crate::output::OutputFile;
+use crate::results::output::OutputFile;
 use crate::{deliver, limits, load, pictures, say, warnings};
 use etendue_compare::{Applicability, Class, Memory, seconds};
 use etendue_field::{Orientation, tidy};

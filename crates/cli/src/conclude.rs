@@ -1,31 +1,18 @@
 use crate::args::{Expect, Save};
+use crate::case::Case;
 use crate::failure::Failure;
 use crate::inquiry::inquire;
 use crate::measure::measured;
 use crate::method::Method;
 use crate::predict::predicted;
+use crate::results::arrays;
+use crate::results::summary::{Stopwatch, Summary};
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
-use crate::summary::{Stopwatch, Summary};
-use crate::{aimed, field, files, photons, pictures, progress, report, say, table, target};
-use etendue_compare::{
-    Applicability, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare,
-};
+use crate::{aimed, field, photons, pictures, progress, report, say, table, target};
+use etendue_compare::{Applicability, PlaneComparison, PlaneReport, Test, Verdict, compare};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
-use etendue_spectrum::Measurement;
 use std::path::PathBuf;
-
-/// A scene, and all that was measured and predicted of it.
-#[derive(Debug)]
-pub(crate) struct Case {
-    pub(crate) scene: Scene,
-    /// What theory says of each plane.
-    pub(crate) theories: Vec<Applicability>,
-    pub(crate) method: Method,
-    pub(crate) measurement: Measurement,
-    /// One for each plane, in their order.
-    pub(crate) predictions: Vec<Prediction>,
-}
 
 impl Case {
     /// Measures a scene and predicts it.
@@ -58,7 +45,7 @@ pub(crate) struct Ending<'a> {
 /// What a comparison of a scene writes.
 pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> Plan {
     let of_plane = |plane: &VirtualPlane| {
-        let mut names = [files::NAMES.as_slice(), pictures::NAMES.as_slice()].concat();
+        let mut names = [arrays::NAMES.as_slice(), pictures::NAMES.as_slice()].concat();
         if save.contains(&Save::Photons) {
             names.extend(photons::NAMES);
         }
@@ -166,7 +153,7 @@ fn written(
 ) -> Result<Finished, Failure> {
     let each = case.predictions.iter().zip(planes);
     for ((prediction, plane), at) in each.zip(&case.scene.planes) {
-        files::write(&mut results, summary, plane)?;
+        arrays::write(&mut results, summary, plane)?;
         pictures::plane(&mut results, summary, prediction, at, plane)?;
     }
     let path = pictures::path(&mut results, case, planes)?;

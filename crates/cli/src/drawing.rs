@@ -1,6 +1,6 @@
 //! The scene in the plane of the central ray and X: what the plane y = 0 cuts.
 
-use crate::pictures::spaced;
+use crate::table::spaced;
 use etendue_field::{Mask, Patch, Shape, VirtualPlane};
 use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
 use etendue_scene::{BlockerLayer, Leg, MeshObject, Object, Scene};

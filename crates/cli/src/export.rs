@@ -1,8 +1,8 @@
 use crate::args::ExportArgs;
 use crate::failure::Failure;
+use crate::results::sealed::json;
+use crate::results::stored::VERSION;
 use crate::results::{EXPORT, Plan, Results};
-use crate::stored::VERSION;
-use crate::summary::json;
 use crate::{load, say};
 use serde_json::json as tree_of;
 use std::path::Path;

@@ -1,3 +1,4 @@
+use etendue_scene::SceneError;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -25,6 +26,16 @@ impl Failure {
         Self {
             message: message.to_string(),
             code: CANNOT_RUN,
+        }
+    }
+
+    /// A scene that is not legal, or sound and too large for this machine.
+    pub(crate) fn of_scene(error: &SceneError, message: impl Display) -> Self {
+        match error {
+            SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {
+                Self::cannot_run(message)
+            }
+            _ => Self::bad_input(message),
         }
     }
 

@@ -1,13 +1,13 @@
 //! `--save field`: the light field of each plane on a 4D grid, and its full radial spectrum.
 
-use crate::conclude::Case;
+use crate::case::Case;
 use crate::failure::Failure;
 use crate::machine;
 use crate::method::source;
-use crate::npz::Npz;
 use crate::progress;
 use crate::results::Results;
-use crate::summary::json;
+use crate::results::npz::Npz;
+use crate::results::sealed::json;
 use etendue_compare::{Applicability, Theory};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;

@@ -7,9 +7,9 @@ mod shot;
 
 use crate::args::FigureArgs;
 use crate::failure::Failure;
+use crate::results::sealed::json;
+use crate::results::stored::VERSION;
 use crate::results::{FIGURE, Plan, Results};
-use crate::stored::VERSION;
-use crate::summary::json;
 use crate::threads::on_threads;
 use crate::{progress, say};
 use clap::ValueEnum;

@@ -1,24 +1,12 @@
 //! What another tracer says of planes that fail.
 
-use crate::conclude::Case;
+use crate::case::Case;
 use crate::failure::Failure;
 use crate::judge::Judge;
 use crate::method::Method;
+use crate::results::summary::Inquiry;
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare};
 use etendue_spectrum::estimate::TooFewBatches;
-use serde::Serialize;
-
-/// Who of three agrees on a plane that fails: photons, another tracer and the prediction.
-#[derive(Debug, Serialize)]
-pub(crate) struct Inquiry {
-    pub(crate) plane: String,
-    /// Verdict and p of photons against backward rays.
-    tracers: (Verdict, Option<f64>),
-    /// Verdict and p of the other tracer against the prediction.
-    other: (Verdict, Option<f64>),
-    /// What that comes to, in words.
-    pub(crate) finding: String,
-}
 
 /// Measures planes that disagree with theory by the other method, and compares all three.
 pub(crate) fn inquire(

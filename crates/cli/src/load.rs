@@ -1,12 +1,10 @@
 use crate::args::SceneArgs;
 use crate::failure::Failure;
 use crate::machine;
+use crate::results::stored::copy_of;
 use crate::results::{Plan, Results};
-use crate::stored::copy_of;
-use crate::sweep::values::{Point, said_at};
-use etendue_scene::{
-    RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
-};
+use crate::values::{Point, said_at};
+use etendue_scene::{RunFile, Scene, SceneFile, limits, read_below, read_file, resolve};
 use std::path::{Path, PathBuf};
 
 /// Reads, overrides and resolves the scene named on the command line; `options` are overrides of the command
@@ -38,7 +36,7 @@ pub(crate) fn scene(
     resolve(&name, file, folder(args), machine::available_memory()).map_err(|error| {
         let lines = error.in_text(text, &set);
         let lines = lines.lines().map(|line| format!("{shown}: {line}"));
-        refusal(&error, lines.collect::<Vec<_>>().join("\n"))
+        Failure::of_scene(&error, lines.collect::<Vec<_>>().join("\n"))
     })
 }
 
@@ -105,27 +103,4 @@ pub(crate) fn stage(
         results.write(&copy_of(index, name), &bytes)?;
     }
     Ok(results)
-}
-
-/// Resolves a scene file for this machine; its meshes are in `folder`, and `shown` is where it comes from, for messages.
-pub(crate) fn resolved(
-    name: &str,
-    file: SceneFile,
-    folder: &Path,
-    shown: &str,
-) -> Result<Scene, Failure> {
-    resolve(name, file, folder, machine::available_memory()).map_err(|error| {
-        let message = format!("{shown}:\n{error}");
-        refusal(&error, message)
-    })
-}
-
-fn refusal(error: &SceneError, message: String) -> Failure {
-    match error {
-        // The scene is sound; it is this machine that is too small.
-        SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {
-            Failure::cannot_run(message)
-        }
-        _ => Failure::bad_input(message),
-    }
 }

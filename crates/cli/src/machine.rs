@@ -1,5 +1,7 @@
 //! What this machine has, as far as it says so (Linux); elsewhere nothing is known and nothing refused.
 
+use crate::failure::Failure;
+use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -15,6 +17,19 @@ pub(crate) fn available_memory() -> u64 {
     let limits = limits.map(|(limit, used)| limit.saturating_sub(used));
     let all = limits.chain(machine).chain(control_groups());
     all.min().unwrap_or(u64::MAX)
+}
+
+/// Resolves a scene file for this machine; its meshes are in `folder`, and `shown` is where it comes from, for messages.
+pub(crate) fn resolved(
+    name: &str,
+    file: SceneFile,
+    folder: &Path,
+    shown: &str,
+) -> Result<Scene, Failure> {
+    resolve(name, file, folder, available_memory()).map_err(|error| {
+        let message = format!("{shown}:\n{error}");
+        Failure::of_scene(&error, message)
+    })
 }
 
 /// The most memory this process has held, in bytes.

@@ -1,9 +1,9 @@
 use crate::args::MeasureArgs;
-use crate::batches::{self, Held};
 use crate::failure::Failure;
 use crate::method::{Method, source};
 use crate::results::MEASUREMENT;
-use crate::stored::Index;
+use crate::results::batches::{self, Held};
+use crate::results::stored::Index;
 use crate::table::grouped;
 use crate::threads::on_threads;
 use crate::{limits, load, method, progress, say, warnings};

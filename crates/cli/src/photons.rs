@@ -1,10 +1,10 @@
 //! `--save photons`: every photon that crossed a plane, in batch order.
 
-use crate::conclude::Case;
+use crate::case::Case;
 use crate::failure::Failure;
 use crate::method::source;
 use crate::results::Results;
-use crate::summary::json;
+use crate::results::sealed::json;
 use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::Scene;
 use serde::Serialize;

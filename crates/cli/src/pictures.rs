@@ -1,12 +1,12 @@
 //! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
 
-use crate::conclude::Case;
+use crate::case::Case;
 use crate::drawing;
 use crate::failure::Failure;
-use crate::files::{radial_z, z};
 use crate::results::Results;
-use crate::summary::Summary;
-use crate::table::{grouped, word};
+use crate::results::arrays::{radial_z, z};
+use crate::results::summary::Summary;
+use crate::table::{grouped, spaced, word};
 use etendue_compare::{
     Applicability, Class, PlaneComparison, Prediction, Theory, Verdict, stands_before,
 };
@@ -389,9 +389,4 @@ fn p_value(plane: &PlaneComparison) -> String {
 fn chi2(plane: &PlaneComparison) -> Option<String> {
     let chi2 = plane.report.chi2_per_dof;
     chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}"))
-}
-
-/// A name as read: underscores are spaces.
-pub(crate) fn spaced(name: &str) -> String {
-    name.replace('_', " ")
 }

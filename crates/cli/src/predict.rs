@@ -3,9 +3,10 @@ use crate::failure::Failure;
 use crate::judge::Judge;
 use crate::method::Method;
 use crate::results::PREDICTION;
-use crate::stored::Index;
+use crate::results::predictions;
+use crate::results::stored::Index;
 use crate::threads::on_threads;
-use crate::{limits, load, method, predictions, progress, say, warnings};
+use crate::{limits, load, method, progress, say, warnings};
 use etendue_compare::{Applicability, Class, Prediction};
 use etendue_scene::Scene;
 

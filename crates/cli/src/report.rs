@@ -5,7 +5,7 @@ mod data;
 
 use crate::args::ReportArgs;
 use crate::failure::Failure;
-use crate::output::OutputFile;
+use crate::results::output::OutputFile;
 use crate::results::{self, SUMMARY};
 use crate::say;
 use base64::Engine;

@@ -4,13 +4,22 @@
 //! as `summary.json`, lists them by their hashes and comes last. What the index of an earlier result lists, and
 //! still has that hash, is removed; anything else in the folder is somebody's, and stays (docs/files.md).
 
+pub(crate) mod arrays;
+pub(crate) mod batches;
 mod claim;
 mod commit;
+mod lock;
+pub(crate) mod npz;
+pub(crate) mod output;
+pub(crate) mod predictions;
+pub(crate) mod sealed;
+pub(crate) mod stored;
+pub(crate) mod summary;
 
 use crate::failure::Failure;
-use crate::lock::Lock;
-use crate::{interrupt, say, sealed};
+use crate::{interrupt, say};
 use etendue_scene::read_file;
+use lock::Lock;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};

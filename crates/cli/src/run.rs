@@ -1,11 +1,12 @@
 use crate::args::{RunArgs, Save};
-use crate::conclude::{Case, Ending, conclude, plan};
+use crate::case::Case;
+use crate::conclude::{Ending, conclude, plan};
 use crate::failure::Failure;
 use crate::measure::measured;
 use crate::predict::predicted;
+use crate::results::stored::check_earlier;
+use crate::results::summary::Stopwatch;
 use crate::results::{Results, SUMMARY};
-use crate::stored::check_earlier;
-use crate::summary::Stopwatch;
 use crate::threads::on_threads;
 use crate::{field, limits, load, method, photons, say, target, warnings};
 use etendue_compare::Applicability;

@@ -5,17 +5,20 @@
 
 mod pictures;
 mod table;
-pub(crate) mod values;
 
 use crate::args::{SceneArgs, SweepArgs};
-use crate::conclude::{Case, judged};
+use crate::case::Case;
+use crate::conclude::judged;
 use crate::failure::Failure;
+use crate::results::sealed;
+use crate::results::sealed::json;
+use crate::results::stored::{VERSION, check_earlier};
+use crate::results::summary::Summary;
 use crate::results::{MOST_INDEX, Plan, Results, SUMMARY, SWEEP};
-use crate::stored::{VERSION, check_earlier};
-use crate::summary::{Summary, json};
 use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{interrupt, limits, load, method, progress, say, sealed, warnings};
+use crate::values::{Point, Setting, Sweep, points, shown};
+use crate::{interrupt, limits, load, method, progress, say, warnings};
 use etendue_compare::Applicability;
 use etendue_field::{decimals, fixed, uncertain};
 use etendue_scene::{Scene, SceneFile, read_file};
@@ -24,7 +27,6 @@ use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use table::{BANDWIDTHS, Found, SLOPE};
-use values::{Point, Setting, Sweep, points, shown};
 
 const TABLE: &str = "sweep.csv";
 

@@ -1,7 +1,7 @@
 //! What the run came to, at a glance.
 
+use crate::results::summary::Summary;
 use crate::say;
-use crate::summary::Summary;
 use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, Verdict, sidak};
 use etendue_field::{decimals, fixed, tidy, uncertain};
 use std::path::Path;
@@ -276,6 +276,11 @@ pub(crate) fn grouped(n: u64) -> String {
         .map(|group| std::str::from_utf8(group).unwrap_or_default())
         .collect();
     groups.join(" ")
+}
+
+/// A name as read: underscores are spaces.
+pub(crate) fn spaced(name: &str) -> String {
+    name.replace('_', " ")
 }
 
 #[cfg(test)]

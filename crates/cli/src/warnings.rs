@@ -1,6 +1,6 @@
 //! The warnings of a scene, each on a line of its own.
 
-use crate::sweep::values::{Point, shown};
+use crate::values::{Point, shown};
 use etendue_scene::Scene;
 use std::io::Write;
 

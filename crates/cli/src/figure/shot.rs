@@ -1,11 +1,12 @@
 //! A scene of the repository, run for a figure.
 
-use crate::conclude::{Case, judged};
+use crate::case::Case;
+use crate::conclude::judged;
 use crate::failure::Failure;
 use crate::figure::Quality;
 use crate::method::Method;
-use crate::npz::Npz;
-use crate::{limits, load};
+use crate::results::npz::Npz;
+use crate::{limits, machine};
 use etendue_compare::{Applicability, PlaneComparison};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
 use etendue_scene::{Scene, SceneFile};
@@ -32,7 +33,7 @@ impl Shot {
     ) -> Result<Self, Failure> {
         let mut file = SceneFile::parse(text).map_err(Failure::bad_input)?;
         file.run.photons = quality.photons(file.run.photons);
-        let mut scene = load::resolved(name, file, Path::new(""), name)?;
+        let mut scene = machine::resolved(name, file, Path::new(""), name)?;
         for plane in &mut scene.planes {
             for axis in [&mut plane.grid.rho, &mut plane.grid.nu] {
                 *axis = FrequencyAxis {

@@ -1,9 +1,9 @@
 //! What a page shows of a run.
 
-use crate::conclude::Case;
-use crate::files::{radial_z, z};
+use crate::case::Case;
 use crate::pictures::{light_field_axes, spectrum_axes};
-use crate::summary::Summary;
+use crate::results::arrays::{radial_z, z};
+use crate::results::summary::Summary;
 use crate::table::{grouped, verdict_text};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;

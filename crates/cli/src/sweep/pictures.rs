@@ -1,9 +1,9 @@
 //! Curves of a sweep: what each plane's numbers do along its first field.
 
 use crate::failure::Failure;
-use crate::pictures::spaced;
 use crate::sweep::table::{BANDWIDTHS, Found, Number, SLOPE, numbers};
-use crate::sweep::values::{Point, shown};
+use crate::table::spaced;
+use crate::values::{Point, shown};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, curves};
 
 /// Names of the pictures, without their endings.

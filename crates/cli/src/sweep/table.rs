@@ -1,7 +1,7 @@
 //! The numbers of a sweep as one table, a row for each number of each plane at each point.
 
 use crate::failure::Failure;
-use crate::sweep::values::Point;
+use crate::values::Point;
 use serde_json::Value;
 
 /// A number of a plane that is measured and predicted.

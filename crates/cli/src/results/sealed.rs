@@ -3,6 +3,16 @@
 //! The last field is `index_hash`, the BLAKE3 hash of all bytes before it. What someone has edited since, in
 //! whatever way, is told apart from what Étendue wrote.
 
+use serde::Serialize;
+
+/// Readable JSON with a final newline. Numbers that are not finite become null.
+pub(crate) fn json(value: &impl Serialize) -> Vec<u8> {
+    // Cannot fail: all keys are text.
+    let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
+    bytes.push(b'\n');
+    bytes
+}
+
 /// What stands before and after the 64 digits.
 const BEFORE: &str = ",\n  \"index_hash\": \"";
 const AFTER: &str = "\"\n}\n";

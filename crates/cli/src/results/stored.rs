@@ -1,10 +1,11 @@
 //! What a stage leaves in its folder for a later one: arrays, and last an index that names them.
 
 use crate::failure::Failure;
-use crate::npz::NpzFile;
+use crate::machine;
+use crate::results::npz::NpzFile;
+use crate::results::sealed;
+use crate::results::sealed::json;
 use crate::results::{Finished, MOST_INDEX, Results};
-use crate::summary::json;
-use crate::{load, machine, sealed};
 use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -115,7 +116,7 @@ impl<T> Stored<T> {
         } = &self.index;
         self.check_inputs()?;
         let copies = self.folder.join(copy_of(self.name, ""));
-        let scene = load::resolved(
+        let scene = machine::resolved(
             scene,
             scene_file.clone(),
             &copies,

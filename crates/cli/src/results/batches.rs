@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::method::Method;
-use crate::npz::{Npz, NpzFile};
 use crate::results::Results;
-use crate::stored::Stored;
+use crate::results::npz::{Npz, NpzFile};
+use crate::results::stored::Stored;
 use etendue_field::{Ledger, PlaneTally, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments};
 use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, RemoveAxis, stack};

@@ -1,7 +1,6 @@
 //! NPZ files: named arrays, written to memory and read back with every fault named.
 
 use crate::failure::Failure;
-use crate::files::azimuths;
 use etendue_field::{Complex, SliceGrid};
 use ndarray::{Array, Array1, ArrayBase, ArrayView, Data, Dimension, IntoDimension};
 use ndarray_npy::{
@@ -201,4 +200,9 @@ impl NpzFile {
             Err(e) => Err(self.fault(name, e)),
         }
     }
+}
+
+/// The azimuths of slices.
+pub(super) fn azimuths(grid: &SliceGrid) -> Array1<f64> {
+    (0..grid.azimuths).map(|k| grid.azimuth(k)).collect()
 }

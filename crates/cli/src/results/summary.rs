@@ -1,8 +1,8 @@
-use crate::conclude::Case;
-use crate::inquiry::Inquiry;
+use crate::case::Case;
 use crate::machine;
 use crate::method::Method;
-use crate::stored::VERSION;
+use crate::results::sealed::json;
+use crate::results::stored::VERSION;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
 use etendue_scene::{Emission, SceneFile};
@@ -35,6 +35,18 @@ pub(crate) struct Summary {
     pub(crate) planes: Vec<PlaneReport>,
     /// What the other tracer says of planes that fail.
     pub(crate) inquiries: Vec<Inquiry>,
+}
+
+/// Who of three agrees on a plane that fails: photons, another tracer and the prediction.
+#[derive(Debug, Serialize)]
+pub(crate) struct Inquiry {
+    pub(crate) plane: String,
+    /// Verdict and p of photons against backward rays.
+    pub(crate) tracers: (Verdict, Option<f64>),
+    /// Verdict and p of the other tracer against the prediction.
+    pub(crate) other: (Verdict, Option<f64>),
+    /// What that comes to, in words.
+    pub(crate) finding: String,
 }
 
 impl Summary {
@@ -84,14 +96,6 @@ impl Summary {
             files,
         })
     }
-}
-
-/// Readable JSON with a final newline. Numbers that are not finite become null.
-pub(crate) fn json(value: &impl Serialize) -> Vec<u8> {
-    // Cannot fail: all keys are text.
-    let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
-    bytes.push(b'\n');
-    bytes
 }
 
 /// Seconds of each stage.

@@ -1,11 +1,10 @@
 //! The array files of one plane: `slices.npz`, `radial.npz`, `radial.exr`.
 
 use crate::failure::Failure;
-use crate::npz::Npz;
 use crate::results::Results;
-use crate::summary::Summary;
+use crate::results::npz::{Npz, azimuths};
+use crate::results::summary::Summary;
 use etendue_compare::PlaneComparison;
-use etendue_field::SliceGrid;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
     IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
@@ -37,11 +36,6 @@ fn slices(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
         .add("rho", &Array1::from(grid.rho.values()))?
         .add("nu", &Array1::from(grid.nu.values()))?
         .bytes()
-}
-
-/// The azimuths of slices.
-pub(crate) fn azimuths(grid: &SliceGrid) -> Array1<f64> {
-    (0..grid.azimuths).map(|k| grid.azimuth(k)).collect()
 }
 
 fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {

@@ -2,9 +2,9 @@
 
 use crate::failure::Failure;
 use crate::method::Method;
-use crate::npz::Npz;
 use crate::results::Results;
-use crate::stored::Stored;
+use crate::results::npz::Npz;
+use crate::results::stored::Stored;
 use etendue_compare::{
     Applicability, Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction,
 };

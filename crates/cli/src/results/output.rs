@@ -1,7 +1,7 @@
 //! A single file of the user's choosing, such as a picture or a table.
 
 use crate::failure::Failure;
-use crate::lock::Lock;
+use crate::results::lock::Lock;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
