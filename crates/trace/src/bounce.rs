@@ -79,8 +79,8 @@ impl Bounce {
                     return None;
                 }
                 let frame = Frame::IDENTITY.turned_to(facing);
-                let from = frame.vector_to_local(-direction).normalize();
-                let spread = Spread::Lobe { brdf, frame, from };
+                let wi = frame.vector_to_local(-direction).normalize();
+                let spread = Spread::Lobe { brdf, frame, wi };
                 let (ray, density) = scatterer.as_ref()?.sample(point, facing, &spread, words)?;
                 // Radiance f · E, as above.
                 let value = spread.value(&ray);

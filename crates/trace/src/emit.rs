@@ -1,12 +1,15 @@
+mod plain;
+
 use crate::aim::{FromSky, looks_across};
 use crate::proposal::{Follower, Proposal, lanes};
 use crate::reach::{looks_at_surface, outline, reach};
 use crate::sky;
 use crate::station::Station;
-use etendue_field::{Image, Light, Profile, Shape, TwoPlane, VirtualPlane, Window, power, random};
+use etendue_field::{Light, Profile, Shape, TwoPlane, VirtualPlane, Window, power, random};
 use etendue_scene::{Emission, Scene};
 use fearless_simd::{Level, dispatch};
 use glam::DVec3;
+use plain::Plain;
 use std::f64::consts::{PI, TAU};
 
 /// How rays leave the light: a density over (x, y, u, v) at the light, and a way to sample it. That of a point
@@ -29,7 +32,7 @@ enum Way {
     /// a beam.
     Even(Vec<Bounds>),
     /// As the light shines.
-    Plain,
+    Plain(Plain),
 }
 
 /// Photons that are emitted side by side.
@@ -80,19 +83,27 @@ impl Emitter {
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
         };
-        let way = match (&light, scene.run.emission) {
-            (Light::Environment { environment }, _) => Way::Sky(FromSky::new(scene, environment)),
-            // Pictures have their own proposal.
-            (_, Emission::Aimed) if !light.is_picture() => {
-                let planes = scene.planes.iter().enumerate();
-                let proposals: Vec<_> = planes.filter_map(proposal).collect();
-                if proposals.is_empty() {
-                    Way::Plain
-                } else {
-                    Way::Aimed(proposals)
-                }
+        let aimed_or = |plain: Plain| {
+            let planes = scene.planes.iter().enumerate();
+            let proposals: Vec<_> = match scene.run.emission {
+                Emission::Aimed => planes.filter_map(proposal).collect(),
+                Emission::Plain => Vec::new(),
+            };
+            if proposals.is_empty() {
+                Way::Plain(plain)
+            } else {
+                Way::Aimed(proposals)
             }
-            _ => Way::Plain,
+        };
+        let way = match light {
+            Light::Area {
+                shape, exponent, ..
+            } => aimed_or(Plain::Area(shape, exponent)),
+            Light::Point { .. } => aimed_or(Plain::Point),
+            // Pictures have their own proposal.
+            Light::Projector { image, .. } => Way::Plain(Plain::Slopes(image)),
+            Light::Beam { image, .. } => Way::Plain(Plain::Positions(image)),
+            Light::Environment { ref environment } => Way::Sky(FromSky::new(scene, environment)),
         };
         Self {
             light,
@@ -132,18 +143,30 @@ impl Emitter {
     ) -> ([TwoPlane; ABREAST], [f64; ABREAST]) {
         let mut rays = [TwoPlane::default(); ABREAST];
         let mut weights = [0.0; ABREAST];
-        if let Way::Aimed(proposals) = &self.way {
-            let [x, y, u, v] = self.aimed(proposals, words);
-            let densities = dispatch!(self.level, _simd => densities(proposals, &[x, y, u, v]));
-            for (i, ray) in rays.iter_mut().enumerate() {
-                let [x, y, u, v] = [x[i], y[i], u[i], v[i]];
-                *ray = TwoPlane { x, y, u, v };
-                weights[i] = self.weight(ray, densities[i]);
-            }
-        } else {
+        let mut one_by_one = |drawn: &dyn Fn([[u32; 4]; 2]) -> Option<(TwoPlane, f64)>| {
             for (i, (to, weight)) in rays.iter_mut().zip(&mut weights).enumerate() {
-                if let Some((ray, density)) = self.one(|block| words(i, block)) {
+                if let Some((ray, density)) = drawn([words(i, 0), words(i, 1)]) {
                     (*to, *weight) = (ray, self.weight(&ray, density));
+                }
+            }
+        };
+        match &self.way {
+            Way::Sky(sky) => one_by_one(&|words| {
+                let ray = sky.sample(words)?;
+                Some((ray, sky.density(&ray)))
+            }),
+            Way::Even(all) => one_by_one(&|words| Some(self.even(all, words))),
+            Way::Plain(plain) => one_by_one(&|[words, _]| {
+                let ray = plain.sample(words.map(random::unit));
+                Some((ray, plain.density(&ray)))
+            }),
+            Way::Aimed(proposals) => {
+                let [x, y, u, v] = self.aimed(proposals, words);
+                let densities = dispatch!(self.level, _simd => densities(proposals, &[x, y, u, v]));
+                for (i, ray) in rays.iter_mut().enumerate() {
+                    let [x, y, u, v] = [x[i], y[i], u[i], v[i]];
+                    *ray = TwoPlane { x, y, u, v };
+                    weights[i] = self.weight(ray, densities[i]);
                 }
             }
         }
@@ -182,104 +205,23 @@ impl Emitter {
         rays
     }
 
-    /// A ray that is not aimed at windows, from the random words of two blocks, and its density with
-    /// respect to dx dy du dv; to du dv for a point or a projector, to dx dy for a beam. `None` when
-    /// what was drawn goes nowhere.
-    #[inline]
-    fn one(&self, words: impl Fn(u32) -> [u32; 4]) -> Option<(TwoPlane, f64)> {
-        match &self.way {
-            Way::Sky(sky) => {
-                let ray = sky.sample([words(0), words(1)])?;
-                Some((ray, sky.density(&ray)))
-            }
-            Way::Even(all) => {
-                let bounds = match all.as_slice() {
-                    [only] => only,
-                    several => &several[random::index(words(1)[3], several.len())],
-                };
-                let r = words(0).map(random::unit);
-                let at = [0, 1].map(|i| bounds[i][0] + r[i] * (bounds[i][1] - bounds[i][0]));
-                let densities = all.iter().map(|bounds| evenly_over(bounds, at));
-                let density = densities.sum::<f64>() / all.len() as f64;
-                let [x, y, u, v] = if self.light.is_distant() {
-                    [at[0], at[1], 0.0, 0.0]
-                } else {
-                    [0.0, 0.0, at[0], at[1]]
-                };
-                Some((TwoPlane { x, y, u, v }, density))
-            }
-            Way::Aimed(_) | Way::Plain => {
-                let ray = self.plain(words(0).map(random::unit));
-                Some((ray, self.plain_density(&ray)))
-            }
-        }
-    }
-
-    /// Uniform over the light's area, by radiance and cosine over direction; a point's by solid angle, forwards.
-    #[inline(never)]
-    fn plain(&self, r: [f64; 4]) -> TwoPlane {
-        let (sin, cos) = libm::sincos(TAU * r[3]);
-        let (position, slope) = match self.light {
-            Light::Area {
-                shape, exponent, ..
-            } => {
-                // cos θ of a density in proportion to cosⁿ⁺¹θ.
-                let squared = power(1.0 - r[2], 2.0 / (exponent + 2.0));
-                (
-                    point(&shape, [r[0], r[1]]),
-                    ((1.0 - squared) / squared).sqrt(),
-                )
-            }
-            Light::Point { .. } => {
-                let cos = 1.0 - r[2];
-                ([0.0; 2], (1.0 - cos * cos).sqrt() / cos)
-            }
-            // By the picture's envelope: the two normal deviates of Box and Muller (1958).
-            Light::Projector { image, .. } | Light::Beam { image, .. } => {
-                let radius = (-libm::log(r[2]) / PI).sqrt();
-                let [a, b] = [image.width[0] * radius * cos, image.width[1] * radius * sin];
-                return match self.light {
-                    Light::Beam { .. } => TwoPlane {
-                        x: a,
-                        y: b,
-                        u: 0.0,
-                        v: 0.0,
-                    },
-                    _ => TwoPlane {
-                        x: 0.0,
-                        y: 0.0,
-                        u: a,
-                        v: b,
-                    },
-                };
-            }
-            Light::Environment { .. } => unreachable!("it has emission of its own"),
+    /// A ray with slopes of a point or a projector, or positions of a beam, that are evenly drawn
+    /// within one of some bounds, and its density with respect to these two.
+    fn even(&self, all: &[Bounds], [words, last]: [[u32; 4]; 2]) -> (TwoPlane, f64) {
+        let bounds = match all {
+            [only] => only,
+            several => &several[random::index(last[3], several.len())],
         };
-        TwoPlane {
-            x: position[0],
-            y: position[1],
-            u: slope * cos,
-            v: slope * sin,
-        }
-    }
-
-    /// The density of [`Self::plain`].
-    #[inline]
-    fn plain_density(&self, ray: &TwoPlane) -> f64 {
-        let secant_squared = ray.secant_squared();
-        match self.light {
-            // cos θ dω = du dv / (1 + u² + v²)², and ∫ cosⁿθ cos θ dω = 2π/(n + 2).
-            Light::Area {
-                shape, exponent, ..
-            } => {
-                let lobe = (exponent + 2.0) / TAU * power(secant_squared, -2.0 - 0.5 * exponent);
-                lobe / shape.area()
-            }
-            Light::Point { .. } => 1.0 / (TAU * secant_squared * secant_squared.sqrt()),
-            Light::Projector { image, .. } => envelope(&image, ray.u, ray.v),
-            Light::Beam { image, .. } => envelope(&image, ray.x, ray.y),
-            Light::Environment { .. } => unreachable!("it has emission of its own"),
-        }
+        let r = words.map(random::unit);
+        let at = [0, 1].map(|i| bounds[i][0] + r[i] * (bounds[i][1] - bounds[i][0]));
+        let densities = all.iter().map(|bounds| evenly_over(bounds, at));
+        let density = densities.sum::<f64>() / all.len() as f64;
+        let [x, y, u, v] = if self.light.is_distant() {
+            [at[0], at[1], 0.0, 0.0]
+        } else {
+            [0.0, 0.0, at[0], at[1]]
+        };
+        (TwoPlane { x, y, u, v }, density)
     }
 
     /// Radiance over density.
@@ -395,12 +337,6 @@ fn evenly_over([[left, right], [low, high]]: &Bounds, [a, b]: [f64; 2]) -> f64 {
     } else {
         0.0
     }
-}
-
-/// The envelope of a picture, with an integral of 1.
-fn envelope(image: &Image, a: f64, b: f64) -> f64 {
-    let grating = None;
-    Image { grating, ..*image }.value(a, b) / image.area()
 }
 
 /// A uniform point of a shape, from two numbers in (0, 1).

@@ -41,11 +41,7 @@ pub(crate) enum Spread {
     /// By the cosine of the angle to its normal.
     Cosine,
     /// By a BRDF, in a frame with D along the normal; light has come from a direction in that frame.
-    Lobe {
-        brdf: Brdf,
-        frame: Frame,
-        from: DVec3,
-    },
+    Lobe { brdf: Brdf, frame: Frame, wi: DVec3 },
 }
 
 /// Slopes towards a surface are bounded by its size alone.
@@ -62,8 +58,8 @@ impl Spread {
                 let local = DVec3::new(slope * cos, slope * sin, 1.0);
                 Frame::IDENTITY.turned_to(normal).vector_to_world(local)
             }
-            Self::Lobe { brdf, frame, from } => {
-                frame.vector_to_world(brdf::sample(brdf, *from, [a, b]))
+            Self::Lobe { brdf, frame, wi } => {
+                frame.vector_to_world(brdf::sample(brdf, *wi, [a, b]))
             }
         }
     }
@@ -74,9 +70,9 @@ impl Spread {
         let secant_squared = ray.secant_squared();
         match self {
             Self::Cosine => 1.0 / (LAMBERTIAN * secant_squared * secant_squared),
-            Self::Lobe { brdf, frame, from } => {
-                let to = frame.vector_to_local(direction(ray)).normalize();
-                brdf::density(brdf, *from, to) * per_slope(secant_squared, cosine)
+            Self::Lobe { brdf, frame, wi } => {
+                let wo = frame.vector_to_local(direction(ray)).normalize();
+                brdf::density(brdf, *wi, wo) * per_slope(secant_squared, cosine)
             }
         }
     }
@@ -86,9 +82,9 @@ impl Spread {
     pub(crate) fn value(&self, ray: &TwoPlane) -> f64 {
         match self {
             Self::Cosine => 1.0 / LAMBERTIAN,
-            Self::Lobe { brdf, frame, from } => {
-                let to = frame.vector_to_local(direction(ray)).normalize();
-                brdf::value(brdf, *from, to)
+            Self::Lobe { brdf, frame, wi } => {
+                let wo = frame.vector_to_local(direction(ray)).normalize();
+                brdf::value(brdf, *wi, wo)
             }
         }
     }

@@ -3,9 +3,10 @@
 use crate::emit::{LAMBERTIAN, by_cosine};
 use crate::obstacles::{direction, ray_through};
 use etendue_field::random::{self, Stream};
-use etendue_field::{Environment, EnvironmentMap, Frame, SphericalGaussian, TwoPlane};
+use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian, TwoPlane};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// An environment, and how directions of its light are drawn.
 #[derive(Clone, Debug)]
@@ -17,13 +18,13 @@ pub(crate) struct Sky {
     by_cosine: f64,
 }
 
-/// Running sums of what is chosen from.
+/// What is chosen from, and running sums of its flux.
 #[derive(Clone, Debug)]
 enum Choice {
-    /// Flux of lobes.
-    Lobes(Vec<f64>),
-    /// Of a map: flux of rows, and of the pixels in each row.
+    Lobes(Vec<SphericalGaussian>, Vec<f64>),
+    /// The rows of a map, and the pixels in each row.
     Map {
+        map: Arc<LatLong>,
         rows: Vec<f64>,
         columns: Vec<Vec<f64>>,
     },
@@ -74,7 +75,8 @@ impl Sky {
     pub(crate) fn new(environment: &Environment) -> Self {
         let choice = match &environment.map {
             EnvironmentMap::Lobes(lobes) => {
-                Choice::Lobes(running(lobes.iter().map(SphericalGaussian::integral)))
+                let upto = running(lobes.iter().map(SphericalGaussian::integral));
+                Choice::Lobes(lobes.clone(), upto)
             }
             EnvironmentMap::LatLong(map) => {
                 let raster = map.raster();
@@ -86,7 +88,8 @@ impl Sky {
                     })
                     .collect();
                 let rows = running(columns.iter().map(|row| total(row)));
-                Choice::Map { rows, columns }
+                let map = Arc::clone(map);
+                Choice::Map { map, rows, columns }
             }
         };
         let mut sky = Self {
@@ -103,8 +106,8 @@ impl Sky {
 
     /// A direction in which light travels, of unit length, in the frame at the light; from four numbers in (0, 1).
     pub(crate) fn sample(&self, r: [f64; 4]) -> DVec3 {
-        let from = match (&self.environment.map, &self.choice) {
-            (EnvironmentMap::Lobes(lobes), Choice::Lobes(upto)) => {
+        let from = match &self.choice {
+            Choice::Lobes(lobes, upto) => {
                 let lobe = &lobes[chosen(upto, r[0])];
                 let squared = lobe.width * lobe.width;
                 // 1 − cos γ.
@@ -116,7 +119,7 @@ impl Sky {
                 let around = Frame::IDENTITY.turned_to(lobe.from);
                 around.vector_to_world(local)
             }
-            (EnvironmentMap::LatLong(map), Choice::Map { rows, columns }) => {
+            Choice::Map { map, rows, columns } => {
                 let row = chosen(rows, r[0]);
                 let column = chosen(&columns[row], r[1]);
                 // Bilinear interpolation is a sum of tents around the centres, folded back at the poles.
@@ -125,7 +128,6 @@ impl Sky {
                 let down = height - (height - down).abs();
                 map.direction([column as f64 + 0.5 + tent(r[2]), down])
             }
-            _ => unreachable!("the choice is that of the map"),
         };
         -self.environment.frame.vector_to_world(from)
     }
@@ -133,11 +135,9 @@ impl Sky {
     /// The density of [`Self::sample`] per steradian.
     pub(crate) fn density(&self, along: DVec3) -> f64 {
         let from = self.environment.origin_of(along);
-        match (&self.environment.map, &self.choice) {
-            (EnvironmentMap::Lobes(_), Choice::Lobes(upto)) => {
-                self.environment.map.radiance(from) / total(upto)
-            }
-            (EnvironmentMap::LatLong(map), Choice::Map { rows, .. }) => {
+        match &self.choice {
+            Choice::Lobes(_, upto) => self.environment.map.radiance(from) / total(upto),
+            Choice::Map { map, rows, .. } => {
                 let raster = map.raster();
                 let [column, row] = map.place(from);
                 let around = raster.around(column, row, true).into_iter();
@@ -151,7 +151,6 @@ impl Sky {
                     * DVec2::new(from.x, from.z).length().max(f64::MIN_POSITIVE);
                 weighted.sum::<f64>() / (total(rows) * pixel)
             }
-            _ => unreachable!("the choice is that of the map"),
         }
     }
 

@@ -13,6 +13,6 @@ pub(super) fn sample([a, b]: [f64; 2]) -> DVec3 {
     DVec3::new(across * cos, across * sin, (1.0 - a).sqrt())
 }
 
-pub(super) fn density(drawn: DVec3) -> f64 {
-    drawn.z.max(0.0) * FRAC_1_PI
+pub(super) fn density(wo: DVec3) -> f64 {
+    wo.z.max(0.0) * FRAC_1_PI
 }

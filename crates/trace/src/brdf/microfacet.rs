@@ -20,30 +20,30 @@ pub(super) enum Distribution {
 impl Microfacets {
     /// The BRDF without its Fresnel factor, both directions being in front of the surface (their Eq. 20).
     #[inline]
-    pub(super) fn value(&self, from: DVec3, to: DVec3) -> f64 {
-        let half = (from + to).normalize();
-        let shadowing = self.shadowing(from.z) * self.shadowing(to.z);
-        self.normals(half.z) * shadowing / (4.0 * from.z * to.z)
+    pub(super) fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let half = (wi + wo).normalize();
+        let shadowing = self.shadowing(wi.z) * self.shadowing(wo.z);
+        self.normals(half.z) * shadowing / (4.0 * wi.z * wo.z)
     }
 
     /// A normal, and the mirror direction to it: for Beckmann by D · cos θ, for GGX by what is visible.
     #[inline]
-    pub(super) fn sample(&self, given: DVec3, random: [f64; 2]) -> DVec3 {
+    pub(super) fn sample(&self, wi: DVec3, random: [f64; 2]) -> DVec3 {
         let normal = match self.distribution {
             Distribution::Beckmann => self.normal(random),
-            Distribution::Ggx => self.visible_normal(given, random),
+            Distribution::Ggx => self.visible_normal(wi, random),
         };
-        2.0 * given.dot(normal) * normal - given
+        2.0 * wi.dot(normal) * normal - wi
     }
 
     /// Solid angles of directions are 4 h · ωo times those of normals (their Eq. 14).
     #[inline]
-    pub(super) fn density(&self, given: DVec3, drawn: DVec3) -> f64 {
-        let sum = given + drawn;
+    pub(super) fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let sum = wi + wo;
         let Some(half) = sum.try_normalize() else {
             return 0.0;
         };
-        let cosine = half.dot(given);
+        let cosine = half.dot(wi);
         match self.distribution {
             // A normal seen from behind mirrors as its opposite does.
             Distribution::Beckmann => {
@@ -52,7 +52,7 @@ impl Microfacets {
             }
             // G₁ h·ωi D / cos θi, over 4 h·ωi.
             Distribution::Ggx if half.z > 0.0 => {
-                self.shadowing(given.z) * self.normals(half.z) / (4.0 * given.z)
+                self.shadowing(wi.z) * self.normals(half.z) / (4.0 * wi.z)
             }
             Distribution::Ggx => 0.0,
         }
@@ -100,10 +100,10 @@ impl Microfacets {
     }
 
     /// GGX's visible normals (Heitz 2018, *Sampling the GGX distribution of visible normals*, Listing 1).
-    fn visible_normal(&self, given: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+    fn visible_normal(&self, wi: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         let alpha = self.roughness;
         // To the hemisphere that the ellipsoid of normals is stretched from.
-        let view = DVec3::new(alpha * given.x, alpha * given.y, given.z).normalize();
+        let view = DVec3::new(alpha * wi.x, alpha * wi.y, wi.z).normalize();
         let across = DVec3::new(-view.y, view.x, 0.0).try_normalize();
         let across = across.unwrap_or(DVec3::X);
         let up = view.cross(across);

@@ -1,6 +1,7 @@
 //! BRDFs at one place: their value, and beside it a way to sample a direction with its density.
 //!
-//! Directions are unit vectors away from the surface, in a frame with the normal along Z. [`Brdf`] says what each lobe is.
+//! Directions are unit vectors away from the surface, in a frame with the normal along Z: light comes from wi and goes to wo.
+//! [`Brdf`] says what each lobe is.
 
 mod fresnel;
 mod lambertian;
@@ -15,47 +16,47 @@ use fresnel::reflected_share;
 use glam::DVec3;
 use microfacet::{Distribution, Microfacets};
 
-/// The BRDF for light that comes from one direction and goes to another, sr⁻¹.
+/// The BRDF, sr⁻¹.
 #[inline]
 #[must_use]
-pub fn value(brdf: &Brdf, from: DVec3, to: DVec3) -> f64 {
-    if from.z <= 0.0 || to.z <= 0.0 {
+pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
+    if wi.z <= 0.0 || wo.z <= 0.0 {
         return 0.0;
     }
     let (lobe, cosine) = match brdf.lobe {
-        Lobe::Lambertian => (lambertian::value(), from.z),
-        Lobe::Phong { exponent } => (phong::value(exponent, from, to), from.z),
+        Lobe::Lambertian => (lambertian::value(), wi.z),
+        Lobe::Phong { exponent } => (phong::value(exponent, wi, wo), wi.z),
         Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-            let half = (from + to).normalize();
-            let cosine = half.dot(from).min(1.0);
-            (microfacets(brdf).map_or(0.0, |m| m.value(from, to)), cosine)
+            let half = (wi + wo).normalize();
+            let cosine = half.dot(wi).min(1.0);
+            (microfacets(brdf).map_or(0.0, |m| m.value(wi, wo)), cosine)
         }
     };
     brdf.albedo * lobe * reflected_share(&brdf.fresnel, cosine)
 }
 
-/// A direction, drawn for another one in front of the surface, from two numbers in (0, 1). It may lie below the surface: then it carries nothing.
+/// A direction wo for wi in front of the surface, from two numbers in (0, 1). It may lie below the surface: then it carries nothing.
 ///
-/// Lobes are drawn alike from light to eye and from eye to light; Fresnel factor and albedo are left to the weight.
+/// Backward rays draw wi for wo by the same lobes, which are symmetric. Fresnel factor and albedo are left to the weight.
 #[inline]
-pub(crate) fn sample(brdf: &Brdf, given: DVec3, random: [f64; 2]) -> DVec3 {
+pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     match brdf.lobe {
         Lobe::Lambertian => lambertian::sample(random),
-        Lobe::Phong { exponent } => phong::sample(exponent, given, random),
+        Lobe::Phong { exponent } => phong::sample(exponent, wi, random),
         Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-            microfacets(brdf).map_or(DVec3::Z, |m| m.sample(given, random))
+            microfacets(brdf).map_or(DVec3::Z, |m| m.sample(wi, random))
         }
     }
 }
 
 /// The density of [`sample`] per solid angle, over the whole sphere: what falls below the surface is a part of it.
 #[inline]
-pub(crate) fn density(brdf: &Brdf, given: DVec3, drawn: DVec3) -> f64 {
+pub(crate) fn density(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
     match brdf.lobe {
-        Lobe::Lambertian => lambertian::density(drawn),
-        Lobe::Phong { exponent } => phong::density(exponent, given, drawn),
+        Lobe::Lambertian => lambertian::density(wo),
+        Lobe::Phong { exponent } => phong::density(exponent, wi, wo),
         Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-            microfacets(brdf).map_or(0.0, |m| m.density(given, drawn))
+            microfacets(brdf).map_or(0.0, |m| m.density(wi, wo))
         }
     }
 }

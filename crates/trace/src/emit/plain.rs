@@ -1,0 +1,69 @@
+//! Rays drawn as a light shines, wherever planes are.
+
+use super::point;
+use etendue_field::{Image, Shape, TwoPlane, power};
+use std::f64::consts::{PI, TAU};
+
+/// What rays are drawn by.
+#[derive(Debug)]
+pub(super) enum Plain {
+    /// Points of an area, and directions by cosⁿ⁺¹θ for light of radiance L cosⁿθ: the shape and n.
+    Area(Shape, f64),
+    /// Directions of a point light, forward, by solid angle.
+    Point,
+    /// Slopes of a projector by the envelope of its picture.
+    Slopes(Image),
+    /// Positions of a beam by the envelope of its picture.
+    Positions(Image),
+}
+
+impl Plain {
+    /// A ray, from four numbers in (0, 1).
+    #[inline(never)]
+    pub(super) fn sample(&self, r: [f64; 4]) -> TwoPlane {
+        let (sin, cos) = libm::sincos(TAU * r[3]);
+        // The two normal deviates of Box and Muller (1958).
+        let normal = |image: &Image| {
+            let radius = (-libm::log(r[2]) / PI).sqrt();
+            [image.width[0] * radius * cos, image.width[1] * radius * sin]
+        };
+        let [[x, y], [u, v]] = match self {
+            Self::Area(shape, exponent) => {
+                let squared = power(1.0 - r[2], 2.0 / (exponent + 2.0)); // cos²θ
+                let slope = ((1.0 - squared) / squared).sqrt();
+                [point(shape, [r[0], r[1]]), [slope * cos, slope * sin]]
+            }
+            Self::Point => {
+                let height = 1.0 - r[2];
+                let slope = (1.0 - height * height).sqrt() / height;
+                [[0.0; 2], [slope * cos, slope * sin]]
+            }
+            Self::Slopes(image) => [[0.0; 2], normal(image)],
+            Self::Positions(image) => [normal(image), [0.0; 2]],
+        };
+        TwoPlane { x, y, u, v }
+    }
+
+    /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point or a
+    /// projector, to dx dy for a beam.
+    #[inline]
+    pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
+        let secant_squared = ray.secant_squared();
+        match self {
+            // cos θ dω = du dv / (1 + u² + v²)², and ∫ cosⁿθ cos θ dω = 2π/(n + 2).
+            Self::Area(shape, exponent) => {
+                let lobe = (exponent + 2.0) / TAU * power(secant_squared, -2.0 - 0.5 * exponent);
+                lobe / shape.area()
+            }
+            Self::Point => 1.0 / (TAU * secant_squared * secant_squared.sqrt()),
+            Self::Slopes(image) => envelope(image, ray.u, ray.v),
+            Self::Positions(image) => envelope(image, ray.x, ray.y),
+        }
+    }
+}
+
+/// The envelope of a picture, with an integral of 1.
+fn envelope(image: &Image, a: f64, b: f64) -> f64 {
+    let grating = None;
+    Image { grating, ..*image }.value(a, b) / image.area()
+}
