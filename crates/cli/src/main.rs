@@ -36,6 +36,7 @@ mod progress;
 mod report;
 mod results;
 mod run;
+mod schema;
 mod sealed;
 mod stored;
 mod summary;
@@ -67,6 +68,7 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),
+        Command::Schema(args) => schema::schema(&args),
     });
     match outcome {
         Ok(code) => ExitCode::from(code),
