@@ -5,9 +5,9 @@ use crate::place::steps;
 /// End of a field's path, what it is, how it may be written; the first line that fits counts.
 const FIELDS: &str = r#"
 description | a text in quotes | "my first scene"
-blockers[].name | a name in quotes | "bars"
-planes[].name | a name in quotes | "arrival"
-name | a name in quotes | "floor"
+blockers[].name | a name in quotes, 1 to 64 characters | "bars"
+planes[].name | a name in quotes, 1 to 64 letters, digits, - and _ | "arrival"
+name | a name in quotes, 1 to 64 characters | "floor"
 light | a light | Rectangle(center: (0, 0, 0), size: (0.2, 0.2))
 light.bulb | a bulb | Square(0.1)
 light.image | a picture | (width: (0.2, 0.2))

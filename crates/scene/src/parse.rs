@@ -170,6 +170,9 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
             return "the file ends here; allowed: what is missing, and a bracket that closes it"
                 .into();
         }
+        Error::ExpectedComma if rest.starts_with('^') => {
+            "a number without a power, such as 1_048_576 or 1e6"
+        }
         Error::ExpectedComma if before.ends_with(is_digit) => "a number without a unit",
         Error::ExpectedComma => "a comma before it, or a closing bracket",
         Error::ExpectedIdentifier | Error::SuggestRawIdentifier(_)
