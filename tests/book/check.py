@@ -1,16 +1,21 @@
-"""Holds the book to what it says: its links lead somewhere, its commands run and print what is shown, its files are sound.
+"""Holds the book to what it says: its links, its commands and what they print, its files.
 
-usage: check.py PROGRAM BOOK, the program `etendue` and the folder of the built book, from the top of the repository.
+usage: check.py PROGRAM BOOK
+PROGRAM is `etendue`, BOOK the folder of the built book. To be
+started at the top of the repository.
 
-Blocks of a chapter run in their order, in a folder of the chapter's own that has a copy of `scenes`:
+Blocks of a chapter run in their order, in a folder of its own that has a copy of `scenes`.
 
-    ron, json, yaml, toml file=NAME   is written into the file; a workflow of GitHub is gone through as well
-    sh [code=N]                       runs, and must end with that exit code (0 unless stated)
-    python                            runs
-    text                              must be in what the block before it printed, lines in order; `…` stands for anything
+    ron, yaml file=NAME   is written into the file; a workflow of GitHub is gone through as well
+    ron fragment          is read by crates/scene/tests/book.rs
+    sh [code=N]           runs, and must end with that exit code, 0 unless stated
+    python                runs
+    text                  must be in what the last block that ran has printed, lines in order;
+                          `…` stands for anything
 
-Scenes of the repository are run with few photons there, and scenes of a chapter as they are. Indented blocks of all pages, and of
-README.md, are not run: of their commands the options must exist, and the scenes.
+Scenes of the repository are run with few photons there, and scenes of a chapter as they are.
+Indented commands, on all pages and in README.md, are not run: their options, scenes and tests
+must exist.
 """
 
 import os
@@ -34,7 +39,9 @@ FEW = "2^16"
 WORDS = {
     "etendue": """
 few=()
-case " $* " in *" --photons "*) ;; *) [[ "${1:-}" =~ ^(run|measure|predict|sweep)$ && " $*" == *" scenes/"* ]] && few=(--photons FEW);; esac
+if [[ "$1" =~ ^(run|measure|predict|sweep)$ && "$*" == *" scenes/"* && "$*" != *--photons* ]]; then
+    few=(--photons FEW)
+fi
 PROGRAM "$@" "${few[@]}"
 code=$?
 # With few photons some planes are undecided.
@@ -56,7 +63,9 @@ def tools(folder: Path, program: Path) -> dict[str, str]:
     folder.mkdir()
     for name, text in WORDS.items():
         script = folder / name
-        script.write_text("#!/bin/bash\n" + text.replace("PROGRAM", str(program)).replace("FEW", FEW))
+        script.write_text(
+            "#!/bin/bash\n" + text.replace("PROGRAM", str(program)).replace("FEW", FEW)
+        )
         script.chmod(script.stat().st_mode | stat.S_IXUSR)
     path = os.pathsep.join([str(folder), str(Path(sys.executable).parent), os.environ["PATH"]])
     return os.environ | {"PATH": path, "MPLBACKEND": "Agg"}
@@ -77,8 +86,14 @@ def run(block: Block, folder: Path, environment: dict[str, str]) -> tuple[int, s
     """Runs commands or Python; their exit code, and what they printed."""
     command = ["bash", "-eo", "pipefail", "-c"] if block.language == "sh" else ["python", "-c"]
     done = subprocess.run(
-        [*command, block.text], cwd=folder, env=environment, text=True, timeout=300,
-        stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False,
+        [*command, block.text],
+        cwd=folder,
+        env=environment,
+        text=True,
+        timeout=300,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        check=False,
     )
     return done.returncode, done.stdout
 
@@ -95,7 +110,10 @@ def check_chapter(page: Path, folder: Path, environment: dict[str, str]) -> list
             (folder / block.file).parent.mkdir(parents=True, exist_ok=True)
             (folder / block.file).write_text(block.text)
             if ".github/workflows" in block.file:
-                wrong += [f"{where}: {fault}" for fault in go_through(block.text, folder, environment, TOP)]
+                wrong += [
+                    f"{where}: {fault}"
+                    for fault in go_through(block.text, folder, environment, TOP)
+                ]
         elif block.language in ("sh", "python"):
             code, printed = run(block, folder, environment)
             if code != block.code:
@@ -112,10 +130,15 @@ def check_chapter(page: Path, folder: Path, environment: dict[str, str]) -> list
 
 
 def kept_pictures(page: Path, folder: Path) -> list[str]:
-    """Pictures of a chapter that its commands make are these, byte for byte: pictures/NAME.svg is out/NAME/path.svg."""
+    """Pictures of a chapter that are not what its commands make, byte for byte.
+
+    pictures/NAME.svg is out/NAME/path.svg."""
     wrong = []
     for name in re.findall(r"\]\(pictures/(\w+)\.svg\)", page.read_text()):
-        kept, made = page.parent / "pictures" / f"{name}.svg", TOP / "target" / "book" / f"{name}.svg"
+        kept, made = (
+            page.parent / "pictures" / f"{name}.svg",
+            TOP / "target" / "book" / f"{name}.svg",
+        )
         shutil.copy(folder / "out" / name / "path.svg", made)
         if not kept.exists() or made.read_bytes() != kept.read_bytes():
             wrong.append(f"{kept} is not what {page} makes; that is in {made}")
@@ -127,11 +150,21 @@ def missing_tests(words: list[str]) -> list[str]:
     if "-p" not in words:
         return []
     crate, *names = words[words.index("-p") + 1 :]
-    names = [name for name in names[: names.index("--") if "--" in names else None] if not name.startswith("-")]
-    folder = {"etendue": "crates/cli", "etendue-validation": "tests"}.get(crate, "crates/" + crate.removeprefix("etendue-"))
+    names = [
+        name
+        for name in names[: names.index("--") if "--" in names else None]
+        if not name.startswith("-")
+    ]
+    folder = {"etendue": "crates/cli", "etendue-validation": "tests"}.get(
+        crate, "crates/" + crate.removeprefix("etendue-")
+    )
     texts = [file.read_text() for file in (TOP / folder).glob("**/*.rs")]
     texts += [f"fn {file.stem}(" for file in (TOP / folder / "tests").glob("*.rs")]
-    return [f"no test {name} in {crate}" for name in names if not any(f"fn {name}(" in text for text in texts)]
+    return [
+        f"no test {name} in {crate}"
+        for name in names
+        if not any(f"fn {name}(" in text for text in texts)
+    ]
 
 
 def check_commands(page: Path, program: Path) -> list[str]:
@@ -169,11 +202,28 @@ def check_schema(folder: Path, program: Path) -> list[str]:
     for path in sorted((TOP / "scenes").glob("**/*.ron")):
         out = folder / "schema" / path.stem
         # One batch of one photon: it holds the scene as JSON.
-        measure = ["measure", str(path), "--photons", "1024", "--batches", "0..1", "--quiet", "--out", str(out)]
+        measure = [
+            "measure",
+            str(path),
+            "--photons",
+            "1024",
+            "--batches",
+            "0..1",
+            "--quiet",
+            "--out",
+            str(out),
+        ]
         subprocess.run([str(program), *measure], check=True)
         scene = json.loads((out / "measurement.json").read_text())["scene_file"]
-        wrong += [f"scene.schema.json refuses {path}: {e.message}" for e in validator.iter_errors(scene)]
-    for field, value in [("light", {"Rectangle": {}}), ("window", {"x": {"Hann": 0}}), ("plane", []), ("run", {"batches": 1})]:
+        wrong += [
+            f"scene.schema.json refuses {path}: {e.message}" for e in validator.iter_errors(scene)
+        ]
+    for field, value in [
+        ("light", {"Rectangle": {}}),
+        ("window", {"x": {"Hann": 0}}),
+        ("plane", []),
+        ("run", {"batches": 1}),
+    ]:
         if validator.is_valid(scene | {field: value}):
             wrong.append(f"scene.schema.json takes {field}: {value}")
     return wrong

@@ -24,8 +24,12 @@ class Page(HTMLParser):
 
 def broken_links(book: Path, top: Path) -> list[str]:
     """Links that lead nowhere. What they lead to outside of the book is copied beside it."""
-    # The page for printing holds all others, and the one for lost readers is at no place of its own.
-    paths = [path for path in book.glob("*.html") if path.name not in ("print.html", "404.html", "toc.html")]
+    # The page for printing holds all others; the one for lost readers has no place of its own.
+    paths = [
+        path
+        for path in book.glob("*.html")
+        if path.name not in ("print.html", "404.html", "toc.html")
+    ]
     pages = {path: Page(path) for path in paths}
     wrong, outside = [], 0
     for path, page in pages.items():
@@ -39,9 +43,15 @@ def broken_links(book: Path, top: Path) -> list[str]:
                 target = copied(target, book, top)
             if not target.exists():
                 wrong.append(f"{path.name}: {link} leads nowhere")
-            elif parts.fragment and target in pages and unquote(parts.fragment) not in pages[target].names:
+            elif (
+                parts.fragment
+                and target in pages
+                and unquote(parts.fragment) not in pages[target].names
+            ):
                 wrong.append(f"{path.name}: {link} has no such place")
-    print(f"links of {len(pages)} pages: {len(wrong)} broken; {outside} lead to other sites and were not followed")
+    print(
+        f"links of {len(pages)} pages: {len(wrong)} broken; {outside} to other sites, not followed"
+    )
     return wrong
 
 
@@ -58,5 +68,7 @@ def copied(target: Path, book: Path, top: Path) -> Path:
     elif source.with_suffix(".md").exists():
         # mdBook takes all pages for its own.
         text = html.escape(source.with_suffix(".md").read_text())
-        target.write_text(f'<!doctype html><meta charset="utf-8"><pre style="white-space: pre-wrap">{text}</pre>')
+        target.write_text(
+            f'<!doctype html><meta charset="utf-8"><pre style="white-space: pre-wrap">{text}</pre>'
+        )
     return target

@@ -7,7 +7,8 @@ import yaml
 
 
 def go_through(text: str, folder: Path, environment: dict[str, str], top: Path) -> list[str]:
-    """Runs the steps of a workflow that are commands, whatever their conditions, and does what its actions would do; what is wrong."""
+    """Runs the commands of a workflow, whatever their conditions, and does what its actions would
+    do; what is wrong."""
     workflow = yaml.safe_load(text)
     wrong = []
     # YAML 1.1 reads the key `on` as true.
@@ -40,6 +41,10 @@ def command(step: dict, folder: Path, environment: dict[str, str]) -> str | None
         return f"no folder {where.name} for {step['run']}"
     done = subprocess.run(
         ["bash", "-eo", "pipefail", "-c", step["run"]],
-        cwd=where, env=environment, text=True, capture_output=True, check=False,
+        cwd=where,
+        env=environment,
+        text=True,
+        capture_output=True,
+        check=False,
     )
     return f"{step['run']}: {done.stdout}{done.stderr}" if done.returncode else None
