@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Bandwidth(BandwidthArgs),
     /// Write a scene for another program, which then can be asked for the same light field.
     Export(ExportArgs),
+    /// Print the JSON schema of scene files, or what it says as a page: each field with its range, default and an example.
+    Schema(SchemaArgs),
 }
 
 #[derive(Debug, Args)]
@@ -433,6 +435,16 @@ pub(crate) struct BandwidthArgs {
     /// No progress bars
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue schema > docs/scene.schema.json
+  etendue schema --page > docs/scene.md")]
+pub(crate) struct SchemaArgs {
+    /// Print the page, in Markdown
+    #[arg(long)]
+    pub(crate) page: bool,
 }
 
 /// What `--to` knows.

@@ -31,6 +31,7 @@ mod progress;
 mod report;
 mod results;
 mod run;
+mod schema;
 mod sweep;
 mod table;
 mod target;
@@ -60,6 +61,7 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),
+        Command::Schema(args) => schema::schema(&args),
     });
     match outcome {
         Ok(code) => ExitCode::from(code),

@@ -105,7 +105,10 @@ fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
     let value = if is_log {
         from * libm::pow(to / from, share)
     } else {
-        (1.0 - share) * from + share * to
+        let value = (1.0 - share) * from + share * to;
+        // A step that meets zero but for its rounding.
+        let is_zero = value.abs() < 1e-12 * from.abs().max(to.abs());
+        if is_zero { 0.0 } else { value }
     };
     tidy(value).parse().unwrap_or(value)
 }
@@ -177,6 +180,7 @@ mod tests {
         assert_eq!(values("-4..-1:3log"), Some(vec![-4.0, -2.0, -1.0]));
         assert_eq!(values("3, 1e-2"), Some(vec![3.0, 0.01]));
         assert_eq!(values(".5..-.5:3"), Some(vec![0.5, 0.0, -0.5]));
+        assert_eq!(values("-0.1..0.2:4"), Some(vec![-0.1, 0.0, 0.1, 0.2]));
         for wrong in [
             "0..1",
             "0..1:0",

@@ -152,6 +152,12 @@ const MISTAKES: &[[&str; 3]] = &[
         "pitch: 20cm",
         "line 6, column 22: blockers[0]: `cm` stands here; allowed: a number without a unit",
     ],
+    // A number as the command line has it.
+    [
+        "pitch: 0.2",
+        "pitch: 2^20",
+        "line 6, column 21: blockers[0]: `^20` stands here; allowed: a number without a power, such as 1_048_576 or 1e6",
+    ],
     // A number in quotes.
     [
         "pitch: 0.2",

@@ -1,4 +1,5 @@
 use crate::{Frame, SliceGrid, TwoPlane, Window};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// On which side of what stands at its distance a plane looks at the light.
@@ -12,7 +13,7 @@ pub enum Side {
 }
 
 /// What a plane records.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Quantity {
     /// Radiance, W m⁻² sr⁻¹.
     #[default]
@@ -26,7 +27,7 @@ pub enum Quantity {
 ///
 /// On a surface, T is in the plane of incidence and B = N × T (docs/conventions.md); directions point away from the surface, those of
 /// light that arrives being turned around. A direction is cos φ (sin θ T + cos θ N) + sin φ B: the plane-sphere parameterisation.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Orientation {
     /// The plane across the central ray, two-plane parameterisation.
     #[default]

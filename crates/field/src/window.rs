@@ -1,8 +1,9 @@
 use crate::TwoPlane;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// One factor of a [`Window`]: 1 at its centre, zero outside |t| < half-width.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+/// One factor of a window: 1 at its centre, zero outside |t| < half-width.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum Profile {
     /// cos²(π t / 2h) on |t| < h.

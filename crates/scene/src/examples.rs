@@ -5,7 +5,9 @@ use crate::place::steps;
 /// End of a field's path, what it is, how it may be written; the first line that fits counts.
 const FIELDS: &str = r#"
 description | a text in quotes | "my first scene"
-name | a name in quotes | "floor"
+blockers[].name | a name in quotes, 1 to 64 characters | "bars"
+planes[].name | a name in quotes, 1 to 64 letters, digits, - and _ | "arrival"
+name | a name in quotes, 1 to 64 characters | "floor"
 light | a light | Rectangle(center: (0, 0, 0), size: (0.2, 0.2))
 light.bulb | a bulb | Square(0.1)
 light.image | a picture | (width: (0.2, 0.2))
@@ -77,10 +79,33 @@ seed | a whole number | 1
 batches | a whole number | 64
 emission | Aimed or Plain | Aimed
 sampling | Net or Random | Net
+alpha | a share of sound scenes | 0.01
+resolution | a share of the spectrum | 0.1
+radiance | a radiance, W m⁻² sr⁻¹ | 1
+intensity | an intensity, W sr⁻¹ | 1
+irradiance | an irradiance, W m⁻² | 1
+map[].width | an angle in radians | 0.3
+exponent | an exponent | 20
+fill | a share of the pitch | 0.6
+jitter | a share of the pitch | 0.3
+relief | a share of the radius | 0.3
+frequency | cycles per metre | 5
+modulation | a contrast | 0.9
+phase | an angle in radians | 0.3
+scale | a factor | 2
+albedo | a share of the light | 0.5
+front | an index of refraction | 1
+back | an index of refraction | 1.5
+n | an index of refraction | 1.5
+k | an index of absorption | 3
+max | a frequency in the unit of its axis | 16
+spacing | a frequency in the unit of its axis | 0.5
+width | a width in the unit of its coordinate | 0.3
+cut | a half-width in the unit of its coordinate | 0.5
 "#;
 
 /// What the field at a path is, and one way to write it.
-fn field(path: &str) -> [&'static str; 2] {
+pub(crate) fn field(path: &str) -> [&'static str; 2] {
     let mut plain = String::new();
     for step in steps(path) {
         match step.parse::<usize>() {

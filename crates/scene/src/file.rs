@@ -10,12 +10,13 @@ pub use surface::{
 
 use crate::overrides::whole;
 use etendue_field::{Orientation, Profile, Quantity};
+use schemars::JsonSchema;
 use serde::de::{Error, Unexpected, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
 use std::fmt;
 
-/// A scene file as written, in RON. Lengths in metres; slopes are tangents of angles.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// A scene file as written. Lengths in metres; slopes are tangents of angles.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Scene", deny_unknown_fields)]
 pub struct SceneFile {
     /// What the scene shows, for the reader.
@@ -46,7 +47,7 @@ pub struct SceneFile {
 }
 
 /// Black blockers, most of them in one plane orthogonal to the central ray.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Blockers", deny_unknown_fields)]
 pub enum BlockersFile {
     /// `count[0]` × `count[1]` squares on a jittered grid, edges along X and Y.
@@ -123,7 +124,7 @@ impl BlockersFile {
 }
 
 /// A shape in the plane of its blockers.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Shape", deny_unknown_fields)]
 pub enum ShapeFile {
     /// A rectangle, edges along X and Y.
@@ -152,7 +153,7 @@ pub enum ShapeFile {
 }
 
 /// An axis across the central ray.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum AxisName {
     /// Along X.
     X,
@@ -172,7 +173,7 @@ impl AxisName {
 }
 
 /// A side of a line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum HalfName {
     /// Coordinates below the edge.
     Below,
@@ -182,7 +183,7 @@ pub enum HalfName {
 
 /// The central ray: it leaves the light's centre and goes from surface to surface, each sending it towards the centre of the
 /// next.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Path", deny_unknown_fields)]
 pub struct PathFile {
     /// Direction in which it leaves the light; any length.
@@ -197,7 +198,7 @@ pub struct PathFile {
 }
 
 /// A virtual plane.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Plane", deny_unknown_fields)]
 pub struct PlaneFile {
     /// Name: the folder of its results.
@@ -219,7 +220,7 @@ pub struct PlaneFile {
 }
 
 /// A place on the path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Place {
     /// At the light, as it leaves.
     Emission,
@@ -232,7 +233,7 @@ pub enum Place {
 }
 
 /// The window: a profile for each coordinate; y and v are as x and u unless stated.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Window", deny_unknown_fields)]
 pub struct WindowFile {
     /// Along x, metres.
@@ -248,7 +249,7 @@ pub struct WindowFile {
 }
 
 /// The frequencies of the slices.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Frequencies", deny_unknown_fields)]
 pub struct FrequenciesFile {
     /// Number K of azimuths πk/K.
@@ -261,7 +262,7 @@ pub struct FrequenciesFile {
 }
 
 /// A frequency axis from −max to +max.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Axis", deny_unknown_fields)]
 pub struct AxisFile {
     /// Highest frequency, rounded up to a multiple of the spacing.
@@ -272,7 +273,7 @@ pub struct AxisFile {
 }
 
 /// How the scene is measured.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Run", deny_unknown_fields, default)]
 pub struct RunFile {
     /// Photons emitted; 1e7 is a number too.
@@ -345,7 +346,7 @@ impl Visitor<'_> for Count {
 }
 
 /// How photons leave the light.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Emission {
     /// At the windows of the planes: a mixture of one proposal for each.
     Aimed,
@@ -354,7 +355,7 @@ pub enum Emission {
 }
 
 /// The numbers that photons are drawn from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 pub enum Sampling {
     /// Scrambled Sobol' nets, one for each batch: less noise, most with batches of 2ᵐ photons.
     Net,

@@ -33,6 +33,7 @@ mod place;
 mod read;
 mod resolve;
 mod scene;
+mod schema;
 mod shown;
 mod triangles;
 mod warnings;
@@ -52,5 +53,6 @@ pub use scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Run, Scene,
     SmoothMesh, Surface, scene_hash,
 };
+pub use schema::schema;
 pub use shown::shown;
 pub use triangles::Triangles;

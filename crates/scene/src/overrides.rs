@@ -54,9 +54,11 @@ impl SceneFile {
 }
 
 /// Why a value does not fit the field at which it is, or below.
-fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
+pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
     let field = path_of(error.path());
     let told = error.inner().to_string();
+    // The place is told beside it.
+    let told = told.split(" at line ").next().unwrap_or_default();
     // Of an unknown name: itself, and those that are known.
     let mut names = told.split('`').skip(1).step_by(2);
     let meant = match names.next() {

@@ -2,6 +2,7 @@
 
 use crate::examples::{example, has_fields, wanted};
 use crate::nearest::did_you_mean;
+use crate::overrides::unfit;
 use crate::place::{Place, find, word};
 use crate::shown::shown;
 use crate::{SceneError, SceneFile, limits};
@@ -10,13 +11,16 @@ use serde::Deserialize;
 use serde_path_to_error::{Path, Segment, Track};
 
 impl SceneFile {
-    /// Reads a scene file.
+    /// Reads a scene file, in RON or, if it begins with a brace, in JSON.
     ///
     /// # Errors
     /// [`SceneError::Syntax`] with line, column and what is allowed there.
     pub fn parse(text: &str) -> Result<Self, SceneError> {
         // Some editors begin a file with a byte order mark.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        if text.trim_start().starts_with('{') {
+            return json(text);
+        }
         let options = ron::Options::default()
             .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME);
         options.from_str(text).map_err(|error| {
@@ -29,6 +33,25 @@ impl SceneFile {
             syntax(text, &path_of(&track.path()), &error)
         })
     }
+}
+
+/// Reads a scene file in JSON.
+fn json(text: &str) -> Result<SceneFile, SceneError> {
+    let mut json = serde_json::Deserializer::from_str(text);
+    let file = serde_path_to_error::deserialize(&mut json);
+    file.map_err(|error| SceneError::Syntax {
+        line: error.inner().line(),
+        column: error.inner().column(),
+        message: shown(unfit(&error), limits::ALLOWED),
+    })
+    .and_then(|file| match json.end() {
+        Ok(()) => Ok(file),
+        Err(error) => Err(SceneError::Syntax {
+            line: error.line(),
+            column: error.column(),
+            message: "allowed: nothing after the last bracket".to_owned(),
+        }),
+    })
 }
 
 /// A path as messages have it, without names of variants.
@@ -146,6 +169,9 @@ fn unexpected(code: &Error, text: &str, [line, column]: [usize; 2]) -> String {
         Error::Eof => {
             return "the file ends here; allowed: what is missing, and a bracket that closes it"
                 .into();
+        }
+        Error::ExpectedComma if rest.starts_with('^') => {
+            "a number without a power, such as 1_048_576 or 1e6"
         }
         Error::ExpectedComma if before.ends_with(is_digit) => "a number without a unit",
         Error::ExpectedComma => "a comma before it, or a closing bracket",

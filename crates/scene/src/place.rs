@@ -46,7 +46,8 @@ pub(crate) fn find<'a>(text: &'a str, path: &str) -> Option<Place<'a>> {
             }
             Kind::Colon => {}
             Kind::Word if tokens.next_if(|next| next.kind == Kind::Colon).is_some() => {
-                level.key = Some(&text[token.start..token.end]);
+                // In JSON names stand in quotes.
+                level.key = Some(text[token.start..token.end].trim_matches('"'));
                 continue;
             }
             Kind::Word | Kind::Open => {
@@ -123,6 +124,8 @@ impl Level<'_> {
         let at = self.at?;
         let step = steps.get(at);
         match self.key {
+            // In JSON a variant is a field.
+            Some(key) if key.starts_with(char::is_uppercase) => Some(at),
             Some(key) => (step == Some(&key)).then_some(at + 1),
             None if self.named => (self.index == 0).then_some(at),
             None => (step?.parse() == Ok(self.index)).then_some(at + 1),

@@ -2,7 +2,7 @@
 //!
 //! Photons held against theory cannot show a mistake that both sides make. So every shared
 //! function is written once more here, slowly and plainly, from what is written about it:
-//! scenes/README.md, docs/conventions.md, docs/theory.md, and the literature named beside each. It
+//! docs/scenes.md, docs/conventions.md, docs/theory.md, and the literature named beside each. It
 //! never calls the fast code, but for the plain data that describes a scene. Where a function
 //! depends on how a scene file is read, a file is written and read. Faults are planted in the
 //! second implementation; each must be seen.

@@ -1,5 +1,5 @@
 //! Patterns, pictures and blends from their definitions (docs of `etendue_field::Pattern`,
-//! scenes/README.md).
+//! docs/scenes.md).
 
 use etendue_field::{Brdf, Fresnel, Grating, Lobe};
 use std::f64::consts::TAU;

@@ -1,4 +1,4 @@
-//! A scene file in the words of scenes/README.md, with its central ray anywhere in the world, and
+//! A scene file in the words of docs/scenes.md, with its central ray anywhere in the world, and
 //! what it resolves to.
 
 use super::vector::{Axes, Vector, aside, between, direction};

@@ -1,10 +1,11 @@
 //! Lights, as written.
 
 use super::{AxisName, along_y, along_z, one};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// The light. The central ray leaves its centre.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Light", deny_unknown_fields)]
 pub enum LightFile {
     /// A Lambertian rectangle orthogonal to the central ray, edges along X and Y, dark on its back.
@@ -86,7 +87,7 @@ pub enum LightFile {
 }
 
 /// Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Environment")]
 pub enum EnvironmentFile {
     /// A sum of lobes.
@@ -96,7 +97,7 @@ pub enum EnvironmentFile {
 }
 
 /// A lobe of light, radiance · exp((cos γ − 1)/width²), γ being the angle to `from`.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "LightLobe", deny_unknown_fields)]
 pub struct SphericalGaussianFile {
     /// The direction most of it comes from, any length.
@@ -109,7 +110,7 @@ pub struct SphericalGaussianFile {
 }
 
 /// A smooth picture: exp(−π (a²/w₁² + b²/w₂²)), times a grating ½ (1 + m cos(2π f t + p)) if it has one.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Image", deny_unknown_fields)]
 pub struct ImageFile {
     /// w₁ and w₂ along X and along Y.
@@ -120,7 +121,7 @@ pub struct ImageFile {
 }
 
 /// The grating of a picture or a pattern.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Grating", deny_unknown_fields)]
 pub struct GratingFile {
     /// The axis along which it varies.
@@ -136,7 +137,7 @@ pub struct GratingFile {
 }
 
 /// The bulb of a spot, orthogonal to the central ray.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Bulb")]
 pub enum BulbFile {
     /// A square with this side, edges along X and Y.

@@ -1,16 +1,16 @@
 //! Surfaces and what they do to light, as written.
 
 use super::{AxisName, count, half, one};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Where a mesh comes from.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub enum MeshSource {
     /// An OBJ or PLY file; the path is relative to the scene file, and stays inside its folder.
     File(String),
-    /// A generated piece of the paraboloid z = −(k₁ x² + k₂ y²)/2 around the origin, facing along z: see
-    /// [`Mesh::paraboloid`](crate::Mesh::paraboloid).
+    /// A generated piece of the paraboloid z = −(k₁ x² + k₂ y²)/2 around the origin, facing along z.
     Paraboloid {
         /// k₁ and k₂, per metre: positive if it is convex.
         curvatures: [f64; 2],
@@ -20,7 +20,7 @@ pub enum MeshSource {
         #[serde(deserialize_with = "count")]
         cells: u32,
     },
-    /// A generated closed surface around the origin: see [`Mesh::star`](crate::Mesh::star).
+    /// A generated closed surface around the origin, r = radius · (1 + relief · sinˡθ · cos lφ) with l lobes around z.
     Star {
         /// Mean radius.
         radius: f64,
@@ -35,11 +35,11 @@ pub enum MeshSource {
     },
 }
 
-/// A Lambertian surface.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What light falls on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Surface", deny_unknown_fields)]
 pub enum SurfaceFile {
-    /// A rectangle, edges along X and Y unless it faces elsewhere.
+    /// A Lambertian rectangle, edges along X and Y unless it faces elsewhere.
     Rectangle {
         /// Name, for the path and the planes to refer to.
         name: String,
@@ -55,7 +55,7 @@ pub enum SurfaceFile {
         #[serde(default = "half")]
         albedo: f64,
     },
-    /// A triangle mesh, Lambertian on both sides.
+    /// A triangle mesh, Lambertian on both sides unless it is smooth.
     Mesh {
         /// Name.
         name: String,
@@ -107,7 +107,7 @@ impl SurfaceFile {
 }
 
 /// The form of a smooth surface around its vertex; curvatures per metre, positive if it is convex seen from where it faces.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Form")]
 pub enum FormFile {
     /// Flat.
@@ -121,7 +121,7 @@ pub enum FormFile {
 }
 
 /// What a smooth surface does to light.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Event", deny_unknown_fields)]
 pub enum EventFile {
     /// Reflects it all.
@@ -152,7 +152,7 @@ pub enum EventFile {
 }
 
 /// A BRDF.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Brdf", deny_unknown_fields)]
 pub struct BrdfFile {
     /// Its lobe.
@@ -166,7 +166,7 @@ pub struct BrdfFile {
 }
 
 /// The lobe of a BRDF.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Lobe")]
 pub enum LobeFile {
     /// Alike in all directions.
@@ -180,7 +180,7 @@ pub enum LobeFile {
 }
 
 /// The share of light that is reflected, by the angle of incidence.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Fresnel", deny_unknown_fields)]
 pub enum FresnelFile {
     /// All of it.
@@ -198,7 +198,7 @@ pub enum FresnelFile {
 }
 
 /// A number from 0 to 1 at each place of a surface.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Pattern", deny_unknown_fields)]
 pub enum PatternFile {
     /// ½ (1 + m cos(2π f t + p)), t along `along` or across it.

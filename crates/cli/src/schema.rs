@@ -1,0 +1,185 @@
+//! `etendue schema`: what a scene file may hold, for editors and as a page of the book.
+
+use crate::args::SchemaArgs;
+use crate::deliver;
+use crate::failure::Failure;
+use serde_json::{Map, Value};
+
+/// `etendue schema`: returns the exit code.
+pub(crate) fn schema(args: &SchemaArgs) -> Result<u8, Failure> {
+    let schema = etendue_scene::schema();
+    let text = match args.page {
+        true => page(&schema),
+        false => format!("{schema:#}"),
+    };
+    deliver(text.trim_end())?;
+    Ok(0)
+}
+
+/// What stands above the tables.
+const HEAD: &str = include_str!("schema/head.md");
+
+/// All types, each where it is met first, with their fields.
+fn page(schema: &Value) -> String {
+    let mut types = vec![("Scene", schema)];
+    let mut next = 0;
+    while let Some((_, node)) = types.get(next) {
+        let mut met = Vec::new();
+        named(node, &mut met);
+        for name in met {
+            if types.iter().all(|(known, _)| *known != name) {
+                types.push((name, &schema["$defs"][name]));
+            }
+        }
+        next += 1;
+    }
+    let sections = types
+        .iter()
+        .map(|(name, node)| format!("\n## {name}\n\n{}\n{}", description(node), content(node)));
+    format!("{HEAD}{}", sections.collect::<String>())
+}
+
+/// The names of the types that a node refers to, in the order of the page.
+fn named<'a>(node: &'a Value, met: &mut Vec<&'a str>) {
+    if let Some(name) = node["$ref"].as_str().and_then(|at| at.rsplit('/').next()) {
+        met.push(name);
+    }
+    for (_, below) in fields(node) {
+        named(below, met);
+    }
+    named_below(&node["items"], met);
+    for list in ["oneOf", "anyOf", "prefixItems"] {
+        named_below(&node[list], met);
+    }
+}
+
+fn named_below<'a>(node: &'a Value, met: &mut Vec<&'a str>) {
+    match node {
+        Value::Array(all) => all.iter().for_each(|below| named(below, met)),
+        Value::Object(_) => named(node, met),
+        _ => {}
+    }
+}
+
+/// The fields of a node: those that must be stated, then the others by name.
+fn fields(node: &Value) -> impl Iterator<Item = (&str, &Value)> {
+    let required = node["required"].as_array().into_iter().flatten();
+    let required = required.filter_map(Value::as_str);
+    let optional = node["properties"]
+        .as_object()
+        .into_iter()
+        .flat_map(Map::keys);
+    let optional = optional
+        .map(String::as_str)
+        .filter(|name| !is_required(node, name));
+    let names = required.chain(optional);
+    names.map(|name| (name, &node["properties"][name]))
+}
+
+fn is_required(node: &Value, name: &str) -> bool {
+    let mut required = node["required"].as_array().into_iter().flatten();
+    required.any(|known| known == name)
+}
+
+fn description(node: &Value) -> &str {
+    node["description"].as_str().unwrap_or_default()
+}
+
+/// The fields of a type, or its variants.
+fn content(node: &Value) -> String {
+    match node["oneOf"].as_array() {
+        Some(variants) => variants.iter().map(variant).collect(),
+        None => table(node),
+    }
+}
+
+/// A variant in a line, with its fields if they have names.
+fn variant(node: &Value) -> String {
+    let about = description(node);
+    if let Some(name) = node["const"].as_str() {
+        return format!("\n* `{name}`: {about}\n");
+    }
+    let mut variants = fields(node);
+    let Some((name, inside)) = variants.next() else {
+        return String::new();
+    };
+    if inside["properties"].is_object() {
+        return format!("\n* `{name}(…)`: {about}\n{}", table(inside));
+    }
+    format!("\n* `{name}(…)`: {about}{}\n", holds(inside))
+}
+
+/// What stands between the brackets of a variant without names.
+fn holds(node: &Value) -> String {
+    let many = node["prefixItems"].as_array();
+    let each = many.map_or(node, |many| &many[0]);
+    let count = many.map_or(String::new(), |many| format!("{} numbers: ", many.len()));
+    match (each["x-range"].as_str(), type_of(node)) {
+        (Some(range), _) => format!(" In the brackets: {count}{range}."),
+        (None, Some(name)) => format!(
+            " In the brackets: a list of [{name}](#{}).",
+            name.to_lowercase()
+        ),
+        (None, None) => " In the brackets: a text in quotes.".to_owned(),
+    }
+}
+
+/// The named type of a node, or of what it lists.
+fn type_of(node: &Value) -> Option<&str> {
+    let mut met = Vec::new();
+    named(node, &mut met);
+    met.first().copied()
+}
+
+/// Fields, one in a row.
+fn table(node: &Value) -> String {
+    let mut text = String::from("\n| field | meaning | value | unless stated | example |\n");
+    text.push_str("|---|---|---|---|---|\n");
+    for (name, field) in fields(node) {
+        let what = field["title"].as_str().unwrap_or_default();
+        let value = match type_of(field) {
+            Some(of) => format!("[{what}](#{})", of.to_lowercase()),
+            None => what.to_owned(),
+        };
+        let range = field["x-range"]
+            .as_str()
+            .or(field["items"]["x-range"].as_str());
+        let range = range.map_or(String::new(), |range| format!(", {range}"));
+        let default = match is_required(node, name) {
+            true => "must be stated".to_owned(),
+            false => default(&field["default"]),
+        };
+        let about = description(field);
+        let example = field["x-ron"].as_str().unwrap_or_default();
+        let row = [
+            format!("`{name}`"),
+            about.replace('\n', " "),
+            value + &range,
+            default,
+        ];
+        text.push_str(&format!("| {} | `{example}` |\n", row.join(" | ")));
+    }
+    text
+}
+
+/// A default as it is written in a scene file.
+fn default(value: &Value) -> String {
+    match value {
+        Value::Null => "left out".to_owned(),
+        Value::Object(_) => "the defaults of its fields".to_owned(),
+        value => format!("`{}`", written(value)),
+    }
+}
+
+fn written(value: &Value) -> String {
+    match value {
+        Value::String(text) if text.is_empty() => "\"\"".to_owned(),
+        Value::String(text) => text.clone(),
+        Value::Array(all) if all.is_empty() => "[]".to_owned(),
+        Value::Array(all) => {
+            let all: Vec<String> = all.iter().map(written).collect();
+            format!("({})", all.join(", "))
+        }
+        value => value.to_string().trim_end_matches(".0").to_owned(),
+    }
+}
