@@ -201,7 +201,7 @@ fn column<'a>(
             values: compared.radial.power.view(),
         },
         predicted: None,
-        verdict: verdict_line(compared),
+        verdict: verdict_lines(compared),
         guides: match (&applicability.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
             // A lobe leaves no line of light where a mirror would.
@@ -305,13 +305,13 @@ impl Words {
         along: ["*x*", "*u*"],
         across: ["*y*", "*v*"],
         angle: "",
-        per_angle: "cycles per unit slope",
+        per_angle: "cycles/slope",
     };
     const ON_SURFACE: Self = Self {
         along: ["*s*", "*θ*"],
         across: ["*t*", "*φ*"],
         angle: "rad",
-        per_angle: "cycles per radian",
+        per_angle: "cycles/rad",
     };
 
     fn of(plane: &VirtualPlane) -> Self {

@@ -122,10 +122,18 @@ impl Axis {
     /// Ticks at multiples of 1, 2 or 5 × 10ⁿ, at most `most` steps to the axis.
     pub(crate) fn ticks(&self, most: f64) -> Vec<Tick> {
         let [min, max] = self.range();
-        let step = step((max - min) / most.max(1.0));
+        self.ticks_every(step((max - min) / most.max(1.0), &USUAL))
+    }
+
+    /// Ticks at multiples of `step`, which has two significant digits at most.
+    fn ticks_every(&self, step: f64) -> Vec<Tick> {
+        let [min, max] = self.range();
         let exponent = self.exponent();
-        let places = usize::try_from(exponent - order(step)).unwrap_or(0);
         let unit = 10_f64.powi(exponent);
+        let digits = step / 10_f64.powi(order(step));
+        let is_whole = (digits - digits.round()).abs() < 1e-6;
+        let last = order(step) - i32::from(!is_whole);
+        let places = usize::try_from(exponent - last).unwrap_or(0);
         // A tick on the edge belongs to the axis whatever the rounding.
         let slack = 1e-9 * (max - min);
         let mut multiple = ((min - slack) / step).ceil();
@@ -143,23 +151,32 @@ impl Axis {
     }
 }
 
+/// First digits of the steps between ticks.
+const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
+/// The same where the usual ones leave fewer than three ticks.
+const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
+
 /// The most ticks whose texts, side by side at a font `size` along `length`, stay apart.
 pub(crate) fn spaced_ticks(axis: &Axis, length: f64, size: f64) -> Vec<Tick> {
     let fits = |ticks: &[Tick]| {
-        let widest = ticks
-            .iter()
-            .map(|t| width(&t.text, size))
-            .fold(0.0, f64::max);
         ticks.windows(2).all(|pair| {
             let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
-            step * length >= widest + 4.0
+            let [a, b] = [0, 1].map(|i| width(&pair[i].text, size));
+            step * length >= 0.5 * (a + b) + 4.0
         })
     };
-    let candidates = (1..=8).rev().map(|most| axis.ticks(f64::from(most)));
-    candidates
-        .into_iter()
-        .find(|ticks| fits(ticks))
-        .unwrap_or_default()
+    let most = || (1..=8).rev().map(f64::from);
+    let usual = most()
+        .map(|most| axis.ticks(most))
+        .find(|ticks| fits(ticks));
+    let usual = usual.unwrap_or_default();
+    if usual.len() >= 3 {
+        return usual;
+    }
+    let [min, max] = axis.range();
+    let mut others = most().map(|most| axis.ticks_every(step((max - min) / most, &MORE)));
+    let more = others.find(|ticks| ticks.len() >= 3 && fits(ticks));
+    more.unwrap_or(usual)
 }
 
 /// Ticks along an upright axis: one for each 36 units of its height, or closer together where there would not be three.
@@ -170,13 +187,12 @@ pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     enough.next().unwrap_or_else(|| axis.ticks(most))
 }
 
-/// The smallest of 1, 2, 5 × 10ⁿ that is not below `least` > 0.
-fn step(least: f64) -> f64 {
+/// The smallest of `digits` × 10ⁿ that is not below `least` > 0.
+fn step(least: f64, digits: &[f64]) -> f64 {
     let decade = 10_f64.powi(order(least));
     // The slack keeps 0.2 from becoming 0.5 when it is computed as 0.20000000000000004.
-    [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .map(|m| m * decade)
+    let mut steps = digits.iter().map(|digit| digit * decade);
+    steps
         .find(|candidate| *candidate >= least * (1.0 - 1e-9))
         .unwrap_or(10.0 * decade)
 }
@@ -225,6 +241,16 @@ mod tests {
         ] {
             let ticks = upright_ticks(&Axis::edges("y", "", range), height);
             assert!((3..=6).contains(&ticks.len()), "{range:?}: {ticks:?}");
+        }
+    }
+
+    #[test]
+    fn a_level_axis_has_three_ticks_where_two_numbers_fit_beside_another() {
+        for (range, length, first) in [([-16.5, 16.5], 48.0, "−15"), ([-0.25, 0.25], 66.0, "−0.2")]
+        {
+            let ticks = spaced_ticks(&Axis::edges("x", "", range), length, 11.0);
+            assert!(ticks.len() >= 3, "{range:?}: {ticks:?}");
+            assert_eq!(ticks[0].text, first);
         }
     }
 

@@ -3,11 +3,12 @@
 use crate::color::{NO_VALUE, Shading, hex};
 use crate::figure::Error;
 use crate::image::color_strip;
-use crate::panel::OVERHANG;
 use crate::style::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 
+/// How much longer than its bar a label may be.
+const OVERHANG: f64 = 12.0;
 /// Width of the bar itself.
 pub(crate) const WIDTH: f64 = 12.0;
 /// Height of the point that marks an end beyond which values keep the last color.

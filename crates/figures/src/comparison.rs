@@ -86,6 +86,7 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
             area: area(index, top),
             x: &comparison.x,
             y: &comparison.y,
+            label_x: true,
             label_y: index == 0,
         };
         panel.heat_map(svg, values, shading)?;

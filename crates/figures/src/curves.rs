@@ -3,7 +3,9 @@
 use crate::axis::{Axis, Quantity, upright_ticks};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::panel::Panel;
-use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, THEORY_COLOR, TICK_TEXT};
+use crate::style::{
+    FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, PAGE, THEORY_COLOR, TICK_TEXT,
+};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::{plain, width};
 
@@ -54,8 +56,11 @@ pub struct Curves {
 }
 
 const ACROSS: usize = 3;
-const SIZE: [f64; 2] = [262.0, 190.0];
 const LEFT: f64 = 62.0;
+const RIGHT: f64 = 20.0;
+/// Height of a panel, and its greatest width.
+const HEIGHT: f64 = 136.0;
+const WIDEST: f64 = 262.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
 /// Width of numbers beside an axis for which there is room.
 const USUAL: f64 = 28.0;
@@ -81,14 +86,16 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
     // Long numbers beside an axis move its name.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
-        upright_ticks(&y, SIZE[1])
+        upright_ticks(&y, HEIGHT)
     });
     let widest = ticks
         .map(|tick| width(&tick.text, TICK_TEXT))
         .fold(0.0, f64::max);
     let more = (widest - USUAL).max(0.0);
     let (left, between) = (LEFT + more, BETWEEN[0] + more);
-    let inner = columns as f64 * (SIZE[0] + between) - between;
+    let room = PAGE - left - RIGHT - (columns - 1) as f64 * between;
+    let size = (room / columns as f64).floor().min(WIDEST);
+    let inner = columns as f64 * (size + between) - between;
     let mut svg = Svg::default();
     let top = svg.title(left, inner, &curves.title, &curves.note);
     let key_right = key(&mut svg, curves, [left, top + 16.0]);
@@ -97,17 +104,17 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
     for (i, panel) in curves.panels.iter().enumerate() {
         let [column, row] = [i % ACROSS, i / ACROSS].map(|n| n as f64);
         let area = Area {
-            x: left + column * (SIZE[0] + between),
-            y: top + row * (SIZE[1] + BETWEEN[1]),
-            width: SIZE[0],
-            height: SIZE[1],
+            x: left + column * (size + between),
+            y: top + row * (HEIGHT + BETWEEN[1]),
+            width: size,
+            height: HEIGHT,
         };
         draw(&mut svg, panel, &curves.y, area);
         bottom = area.bottom();
     }
     Ok(Figure {
         svg: svg.finish(
-            (left + inner).max(key_right) + 24.0,
+            (left + inner).max(key_right) + RIGHT,
             bottom + LABEL_BASELINE + 14.0,
         ),
         csv: numbers(curves)?,
@@ -168,6 +175,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
         area,
         x: &x,
         y: &y,
+        label_x: true,
         label_y: true,
     };
     svg.clipped(area, |svg| {

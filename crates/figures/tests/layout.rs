@@ -104,6 +104,29 @@ fn no_texts_overlap() {
     }
 }
 
+/// A page is 7 inches of 96 units wide, and its texts have 6 points at least, scripts too.
+#[test]
+fn no_text_is_below_six_points() {
+    for figure in gallery() {
+        let sizes = figure.svg.split("font-size=\"").skip(1);
+        let sizes = sizes.map(|rest| rest.split('"').next().unwrap().parse::<f64>().unwrap());
+        let smallest = sizes.fold(f64::INFINITY, f64::min);
+        assert!(smallest >= 8.0, "{smallest} of 96 to the inch");
+    }
+}
+
+#[test]
+fn strips_plates_and_curves_are_no_wider_than_two_columns() {
+    let values = corner();
+    let strips = (1..=8).map(|count| path(&scene(count), values.view()));
+    let plates = (1..=8).map(|count| grid(count, values.view()));
+    let panels = (1..=5).map(|count| curves(&lines(count)).unwrap());
+    for figure in strips.chain(plates).chain(panels) {
+        let (_, size) = written(&figure);
+        assert!(size.width() <= 672.0, "{} of 96 to the inch", size.width());
+    }
+}
+
 fn options() -> usvg::Options<'static> {
     let mut options = usvg::Options::default();
     let fonts = options.fontdb_mut();

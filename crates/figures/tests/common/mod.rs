@@ -124,7 +124,10 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         light_field: picture(),
         spectrum: picture(),
         predicted: None,
-        verdict: "*p* = 0.5, pass".to_owned(),
+        verdict: vec![
+            "*p* = 0.5, pass".to_owned(),
+            "*χ*^{2}/dof = 1.01".to_owned(),
+        ],
         guides: vec![Guide {
             through: [0.0, 0.0],
             slope: -1.0,
