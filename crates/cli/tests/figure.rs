@@ -83,6 +83,6 @@ fn an_unknown_figure_is_refused_and_names_those_there_are() {
     refused(
         folder.path(),
         "figure 16 --out out",
-        &["no figure 16", "1, 4, 5", "all"],
+        &["no figure 16", "1, 3, 4, 5", "table1, all"],
     );
 }

@@ -1,3 +1,4 @@
+use crate::style::{LEAST_TEXT, TICK_TEXT};
 use crate::text::width;
 
 /// A named quantity and its unit.
@@ -56,6 +57,8 @@ pub struct Axis {
     pub min: f64,
     /// Outer edge of the last cell.
     pub max: f64,
+    /// Whether equal factors, not equal differences, are equally far apart; both edges are above 0 then.
+    pub is_log: bool,
 }
 
 /// A tick: where, in the axis' unit, and its text.
@@ -73,6 +76,7 @@ impl Axis {
             quantity: Quantity::new(name, unit),
             min,
             max,
+            is_log: false,
         }
     }
 
@@ -104,12 +108,19 @@ impl Axis {
     /// Where `value` falls, 0 at the low edge and 1 at the high one.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
-        (value - min) / (max - min)
+        if self.is_log {
+            libm::log(value / min) / libm::log(max / min)
+        } else {
+            (value - min) / (max - min)
+        }
     }
 
     /// The power of ten taken out of the tick texts.
     pub(crate) fn exponent(&self) -> i32 {
         let [min, max] = self.range();
+        if self.is_log {
+            return 0;
+        }
         let decade = order(min.abs().max(max.abs()));
         // Up to 9999 and down to 0.01 the plain numbers are the shorter.
         if (-2..=3).contains(&decade) {
@@ -121,8 +132,35 @@ impl Axis {
 
     /// Ticks at multiples of 1, 2 or 5 × 10ⁿ, at most `most` steps to the axis.
     pub(crate) fn ticks(&self, most: f64) -> Vec<Tick> {
+        if self.is_log {
+            let [all, fewer, decades] = [&USUAL[..], &[1.0, 3.0], &[1.0]].map(|d| self.powers(d));
+            let fitting = [all, fewer]
+                .into_iter()
+                .find(|ticks| ticks.len() as f64 <= most + 1.0);
+            return fitting.unwrap_or(decades);
+        }
         let [min, max] = self.range();
         self.ticks_every(step((max - min) / most.max(1.0), &USUAL))
+    }
+
+    /// Ticks of a logarithmic axis, at `digits` × 10ⁿ.
+    fn powers(&self, digits: &[f64]) -> Vec<Tick> {
+        let [min, max] = self.range();
+        let tick = |n: i32, digit: f64| {
+            let text = if (-4..5).contains(&n) {
+                let places = usize::try_from(-n).unwrap_or(0);
+                format!("{:.places$}", digit * 10_f64.powi(n))
+            } else {
+                format!("{digit}e{n}")
+            };
+            Tick {
+                value: digit * 10_f64.powi(n),
+                text: minus(&text),
+            }
+        };
+        let ticks = (order(min)..=order(max)).flat_map(|n| digits.iter().map(move |d| tick(n, *d)));
+        let inside = |tick: &Tick| (min..=max).contains(&tick.value);
+        ticks.filter(inside).collect()
     }
 
     /// Ticks at multiples of `step`, which has two significant digits at most.
@@ -156,27 +194,41 @@ const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
 /// The same where the usual ones leave fewer than three ticks.
 const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
 
-/// The most ticks whose texts, side by side at a font `size` along `length`, stay apart.
-pub(crate) fn spaced_ticks(axis: &Axis, length: f64, size: f64) -> Vec<Tick> {
-    let fits = |ticks: &[Tick]| {
-        ticks.windows(2).all(|pair| {
-            let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
-            let [a, b] = [0, 1].map(|i| width(&pair[i].text, size));
-            step * length >= 0.5 * (a + b) + 4.0
-        })
-    };
-    let most = || (1..=8).rev().map(f64::from);
-    let usual = most()
-        .map(|most| axis.ticks(most))
-        .find(|ticks| fits(ticks));
-    let usual = usual.unwrap_or_default();
-    if usual.len() >= 3 {
-        return usual;
-    }
+/// The most ticks whose texts, side by side along `length`, stay apart, and the size of these. Where there would be fewer than
+/// three the texts are smaller, or the steps less usual.
+pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
+    const SIZES: [f64; 3] = [TICK_TEXT, 9.5, LEAST_TEXT];
     let [min, max] = axis.range();
-    let mut others = most().map(|most| axis.ticks_every(step((max - min) / most, &MORE)));
-    let more = others.find(|ticks| ticks.len() >= 3 && fits(ticks));
-    more.unwrap_or(usual)
+    let most = || (1..=8).rev().map(f64::from);
+    let usual = |size| {
+        let mut ticks = most().map(|most| axis.ticks(most));
+        ticks.find(|ticks| fit(axis, ticks, length, size))
+    };
+    let unusual = |size| {
+        let mut ticks = most().map(|most| axis.ticks_every(step((max - min) / most, &MORE)));
+        ticks.find(|ticks| ticks.len() >= 3 && fit(axis, ticks, length, size))
+    };
+    let first = (usual(TICK_TEXT).unwrap_or_default(), TICK_TEXT);
+    let smaller = SIZES
+        .into_iter()
+        .filter_map(|size| Some((usual(size)?, size)));
+    let mut enough = smaller.filter(|(ticks, _)| ticks.len() >= 3);
+    if axis.is_log {
+        return enough.next().unwrap_or(first);
+    }
+    let others = SIZES
+        .into_iter()
+        .filter_map(|size| Some((unusual(size)?, size)));
+    enough.chain(others).next().unwrap_or(first)
+}
+
+/// Whether the texts of ticks at a font `size` stay apart.
+fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
+    ticks.windows(2).all(|pair| {
+        let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
+        let [a, b] = [0, 1].map(|i| width(&pair[i].text, size));
+        step * length >= 0.5 * (a + b) + 3.0
+    })
 }
 
 /// Ticks along an upright axis: one for each 36 units of its height, or closer together where there would not be three.
@@ -246,12 +298,32 @@ mod tests {
 
     #[test]
     fn a_level_axis_has_three_ticks_where_two_numbers_fit_beside_another() {
-        for (range, length, first) in [([-16.5, 16.5], 48.0, "−15"), ([-0.25, 0.25], 66.0, "−0.2")]
+        for (range, length, first) in [([-16.5, 16.5], 40.0, "−15"), ([-0.15, 0.15], 58.0, "−0.1")]
         {
-            let ticks = spaced_ticks(&Axis::edges("x", "", range), length, 11.0);
+            let (ticks, _) = spaced_ticks(&Axis::edges("x", "", range), length);
             assert!(ticks.len() >= 3, "{range:?}: {ticks:?}");
             assert_eq!(ticks[0].text, first);
         }
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_equal_factors_equally_far_apart() {
+        let axis = |min, max| Axis {
+            is_log: true,
+            ..Axis::edges("*e*", "", [min, max])
+        };
+        let decades = axis(1e-4, 1.0);
+        assert!((decades.fraction(1e-2) - 0.5).abs() < 1e-12); // rounding
+        let texts = |axis: &Axis, most| {
+            let ticks = axis.ticks(most);
+            ticks.into_iter().map(|tick| tick.text).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            texts(&decades, 4.0),
+            ["0.0001", "0.001", "0.01", "0.1", "1"]
+        );
+        assert_eq!(texts(&axis(0.09, 1.1), 4.0), ["0.1", "0.2", "0.5", "1"]);
+        assert_eq!(texts(&axis(1e5, 1e6), 4.0), ["1e5", "2e5", "5e5", "1e6"]);
     }
 
     #[test]

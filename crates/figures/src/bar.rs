@@ -59,7 +59,7 @@ fn outline(svg: &mut Svg, shading: &Shading, area: Area) {
 fn scale(svg: &mut Svg, shading: &Shading, area: Area) {
     let axis = &shading.axis;
     let mut widest: f64 = 0.0;
-    for tick in axis.ticks(area.height / 24.0) {
+    for tick in axis.ticks((area.height / 24.0).min(6.0)) {
         let at = area.bottom() - axis.fraction(tick.value) * area.height;
         svg.line([area.right(), at], [area.right() + TICK, at], Stroke::FRAME);
         let place = [area.right() + TICK + 3.0, at + 4.0];

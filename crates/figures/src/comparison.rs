@@ -115,8 +115,7 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
             let top = largest(measured).max(largest(predicted));
             let axis = Axis {
                 quantity: comparison.quantity.clone(),
-                min: 0.0,
-                max: if top > 0.0 { top } else { 1.0 },
+                ..Axis::edges("", "", [0.0, if top > 0.0 { top } else { 1.0 }])
             };
             Shading::linear(Colors::Sequential, axis)
         }

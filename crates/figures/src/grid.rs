@@ -69,7 +69,7 @@ pub(crate) const RIGHT: f64 = 81.0;
 /// Width of all that is between.
 pub(crate) const INNER: f64 = PAGE - LEFT - RIGHT;
 /// Between pictures side by side of which the right one has no numbers beside its axis, or has.
-const GAPS: [f64; 2] = [26.0, 66.0];
+const GAPS: [f64; 2] = [26.0, 56.0];
 /// Between the lower edge of a picture and the upper edge of the one below, if that has its x axis, or has not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// From the left edge of the first picture to the row name.
@@ -171,8 +171,10 @@ impl<'b, 'a> Grid<'b, 'a> {
 
     /// The columns of a block, each with its middle and the room a text under it has.
     pub(crate) fn columns(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> {
-        let room = self.side + GAPS[0] - 6.0;
-        let places = self.blocks[block].iter();
+        let places = &self.blocks[block];
+        let steps = places.windows(2).map(|pair| pair[1].left - pair[0].left);
+        let room = steps.fold(self.side + GAPS[1], f64::min) - 6.0;
+        let places = places.iter();
         places.map(move |place| (place.column, place.left + 0.5 * self.side, room))
     }
 

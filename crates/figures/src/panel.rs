@@ -60,13 +60,14 @@ impl Panel<'_> {
 
     fn x_axis(&self, svg: &mut Svg) {
         let bottom = self.area.bottom();
-        for tick in spaced_ticks(self.x, self.area.width, TICK_TEXT) {
+        let (ticks, size) = spaced_ticks(self.x, self.area.width);
+        for tick in ticks {
             let [at, _] = self.point(tick.value, 0.0);
             svg.line([at, bottom], [at, bottom + TICK], Stroke::FRAME);
             if !self.label_x {
                 continue;
             }
-            let style = Text::new([at, bottom + TICK_BASELINE], TICK_TEXT, Anchor::Middle);
+            let style = Text::new([at, bottom + TICK_BASELINE], size, Anchor::Middle);
             svg.text(style, &tick.text);
         }
         if !self.label_x {

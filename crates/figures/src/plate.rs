@@ -8,7 +8,7 @@ use crate::grid::{Grid, LEFT, Picture, RIGHT, Row};
 use crate::panel::Panel;
 use crate::style::{FAINT, HEAD_TEXT, INK, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
-use crate::text::plain;
+use crate::text::{lines, plain};
 use etendue_field::uncertain;
 
 /// A row of pictures that share colors.
@@ -62,7 +62,7 @@ pub struct Bars {
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
 /// The least width of a picture: those that do not fit go below.
-const LEAST: f64 = 60.0;
+const LEAST: f64 = 58.0;
 
 /// Draws a plate, as wide as two columns of a journal at most.
 ///
@@ -80,7 +80,7 @@ pub fn plate(plate: &Plate<'_>) -> Result<Figure, Error> {
     let inner = grid.width().max(440.0);
     let mut bottom = svg.title(LEFT, inner + 0.8 * RIGHT, plate.title, plate.note);
     for block in 0..grid.blocks() {
-        let top = bottom + 26.0;
+        let top = bottom + if block == 0 { 26.0 } else { 40.0 };
         for (column, middle, room) in grid.columns(block) {
             let style = Text::new([middle, top - 9.0], HEAD_TEXT, Anchor::Middle).bold();
             svg.fitted(style, &plate.heads[column], room);
@@ -104,8 +104,7 @@ pub fn plate(plate: &Plate<'_>) -> Result<Figure, Error> {
                 .map(|column| LEFT + inner * evenly(column))
                 .collect()
         };
-        draw_bars(&mut svg, bars, area, &middles);
-        bottom = area.bottom() + 20.0;
+        bottom = draw_bars(&mut svg, bars, area, &middles);
     }
     if grid.has_gaps() {
         bottom += 20.0;
@@ -155,8 +154,8 @@ pub(crate) fn feet(
     baseline + 6.0 + 16.0 * most as f64
 }
 
-/// Bars from 0, a key below them.
-fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) {
+/// Bars from 0, a key below them; returns the lower edge of that.
+fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     let measured = bars.measured.iter().zip(&bars.errors);
     let ends = measured.map(|(m, e)| m.unwrap_or(0.0) + e.unwrap_or(0.0));
     let highest = ends
@@ -168,8 +167,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) {
         x: &Axis::edges("", "", [0.0, 1.0]),
         y: &Axis {
             quantity: bars.quantity.clone(),
-            min: 0.0,
-            max: top,
+            ..Axis::edges("", "", [0.0, top])
         },
         label_x: true,
         label_y: true,
@@ -204,16 +202,19 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) {
         }
     }
     panel.frame(svg);
-    let at = [area.x, area.bottom() + 15.0];
     let key = format!(
         "Bars: {}, measured, with standard errors. Lines: predicted.",
         bars.about
     );
-    svg.fitted(
-        Text::new(at, TICK_TEXT, Anchor::Start).fill(SOFT),
-        &key,
-        area.width,
-    );
+    let mut y = area.bottom();
+    for line in lines(&key, TICK_TEXT, area.width + 0.8 * RIGHT) {
+        y += 15.0;
+        svg.markup(
+            Text::new([area.x, y], TICK_TEXT, Anchor::Start).fill(SOFT),
+            &line,
+        );
+    }
+    y + 5.0
 }
 
 /// The table: what the bars show.

@@ -4,10 +4,10 @@
 
 mod common;
 
-use common::{DECIBEL, compare, corner, grid, path, scene};
+use common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
 use etendue_field::Side;
 use etendue_figures::{
-    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, curves, section,
+    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, curves, section, stacked,
 };
 use resvg::usvg;
 
@@ -37,10 +37,13 @@ fn gallery() -> Vec<Figure> {
     for count in 1..=6 {
         figures.push(grid(count, values.view()));
         figures.push(grid(count, tiny.view()));
+        figures.push(uneven_grid(count, values.view()));
     }
     for count in [1, 3, 5] {
         figures.push(curves(&lines(count)).unwrap());
     }
+    let [one, two] = [1, 3].map(|i| curves(&lines(i)).unwrap());
+    figures.push(stacked(&[grid(4, values.view()), one, two]));
     figures
 }
 
@@ -61,6 +64,7 @@ fn lines(count: usize) -> Curves {
                 curve(CurveKind::Rival, "as printed", 0.5 * scale),
                 curve(CurveKind::Measured, "measured", scale),
             ],
+            is_log: [false, i == 2],
         }
     };
     Curves {

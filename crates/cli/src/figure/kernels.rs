@@ -26,6 +26,7 @@ fn panel(title: &str, x: Quantity, curves: Vec<Curve>) -> CurvePanel {
         title: title.to_owned(),
         x,
         curves,
+        is_log: [false; 2],
     }
 }
 
