@@ -144,7 +144,7 @@ pub(crate) fn strip_of(
         }
         column
     });
-    let columns: Vec<Column<'_>> = columns.collect();
+    let mut columns: Vec<Column<'_>> = columns.collect();
     let most = columns.iter().map(|column| column.guides.len()).max();
     let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
     let dashed = match (most, is_exact) {
@@ -155,31 +155,53 @@ pub(crate) fn strip_of(
             " Dashed: where the chain puts the light, in the plane of incidence and across it."
         }
     };
-    let crowded = along
-        .windows(3)
-        .any(|three| three[2].0.distance - three[0].0.distance <= 0.0);
-    let apart = if crowded {
-        " Planes at one *z* are drawn apart."
-    } else {
-        ""
-    };
+    let mut section = drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane));
+    if predicted {
+        // A figure has no room for a second cut, nor for the light field in it.
+        section.other = None;
+    }
+    let others = along.iter().map(|(plane, (compared, _))| {
+        let grid = &compared.projection.mean.grid;
+        let values = across(&compared.measured, [grid.half_x, grid.half_u])?;
+        Some((across_axes(plane, grid), values))
+    });
+    let is_seen = !predicted && (section.other.is_some() || planes.iter().any(differs_across));
+    let others: Option<Vec<_>> = if is_seen { others.collect() } else { None };
+    for (column, ([x, y], values)) in columns.iter_mut().zip(others.iter().flatten()) {
+        column.across = Some(Picture {
+            x: x.clone(),
+            y: y.clone(),
+            values: values.view(),
+        });
+    }
     strip(&Strip {
         title: &format!(
             "{}: the light field along the path, and its spectrum",
             scene.name
         ),
         note: &format!(
-            "{} photons, seed {}; spectra are means over azimuths.{dashed}{apart}",
+            "{} photons, seed {}; spectra are means over azimuths.{dashed}",
             grouped(photons),
             scene.run.seed
         ),
-        section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),
+        section: &section,
         columns,
         light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
         floor: FLOOR,
     })
     .map_err(Failure::cannot_run)
+}
+
+/// Whether light is another in (y, v) than in (x, u): the slices at azimuths 0 and 90°.
+fn differs_across(plane: &PlaneComparison) -> bool {
+    const SHARE: f64 = 0.3;
+    let slices = plane.predicted.half.view();
+    let [one, other] = [0, plane.predicted.grid.azimuths / 2]
+        .map(|azimuth| slices.index_axis(ndarray::Axis(0), azimuth));
+    let power = |terms: &mut dyn Iterator<Item = f64>| terms.sum::<f64>().sqrt();
+    let apart = power(&mut one.iter().zip(other).map(|(a, b)| (a - b).norm_sqr()));
+    apart > SHARE * power(&mut one.iter().map(|a| a.norm_sqr()))
 }
 
 /// What is shown under a plane.
@@ -204,6 +226,7 @@ fn column<'a>(
             y: nu,
             values: compared.radial.power.view(),
         },
+        across: None,
         predicted: None,
         verdict: verdict_lines(compared),
         guides: match (&applicability.theory, &compared.report.first_order) {

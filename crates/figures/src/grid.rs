@@ -112,7 +112,8 @@ impl<'b, 'a> Grid<'b, 'a> {
     /// # Panics
     /// When a row has not a picture for each column.
     pub(crate) fn new(rows: Vec<Row<'b, 'a>>, columns: usize, least: f64) -> Self {
-        const MOST: f64 = 190.0;
+        // Of one block, and of several, which would make a long page.
+        const MOST: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
         }
@@ -129,7 +130,8 @@ impl<'b, 'a> Grid<'b, 'a> {
                 after.map(|column| grid.gap(column)).sum()
             };
             let widest = starts.iter().map(|start| gaps(*start)).fold(0.0, f64::max);
-            grid.side = ((INNER - widest) / length as f64).min(MOST).floor();
+            let most = MOST[usize::from(count > 1)];
+            grid.side = ((INNER - widest) / length as f64).min(most).floor();
             if grid.side >= least || length == 1 {
                 grid.blocks = starts
                     .iter()

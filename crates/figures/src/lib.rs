@@ -52,6 +52,7 @@ mod strip;
 mod style;
 mod svg;
 mod text;
+mod world;
 
 pub use axis::{Axis, Quantity};
 pub use color::{Scale, palettes};
@@ -62,3 +63,4 @@ pub use grid::{Guide, Picture};
 pub use plate::{Bars, Plate, PlateRow, plate};
 pub use section::{PlaneMark, Section, Segment, SegmentKind, section};
 pub use strip::{Column, Strip, strip};
+pub use world::{Object, World};

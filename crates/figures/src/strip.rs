@@ -16,6 +16,8 @@ use crate::svg::{Anchor, Area, Svg, Text};
 pub struct Column<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
+    /// That in (y, v). There is a row of them if each column has one.
+    pub across: Option<Picture<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
     /// The predicted one. There is a row of them if each column has one.
@@ -49,6 +51,7 @@ pub struct Strip<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Row {
     LightField,
+    Across,
     Spectrum,
     Predicted,
 }
@@ -60,7 +63,10 @@ impl Row {
             .columns
             .iter()
             .all(|column| column.predicted.is_some());
-        let mut rows = vec![Self::LightField, Self::Spectrum];
+        let across = strip.columns.iter().all(|column| column.across.is_some());
+        let mut rows = vec![Self::LightField];
+        rows.extend(across.then_some(Self::Across));
+        rows.push(Self::Spectrum);
         rows.extend(predicted.then_some(Self::Predicted));
         rows
     }
@@ -68,6 +74,7 @@ impl Row {
     fn name(self) -> &'static str {
         match self {
             Self::LightField => "light field",
+            Self::Across => "across",
             Self::Spectrum => "spectrum",
             Self::Predicted => "predicted",
         }
@@ -75,17 +82,21 @@ impl Row {
 
     /// Its picture in a column.
     fn picture<'a, 'b>(self, column: &'b Column<'a>) -> &'b Picture<'a> {
-        match (self, &column.predicted) {
-            (Self::LightField, _) => &column.light_field,
-            (Self::Predicted, Some(predicted)) => predicted,
-            (Self::Spectrum | Self::Predicted, _) => &column.spectrum,
-        }
+        let other = match self {
+            Self::Across => &column.across,
+            Self::Predicted => &column.predicted,
+            Self::LightField | Self::Spectrum => &None,
+        };
+        other.as_ref().unwrap_or(match self {
+            Self::LightField | Self::Across => &column.light_field,
+            Self::Spectrum | Self::Predicted => &column.spectrum,
+        })
     }
 
     /// What its pictures hold.
     fn quantity<'b>(self, strip: &'b Strip<'_>) -> &'b Quantity {
         match self {
-            Self::LightField => &strip.light_field,
+            Self::LightField | Self::Across => &strip.light_field,
             Self::Spectrum | Self::Predicted => &strip.spectrum,
         }
     }
@@ -108,12 +119,9 @@ pub fn strip(strip: &Strip<'_>) -> Result<Figure, Error> {
     let mut svg = Svg::default();
     let grid = grid(strip);
     let top = svg.title(LEFT, INNER + RIGHT - 8.0, strip.title, strip.note);
-    let area = Area {
-        x: LEFT,
-        y: top + Cut::AXIS,
-        width: INNER,
-        height: CUT,
-    };
+    let area = strip
+        .section
+        .draw_above(&mut svg, [LEFT, top], [INNER, CUT]);
     let cut = Cut::new(strip.section, area);
     cut.draw(&mut svg);
     let mut bottom = area.bottom();
@@ -143,7 +151,7 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>) -> Grid<'b, 'a> {
     let row = |row: Row| {
         let cell = |column: &'b Column<'a>| {
             let guides = match row {
-                Row::LightField => &[],
+                Row::LightField | Row::Across => &[],
                 Row::Spectrum | Row::Predicted => &column.guides[..],
             };
             (row.picture(column), guides)
@@ -152,7 +160,7 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>) -> Grid<'b, 'a> {
             name: row.name(),
             bar: ["of each peak".to_owned(), String::new()],
             scale: match row {
-                Row::LightField => Scale::Linear,
+                Row::LightField | Row::Across => Scale::Linear,
                 Row::Spectrum | Row::Predicted => Scale::Decibel { floor: strip.floor },
             },
             shared: false,

@@ -90,6 +90,7 @@ pub fn scene(count: usize) -> Section {
         label: Some(label.to_owned()),
     };
     Section {
+        across: "*x*".to_owned(),
         length: 2.0,
         unfolded: false,
         half_width: 0.6,
@@ -111,6 +112,8 @@ pub fn scene(count: usize) -> Section {
             })
             .collect(),
         bodies: vec![vec![[0.4, 0.0], [0.5, 0.1], [0.6, 0.0], [0.5, -0.1]]],
+        other: None,
+        world: None,
     }
 }
 
@@ -123,6 +126,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
     let column = || Column {
         light_field: picture(),
         spectrum: picture(),
+        across: None,
         predicted: None,
         verdict: vec![
             "*p* = 0.5, pass".to_owned(),
