@@ -446,8 +446,12 @@ pub(crate) fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
         // The longest word takes the room of χ².
         return vec![p, word(verdict).to_owned()];
     }
-    let first = format!("{p}, {}", word(verdict));
-    std::iter::once(first).chain(chi2(plane)).collect()
+    let mut lines = vec![format!("{p}, {}", word(verdict))];
+    lines.extend(chi2(plane));
+    if plane.predicted.is_dark() && verdict == Verdict::Pass {
+        lines.push("dark, as predicted".to_owned());
+    }
+    lines
 }
 
 fn p_value(plane: &PlaneComparison) -> String {
@@ -466,4 +470,50 @@ fn chi2(plane: &PlaneComparison) -> Option<String> {
 /// A name as read: underscores are spaces.
 pub(crate) fn spaced(name: &str) -> String {
     name.replace('_', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    /// A Gaussian beside the middle, from its transform.
+    #[test]
+    fn the_light_field_over_y_and_v_is_that_of_its_slice() {
+        let axis = |half, spacing| FrequencyAxis { half, spacing };
+        let grid = SliceGrid {
+            azimuths: 2,
+            rho: axis(24, 0.5),
+            nu: axis(20, 0.4),
+        };
+        let ([a, b], middle) = ([0.3, 0.4], 0.2);
+        let mut slices = Slices::zeros(grid);
+        for i in 0..=grid.rho.half {
+            for (j, nu) in grid.nu.values().into_iter().enumerate() {
+                let rho = i as f64 * grid.rho.spacing;
+                let size = a * b * libm::exp(-PI * (a * a * rho * rho + b * b * nu * nu));
+                slices.half[[1, i, j]] = cis(-TAU * rho * middle) * size;
+            }
+        }
+        let values = across(&slices, [0.8, 1.0]).unwrap();
+        for ((i, j), value) in values.indexed_iter() {
+            let at = |cell: usize, half: f64| half * ((2 * cell + 1) as f64 / 64.0 - 1.0);
+            let (y, v) = (at(i, 0.8), at(j, 1.0));
+            let truth = libm::exp(-PI * (((y - middle) / a).powi(2) + (v / b).powi(2)));
+            assert!(
+                (value - truth).abs() < 1e-6,
+                "{value} for {truth} at ({y}, {v})"
+            ); // beyond the grid is 1e-9
+        }
+        assert!(
+            across(
+                &Slices::zeros(SliceGrid {
+                    azimuths: 3,
+                    ..grid
+                }),
+                [1.0; 2]
+            )
+            .is_none()
+        );
+    }
 }

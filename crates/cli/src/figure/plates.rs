@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::figure::rows::{DECIBEL, Seen, compared, drawn, feet, phase, power, row};
 use crate::figure::shot::Shot;
-use crate::pictures::{light_field_quantity, verdict_lines};
+use crate::pictures::light_field_quantity;
 use etendue_field::percent;
 use etendue_figures::{Bars, Figure, Plate, Quantity, Scale};
 use ndarray::Array2;
@@ -107,13 +107,6 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
             pictures(1),
         ),
     ];
-    let both = |seen: &Seen<'_>| {
-        let mut lines = verdict_lines(seen.found);
-        if seen.found.predicted.is_dark() {
-            lines.push("dark, as predicted".to_owned());
-        }
-        lines
-    };
     drawn(&Plate {
         title: "Occluders whose spectra cancel",
         note: "Measured, the slice at azimuth 0. Each occluder leaves half of the light; their phases differ, and together they leave none.",
@@ -121,7 +114,7 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
             .map(str::to_owned)
             .to_vec(),
         rows,
-        feet: seen.iter().map(both).collect(),
+        feet: feet(&seen),
         bars: None,
     })
 }
