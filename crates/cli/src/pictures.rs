@@ -1,5 +1,13 @@
 //! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
 
+mod across;
+mod words;
+
+pub(crate) use across::across;
+pub(crate) use words::{
+    across_axes, light_field_axes, light_field_quantity, spectrum_axes, spectrum_quantity,
+};
+
 use crate::conclude::Case;
 use crate::drawing;
 use crate::failure::Failure;
@@ -7,21 +15,18 @@ use crate::files::{radial_z, z};
 use crate::results::Results;
 use crate::summary::Summary;
 use crate::table::{grouped, word};
+use across::differs_across;
 use etendue_compare::{
     Applicability, Class, PlaneComparison, Prediction, Theory, Verdict, stands_before,
 };
-use etendue_field::{
-    Complex, FrequencyAxis, Orientation, ProjectionGrid, Side, SliceGrid, Slices, VirtualPlane, cis,
-};
+use etendue_field::{Side, VirtualPlane};
 use etendue_figures::{
-    Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
-    strip,
+    Column, Comparison, Figure, Guide, Picture, Scale, Strip, comparison, section, strip,
 };
 use etendue_scene::Scene;
-use ndarray::{Array2, ArrayView1};
 use std::cmp::Ordering;
-use std::f64::consts::TAU;
 use std::path::Path;
+use words::Words;
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 const FLOOR: f64 = -50.0;
@@ -145,16 +150,7 @@ pub(crate) fn strip_of(
         column
     });
     let mut columns: Vec<Column<'_>> = columns.collect();
-    let most = columns.iter().map(|column| column.guides.len()).max();
-    let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
-    let dashed = match (most, is_exact) {
-        (None | Some(0), _) => "",
-        (Some(1), true) => " Dashed: predicted, *ν* = −*d* *ρ*.",
-        (_, true) => " Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
-        (_, false) => {
-            " Dashed: where the chain puts the light, in the plane of incidence and across it."
-        }
-    };
+    let dashed = dashed(&columns, planes);
     let mut section = drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane));
     if predicted {
         // A figure has no room for a second cut, nor for the light field in it.
@@ -193,15 +189,18 @@ pub(crate) fn strip_of(
     .map_err(Failure::cannot_run)
 }
 
-/// Whether light is another in (y, v) than in (x, u): the slices at azimuths 0 and 90°.
-fn differs_across(plane: &PlaneComparison) -> bool {
-    const SHARE: f64 = 0.3;
-    let slices = plane.predicted.half.view();
-    let [one, other] = [0, plane.predicted.grid.azimuths / 2]
-        .map(|azimuth| slices.index_axis(ndarray::Axis(0), azimuth));
-    let power = |terms: &mut dyn Iterator<Item = f64>| terms.sum::<f64>().sqrt();
-    let apart = power(&mut one.iter().zip(other).map(|(a, b)| (a - b).norm_sqr()));
-    apart > SHARE * power(&mut one.iter().map(|a| a.norm_sqr()))
+/// What the dashed lines of a strip are, in words.
+fn dashed(columns: &[Column<'_>], planes: &[PlaneComparison]) -> &'static str {
+    let most = columns.iter().map(|column| column.guides.len()).max();
+    let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
+    match (most, is_exact) {
+        (None | Some(0), _) => "",
+        (Some(1), true) => " Dashed: predicted, *ν* = −*d* *ρ*.",
+        (_, true) => " Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
+        (_, false) => {
+            " Dashed: where the chain puts the light, in the plane of incidence and across it."
+        }
+    }
 }
 
 /// What is shown under a plane.
@@ -319,118 +318,6 @@ pub(crate) fn write(results: &mut Results, name: &str, figure: &Figure) -> Resul
     results.write(&format!("{name}.csv"), figure.csv.as_bytes())
 }
 
-/// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
-struct Words {
-    along: [&'static str; 2],
-    across: [&'static str; 2],
-    angle: &'static str,
-    per_angle: &'static str,
-}
-
-impl Words {
-    const ACROSS: Self = Self {
-        along: ["*x*", "*u*"],
-        across: ["*y*", "*v*"],
-        angle: "",
-        per_angle: "cycles/slope",
-    };
-    const ON_SURFACE: Self = Self {
-        along: ["*s*", "*θ*"],
-        across: ["*t*", "*φ*"],
-        angle: "rad",
-        per_angle: "cycles/rad",
-    };
-
-    fn of(plane: &VirtualPlane) -> Self {
-        match plane.orientation {
-            Orientation::Orthogonal => Self::ACROSS,
-            _ => Self::ON_SURFACE,
-        }
-    }
-
-    fn projection_axes(&self, grid: &ProjectionGrid) -> [Axis; 2] {
-        [
-            Axis::edges(self.along[0], "m", [-grid.half_x, grid.half_x]),
-            Axis::edges(self.along[1], self.angle, [-grid.half_u, grid.half_u]),
-        ]
-    }
-
-    fn frequency_axes(&self, grid: &SliceGrid) -> [Axis; 2] {
-        let axis = |name, unit, axis: &FrequencyAxis| {
-            Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
-        };
-        [
-            axis("*ρ*", "cycles/m", &grid.rho),
-            axis("*ν*", self.per_angle, &grid.nu),
-        ]
-    }
-
-    fn light_field_quantity(&self) -> Quantity {
-        let [a, b] = self.across;
-        Quantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
-    }
-}
-
-/// The axes of the light field of a plane, (x, u) across its ray.
-pub(crate) fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
-    Words::of(plane).projection_axes(grid)
-}
-
-/// The axes of its spectrum, (ρ, ν).
-pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
-    Words::of(plane).frequency_axes(&plane.grid)
-}
-
-/// The axes of the light field across the other two coordinates, (y, v).
-pub(crate) fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
-    let words = Words::of(plane);
-    Words {
-        along: words.across,
-        ..words
-    }
-    .projection_axes(grid)
-}
-
-/// The light field over (y, v), integrated over x and u with the window, in 64 × 64 cells that fill ± `half_widths`: what
-/// the slice at azimuth 90° is the spectrum of, as far as its frequencies go. `None` where there is no such slice.
-pub(crate) fn across(slices: &Slices, half_widths: [f64; 2]) -> Option<Array2<f64>> {
-    const CELLS: usize = 64;
-    let SliceGrid { azimuths, rho, nu } = &slices.grid;
-    if azimuths % 2 != 0 {
-        return None;
-    }
-    let full = slices.full();
-    let slice = full.index_axis(ndarray::Axis(0), azimuths / 2);
-    // e^(2πi Ω z) dΩ, [cell, frequency].
-    let waves = |axis: &FrequencyAxis, half: f64| {
-        let values = axis.values();
-        Array2::from_shape_fn((CELLS, values.len()), |(cell, i)| {
-            let z = half * ((2 * cell + 1) as f64 / CELLS as f64 - 1.0);
-            cis(TAU * values[i] * z) * axis.spacing
-        })
-    };
-    let [y, v] = [waves(rho, half_widths[0]), waves(nu, half_widths[1])];
-    // Products of the array library do not have the same bits on every processor.
-    let sum = |a: ArrayView1<'_, Complex>, b: ArrayView1<'_, Complex>| {
-        let terms = a.iter().zip(b).map(|(a, b)| a * b);
-        terms.fold(Complex::ZERO, |sum, term| sum + term)
-    };
-    let over_y =
-        Array2::from_shape_fn((CELLS, nu.count()), |(i, k)| sum(y.row(i), slice.column(k)));
-    let values = Array2::from_shape_fn((CELLS, CELLS), |(i, j)| sum(over_y.row(i), v.row(j)).re);
-    Some(values)
-}
-
-/// What a light field across the ray holds.
-pub(crate) fn light_field_quantity() -> Quantity {
-    Words::ACROSS.light_field_quantity()
-}
-
-/// What a radial spectrum holds.
-pub(crate) fn spectrum_quantity() -> Quantity {
-    Quantity::new("⟨|*S*_{φ}|^{2}⟩", "")
-}
-
 fn verdict_line(plane: &PlaneComparison) -> String {
     let (p, verdict) = (p_value(plane), plane.report.verdict);
     // The longest word takes the room of χ².
@@ -470,50 +357,4 @@ fn chi2(plane: &PlaneComparison) -> Option<String> {
 /// A name as read: underscores are spaces.
 pub(crate) fn spaced(name: &str) -> String {
     name.replace('_', " ")
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use std::f64::consts::PI;
-
-    /// A Gaussian beside the middle, from its transform.
-    #[test]
-    fn the_light_field_over_y_and_v_is_that_of_its_slice() {
-        let axis = |half, spacing| FrequencyAxis { half, spacing };
-        let grid = SliceGrid {
-            azimuths: 2,
-            rho: axis(24, 0.5),
-            nu: axis(20, 0.4),
-        };
-        let ([a, b], middle) = ([0.3, 0.4], 0.2);
-        let mut slices = Slices::zeros(grid);
-        for i in 0..=grid.rho.half {
-            for (j, nu) in grid.nu.values().into_iter().enumerate() {
-                let rho = i as f64 * grid.rho.spacing;
-                let size = a * b * libm::exp(-PI * (a * a * rho * rho + b * b * nu * nu));
-                slices.half[[1, i, j]] = cis(-TAU * rho * middle) * size;
-            }
-        }
-        let values = across(&slices, [0.8, 1.0]).unwrap();
-        for ((i, j), value) in values.indexed_iter() {
-            let at = |cell: usize, half: f64| half * ((2 * cell + 1) as f64 / 64.0 - 1.0);
-            let (y, v) = (at(i, 0.8), at(j, 1.0));
-            let truth = libm::exp(-PI * (((y - middle) / a).powi(2) + (v / b).powi(2)));
-            assert!(
-                (value - truth).abs() < 1e-6,
-                "{value} for {truth} at ({y}, {v})"
-            ); // beyond the grid is 1e-9
-        }
-        assert!(
-            across(
-                &Slices::zeros(SliceGrid {
-                    azimuths: 3,
-                    ..grid
-                }),
-                [1.0; 2]
-            )
-            .is_none()
-        );
-    }
 }

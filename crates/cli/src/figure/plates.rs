@@ -24,7 +24,7 @@ pub(crate) fn lights(shots: &[Shot]) -> Result<Figure, Failure> {
     ];
     drawn(&Plate {
         title: "Light sources",
-        note: "A point is a Dirac in space and even in angle. After travel its light is a line *x* = *d u*, and its spectrum *ν* = −*d ρ*.",
+        note: "A point is a Dirac in space and even in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
         heads: heads.map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet: feet(&seen),
