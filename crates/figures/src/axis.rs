@@ -133,11 +133,11 @@ impl Axis {
     /// Ticks at multiples of 1, 2 or 5 × 10ⁿ, at most `most` steps to the axis.
     pub(crate) fn ticks(&self, most: f64) -> Vec<Tick> {
         if self.is_log {
-            let [all, fewer, decades] = [&USUAL[..], &[1.0, 3.0], &[1.0]].map(|d| self.powers(d));
-            let fitting = [all, fewer]
-                .into_iter()
-                .find(|ticks| ticks.len() as f64 <= most + 1.0);
-            return fitting.unwrap_or(decades);
+            let close = [1.0, 2.0, 3.0, 4.0, 5.0, 7.0];
+            let digits = [&close[..], &USUAL, &[1.0, 3.0]];
+            let mut closest = digits.iter().map(|digits| self.powers(digits));
+            let fitting = closest.find(|ticks| ticks.len() as f64 <= most + 1.0);
+            return fitting.unwrap_or_else(|| self.powers(&[1.0]));
         }
         let [min, max] = self.range();
         self.ticks_every(step((max - min) / most.max(1.0), &USUAL))
