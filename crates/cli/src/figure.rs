@@ -1,9 +1,14 @@
 //! `etendue figure`: the figures of Durand et al. 2005, made anew from measurement and theory.
 
+mod criteria;
 mod kernels;
 mod plates;
 mod recipe;
+mod rows;
+mod shading;
 mod shot;
+mod spaces;
+mod table1;
 
 use crate::args::FigureArgs;
 use crate::failure::Failure;
@@ -14,7 +19,7 @@ use crate::threads::on_threads;
 use crate::{progress, say};
 use clap::ValueEnum;
 use etendue_compare::{HighFrequencyShare, Verdict};
-use recipe::{RECIPES, Recipe};
+use recipe::{RECIPES, Recipe, Taken};
 use serde::Serialize;
 use shot::Shot;
 use std::collections::BTreeMap;
@@ -28,6 +33,10 @@ pub(crate) enum Quality {
     Draft,
     /// The photons of the scenes, four times as many frequencies
     Print,
+    /// What it takes to have all texts in their places
+    #[cfg(test)]
+    #[value(skip)]
+    Sketch,
 }
 
 impl Quality {
@@ -36,6 +45,8 @@ impl Quality {
         match self {
             Self::Draft => photons / 8,
             Self::Print => photons,
+            #[cfg(test)]
+            Self::Sketch => 1 << 14,
         }
     }
 
@@ -45,6 +56,8 @@ impl Quality {
         match self {
             Self::Draft => 2,
             Self::Print => 4,
+            #[cfg(test)]
+            Self::Sketch => 1,
         }
     }
 }
@@ -117,7 +130,7 @@ struct Judged<'a> {
 /// Makes a figure; returns the verdict on all planes of its scenes.
 fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
     let endings = ["png", "svg", "pdf", "csv", "npz"].map(|end| format!("figure.{end}"));
-    let scenes = recipe.scenes.iter().map(|(name, _)| format!("{name}.ron"));
+    let scenes = recipe.texts().map(|(name, _)| format!("{name}.ron"));
     let plan = Plan {
         index: FIGURE,
         files: endings.into_iter().chain(scenes).collect(),
@@ -128,7 +141,7 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
     let shots = recipe.scenes.iter();
     let shots = shots.map(|(name, text)| Shot::take(name, text, args.quality, args.quiet));
     let shots: Vec<Shot> = shots.collect::<Result<_, _>>()?;
-    write(&mut results, recipe, &shots)?;
+    write(&mut results, recipe, args, &shots)?;
     let all = shots
         .iter()
         .flat_map(|shot| shot.planes.iter().map(move |plane| (shot, plane)));
@@ -169,8 +182,18 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
 }
 
 /// The picture of a figure, what is behind it, and its scenes.
-fn write(results: &mut Results, recipe: &Recipe, shots: &[Shot]) -> Result<(), Failure> {
-    let figure = (recipe.draw)(shots)?;
+fn write(
+    results: &mut Results,
+    recipe: &Recipe,
+    args: &FigureArgs,
+    shots: &[Shot],
+) -> Result<(), Failure> {
+    let figure = (recipe.draw)(&Taken {
+        shots,
+        also: recipe.also,
+        quality: args.quality,
+        quiet: args.quiet,
+    })?;
     let pdf = figure.pdf().map_err(Failure::cannot_run)?;
     let png = figure.png().map_err(Failure::cannot_run)?;
     results.write("figure.pdf", &pdf)?;
@@ -183,7 +206,7 @@ fn write(results: &mut Results, recipe: &Recipe, shots: &[Shot]) -> Result<(), F
     if !shots.is_empty() {
         results.write("figure.npz", &shot::arrays(shots)?)?;
     }
-    for (name, text) in recipe.scenes {
+    for (name, text) in recipe.texts() {
         results.write(&format!("{name}.ron"), text.as_bytes())?;
     }
     Ok(())

@@ -1,5 +1,13 @@
 //! The pictures of a run: light field and spectrum of each plane, and the strip along the path.
 
+mod across;
+mod words;
+
+pub(crate) use across::across;
+pub(crate) use words::{
+    across_axes, light_field_axes, light_field_quantity, spectrum_axes, spectrum_quantity,
+};
+
 use crate::case::Case;
 use crate::drawing;
 use crate::failure::Failure;
@@ -7,17 +15,18 @@ use crate::results::Results;
 use crate::results::arrays::{radial_z, z};
 use crate::results::summary::Summary;
 use crate::table::{grouped, spaced, word};
+use across::differs_across;
 use etendue_compare::{
     Applicability, Class, PlaneComparison, Prediction, Theory, Verdict, stands_before,
 };
-use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, Side, SliceGrid, VirtualPlane};
+use etendue_field::{Side, VirtualPlane};
 use etendue_figures::{
-    Axis, Column, Comparison, Figure, Guide, Picture, Quantity, Scale, Strip, comparison, section,
-    strip,
+    Column, Comparison, Figure, Guide, Picture, Scale, Strip, comparison, section, strip,
 };
 use etendue_scene::Scene;
 use std::cmp::Ordering;
 use std::path::Path;
+use words::Words;
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 const FLOOR: f64 = -50.0;
@@ -140,42 +149,58 @@ pub(crate) fn strip_of(
         }
         column
     });
-    let columns: Vec<Column<'_>> = columns.collect();
-    let most = columns.iter().map(|column| column.guides.len()).max();
-    let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
-    let dashed = match (most, is_exact) {
-        (None | Some(0), _) => "",
-        (Some(1), true) => " Dashed: predicted, *ν* = −*d* *ρ*.",
-        (_, true) => " Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
-        (_, false) => {
-            " Dashed: where the chain puts the light, in the plane of incidence and across it."
-        }
-    };
-    let crowded = along
-        .windows(3)
-        .any(|three| three[2].0.distance - three[0].0.distance <= 0.0);
-    let apart = if crowded {
-        " Planes at one *z* are drawn apart."
-    } else {
-        ""
-    };
+    let mut columns: Vec<Column<'_>> = columns.collect();
+    let dashed = dashed(&columns, planes);
+    let mut section = drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane));
+    if predicted {
+        // A figure has no room for a second cut, nor for the light field in it.
+        section.other = None;
+    }
+    let others = along.iter().map(|(plane, (compared, _))| {
+        let grid = &compared.projection.mean.grid;
+        let values = across(&compared.measured, [grid.half_x, grid.half_u])?;
+        Some((across_axes(plane, grid), values))
+    });
+    let is_seen = !predicted && (section.other.is_some() || planes.iter().any(differs_across));
+    let others: Option<Vec<_>> = if is_seen { others.collect() } else { None };
+    for (column, ([x, y], values)) in columns.iter_mut().zip(others.iter().flatten()) {
+        column.across = Some(Picture {
+            x: x.clone(),
+            y: y.clone(),
+            values: values.view(),
+        });
+    }
     strip(&Strip {
         title: &format!(
             "{}: the light field along the path, and its spectrum",
             scene.name
         ),
         note: &format!(
-            "{} photons, seed {}; spectra are means over azimuths.{dashed}{apart}",
+            "{} photons, seed {}; spectra are means over azimuths.{dashed}",
             grouped(photons),
             scene.run.seed
         ),
-        section: &drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane)),
+        section: &section,
         columns,
         light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
         floor: FLOOR,
     })
     .map_err(Failure::cannot_run)
+}
+
+/// What the dashed lines of a strip are, in words.
+fn dashed(columns: &[Column<'_>], planes: &[PlaneComparison]) -> &'static str {
+    let most = columns.iter().map(|column| column.guides.len()).max();
+    let is_exact = planes.iter().all(|p| p.report.class == Class::Exact);
+    match (most, is_exact) {
+        (None | Some(0), _) => "",
+        (Some(1), true) => " Dashed: predicted, *ν* = −*d* *ρ*.",
+        (_, true) => " Dashed: predicted, *ν* = −*d* *ρ*, and its replicas.",
+        (_, false) => {
+            " Dashed: where the chain puts the light, in the plane of incidence and across it."
+        }
+    }
 }
 
 /// What is shown under a plane.
@@ -200,8 +225,9 @@ fn column<'a>(
             y: nu,
             values: compared.radial.power.view(),
         },
+        across: None,
         predicted: None,
-        verdict: verdict_line(compared),
+        verdict: verdict_lines(compared),
         guides: match (&applicability.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
             // A lobe leaves no line of light where a mirror would.
@@ -292,78 +318,6 @@ pub(crate) fn write(results: &mut Results, name: &str, figure: &Figure) -> Resul
     results.write(&format!("{name}.csv"), figure.csv.as_bytes())
 }
 
-/// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
-struct Words {
-    along: [&'static str; 2],
-    across: [&'static str; 2],
-    angle: &'static str,
-    per_angle: &'static str,
-}
-
-impl Words {
-    const ACROSS: Self = Self {
-        along: ["*x*", "*u*"],
-        across: ["*y*", "*v*"],
-        angle: "",
-        per_angle: "cycles per unit slope",
-    };
-    const ON_SURFACE: Self = Self {
-        along: ["*s*", "*θ*"],
-        across: ["*t*", "*φ*"],
-        angle: "rad",
-        per_angle: "cycles per radian",
-    };
-
-    fn of(plane: &VirtualPlane) -> Self {
-        match plane.orientation {
-            Orientation::Orthogonal => Self::ACROSS,
-            _ => Self::ON_SURFACE,
-        }
-    }
-
-    fn projection_axes(&self, grid: &ProjectionGrid) -> [Axis; 2] {
-        [
-            Axis::edges(self.along[0], "m", [-grid.half_x, grid.half_x]),
-            Axis::edges(self.along[1], self.angle, [-grid.half_u, grid.half_u]),
-        ]
-    }
-
-    fn frequency_axes(&self, grid: &SliceGrid) -> [Axis; 2] {
-        let axis = |name, unit, axis: &FrequencyAxis| {
-            Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
-        };
-        [
-            axis("*ρ*", "cycles/m", &grid.rho),
-            axis("*ν*", self.per_angle, &grid.nu),
-        ]
-    }
-
-    fn light_field_quantity(&self) -> Quantity {
-        let [a, b] = self.across;
-        Quantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
-    }
-}
-
-/// The axes of the light field of a plane, (x, u) across its ray.
-pub(crate) fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
-    Words::of(plane).projection_axes(grid)
-}
-
-/// The axes of its spectrum, (ρ, ν).
-pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
-    Words::of(plane).frequency_axes(&plane.grid)
-}
-
-/// What a light field across the ray holds.
-pub(crate) fn light_field_quantity() -> Quantity {
-    Words::ACROSS.light_field_quantity()
-}
-
-/// What a radial spectrum holds.
-pub(crate) fn spectrum_quantity() -> Quantity {
-    Quantity::new("⟨|*S*_{φ}|^{2}⟩", "")
-}
-
 fn verdict_line(plane: &PlaneComparison) -> String {
     let (p, verdict) = (p_value(plane), plane.report.verdict);
     // The longest word takes the room of χ².
@@ -374,8 +328,17 @@ fn verdict_line(plane: &PlaneComparison) -> String {
 
 /// The same in two lines.
 pub(crate) fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
-    let first = format!("{}, {}", p_value(plane), word(plane.report.verdict));
-    std::iter::once(first).chain(chi2(plane)).collect()
+    let (p, verdict) = (p_value(plane), plane.report.verdict);
+    if verdict == Verdict::Undecided {
+        // The longest word takes the room of χ².
+        return vec![p, word(verdict).to_owned()];
+    }
+    let mut lines = vec![format!("{p}, {}", word(verdict))];
+    lines.extend(chi2(plane));
+    if plane.predicted.is_dark() && verdict == Verdict::Pass {
+        lines.push("dark, as predicted".to_owned());
+    }
+    lines
 }
 
 fn p_value(plane: &PlaneComparison) -> String {

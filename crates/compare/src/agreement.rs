@@ -68,21 +68,14 @@ impl Agreement {
         (self.noise / self.predicted.max(self.measured)).sqrt()
     }
 
-    /// Whether the error of a prediction without replicates leaves nothing to be decided:
-    /// agreement, if the error is above the resolution, or disagreement, if the error may be all
-    /// of it. An error below the resolution takes nothing from an agreement, which is one with the
-    /// prediction as it is, to the noise.
-    pub(crate) fn is_blurred(&self, prediction: &Prediction, agrees: bool, test: &Test) -> bool {
+    /// Whether the error of a prediction without replicates may be all that photons disagree with.
+    pub(crate) fn is_explained(&self, prediction: &Prediction) -> bool {
         let error = prediction.systematic_error();
         let (Some(error), Some(noise), Some(excess)) = (error, self.noise_limit(), self.excess())
         else {
             return false;
         };
-        if agrees {
-            error > test.resolution
-        } else {
-            error > excess.max(UNSEEN * noise)
-        }
+        error > excess.max(UNSEEN * noise)
     }
 
     /// Photons that bring the noise to the resolution; `None` where the error of the prediction

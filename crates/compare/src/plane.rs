@@ -123,7 +123,10 @@ impl Compared<'_> {
             self.is_dark()
         } else {
             // Residuals that are all zero have no p.
-            p_value.is_none_or(|p| p >= test.level) || self.agrees_within(0.0, test)
+            p_value.is_none_or(|p| p >= test.level)
+                || self.agrees_within(0.0, test)
+                || agreement.is_explained(self.prediction)
+                || self.is_excused(test)
         };
         let photons_needed = self.photons_needed(&agreement, agrees, test);
         let open = self.open_question(&agreement, agrees, photons_needed, test);
@@ -164,6 +167,7 @@ impl Compared<'_> {
         let needs = needs.unwrap_or_default();
         let percent = |share: f64| percent(share, 3);
         let noise = agreement.resolution();
+        let error = self.prediction.systematic_error().unwrap_or(0.0);
         if self.predicted.is_dark() {
             // Theory shows why no light comes. That no ray was found is no proof.
             self.prediction.is_statistical().then(|| {
@@ -185,10 +189,8 @@ impl Compared<'_> {
                 "a few heavy photons, or rays of the prediction, carry the light, which varies as if \
                  each batch held {each:.1}: too few to disagree{needs}"
             ))
-        } else if agreement.is_blurred(self.prediction, agrees, test)
-            || !agrees && self.is_excused(test)
-        {
-            let error = percent(self.prediction.systematic_error().unwrap_or_default());
+        } else if agrees && error > test.resolution {
+            let error = percent(error);
             let what = if self.prediction.class == Class::Reference {
                 "behind a mesh this coarse photons and backward rays may differ"
             } else {

@@ -1,3 +1,4 @@
+use crate::style::{LEAST_TEXT, TICK_TEXT};
 use crate::text::width;
 
 /// A named quantity and its unit.
@@ -56,6 +57,8 @@ pub struct Axis {
     pub min: f64,
     /// Outer edge of the last cell.
     pub max: f64,
+    /// Whether equal factors, not equal differences, are equally far apart; both edges are above 0 then.
+    pub is_log: bool,
 }
 
 /// A tick: where, in the axis' unit, and its text.
@@ -73,6 +76,7 @@ impl Axis {
             quantity: Quantity::new(name, unit),
             min,
             max,
+            is_log: false,
         }
     }
 
@@ -104,12 +108,19 @@ impl Axis {
     /// Where `value` falls, 0 at the low edge and 1 at the high one.
     pub(crate) fn fraction(&self, value: f64) -> f64 {
         let [min, max] = self.range();
-        (value - min) / (max - min)
+        if self.is_log {
+            libm::log(value / min) / libm::log(max / min)
+        } else {
+            (value - min) / (max - min)
+        }
     }
 
     /// The power of ten taken out of the tick texts.
     pub(crate) fn exponent(&self) -> i32 {
         let [min, max] = self.range();
+        if self.is_log {
+            return 0;
+        }
         let decade = order(min.abs().max(max.abs()));
         // Up to 9999 and down to 0.01 the plain numbers are the shorter.
         if (-2..=3).contains(&decade) {
@@ -121,11 +132,46 @@ impl Axis {
 
     /// Ticks at multiples of 1, 2 or 5 × 10ⁿ, at most `most` steps to the axis.
     pub(crate) fn ticks(&self, most: f64) -> Vec<Tick> {
+        if self.is_log {
+            let close = [1.0, 2.0, 3.0, 4.0, 5.0, 7.0];
+            let digits = [&close[..], &USUAL, &[1.0, 3.0]];
+            let mut closest = digits.iter().map(|digits| self.powers(digits));
+            let fitting = closest.find(|ticks| ticks.len() as f64 <= most + 1.0);
+            return fitting.unwrap_or_else(|| self.powers(&[1.0]));
+        }
         let [min, max] = self.range();
-        let step = step((max - min) / most.max(1.0));
+        self.ticks_every(step((max - min) / most.max(1.0), &USUAL))
+    }
+
+    /// Ticks of a logarithmic axis, at `digits` × 10ⁿ.
+    fn powers(&self, digits: &[f64]) -> Vec<Tick> {
+        let [min, max] = self.range();
+        let tick = |n: i32, digit: f64| {
+            let text = if (-4..5).contains(&n) {
+                let places = usize::try_from(-n).unwrap_or(0);
+                format!("{:.places$}", digit * 10_f64.powi(n))
+            } else {
+                format!("{digit}e{n}")
+            };
+            Tick {
+                value: digit * 10_f64.powi(n),
+                text: minus(&text),
+            }
+        };
+        let ticks = (order(min)..=order(max)).flat_map(|n| digits.iter().map(move |d| tick(n, *d)));
+        let inside = |tick: &Tick| (min..=max).contains(&tick.value);
+        ticks.filter(inside).collect()
+    }
+
+    /// Ticks at multiples of `step`, which has two significant digits at most.
+    fn ticks_every(&self, step: f64) -> Vec<Tick> {
+        let [min, max] = self.range();
         let exponent = self.exponent();
-        let places = usize::try_from(exponent - order(step)).unwrap_or(0);
         let unit = 10_f64.powi(exponent);
+        let digits = step / 10_f64.powi(order(step));
+        let is_whole = (digits - digits.round()).abs() < 1e-6;
+        let last = order(step) - i32::from(!is_whole);
+        let places = usize::try_from(exponent - last).unwrap_or(0);
         // A tick on the edge belongs to the axis whatever the rounding.
         let slack = 1e-9 * (max - min);
         let mut multiple = ((min - slack) / step).ceil();
@@ -143,23 +189,46 @@ impl Axis {
     }
 }
 
-/// The most ticks whose texts, side by side at a font `size` along `length`, stay apart.
-pub(crate) fn spaced_ticks(axis: &Axis, length: f64, size: f64) -> Vec<Tick> {
-    let fits = |ticks: &[Tick]| {
-        let widest = ticks
-            .iter()
-            .map(|t| width(&t.text, size))
-            .fold(0.0, f64::max);
-        ticks.windows(2).all(|pair| {
-            let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
-            step * length >= widest + 4.0
-        })
+/// First digits of the steps between ticks.
+const USUAL: [f64; 3] = [1.0, 2.0, 5.0];
+/// The same where the usual ones leave fewer than three ticks.
+const MORE: [f64; 7] = [1.0, 1.5, 2.0, 3.0, 4.0, 5.0, 8.0];
+
+/// The most ticks whose texts, side by side along `length`, stay apart, and the size of these. Where there would be fewer than
+/// three the texts are smaller, or the steps less usual.
+pub(crate) fn spaced_ticks(axis: &Axis, length: f64) -> (Vec<Tick>, f64) {
+    const SIZES: [f64; 3] = [TICK_TEXT, 9.5, LEAST_TEXT];
+    let [min, max] = axis.range();
+    let most = || (1..=8).rev().map(f64::from);
+    let usual = |size| {
+        let mut ticks = most().map(|most| axis.ticks(most));
+        ticks.find(|ticks| fit(axis, ticks, length, size))
     };
-    let candidates = (1..=8).rev().map(|most| axis.ticks(f64::from(most)));
-    candidates
+    let unusual = |size| {
+        let mut ticks = most().map(|most| axis.ticks_every(step((max - min) / most, &MORE)));
+        ticks.find(|ticks| ticks.len() >= 3 && fit(axis, ticks, length, size))
+    };
+    let first = (usual(TICK_TEXT).unwrap_or_default(), TICK_TEXT);
+    let smaller = SIZES
         .into_iter()
-        .find(|ticks| fits(ticks))
-        .unwrap_or_default()
+        .filter_map(|size| Some((usual(size)?, size)));
+    let mut enough = smaller.filter(|(ticks, _)| ticks.len() >= 3);
+    if axis.is_log {
+        return enough.next().unwrap_or(first);
+    }
+    let others = SIZES
+        .into_iter()
+        .filter_map(|size| Some((unusual(size)?, size)));
+    enough.chain(others).next().unwrap_or(first)
+}
+
+/// Whether the texts of ticks at a font `size` stay apart.
+fn fit(axis: &Axis, ticks: &[Tick], length: f64, size: f64) -> bool {
+    ticks.windows(2).all(|pair| {
+        let step = axis.fraction(pair[1].value) - axis.fraction(pair[0].value);
+        let [a, b] = [0, 1].map(|i| width(&pair[i].text, size));
+        step * length >= 0.5 * (a + b) + 3.0
+    })
 }
 
 /// Ticks along an upright axis: one for each 36 units of its height, or closer together where there would not be three.
@@ -170,13 +239,12 @@ pub(crate) fn upright_ticks(axis: &Axis, height: f64) -> Vec<Tick> {
     enough.next().unwrap_or_else(|| axis.ticks(most))
 }
 
-/// The smallest of 1, 2, 5 × 10ⁿ that is not below `least` > 0.
-fn step(least: f64) -> f64 {
+/// The smallest of `digits` × 10ⁿ that is not below `least` > 0.
+fn step(least: f64, digits: &[f64]) -> f64 {
     let decade = 10_f64.powi(order(least));
     // The slack keeps 0.2 from becoming 0.5 when it is computed as 0.20000000000000004.
-    [1.0, 2.0, 5.0, 10.0]
-        .into_iter()
-        .map(|m| m * decade)
+    let mut steps = digits.iter().map(|digit| digit * decade);
+    steps
         .find(|candidate| *candidate >= least * (1.0 - 1e-9))
         .unwrap_or(10.0 * decade)
 }
@@ -226,6 +294,36 @@ mod tests {
             let ticks = upright_ticks(&Axis::edges("y", "", range), height);
             assert!((3..=6).contains(&ticks.len()), "{range:?}: {ticks:?}");
         }
+    }
+
+    #[test]
+    fn a_level_axis_has_three_ticks_where_two_numbers_fit_beside_another() {
+        for (range, length, first) in [([-16.5, 16.5], 40.0, "−15"), ([-0.15, 0.15], 58.0, "−0.1")]
+        {
+            let (ticks, _) = spaced_ticks(&Axis::edges("x", "", range), length);
+            assert!(ticks.len() >= 3, "{range:?}: {ticks:?}");
+            assert_eq!(ticks[0].text, first);
+        }
+    }
+
+    #[test]
+    fn a_logarithmic_axis_has_equal_factors_equally_far_apart() {
+        let axis = |min, max| Axis {
+            is_log: true,
+            ..Axis::edges("*e*", "", [min, max])
+        };
+        let decades = axis(1e-4, 1.0);
+        assert!((decades.fraction(1e-2) - 0.5).abs() < 1e-12); // rounding
+        let texts = |axis: &Axis, most| {
+            let ticks = axis.ticks(most);
+            ticks.into_iter().map(|tick| tick.text).collect::<Vec<_>>()
+        };
+        assert_eq!(
+            texts(&decades, 4.0),
+            ["0.0001", "0.001", "0.01", "0.1", "1"]
+        );
+        assert_eq!(texts(&axis(0.09, 1.1), 4.0), ["0.1", "0.2", "0.5", "1"]);
+        assert_eq!(texts(&axis(1e5, 1e6), 4.0), ["1e5", "2e5", "5e5", "1e6"]);
     }
 
     #[test]

@@ -3,11 +3,12 @@
 use crate::color::{NO_VALUE, Shading, hex};
 use crate::figure::Error;
 use crate::image::color_strip;
-use crate::panel::OVERHANG;
 use crate::style::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 
+/// How much longer than its bar a label may be.
+const OVERHANG: f64 = 12.0;
 /// Width of the bar itself.
 pub(crate) const WIDTH: f64 = 12.0;
 /// Height of the point that marks an end beyond which values keep the last color.
@@ -58,7 +59,7 @@ fn outline(svg: &mut Svg, shading: &Shading, area: Area) {
 fn scale(svg: &mut Svg, shading: &Shading, area: Area) {
     let axis = &shading.axis;
     let mut widest: f64 = 0.0;
-    for tick in axis.ticks(area.height / 24.0) {
+    for tick in axis.ticks((area.height / 24.0).min(6.0)) {
         let at = area.bottom() - axis.fraction(tick.value) * area.height;
         svg.line([area.right(), at], [area.right() + TICK, at], Stroke::FRAME);
         let place = [area.right() + TICK + 3.0, at + 4.0];

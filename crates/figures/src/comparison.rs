@@ -86,6 +86,7 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
             area: area(index, top),
             x: &comparison.x,
             y: &comparison.y,
+            label_x: true,
             label_y: index == 0,
         };
         panel.heat_map(svg, values, shading)?;
@@ -114,8 +115,7 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
             let top = largest(measured).max(largest(predicted));
             let axis = Axis {
                 quantity: comparison.quantity.clone(),
-                min: 0.0,
-                max: if top > 0.0 { top } else { 1.0 },
+                ..Axis::edges("", "", [0.0, if top > 0.0 { top } else { 1.0 }])
             };
             Shading::linear(Colors::Sequential, axis)
         }

@@ -2,8 +2,11 @@
 
 use crate::axis::{Axis, Quantity, upright_ticks};
 use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::grid::LEFT;
 use crate::panel::Panel;
-use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, THEORY_COLOR, TICK_TEXT};
+use crate::style::{
+    FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, PAGE, THEORY_COLOR, TICK_TEXT,
+};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::{plain, width};
 
@@ -38,9 +41,11 @@ pub struct CurvePanel {
     pub x: Quantity,
     /// What is in the frame.
     pub curves: Vec<Curve>,
+    /// Whether x and y are drawn by equal factors; those not above 0 are left out then.
+    pub is_log: [bool; 2],
 }
 
-/// Panels of curves that show one quantity; each has scales of its own, and y = 0 is in it.
+/// Panels of curves that show one quantity; each has scales of its own, and y = 0 is in it unless y is by equal factors.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curves {
     /// Markup.
@@ -54,8 +59,12 @@ pub struct Curves {
 }
 
 const ACROSS: usize = 3;
-const SIZE: [f64; 2] = [262.0, 190.0];
-const LEFT: f64 = 62.0;
+const RIGHT: f64 = 20.0;
+/// Least width of what is over the panels.
+const TITLE: f64 = 440.0;
+/// Height of a panel, and its greatest width.
+const HEIGHT: f64 = 136.0;
+const WIDEST: f64 = 262.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
 /// Width of numbers beside an axis for which there is room.
 const USUAL: f64 = 28.0;
@@ -81,33 +90,35 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
     // Long numbers beside an axis move its name.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
-        upright_ticks(&y, SIZE[1])
+        upright_ticks(&y, HEIGHT)
     });
     let widest = ticks
         .map(|tick| width(&tick.text, TICK_TEXT))
         .fold(0.0, f64::max);
     let more = (widest - USUAL).max(0.0);
     let (left, between) = (LEFT + more, BETWEEN[0] + more);
-    let inner = columns as f64 * (SIZE[0] + between) - between;
+    let room = PAGE - left - RIGHT - (columns - 1) as f64 * between;
+    let size = (room / columns as f64).floor().min(WIDEST);
+    let inner = columns as f64 * (size + between) - between;
     let mut svg = Svg::default();
-    let top = svg.title(left, inner, &curves.title, &curves.note);
+    let top = svg.title(left, inner.max(TITLE), &curves.title, &curves.note);
     let key_right = key(&mut svg, curves, [left, top + 16.0]);
     let top = top + 58.0;
     let mut bottom = top;
     for (i, panel) in curves.panels.iter().enumerate() {
         let [column, row] = [i % ACROSS, i / ACROSS].map(|n| n as f64);
         let area = Area {
-            x: left + column * (SIZE[0] + between),
-            y: top + row * (SIZE[1] + BETWEEN[1]),
-            width: SIZE[0],
-            height: SIZE[1],
+            x: left + column * (size + between),
+            y: top + row * (HEIGHT + BETWEEN[1]),
+            width: size,
+            height: HEIGHT,
         };
         draw(&mut svg, panel, &curves.y, area);
         bottom = area.bottom();
     }
     Ok(Figure {
         svg: svg.finish(
-            (left + inner).max(key_right) + 24.0,
+            (left + inner.max(TITLE)).max(key_right) + RIGHT,
             bottom + LABEL_BASELINE + 14.0,
         ),
         csv: numbers(curves)?,
@@ -142,23 +153,47 @@ fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) -> f64 {
     x - 30.0
 }
 
+/// Whether a point can be drawn.
+fn is_drawn(panel: &CurvePanel, point: &[f64; 3]) -> bool {
+    [0, 1].iter().all(|i| !panel.is_log[*i] || point[*i] > 0.0)
+}
+
 /// The axes around all points of a panel, and around y = 0.
 fn axes(panel: &CurvePanel, y: &Quantity) -> [Axis; 2] {
-    let points = || panel.curves.iter().flat_map(|c| &c.points);
-    let [low, high] = points().fold([f64::INFINITY, f64::NEG_INFINITY], |[a, b], p| {
-        [a.min(p[0]), b.max(p[0])]
-    });
-    let margin = 0.04 * (high - low);
-    let most = points().map(|p| p[1] + p[2]).fold(0.0, f64::max);
-    let least = points().map(|p| p[1] - p[2]).fold(0.0, f64::min);
-    let axis = |quantity: &Quantity, min, max| Axis {
+    let points = || {
+        let all = panel.curves.iter().flat_map(|c| &c.points);
+        all.filter(|point| is_drawn(panel, point))
+    };
+    let around = |low: fn(&[f64; 3]) -> f64, high: fn(&[f64; 3]) -> f64| {
+        let from = points().map(low).fold(f64::INFINITY, f64::min);
+        [from, points().map(high).fold(f64::NEG_INFINITY, f64::max)]
+    };
+    let axis = |quantity: &Quantity, is_log, [min, max]: [f64; 2]| Axis {
         quantity: quantity.clone(),
         min,
         max,
+        is_log,
+    };
+    let by_factors = |[low, high]: [f64; 2]| {
+        let margin = libm::pow(high / low, 0.06).max(1.01);
+        [low / margin, high * margin]
+    };
+    let [low, high] = around(|p| p[0], |p| p[0]);
+    let margin = 0.04 * (high - low);
+    let across = if panel.is_log[0] {
+        by_factors([low, high])
+    } else {
+        [low - margin, high + margin]
+    };
+    let up = if panel.is_log[1] {
+        by_factors(around(|p| p[1], |p| p[1] + p[2]))
+    } else {
+        let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
+        [1.06 * least.min(0.0), 1.06 * most.max(0.0)]
     };
     [
-        axis(&panel.x, low - margin, high + margin),
-        axis(y, 1.06 * least, 1.06 * most),
+        axis(&panel.x, panel.is_log[0], across),
+        axis(y, panel.is_log[1], up),
     ]
 }
 
@@ -168,21 +203,22 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
         area,
         x: &x,
         y: &y,
+        label_x: true,
         label_y: true,
     };
     svg.clipped(area, |svg| {
         for curve in &panel.curves {
-            let at: Vec<[f64; 2]> = curve
-                .points
-                .iter()
-                .map(|p| frame.point(p[0], p[1]))
-                .collect();
+            let points = curve.points.iter().filter(|p| is_drawn(panel, p));
+            let points: Vec<&[f64; 3]> = points.collect();
+            let at: Vec<[f64; 2]> = points.iter().map(|p| frame.point(p[0], p[1])).collect();
             match curve.kind {
                 CurveKind::Theory => svg.polyline(&at, THEORY),
                 CurveKind::Rival => svg.polyline(&at, RIVAL),
                 CurveKind::Measured => {
-                    for (p, at) in curve.points.iter().zip(at) {
-                        let ends = [p[1] - p[2], p[1] + p[2]].map(|y| frame.point(p[0], y)[1]);
+                    for (p, at) in points.iter().zip(at) {
+                        // Below the frame where an error is as large as its value.
+                        let ends = [(p[1] - p[2]).max(y.min), p[1] + p[2]];
+                        let ends = ends.map(|y| frame.point(p[0], y)[1]);
                         bar(svg, at, ends);
                         svg.circle(at, RADIUS, POINT);
                     }

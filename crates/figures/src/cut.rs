@@ -2,21 +2,25 @@
 
 mod place;
 
-use crate::axis::Axis;
-use crate::section::{Section, SegmentKind};
+use crate::axis::{Axis, upright_ticks};
+use crate::section::{PlaneMark, Section, Segment, SegmentKind};
 use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
-use place::{Name, names, plane_places};
+use etendue_field::Side;
+use place::{Name, names, number_places};
 
-const LIGHT: &str = "#f0a000";
+pub(crate) const LIGHT: &str = "#f0a000";
+const GLASS: &str = "#3a9bb0";
 const BODY: &str = "#b9b9b9";
-const PLANE: &str = "#1f5fa8";
+pub(crate) const PLANE: &str = "#1f5fa8";
 
 /// Space left and right of the central ray's ends.
 const MARGIN: f64 = 36.0;
 /// Radius of a plane's number.
-const BADGE: f64 = 8.0;
+pub(crate) const BADGE: f64 = 8.0;
+/// Height of the lines from planes to their numbers.
+const FEET: f64 = 10.0;
 /// Height of a row of segment names.
 const NAME_ROW: f64 = 17.0;
 /// Depth of the hatching behind surfaces.
@@ -32,7 +36,7 @@ pub(crate) struct Cut<'a> {
     z: Axis,
     x: Axis,
     names: Vec<Name>,
-    /// Horizontal place of each plane's line.
+    /// Horizontal place of each plane's number.
     planes: Vec<f64>,
 }
 
@@ -56,12 +60,16 @@ impl<'a> Cut<'a> {
         let head = NAME_ROW * rows as f64 + 6.0;
         let plot = Area {
             y: area.y + head,
-            height: area.height - head - 2.0 * BADGE - 8.0,
+            height: area.height - head - 2.0 * BADGE - 4.0 - FEET,
             ..area
         };
         Self {
-            planes: plane_places(section, across),
-            x: Axis::edges("*x*", "m", [-section.half_width, section.half_width]),
+            planes: number_places(section, across),
+            x: Axis::edges(
+                &section.across,
+                "m",
+                [-section.half_width, section.half_width],
+            ),
             section,
             area,
             plot,
@@ -78,6 +86,7 @@ impl<'a> Cut<'a> {
                 svg.polygon(&corners, BODY);
             }
             self.segments(svg, SegmentKind::Surface);
+            self.segments(svg, SegmentKind::Glass);
         });
         for plane in 0..self.planes.len() {
             self.plane(svg, plane);
@@ -87,6 +96,7 @@ impl<'a> Cut<'a> {
             self.segments(svg, SegmentKind::Blocker);
             self.segments(svg, SegmentKind::Light);
         });
+        self.sky(svg);
         for name in &self.names {
             let y = self.area.y + NAME_ROW * (name.row as f64 + 1.0) - 2.0;
             svg.text(
@@ -121,10 +131,31 @@ impl<'a> Cut<'a> {
         let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
         let distance = rounded.unwrap_or(mark.distance);
         let style = Text::new([x, y + 47.0], TICK_TEXT, Anchor::Middle).fill(SOFT);
-        svg.markup(
-            style,
-            &format!("*z* = {} m", crate::axis::minus(&distance.to_string())),
-        );
+        let distance = crate::axis::minus(&distance.to_string());
+        let text = format!("*z* = {distance} m{}", self.beside(mark));
+        svg.fitted(style, &text, room);
+    }
+
+    /// Whether a plane is before or after what stands at its place.
+    fn beside(&self, mark: &PlaneMark) -> &'static str {
+        let near = 1e-9 * self.section.length;
+        let stands = |s: &Segment| {
+            let ([z, x], [other_z, other_x]) = (s.start, s.end);
+            // Where what is oblique meets the central ray.
+            let rise = other_z - z;
+            let met = z + if rise.abs() < near {
+                0.0
+            } else {
+                rise * x / (x - other_x)
+            };
+            let is_something = !matches!(s.kind, SegmentKind::Light | SegmentKind::Sky);
+            is_something && (met - mark.distance).abs() <= near
+        };
+        match mark.side {
+            _ if !self.section.segments.iter().any(stands) => "",
+            Side::Before => ", before",
+            Side::After => ", after",
+        }
     }
 
     /// The place of a point (z, x); what is endless ends at the border.
@@ -142,11 +173,8 @@ impl<'a> Cut<'a> {
     }
 
     fn segments(&self, svg: &mut Svg, kind: SegmentKind) {
-        let (color, thickness) = match kind {
-            SegmentKind::Light => (LIGHT, 6.0),
-            SegmentKind::Blocker => (INK, 4.5),
-            SegmentKind::Surface => (INK, 1.6),
-        };
+        let (color, thickness) = line_of(kind);
+        let mut hatching = Hatching::default();
         for segment in self.section.segments.iter().filter(|s| s.kind == kind) {
             let (start, end) = (self.point(segment.start), self.point(segment.end));
             // A body is filled: it has no other side.
@@ -154,8 +182,8 @@ impl<'a> Cut<'a> {
             let mut edges = self.section.bodies.iter().flatten();
             let is_flat = edges.all(|edge| bits(edge) != bits(&segment.start));
             if kind == SegmentKind::Surface && is_flat {
-                let [start, end] = self.visible(start, end);
-                hatch(svg, start, end);
+                let ends = self.visible(start, end);
+                hatching.draw(svg, ends, [1.0, 0.0]);
             }
             let stroke = Stroke::solid(color, thickness);
             svg.line(start, end, stroke);
@@ -190,16 +218,42 @@ impl<'a> Cut<'a> {
         part.map(|t| [0, 1].map(|i| start[i] + t * (end[i] - start[i])))
     }
 
+    /// The line of a plane, where it is, and its number, where there is room.
     fn plane(&self, svg: &mut Svg, plane: usize) {
-        let x = self.planes[plane];
+        let [at, _] = self.point([self.section.planes[plane].distance, 0.0]);
         let stroke = Stroke {
             color: PLANE,
             width: 1.2,
             dash: "5 3",
         };
-        let number = [x, self.area.bottom() - BADGE - 2.0];
-        svg.line([x, self.plot.y], [x, number[1] - BADGE], stroke);
+        let number = [self.planes[plane], self.area.bottom() - BADGE - 2.0];
+        svg.line([at, self.plot.y], [at, self.plot.bottom()], stroke);
+        let foot = Stroke::solid(PLANE, 0.8);
+        svg.line(
+            [at, self.plot.bottom()],
+            [number[0], number[1] - BADGE],
+            foot,
+        );
         badge(svg, number, plane);
+    }
+
+    /// Light from far away: an arc around the beginning of the path.
+    fn sky(&self, svg: &mut Svg) {
+        let skies = self
+            .section
+            .segments
+            .iter()
+            .filter(|s| s.kind == SegmentKind::Sky);
+        for segment in skies {
+            let [x, middle] = self.point([segment.start[0], 0.0]);
+            let [depth, half] = [26.0, 0.5 * self.plot.height];
+            let arc = (-12..=12).map(|i| {
+                let t = f64::from(i) / 12.0;
+                [x - depth * (1.0 - t * t), middle + t * half]
+            });
+            let arc: Vec<[f64; 2]> = arc.collect();
+            svg.polyline(&arc, Stroke::solid(LIGHT, 4.0));
+        }
     }
 
     fn central_ray(&self, svg: &mut Svg) {
@@ -213,7 +267,10 @@ impl<'a> Cut<'a> {
         svg.polygon(&[tip, wings[0], wings[1]], INK);
         // The name goes into the widest gap between planes and segments, if it fits.
         let text = "central ray";
-        let mut stops = self.planes.clone();
+        let marks = self.section.planes.iter();
+        let mut stops: Vec<f64> = marks
+            .map(|mark| self.point([mark.distance, 0.0])[0])
+            .collect();
         stops.extend([start[0], tip[0]]);
         stops.extend(self.section.segments.iter().map(|s| self.point(s.start)[0]));
         stops.retain(|stop| (start[0]..=tip[0]).contains(stop));
@@ -254,7 +311,7 @@ impl<'a> Cut<'a> {
             Stroke::FRAME,
         );
         let mut widest: f64 = 0.0;
-        for tick in self.x.ticks(self.plot.height / 36.0) {
+        for tick in upright_ticks(&self.x, self.plot.height) {
             let y = self.point([0.0, tick.value])[1];
             svg.line([left - TICK, y], [left, y], Stroke::FRAME);
             let style = Text::new([left - TICK - 3.0, y + 4.0], TICK_TEXT, Anchor::End);
@@ -268,7 +325,7 @@ impl<'a> Cut<'a> {
 }
 
 /// A plane's number, from 1, on a disk.
-fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
+pub(crate) fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
     svg.circle([x, y], BADGE, PLANE);
     let style = Text::new([x, y + 3.8], 10.5, Anchor::Middle)
         .bold()
@@ -276,24 +333,48 @@ fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
     svg.text(style, &(plane + 1).to_string());
 }
 
-/// Short slanted strokes behind a surface, on the side away from the light.
-fn hatch(svg: &mut Svg, start: [f64; 2], end: [f64; 2]) {
-    let along = [end[0] - start[0], end[1] - start[1]];
-    let length = libm::hypot(along[0], along[1]);
-    if length == 0.0 {
-        return;
+/// Color and width of a segment.
+pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
+    match kind {
+        SegmentKind::Light => (LIGHT, 6.0),
+        SegmentKind::Blocker => (INK, 4.5),
+        SegmentKind::Surface => (INK, 1.6),
+        SegmentKind::Glass => (GLASS, 1.8),
+        SegmentKind::Sky => (LIGHT, 0.0),
     }
-    let mut normal = [along[1] / length, -along[0] / length];
-    if normal[0] < 0.0 {
-        normal = normal.map(|n| -n);
-    }
-    let stroke = Stroke::solid(FAINT, 1.0);
-    // The cap bounds the work on absurd lengths.
-    let mut at = HATCH;
-    while at < length.min(20_000.0) {
-        let [x, y] = [0, 1].map(|i| start[i] + along[i] * at / length);
-        let back = [0, 1].map(|i| [x, y][i] + HATCH * normal[i] - HATCH * along[i] / length);
-        svg.line([x, y], back, stroke);
-        at += 6.0;
+}
+
+/// Short slanted strokes behind a surface, evenly along all its pieces.
+#[derive(Debug, Default)]
+pub(crate) struct Hatching {
+    /// Where the last piece ended, and how far behind its last stroke.
+    last: Option<([f64; 2], f64)>,
+}
+
+impl Hatching {
+    /// Hatches a piece on the side to which light goes.
+    pub(crate) fn draw(&mut self, svg: &mut Svg, [start, end]: [[f64; 2]; 2], light: [f64; 2]) {
+        const STEP: f64 = 6.0;
+        let along = [end[0] - start[0], end[1] - start[1]];
+        let length = libm::hypot(along[0], along[1]);
+        if length == 0.0 {
+            return;
+        }
+        let mut normal = [along[1] / length, -along[0] / length];
+        if normal[0] * light[0] + normal[1] * light[1] < 0.0 {
+            normal = normal.map(|n| -n);
+        }
+        let stroke = Stroke::solid(FAINT, 1.0);
+        let near = |a: [f64; 2]| libm::hypot(a[0] - start[0], a[1] - start[1]) < 0.1;
+        let behind = self.last.filter(|(point, _)| near(*point));
+        let mut at = behind.map_or(HATCH, |(_, behind)| STEP - behind);
+        // The cap bounds the work on absurd lengths.
+        while at < length.min(20_000.0) {
+            let [x, y] = [0, 1].map(|i| start[i] + along[i] * at / length);
+            let back = [0, 1].map(|i| [x, y][i] + HATCH * normal[i] - HATCH * along[i] / length);
+            svg.line([x, y], back, stroke);
+            at += STEP;
+        }
+        self.last = Some((end, length + STEP - at));
     }
 }

@@ -1,3 +1,4 @@
+use crate::svg::Svg;
 use krilla::Document;
 use krilla::geom::Size;
 use krilla::page::PageSettings;
@@ -90,6 +91,30 @@ impl Figure {
         document
             .finish()
             .map_err(|error| Error::Page(format!("{error:?}")))
+    }
+}
+
+/// Figures one under the other on one page; their tables follow each other.
+#[must_use]
+pub fn stacked(figures: &[Figure]) -> Figure {
+    let number = |figure: &Figure, name: &str| {
+        let after = figure.svg.split_once(&format!(" {name}=\""));
+        let text = after.and_then(|(_, rest)| rest.split('"').next());
+        text.and_then(|text| text.parse::<f64>().ok())
+            .unwrap_or(0.0)
+    };
+    let mut svg = Svg::default();
+    let mut y = 0.0;
+    for figure in figures {
+        svg.raw(&figure.svg.replacen("<svg", &format!("<svg y=\"{y}\""), 1));
+        y += number(figure, "height");
+    }
+    let width = figures.iter().map(|figure| number(figure, "width"));
+    let tables = figures.iter().map(|figure| figure.csv.as_str());
+    let tables: Vec<&str> = tables.filter(|table| !table.is_empty()).collect();
+    Figure {
+        svg: svg.finish(width.fold(0.0, f64::max), y),
+        csv: tables.join("\n"),
     }
 }
 

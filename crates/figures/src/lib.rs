@@ -8,7 +8,8 @@
 //! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
 //! * [`plate()`]: pictures in rows and columns;
 //! * [`section()`]: that cut alone;
-//! * [`curves()`]: curves and measured points, panel beside panel.
+//! * [`curves()`]: curves and measured points, panel beside panel;
+//! * [`stacked()`]: several of these on one page.
 //!
 //! Arrays are [x, y] with both axes ascending; pictures put x to the right and y upwards.
 //!
@@ -42,6 +43,7 @@ mod comparison;
 mod curves;
 mod cut;
 mod figure;
+mod grid;
 mod image;
 mod panel;
 mod plate;
@@ -50,12 +52,15 @@ mod strip;
 mod style;
 mod svg;
 mod text;
+mod world;
 
 pub use axis::{Axis, Quantity};
 pub use color::{Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
-pub use figure::{Error, Figure};
+pub use figure::{Error, Figure, stacked};
+pub use grid::{Guide, Picture};
 pub use plate::{Bars, Plate, PlateRow, plate};
 pub use section::{PlaneMark, Section, Segment, SegmentKind, section};
-pub use strip::{Column, Guide, Picture, Strip, strip};
+pub use strip::{Column, Strip, strip};
+pub use world::{Object, World};

@@ -9,8 +9,8 @@ use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 use ndarray::ArrayView2;
 
-/// How much longer than its panel an axis label may be.
-pub(crate) const OVERHANG: f64 = 24.0;
+/// How much longer than its panel an axis label may be, along x and y.
+const OVERHANG: [f64; 2] = [24.0, 12.0];
 
 /// Where a heat map goes and what is written around it.
 #[derive(Debug)]
@@ -18,7 +18,8 @@ pub(crate) struct Panel<'a> {
     pub(crate) area: Area,
     pub(crate) x: &'a Axis,
     pub(crate) y: &'a Axis,
-    /// Whether tick texts and label of y are written; ticks are always drawn.
+    /// Whether tick texts and labels are written; ticks are always drawn.
+    pub(crate) label_x: bool,
     pub(crate) label_y: bool,
 }
 
@@ -59,11 +60,18 @@ impl Panel<'_> {
 
     fn x_axis(&self, svg: &mut Svg) {
         let bottom = self.area.bottom();
-        for tick in spaced_ticks(self.x, self.area.width, TICK_TEXT) {
+        let (ticks, size) = spaced_ticks(self.x, self.area.width);
+        for tick in ticks {
             let [at, _] = self.point(tick.value, 0.0);
             svg.line([at, bottom], [at, bottom + TICK], Stroke::FRAME);
-            let style = Text::new([at, bottom + TICK_BASELINE], TICK_TEXT, Anchor::Middle);
+            if !self.label_x {
+                continue;
+            }
+            let style = Text::new([at, bottom + TICK_BASELINE], size, Anchor::Middle);
             svg.text(style, &tick.text);
+        }
+        if !self.label_x {
+            return;
         }
         let [middle, _] = self.area.middle();
         let style = Text::new(
@@ -72,7 +80,7 @@ impl Panel<'_> {
             Anchor::Middle,
         );
         let label = self.x.quantity.label(self.x.exponent());
-        svg.fitted(style, &label, self.area.width + OVERHANG);
+        svg.fitted(style, &label, self.area.width + OVERHANG[0]);
     }
 
     fn y_axis(&self, svg: &mut Svg) {
@@ -92,7 +100,7 @@ impl Panel<'_> {
             let at = [left - TICK - 3.0 - widest - 8.0, middle];
             let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
             let label = self.y.quantity.label(self.y.exponent());
-            svg.fitted(style, &label, self.area.height + OVERHANG);
+            svg.fitted(style, &label, self.area.height + OVERHANG[1]);
         }
     }
 }

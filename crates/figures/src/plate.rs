@@ -2,13 +2,13 @@
 
 use crate::axis::{Axis, Quantity, minus};
 use crate::bar;
-use crate::color::{Colors, Scale, Shading, has_gaps, largest};
+use crate::color::Scale;
 use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::grid::{Grid, LEFT, Picture, RIGHT, Row};
 use crate::panel::Panel;
-use crate::strip::Picture;
-use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, SOFT, THEORY_COLOR, TICK_TEXT};
+use crate::style::{FAINT, HEAD_TEXT, INK, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
-use crate::text::plain;
+use crate::text::{lines, plain};
 use etendue_field::uncertain;
 
 /// A row of pictures that share colors.
@@ -58,21 +58,13 @@ pub struct Bars {
     pub predicted: Vec<Option<f64>>,
 }
 
-/// Left edge of the first picture: row name, axis label, tick texts.
-const LEFT: f64 = 92.0;
-/// Width to the right of the last picture, for the color bars.
-const RIGHT: f64 = 90.0;
-/// Between pictures side by side that share an axis, or do not.
-const GAPS: [f64; 2] = [34.0, 76.0];
-/// Between the lower edge of a picture and the upper edge of the one below.
-const ROW_GAP: f64 = LABEL_BASELINE + 24.0;
-/// Width of all pictures: at the 7 inches of two columns the texts are 6 points high.
-const INNER: f64 = 740.0;
 /// Height of the panel of bars, and width of each.
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
+/// The least width of a picture: those that do not fit go below.
+const LEAST: f64 = 58.0;
 
-/// Draws a plate of one to about six columns.
+/// Draws a plate, as wide as two columns of a journal at most.
 ///
 /// The CSV has the numbers of the bars; it is empty without bars.
 ///
@@ -82,45 +74,20 @@ const BAR: f64 = 60.0;
 /// # Panics
 /// When a row has not a picture for each head.
 pub fn plate(plate: &Plate<'_>) -> Result<Figure, Error> {
-    let count = plate.heads.len();
-    let ys = |row: &PlateRow<'_>| row.pictures.windows(2).all(|pair| pair[0].y == pair[1].y);
-    let gap = GAPS[usize::from(!plate.rows.iter().all(ys))];
-    let columns = count.max(1) as f64;
-    let side = ((INNER - gap * (columns - 1.0)) / columns)
-        .clamp(80.0, 240.0)
-        .floor();
+    let rows = plate.rows.iter().map(row);
+    let grid = Grid::new(rows.collect(), plate.heads.len(), LEAST);
     let mut svg = Svg::default();
-    let inner = (columns * (side + gap) - gap).max(480.0);
-    let top = svg.title(LEFT, inner, plate.title, plate.note) + 28.0;
-    let area_of = |column: usize, row: usize| Area {
-        x: LEFT + column as f64 * (side + gap),
-        y: top + row as f64 * (side + ROW_GAP),
-        width: side,
-        height: side,
-    };
-    for (column, head) in plate.heads.iter().enumerate() {
-        let at = [area_of(column, 0).middle()[0], top - 9.0];
-        let style = Text::new(at, HEAD_TEXT, Anchor::Middle).bold();
-        svg.fitted(style, head, side + gap - 8.0);
-    }
-    for (index, row) in plate.rows.iter().enumerate() {
-        assert_eq!(row.pictures.len(), count, "pictures of {}", row.name);
-        draw_row(&mut svg, row, &|column| area_of(column, index))?;
-    }
-    let mut bottom = top + plate.rows.len() as f64 * (side + ROW_GAP) - ROW_GAP + LABEL_BASELINE;
-    let lines = plate.feet.iter().map(Vec::len).max().unwrap_or(0);
-    for (column, feet) in plate.feet.iter().enumerate() {
-        for (line, text) in feet.iter().enumerate() {
-            let y = bottom + 21.0 + 16.0 * line as f64;
-            let at = [area_of(column, 0).middle()[0], y];
-            svg.fitted(
-                Text::new(at, TICK_TEXT, Anchor::Middle),
-                text,
-                side + gap - 6.0,
-            );
+    let inner = grid.width().max(440.0);
+    let mut bottom = svg.title(LEFT, inner + 0.8 * RIGHT, plate.title, plate.note);
+    for block in 0..grid.blocks() {
+        let top = bottom + if block == 0 { 26.0 } else { 40.0 };
+        for (column, middle, room) in grid.columns(block) {
+            let style = Text::new([middle, top - 9.0], HEAD_TEXT, Anchor::Middle).bold();
+            svg.fitted(style, &plate.heads[column], room);
         }
+        bottom = grid.draw(&mut svg, block, top)?;
+        bottom = feet(&mut svg, &plate.feet, &grid, block, bottom);
     }
-    bottom += 5.0 + 16.0 * lines as f64;
     if let Some(bars) = &plate.bars {
         let area = Area {
             x: LEFT,
@@ -128,13 +95,18 @@ pub fn plate(plate: &Plate<'_>) -> Result<Figure, Error> {
             width: inner,
             height: BARS,
         };
-        draw_bars(&mut svg, bars, area, &|column| {
-            area_of(column, 0).middle()[0]
-        });
-        bottom = area.bottom() + 20.0;
+        let count = plate.heads.len();
+        let middles: Vec<f64> = if grid.blocks() == 1 {
+            grid.columns(0).map(|(_, middle, _)| middle).collect()
+        } else {
+            let evenly = |column| (column as f64 + 0.5) / count as f64;
+            (0..count)
+                .map(|column| LEFT + inner * evenly(column))
+                .collect()
+        };
+        bottom = draw_bars(&mut svg, bars, area, &middles);
     }
-    let mut pictures = plate.rows.iter().flat_map(|row| &row.pictures);
-    if pictures.any(|picture| has_gaps(picture.values)) {
+    if grid.has_gaps() {
         bottom += 20.0;
         bar::gap_key(&mut svg, LEFT + inner, bottom);
     }
@@ -144,43 +116,46 @@ pub fn plate(plate: &Plate<'_>) -> Result<Figure, Error> {
     })
 }
 
-/// The pictures of a row, its name and their color bar.
-fn draw_row(svg: &mut Svg, row: &PlateRow<'_>, area: &dyn Fn(usize) -> Area) -> Result<(), Error> {
-    let peaks = row.pictures.iter().map(|picture| largest(picture.values));
-    let highest = peaks.fold(0.0, f64::max);
-    let mut bar = if row.shared {
-        shading(row, &row.quantity.name, highest)
-    } else {
-        shading(row, &format!("{} / peak", row.quantity.name), 1.0)
-    };
-    for (column, picture) in row.pictures.iter().enumerate() {
-        let panel = Panel {
-            area: area(column),
-            x: &picture.x,
-            y: &picture.y,
-            label_y: column == 0 || picture.y != row.pictures[0].y,
-        };
-        let peak = if row.shared {
-            highest
+fn row<'b, 'a>(row: &'b PlateRow<'a>) -> Row<'b, 'a> {
+    let Quantity { name, unit } = row.quantity.clone();
+    let cells = row.pictures.iter();
+    Row {
+        name: row.name,
+        bar: if row.shared {
+            [name, unit]
         } else {
-            largest(picture.values)
-        };
-        let shading = shading(row, "", peak).showing(picture.values);
-        bar.beyond = [0, 1].map(|end| bar.beyond[end] || shading.beyond[end]);
-        panel.heat_map(svg, picture.values, &shading)?;
-        panel.axes(svg);
+            ["of each peak".to_owned(), String::new()]
+        },
+        scale: row.scale,
+        shared: row.shared,
+        cells: cells.map(|picture| (picture, &[][..])).collect(),
     }
-    let Some(last) = row.pictures.len().checked_sub(1) else {
-        return Ok(());
-    };
-    let at = [LEFT - 68.0, area(0).middle()[1]];
-    let style = Text::new(at, HEAD_TEXT, Anchor::Middle).bold().upwards();
-    svg.fitted(style, row.name, area(0).height + 40.0);
-    bar::draw(svg, &bar, area(last).right() + 12.0, area(last))
 }
 
-/// Bars from 0, a key below them.
-fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middle: &dyn Fn(usize) -> f64) {
+/// Lines under each column of a block; returns the lower edge of the last.
+pub(crate) fn feet(
+    svg: &mut Svg,
+    feet: &[Vec<String>],
+    grid: &Grid<'_, '_>,
+    block: usize,
+    baseline: f64,
+) -> f64 {
+    let mut most = 0;
+    for (column, middle, room) in grid.columns(block) {
+        let Some(lines) = feet.get(column) else {
+            continue;
+        };
+        most = most.max(lines.len());
+        for (line, text) in lines.iter().enumerate() {
+            let at = [middle, baseline + 21.0 + 16.0 * line as f64];
+            svg.fitted(Text::new(at, TICK_TEXT, Anchor::Middle), text, room);
+        }
+    }
+    baseline + 6.0 + 16.0 * most as f64
+}
+
+/// Bars from 0, a key below them; returns the lower edge of that.
+fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     let measured = bars.measured.iter().zip(&bars.errors);
     let ends = measured.map(|(m, e)| m.unwrap_or(0.0) + e.unwrap_or(0.0));
     let highest = ends
@@ -192,14 +167,14 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middle: &dyn Fn(usize) -> f
         x: &Axis::edges("", "", [0.0, 1.0]),
         y: &Axis {
             quantity: bars.quantity.clone(),
-            min: 0.0,
-            max: top,
+            ..Axis::edges("", "", [0.0, top])
         },
+        label_x: true,
         label_y: true,
     };
     let at = |value: f64| panel.point(0.0, value)[1];
     for (column, value) in bars.measured.iter().enumerate() {
-        let x = middle(column);
+        let x = middles[column];
         if let Some(value) = value {
             // A share whose noise has been taken off may be below 0.
             let y = at(value.max(0.0));
@@ -227,33 +202,19 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middle: &dyn Fn(usize) -> f
         }
     }
     panel.frame(svg);
-    let at = [area.x, area.bottom() + 15.0];
     let key = format!(
         "Bars: {}, measured, with standard errors. Lines: predicted.",
         bars.about
     );
-    svg.fitted(
-        Text::new(at, TICK_TEXT, Anchor::Start).fill(SOFT),
-        &key,
-        area.width,
-    );
-}
-
-/// The colors of a picture whose largest value is `peak`.
-fn shading(row: &PlateRow<'_>, name: &str, peak: f64) -> Shading {
-    let unit = if row.shared {
-        row.quantity.unit.as_str()
-    } else {
-        ""
-    };
-    match row.scale {
-        Scale::Linear => {
-            let top = if peak > 0.0 { peak } else { 1.0 };
-            Shading::linear(Colors::Sequential, Axis::edges(name, unit, [0.0, top]))
-        }
-        Scale::Decibel { floor } => Shading::decibel(name, floor, peak),
-        Scale::Phase => Shading::phase(&row.quantity.name),
+    let mut y = area.bottom();
+    for line in lines(&key, TICK_TEXT, area.width + 0.8 * RIGHT) {
+        y += 15.0;
+        svg.markup(
+            Text::new([area.x, y], TICK_TEXT, Anchor::Start).fill(SOFT),
+            &line,
+        );
     }
+    y + 5.0
 }
 
 /// The table: what the bars show.

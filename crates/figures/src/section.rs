@@ -3,17 +3,23 @@
 use crate::cut::Cut;
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::svg::{Area, Svg};
+use crate::text::plain;
+use crate::world::World;
 use etendue_field::Side;
 
 /// What a line of the cut is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum SegmentKind {
     /// Emits.
     Light,
     /// Stops light and scatters none.
     Blocker,
-    /// Receives and reflects.
+    /// Receives, and reflects; it has a dark side.
     Surface,
+    /// Lets light through.
+    Glass,
+    /// Shines from far away, wherever it is drawn.
+    Sky,
 }
 
 /// A straight piece of something the cut passes through; points are (z, x), metres. An infinite x goes on beyond the picture.
@@ -40,11 +46,13 @@ pub struct PlaneMark {
     pub side: Side,
 }
 
-/// The plane of z, the distance along the central ray, and x, both in metres.
+/// The plane of z, the distance along the central ray, and x, or y, all in metres.
 ///
 /// Not to scale: z fills the width. What sticks out is cut off.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Section {
+    /// The coordinate across, markup.
+    pub across: String,
     /// Length of the central ray, metres.
     pub length: f64,
     /// Whether the central ray has turned on the way.
@@ -57,7 +65,42 @@ pub struct Section {
     pub planes: Vec<PlaneMark>,
     /// Outlines (z, x) of bodies, filled; segments draw their edges.
     pub bodies: Vec<Vec<[f64; 2]>>,
+    /// The cut through y, where it shows something else; drawn above.
+    pub other: Option<Box<Self>>,
+    /// The scene to scale; drawn above all.
+    pub world: Option<World>,
 }
+
+impl Section {
+    /// Draws the scene to scale and the other cut; returns where the cut itself is to go.
+    pub(crate) fn draw_above(&self, svg: &mut Svg, [x, y]: [f64; 2], size: [f64; 2]) -> Area {
+        let [width, height] = size;
+        let mut top = y;
+        if let Some(world) = &self.world {
+            world.draw(svg, [x, top], width);
+            top += World::HEIGHT;
+        }
+        if let Some(other) = &self.other {
+            let area = Area {
+                x,
+                y: top + Cut::AXIS,
+                width,
+                height: OTHER,
+            };
+            Cut::new(other, area).draw(svg);
+            top = area.bottom();
+        }
+        Area {
+            x,
+            y: top + Cut::AXIS,
+            width,
+            height,
+        }
+    }
+}
+
+/// Height of the cut through y.
+const OTHER: f64 = 150.0;
 
 /// Draws the cut alone, with the names of its planes.
 ///
@@ -70,12 +113,7 @@ pub fn section(section: &Section, title: &str, note: &str) -> Result<Figure, Err
     let inner = (120.0 * section.planes.len() as f64).max(640.0);
     let mut svg = Svg::default();
     let top = svg.title(LEFT, inner, title, note);
-    let area = Area {
-        x: LEFT,
-        y: top + Cut::AXIS,
-        width: inner,
-        height: HEIGHT,
-    };
+    let area = section.draw_above(&mut svg, [LEFT, top], [inner, HEIGHT]);
     let cut = Cut::new(section, area);
     cut.draw(&mut svg);
     let pitch = inner / section.planes.len().max(1) as f64;
@@ -111,14 +149,22 @@ fn numbers(section: &Section) -> Result<String, Error> {
         rows.push(cells);
     };
     row("central ray", "", &[0.0, 0.0, section.length, 0.0]);
-    for segment in &section.segments {
-        let kind = match segment.kind {
-            SegmentKind::Light => "light",
-            SegmentKind::Blocker => "blocker",
-            SegmentKind::Surface => "surface",
-        };
-        let name = segment.label.as_deref().unwrap_or_default();
-        row(kind, name, &[segment.start, segment.end].concat());
+    for cut in std::iter::once(section).chain(section.other.as_deref()) {
+        for segment in &cut.segments {
+            let kind = match segment.kind {
+                SegmentKind::Light => "light",
+                SegmentKind::Blocker => "blocker",
+                SegmentKind::Surface => "surface",
+                SegmentKind::Glass => "glass",
+                SegmentKind::Sky => "sky",
+            };
+            let kind = match plain(&cut.across).as_str() {
+                "x" => kind.to_owned(),
+                other => format!("{kind} over {other}"),
+            };
+            let name = segment.label.as_deref().unwrap_or_default();
+            row(&kind, name, &[segment.start, segment.end].concat());
+        }
     }
     for plane in &section.planes {
         row("plane", &plane.name, &[plane.distance]);

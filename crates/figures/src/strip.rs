@@ -1,47 +1,29 @@
 //! The path: the cut along the central ray and, under each virtual plane, its light field and spectrum.
 
-mod draw;
-
-use crate::axis::{Axis, Quantity};
+use crate::axis::Quantity;
+use crate::bar;
+use crate::color::{Colors, Scale, hex};
 use crate::cut::Cut;
 use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::grid::{GUIDE, Grid, Guide, INNER, LEFT, Picture, RIGHT};
+use crate::plate::feet;
 use crate::section::Section;
-use crate::style::LABEL_BASELINE;
-use crate::svg::{Area, Svg};
-use draw::{LEFT, Layout, ROW_GAP, draw_row, footer};
-use ndarray::ArrayView2;
-
-/// Values on a grid, [x, y], both axes ascending. NaN: no value.
-#[derive(Clone, Debug)]
-pub struct Picture<'a> {
-    /// The first axis of the array.
-    pub x: Axis,
-    /// The second.
-    pub y: Axis,
-    /// The values.
-    pub values: ArrayView2<'a, f64>,
-}
-
-/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀): where the theory puts its content.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Guide {
-    /// The point (ρ₀, ν₀): the origin, or the centre of a replica.
-    pub through: [f64; 2],
-    /// dν/dρ, in metres; −d for light that has travelled d.
-    pub slope: f64,
-}
+use crate::style::{SOFT, TICK_TEXT};
+use crate::svg::{Anchor, Area, Svg, Text};
 
 /// What is shown under a virtual plane.
 #[derive(Clone, Debug)]
 pub struct Column<'a> {
     /// The light field in (x, u).
     pub light_field: Picture<'a>,
+    /// That in (y, v). There is a row of them if each column has one.
+    pub across: Option<Picture<'a>>,
     /// The power spectrum in (ρ, ν).
     pub spectrum: Picture<'a>,
     /// The predicted one. There is a row of them if each column has one.
     pub predicted: Option<Picture<'a>>,
-    /// A line below, such as "*p* = 0.43, pass", markup; may be empty.
-    pub verdict: String,
+    /// Lines below, such as "*p* = 0.43, pass", markup; may be empty.
+    pub verdict: Vec<String>,
     /// Dashed lines over the spectrum.
     pub guides: Vec<Guide>,
 }
@@ -69,6 +51,7 @@ pub struct Strip<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Row {
     LightField,
+    Across,
     Spectrum,
     Predicted,
 }
@@ -80,7 +63,10 @@ impl Row {
             .columns
             .iter()
             .all(|column| column.predicted.is_some());
-        let mut rows = vec![Self::LightField, Self::Spectrum];
+        let across = strip.columns.iter().all(|column| column.across.is_some());
+        let mut rows = vec![Self::LightField];
+        rows.extend(across.then_some(Self::Across));
+        rows.push(Self::Spectrum);
         rows.extend(predicted.then_some(Self::Predicted));
         rows
     }
@@ -88,6 +74,7 @@ impl Row {
     fn name(self) -> &'static str {
         match self {
             Self::LightField => "light field",
+            Self::Across => "across",
             Self::Spectrum => "spectrum",
             Self::Predicted => "predicted",
         }
@@ -95,29 +82,34 @@ impl Row {
 
     /// Its picture in a column.
     fn picture<'a, 'b>(self, column: &'b Column<'a>) -> &'b Picture<'a> {
-        match (self, &column.predicted) {
-            (Self::LightField, _) => &column.light_field,
-            (Self::Predicted, Some(predicted)) => predicted,
-            (Self::Spectrum | Self::Predicted, _) => &column.spectrum,
-        }
+        let other = match self {
+            Self::Across => &column.across,
+            Self::Predicted => &column.predicted,
+            Self::LightField | Self::Spectrum => &None,
+        };
+        other.as_ref().unwrap_or(match self {
+            Self::LightField | Self::Across => &column.light_field,
+            Self::Spectrum | Self::Predicted => &column.spectrum,
+        })
     }
 
     /// What its pictures hold.
     fn quantity<'b>(self, strip: &'b Strip<'_>) -> &'b Quantity {
         match self {
-            Self::LightField => &strip.light_field,
+            Self::LightField | Self::Across => &strip.light_field,
             Self::Spectrum | Self::Predicted => &strip.spectrum,
         }
     }
 }
 
-/// Width to the right of the last picture, for the color bars.
-const RIGHT: f64 = 90.0;
 /// Height of the cut.
-const CUT: f64 = 236.0;
+const CUT: f64 = 190.0;
 /// Height of the lines from the cut to the columns.
-const LEADERS: f64 = 40.0;
-/// Draws a strip of one to about eight planes.
+const LEADERS: f64 = 34.0;
+/// The least width of a picture: columns that do not fit go below the others.
+const LEAST: f64 = 78.0;
+
+/// Draws a strip, as wide as two columns of a journal.
 ///
 /// The CSV has a row for each cell of each picture; the numbers of the cut are those of [`section`](crate::section()).
 ///
@@ -125,34 +117,87 @@ const LEADERS: f64 = 40.0;
 /// When a heat map or the numbers cannot be written.
 pub fn strip(strip: &Strip<'_>) -> Result<Figure, Error> {
     let mut svg = Svg::default();
-    let layout = Layout::new(strip);
-    let top = svg.title(LEFT, layout.inner, strip.title, strip.note);
-    let area = Area {
-        x: LEFT,
-        y: top + Cut::AXIS,
-        width: layout.inner,
-        height: CUT,
-    };
+    let grid = grid(strip);
+    let top = svg.title(LEFT, INNER + RIGHT - 8.0, strip.title, strip.note);
+    let area = strip
+        .section
+        .draw_above(&mut svg, [LEFT, top], [INNER, CUT]);
     let cut = Cut::new(strip.section, area);
     cut.draw(&mut svg);
-    let heads = area.bottom() + LEADERS;
-    for column in 0..strip.columns.len() {
-        let point = [layout.middle(column), heads];
-        cut.leader(&mut svg, column, point);
-        cut.heading(&mut svg, column, point, layout.panel + layout.gap - 8.0);
+    let mut bottom = area.bottom();
+    let verdicts = strip.columns.iter().map(|column| column.verdict.clone());
+    let verdicts: Vec<Vec<String>> = verdicts.collect();
+    for block in 0..grid.blocks() {
+        // Lines to columns further down would cross those above: there numbers alone lead to them.
+        let heads = bottom + if grid.blocks() == 1 { LEADERS } else { 14.0 };
+        for (column, middle, room) in grid.columns(block) {
+            if grid.blocks() == 1 {
+                cut.leader(&mut svg, column, [middle, heads]);
+            }
+            cut.heading(&mut svg, column, [middle, heads], room);
+        }
+        bottom = grid.draw(&mut svg, block, heads + Cut::HEADING)?;
+        bottom = feet(&mut svg, &verdicts, &grid, block, bottom);
     }
-    let first = heads + Cut::HEADING;
-    let rows = Row::of(strip);
-    for (index, row) in rows.iter().copied().enumerate() {
-        let y = first + index as f64 * (layout.panel + ROW_GAP);
-        draw_row(&mut svg, strip, &layout, row, y)?;
-    }
-    let bottom = first + rows.len() as f64 * (layout.panel + ROW_GAP) - ROW_GAP + LABEL_BASELINE;
-    let bottom = footer(&mut svg, strip, &layout, bottom);
+    let bottom = keys(&mut svg, strip, &grid, bottom);
     Ok(Figure {
-        svg: svg.finish(LEFT + layout.inner + RIGHT, bottom),
+        svg: svg.finish(LEFT + INNER + RIGHT, bottom + 14.0),
         csv: numbers(strip)?,
     })
+}
+
+/// The pictures under the cut.
+fn grid<'b, 'a>(strip: &'b Strip<'a>) -> Grid<'b, 'a> {
+    let row = |row: Row| {
+        let cell = |column: &'b Column<'a>| {
+            let guides = match row {
+                Row::LightField | Row::Across => &[],
+                Row::Spectrum | Row::Predicted => &column.guides[..],
+            };
+            (row.picture(column), guides)
+        };
+        crate::grid::Row {
+            name: row.name(),
+            bar: ["of each peak".to_owned(), String::new()],
+            scale: match row {
+                Row::LightField | Row::Across => Scale::Linear,
+                Row::Spectrum | Row::Predicted => Scale::Decibel { floor: strip.floor },
+            },
+            shared: false,
+            cells: strip.columns.iter().map(cell).collect(),
+        }
+    };
+    let rows = Row::of(strip).into_iter().map(row).collect();
+    Grid::new(rows, strip.columns.len(), LEAST)
+}
+
+/// The keys to dashed lines and to cells without a value; returns the lowest baseline.
+fn keys(svg: &mut Svg, strip: &Strip<'_>, grid: &Grid<'_, '_>, bottom: f64) -> f64 {
+    let guided = strip.columns.iter().any(|column| !column.guides.is_empty());
+    let gaps = grid.has_gaps();
+    let y = bottom + if guided || gaps { 18.0 } else { 0.0 };
+    if guided {
+        guide_key(svg, [LEFT, y]);
+    }
+    if gaps {
+        bar::gap_key(svg, LEFT + INNER, y);
+    }
+    y
+}
+
+fn guide_key(svg: &mut Svg, [x, y]: [f64; 2]) {
+    let swatch = Area {
+        x,
+        y: y - 10.0,
+        width: 34.0,
+        height: 12.0,
+    };
+    svg.fill(swatch, &hex(Colors::Sequential.at(0.0)));
+    for stroke in GUIDE {
+        svg.line([x, y - 4.0], [swatch.right(), y - 4.0], stroke);
+    }
+    let style = Text::new([swatch.right() + 7.0, y], TICK_TEXT, Anchor::Start).fill(SOFT);
+    svg.text(style, "predicted shear");
 }
 
 /// The table: a row for each cell of each picture, the pictures in order, x slowest.

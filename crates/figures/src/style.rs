@@ -1,5 +1,9 @@
 //! Sizes and colors shared by all figures, in SVG units (1/96 inch at natural size).
 
+/// Width of a page of two columns: 7 inches.
+pub(crate) const PAGE: f64 = 672.0;
+/// No text is smaller: 6 points.
+pub(crate) const LEAST_TEXT: f64 = 8.0;
 /// Text and frames.
 pub(crate) const INK: &str = "#222222";
 /// Secondary text.

@@ -1,7 +1,7 @@
 //! A small SVG writer: the few elements the figures are made of.
 
-use crate::style::{HEAD_TEXT, INK, SOFT, STROKE, TITLE_TEXT};
-use crate::text::{escape, fit, plain, spans};
+use crate::style::{INK, SOFT, STROKE, TICK_TEXT, TITLE_TEXT};
+use crate::text::{escape, fit, lines, plain, spans};
 use std::fmt::Write;
 
 /// An upright rectangle, in SVG units, y downwards.
@@ -223,7 +223,7 @@ impl Svg {
         self.raw("</svg>");
     }
 
-    /// Title and a softer line below it, both markup, from the left edge `x`; returns the y below them.
+    /// Title and softer lines below it, both markup, from the left edge `x`; returns the y below them.
     pub(crate) fn title(&mut self, x: f64, room: f64, title: &str, note: &str) -> f64 {
         let mut y = 8.0;
         if !title.is_empty() {
@@ -231,10 +231,11 @@ impl Svg {
             let style = Text::new([x, y], TITLE_TEXT, Anchor::Start).bold();
             self.fitted(style, title, room);
         }
-        if !note.is_empty() {
-            y += 19.0;
-            let style = Text::new([x, y], HEAD_TEXT, Anchor::Start).fill(SOFT);
-            self.fitted(style, note, room);
+        y += 4.0;
+        for line in lines(note, TICK_TEXT, room) {
+            y += 15.0;
+            let style = Text::new([x, y], TICK_TEXT, Anchor::Start).fill(SOFT);
+            self.fitted(style, &line, room);
         }
         y + 6.0
     }

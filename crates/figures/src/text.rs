@@ -1,5 +1,7 @@
 //! Markup: `*italic*`, `_{subscript}`, `^{superscript}`.
 
+use crate::style::LEAST_TEXT;
+
 /// A stretch of text in one style.
 #[derive(Clone, Debug, PartialEq)]
 struct Run {
@@ -42,7 +44,8 @@ pub(crate) fn spans(markup: &str, size: f64) -> String {
             attributes += " font-style=\"italic\"";
         }
         if run.level != Level::Line {
-            attributes += &format!(" font-size=\"{:.2}\"", size * SCRIPT_SIZE);
+            let size = (size * SCRIPT_SIZE).max(LEAST_TEXT);
+            attributes += &format!(" font-size=\"{size:.2}\"");
         }
         if run.level != level {
             let down = size * (run.level.depth() - level.depth());
@@ -72,7 +75,7 @@ pub(crate) fn width(text: &str, size: f64) -> f64 {
 
 /// `text` and a font size at which it is at most `room` wide: first smaller, then shortened.
 pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
-    let smallest = 0.8 * size;
+    let smallest = size.min(LEAST_TEXT);
     let fitting = (size * room / width(text, size).max(1e-9)).clamp(smallest, size);
     if width(text, fitting) <= room * (1.0 + 1e-9) {
         return (text.to_owned(), fitting);
@@ -83,6 +86,29 @@ pub(crate) fn fit(text: &str, size: f64, room: f64) -> (String, f64) {
     }
     let kept: String = kept.into_iter().collect();
     (format!("{}…", kept.trim_end()), smallest)
+}
+
+/// Markup broken at spaces into lines of at most `room`, unless a word alone is longer.
+pub(crate) fn lines(markup: &str, size: f64, room: f64) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in markup.split(' ').filter(|word| !word.is_empty()) {
+        match lines.last_mut() {
+            Some(line)
+                if is_open(line) || width(&plain(&format!("{line} {word}")), size) <= room =>
+            {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
+}
+
+/// Whether markup ends within italics or a script.
+fn is_open(markup: &str) -> bool {
+    let count = |c| markup.matches(c).count();
+    count('*') % 2 == 1 || count('{') != count('}')
 }
 
 /// The text with the characters special to XML, and those XML forbids, replaced.
@@ -168,7 +194,7 @@ mod tests {
         assert_eq!(
             spans("*a*<b^{2}c", 10.0),
             "<tspan font-style=\"italic\">a</tspan>&lt;b\
-             <tspan font-size=\"7.20\" dy=\"-3.60\">2</tspan><tspan dy=\"3.60\">c</tspan>"
+             <tspan font-size=\"8.00\" dy=\"-3.60\">2</tspan><tspan dy=\"3.60\">c</tspan>"
         );
     }
 
@@ -176,6 +202,13 @@ mod tests {
     fn unpaired_marks_are_text() {
         assert_eq!(plain("before_blockers 2 * 3"), "before_blockers 2 * 3");
         assert_eq!(plain("a^{b"), "a^{b");
+    }
+
+    #[test]
+    fn lines_break_between_words_and_never_within_marks() {
+        let broken = lines("one *two three* four^{2} five", 10.0, 80.0);
+        assert_eq!(broken, ["one *two three*", "four^{2} five"]);
+        assert!(lines("", 10.0, 80.0).is_empty());
     }
 
     #[test]

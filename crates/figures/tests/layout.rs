@@ -4,10 +4,10 @@
 
 mod common;
 
-use common::{DECIBEL, compare, corner, grid, path, scene};
+use common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
 use etendue_field::Side;
 use etendue_figures::{
-    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, curves, section,
+    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, curves, section, stacked,
 };
 use resvg::usvg;
 
@@ -37,10 +37,13 @@ fn gallery() -> Vec<Figure> {
     for count in 1..=6 {
         figures.push(grid(count, values.view()));
         figures.push(grid(count, tiny.view()));
+        figures.push(uneven_grid(count, values.view()));
     }
     for count in [1, 3, 5] {
         figures.push(curves(&lines(count)).unwrap());
     }
+    let [one, two] = [1, 3].map(|i| curves(&lines(i)).unwrap());
+    figures.push(stacked(&[grid(4, values.view()), one, two]));
     figures
 }
 
@@ -61,6 +64,7 @@ fn lines(count: usize) -> Curves {
                 curve(CurveKind::Rival, "as printed", 0.5 * scale),
                 curve(CurveKind::Measured, "measured", scale),
             ],
+            is_log: [false, i == 2],
         }
     };
     Curves {
@@ -101,6 +105,29 @@ fn no_texts_overlap() {
                 assert!(apart, "{one:?} at {a:?} and {other:?} at {b:?}");
             }
         }
+    }
+}
+
+/// A page is 7 inches of 96 units wide, and its texts have 6 points at least, scripts too.
+#[test]
+fn no_text_is_below_six_points() {
+    for figure in gallery() {
+        let sizes = figure.svg.split("font-size=\"").skip(1);
+        let sizes = sizes.map(|rest| rest.split('"').next().unwrap().parse::<f64>().unwrap());
+        let smallest = sizes.fold(f64::INFINITY, f64::min);
+        assert!(smallest >= 8.0, "{smallest} of 96 to the inch");
+    }
+}
+
+#[test]
+fn strips_plates_and_curves_are_no_wider_than_two_columns() {
+    let values = corner();
+    let strips = (1..=8).map(|count| path(&scene(count), values.view()));
+    let plates = (1..=8).map(|count| grid(count, values.view()));
+    let panels = (1..=5).map(|count| curves(&lines(count)).unwrap());
+    for figure in strips.chain(plates).chain(panels) {
+        let (_, size) = written(&figure);
+        assert!(size.width() <= 672.0, "{} of 96 to the inch", size.width());
     }
 }
 

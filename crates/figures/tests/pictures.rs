@@ -164,12 +164,15 @@ fn empty_tiny_and_flat_arrays_are_drawn() {
         path(&scene(1), values.view()).png().unwrap();
     }
     let nothing = Section {
+        across: "*x*".to_owned(),
         length: 0.0,
         unfolded: false,
         half_width: 0.0,
         segments: Vec::new(),
         planes: Vec::new(),
         bodies: Vec::new(),
+        other: None,
+        world: None,
     };
     section(&nothing, "", "").unwrap().png().unwrap();
     path(&nothing, corner().view()).png().unwrap();

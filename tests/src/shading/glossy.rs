@@ -480,6 +480,7 @@ fn panel(sweep: &Sweep, points: Vec<[f64; 3]>) -> CurvePanel {
     CurvePanel {
         title: sweep.name.to_owned(),
         x: sweep.quantity.clone(),
+        is_log: [false; 2],
         curves: vec![
             line(CurveKind::Rival, "as printed", 2),
             line(CurveKind::Theory, "corrected", 1),

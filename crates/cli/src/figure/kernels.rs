@@ -26,6 +26,7 @@ fn panel(title: &str, x: Quantity, curves: Vec<Curve>) -> CurvePanel {
         title: title.to_owned(),
         x,
         curves,
+        is_log: [false; 2],
     }
 }
 
@@ -42,7 +43,7 @@ fn drawn(title: &str, note: &str, panels: Vec<CurvePanel>) -> Result<Figure, Fai
 /// g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
 pub(crate) fn slopes() -> Result<Figure, Failure> {
     let slope = || Quantity::new("*v*", "slope");
-    let frequency = || Quantity::new("*Ω*", "cycles per unit slope");
+    let frequency = || Quantity::new("*Ω*", "cycles/slope");
     let g = |v: f64| libm::pow(1.0 + v * v, -1.5);
     let g_3d = |v: f64| libm::pow(1.0 + v * v, -2.0);
     let (flat, solid) = ("2D: *g*", "3D: *G*, along one axis");
@@ -79,7 +80,7 @@ pub(crate) fn fresnel() -> Result<Figure, Failure> {
         extinction: 7.821,
     };
     let angles = || Quantity::new("*θ*", "radians");
-    let frequency = || Quantity::new("*Ω*", "cycles per radian");
+    let frequency = || Quantity::new("*Ω*", "cycles/rad");
     let range = [-FRAC_PI_2, FRAC_PI_2];
     let cosine = |theta: f64| libm::cos(theta);
     let both = |of: Fresnel| move |theta: f64| of.reflectance(theta) * libm::cos(theta);
@@ -99,19 +100,15 @@ pub(crate) fn fresnel() -> Result<Figure, Failure> {
     };
     let pairs = [
         pair("cos_{+}", &cosine, &cosine_hat),
-        pair("× glass, *n* = 1.5", &both(glass), &|o| {
-            glass.cosine_hat(o)
-        }),
-        pair("× aluminium, 1.488 + 7.821i", &both(metal), &|o| {
-            metal.cosine_hat(o)
-        }),
+        pair("× glass", &both(glass), &|o| glass.cosine_hat(o)),
+        pair("× aluminium", &both(metal), &|o| metal.cosine_hat(o)),
     ];
     let [functions, transforms]: [Vec<CurvePanel>; 2] =
         [0, 1].map(|i| pairs.iter().map(|pair| pair[i].clone()).collect());
     let panels = [functions, transforms].concat();
     drawn(
         "The clamped cosine, alone and with Fresnel factors",
-        "",
+        "Glass: *n* = 1.5. Aluminium: 1.488 + 7.821 i, at 650 nm.",
         panels,
     )
 }

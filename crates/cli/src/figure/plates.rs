@@ -1,127 +1,12 @@
 //! Figures of several scenes, or several kinds of spectra, side by side.
 
 use crate::failure::Failure;
+use crate::figure::rows::{DECIBEL, Seen, compared, drawn, feet, phase, power, row};
 use crate::figure::shot::Shot;
-use crate::pictures::{
-    light_field_axes, light_field_quantity, spectrum_axes, spectrum_quantity, verdict_lines,
-};
-use etendue_compare::PlaneComparison;
-use etendue_field::{Slices, VirtualPlane, percent};
-use etendue_figures::{Bars, Figure, Picture, Plate, PlateRow, Quantity, Scale, plate};
-use ndarray::{Array2, ArrayView2, Axis as Along};
-
-/// Lowest level of a spectrum's colors, in decibels below its peak.
-const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
-/// Powers below this share of the largest have no phase worth showing.
-const LEAST: f64 = 1e-5;
-
-/// A plane of a scene with what was found there.
-#[derive(Clone, Copy)]
-struct Seen<'a> {
-    plane: &'a VirtualPlane,
-    found: &'a PlaneComparison,
-}
-
-impl<'a> Seen<'a> {
-    fn all(shot: &'a Shot) -> impl Iterator<Item = Self> {
-        let both = shot.scene.planes.iter().zip(&shot.planes);
-        both.map(|(plane, found)| Self { plane, found })
-    }
-
-    /// The plane of this name.
-    fn at(shot: &'a Shot, name: &str) -> Result<Self, Failure> {
-        let missing = || Failure::cannot_run(format!("{} has no plane {name}", shot.scene.name));
-        Self::all(shot)
-            .find(|seen| seen.plane.name == name)
-            .ok_or_else(missing)
-    }
-
-    fn light_field(&self) -> Picture<'a> {
-        let values = self.found.projection.mean.values.view();
-        let [x, y] = light_field_axes(self.plane, &self.found.projection.mean.grid);
-        Picture { x, y, values }
-    }
-
-    fn spectrum<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
-        let [x, y] = spectrum_axes(self.plane);
-        Picture { x, y, values }
-    }
-}
-
-/// The plane at azimuth 0 of a spectrum, [ρ, ν]: by its power, or its phase.
-fn slice(slices: &Slices, of: &dyn Fn(etendue_field::Complex, f64) -> f64) -> Array2<f64> {
-    let full = slices.full();
-    let slice = full.index_axis(Along(0), 0);
-    let most = slice.iter().map(|s| s.norm_sqr()).fold(0.0, f64::max);
-    slice.map(|s| of(*s, most))
-}
-
-fn power(slices: &Slices) -> Array2<f64> {
-    slice(slices, &|s, _| s.norm_sqr())
-}
-
-/// In degrees.
-fn phase(slices: &Slices) -> Array2<f64> {
-    slice(slices, &|s, most| {
-        if s.norm_sqr() > LEAST * most {
-            libm::atan2(s.im, s.re).to_degrees()
-        } else {
-            f64::NAN
-        }
-    })
-}
-
-fn row<'a>(
-    name: &'a str,
-    quantity: Quantity,
-    scale: Scale,
-    shared: bool,
-    pictures: Vec<Picture<'a>>,
-) -> PlateRow<'a> {
-    PlateRow {
-        name,
-        quantity,
-        scale,
-        shared,
-        pictures,
-    }
-}
-
-/// Light fields, measured and predicted spectra of some planes.
-fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
-    let pictures = |of: &dyn Fn(&Seen<'a>) -> Picture<'a>| seen.iter().map(of).collect();
-    vec![
-        row(
-            "light field",
-            light_field_quantity(),
-            Scale::Linear,
-            shared,
-            pictures(&Seen::light_field),
-        ),
-        row(
-            "measured",
-            spectrum_quantity(),
-            DECIBEL,
-            shared,
-            pictures(&|seen| seen.spectrum(seen.found.radial.power.view())),
-        ),
-        row(
-            "predicted",
-            spectrum_quantity(),
-            DECIBEL,
-            shared,
-            pictures(&|seen| seen.spectrum(seen.found.predicted_radial.view())),
-        ),
-    ]
-}
-
-fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {
-    seen.iter().map(|seen| verdict_lines(seen.found)).collect()
-}
-
-fn drawn(of: &Plate<'_>) -> Result<Figure, Failure> {
-    plate(of).map_err(Failure::cannot_run)
-}
+use crate::pictures::light_field_quantity;
+use etendue_field::percent;
+use etendue_figures::{Bars, Figure, Plate, Quantity, Scale};
+use ndarray::Array2;
 
 /// Fig. 4: light of a point after a short way, a line in ray space, and of a spot where it begins.
 pub(crate) fn lights(shots: &[Shot]) -> Result<Figure, Failure> {
@@ -139,7 +24,7 @@ pub(crate) fn lights(shots: &[Shot]) -> Result<Figure, Failure> {
     ];
     drawn(&Plate {
         title: "Light sources",
-        note: "A point is a Dirac in space and even in angle. After travel its light is a line *x* = *d u*, and its spectrum *ν* = −*d ρ*.",
+        note: "A point is a Dirac in space and even in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
         heads: heads.map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet: feet(&seen),
@@ -179,11 +64,11 @@ pub(crate) fn steps(shots: &[Shot]) -> Result<Figure, Failure> {
     let mut rows = compared(&seen, false);
     rows.insert(
         1,
-        row("2D, predicted", quantity, DECIBEL, false, slices.collect()),
+        row("2D slice", quantity, DECIBEL, false, slices.collect()),
     );
     drawn(&Plate {
         title: "The steps of diffuse shading",
-        note: "2D: the slice at azimuth 0. Below it radial spectra, means over azimuths.",
+        note: "2D: the slice at azimuth 0, predicted. Below it radial spectra, means over azimuths.",
         heads: heads.map(str::to_owned).to_vec(),
         rows,
         feet: feet(&seen),
@@ -222,13 +107,6 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
             pictures(1),
         ),
     ];
-    let both = |seen: &Seen<'_>| {
-        let mut lines = verdict_lines(seen.found);
-        if seen.found.predicted.is_dark() {
-            lines.push("dark, as predicted".to_owned());
-        }
-        lines
-    };
     drawn(&Plate {
         title: "Occluders whose spectra cancel",
         note: "Measured, the slice at azimuth 0. Each occluder leaves half of the light; their phases differ, and together they leave none.",
@@ -236,7 +114,7 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
             .map(str::to_owned)
             .to_vec(),
         rows,
-        feet: seen.iter().map(both).collect(),
+        feet: feet(&seen),
         bars: None,
     })
 }

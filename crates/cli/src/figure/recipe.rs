@@ -1,24 +1,50 @@
 //! What each figure of the paper is made of.
 
 use crate::failure::Failure;
-use crate::figure::kernels;
 use crate::figure::plates::{blockers, lights, occluders, parameterisations, steps};
+use crate::figure::shading::{adaptive, environment};
 use crate::figure::shot::Shot;
+use crate::figure::spaces::{coordinates, directions};
+use crate::figure::table1::operators;
+use crate::figure::{Quality, kernels};
 use crate::pictures;
 use etendue_figures::Figure;
 
 /// A figure: the scenes it is measured in, and how it is drawn.
 #[derive(Debug)]
 pub(crate) struct Recipe {
-    /// Its number in the paper.
+    /// Its number in the paper, or that of its table.
     pub(crate) name: &'static str,
     /// What it shows.
     pub(crate) about: &'static str,
-    /// Names and texts of the scene files.
-    pub(crate) scenes: &'static [(&'static str, &'static str)],
+    /// The scenes that are run.
+    pub(crate) scenes: &'static [Text],
+    /// Others, from which curves are computed or measured.
+    pub(crate) also: &'static [Text],
     /// Whether it shows curves or bars, which are kept as a table.
     pub(crate) has_table: bool,
-    pub(crate) draw: fn(&[Shot]) -> Result<Figure, Failure>,
+    pub(crate) draw: fn(&Taken<'_>) -> Result<Figure, Failure>,
+}
+
+/// Name and text of a scene file.
+pub(crate) type Text = (&'static str, &'static str);
+
+impl Recipe {
+    /// All its scene files.
+    pub(crate) fn texts(&self) -> impl Iterator<Item = &'static Text> {
+        self.scenes.iter().chain(self.also)
+    }
+}
+
+/// What a figure is drawn from.
+#[derive(Debug)]
+pub(crate) struct Taken<'a> {
+    /// Its scenes, run.
+    pub(crate) shots: &'a [Shot],
+    /// The other scene files.
+    pub(crate) also: &'static [Text],
+    pub(crate) quality: Quality,
+    pub(crate) quiet: bool,
 }
 
 /// The scene files of the repository that figures use.
@@ -28,14 +54,26 @@ macro_rules! scene {
     };
 }
 
+/// A mirror whose axes lie out of the plane of incidence.
+pub(super) const TWIST: Text = ("twist", scene!("table1/twist"));
+
 /// In the order of the paper.
 pub(crate) const RECIPES: &[Recipe] = &[
     Recipe {
         name: "1",
         about: "spectra along a path, from the light to what leaves a diffuse receiver",
         scenes: &[("fig1", scene!("fig1"))],
+        also: &[],
         has_table: false,
-        draw: strip,
+        draw: |taken| strip(taken.shots),
+    },
+    Recipe {
+        name: "3",
+        about: "the two parameterisations, by slopes and by angles, and travel",
+        scenes: &[("fig3", scene!("fig3"))],
+        also: &[("fig8", scene!("fig8"))],
+        has_table: true,
+        draw: coordinates,
     },
     Recipe {
         name: "4",
@@ -44,13 +82,15 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig4_point", scene!("fig4_point")),
             ("fig4_spot", scene!("fig4_spot")),
         ],
+        also: &[],
         has_table: false,
-        draw: lights,
+        draw: |taken| lights(taken.shots),
     },
     Recipe {
         name: "5",
         about: "the cosine over slopes, g, and its transforms in 2D and 3D",
         scenes: &[],
+        also: &[],
         has_table: true,
         draw: |_| kernels::slopes(),
     },
@@ -58,8 +98,9 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "6",
         about: "all steps of diffuse shading: 2D slice, measured and predicted radial spectrum",
         scenes: &[("fig1", scene!("fig1"))],
+        also: &[],
         has_table: false,
-        draw: steps,
+        draw: |taken| steps(taken.shots),
     },
     Recipe {
         name: "7",
@@ -69,15 +110,17 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig7_other", scene!("fig7_other")),
             ("fig7_two", scene!("fig7_two")),
         ],
+        also: &[],
         has_table: false,
-        draw: occluders,
+        draw: |taken| occluders(taken.shots),
     },
     Recipe {
         name: "8",
         about: "the receiver by slopes and by angles: what taking one for the other costs",
         scenes: &[("fig8", scene!("fig8"))],
+        also: &[],
         has_table: false,
-        draw: parameterisations,
+        draw: |taken| parameterisations(taken.shots),
     },
     Recipe {
         name: "9",
@@ -87,29 +130,77 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("fig9b", scene!("fig9b")),
             ("fig9c", scene!("fig9c")),
         ],
+        also: &[],
         has_table: true,
-        draw: blockers,
+        draw: |taken| blockers(taken.shots),
     },
     Recipe {
         name: "10",
         about: "the seven steps of shading a curved glossy receiver",
         scenes: &[("fig10", scene!("fig10"))],
+        also: &[],
         has_table: false,
-        draw: strip,
+        draw: |taken| strip(taken.shots),
     },
     Recipe {
         name: "11",
         about: "a caustic: a beam on a hollow mirror",
         scenes: &[("solar_oven", scene!("table1/solar_oven"))],
+        also: &[],
         has_table: false,
-        draw: strip,
+        draw: |taken| strip(taken.shots),
     },
     Recipe {
         name: "12",
         about: "transforms of the clamped cosine, alone and with Fresnel factors",
         scenes: &[],
+        also: &[],
         has_table: true,
         draw: |_| kernels::fresnel(),
+    },
+    Recipe {
+        name: "13",
+        about: "directions in 3D by longitude and latitude, and what it costs to take these for flat",
+        scenes: &[TWIST, ("twisted_glossy", scene!("table1/twisted_glossy"))],
+        also: &[],
+        has_table: true,
+        draw: directions,
+    },
+    Recipe {
+        name: "14",
+        about: "diffuse shading under an environment map: convolution and restriction are a product",
+        scenes: &[("fig14", scene!("fig14"))],
+        also: &[],
+        has_table: true,
+        draw: environment,
+    },
+    Recipe {
+        name: "15",
+        about: "the bandwidth of a glossy reflection step by step, and the criteria of Eqs. 20 and 21 beside what is measured",
+        scenes: &[("fig15", scene!("fig15"))],
+        also: &[
+            ("bandwidth", scene!("bandwidth")),
+            ("bandwidth_edge", scene!("bandwidth_edge")),
+        ],
+        has_table: true,
+        draw: adaptive,
+    },
+    Recipe {
+        name: "table1",
+        about: "each operator of Table 1: light field and spectrum before and after it",
+        scenes: &[
+            ("travel", scene!("table1/travel")),
+            ("fig1", scene!("fig1")),
+            ("incidence", scene!("table1/incidence")),
+            ("fig10", scene!("fig10")),
+            ("glossy", scene!("table1/glossy")),
+            ("textured_glossy", scene!("table1/textured_glossy")),
+            ("fresnel_grazing", scene!("table1/fresnel_grazing")),
+            ("tiles", scene!("table1/tiles")),
+        ],
+        also: &[],
+        has_table: false,
+        draw: |taken| operators(taken.shots),
     },
 ];
 
@@ -132,4 +223,41 @@ fn strip(shots: &[Shot]) -> Result<Figure, Failure> {
         planes,
     } = &shots[0];
     pictures::strip_of(scene, *photons, theories, planes, true)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pages are seven inches wide at most, of 96 units of the drawing each, and texts, indices among them, have 6 points at
+    /// least.
+    #[test]
+    fn every_figure_fits_its_page_and_can_be_read() {
+        for recipe in RECIPES {
+            let quality = Quality::Sketch;
+            let shots = recipe.scenes.iter();
+            let shots = shots.map(|(name, text)| Shot::take(name, text, quality, true));
+            let shots: Vec<Shot> = shots.collect::<Result<_, _>>().unwrap();
+            let taken = Taken {
+                shots: &shots,
+                also: recipe.also,
+                quality,
+                quiet: true,
+            };
+            let figure = (recipe.draw)(&taken).unwrap();
+            let numbers = |name: &str| -> Vec<f64> {
+                let mark = format!("{name}=\"");
+                let rest = figure.svg.split(&mark).skip(1);
+                let texts = rest.map(|rest| rest.split('"').next().unwrap());
+                texts.map(|text| text.parse().unwrap()).collect()
+            };
+            let width = numbers(" width")[0];
+            assert!(width <= 672.0, "figure {}: {width} units wide", recipe.name);
+            let smallest = numbers("font-size").into_iter().fold(f64::MAX, f64::min);
+            let points = 0.75 * smallest;
+            assert!(points >= 6.0, "figure {}: {points} points", recipe.name);
+            let cut = figure.svg.lines().find(|line| line.contains('…'));
+            assert_eq!(cut, None, "figure {}", recipe.name);
+        }
+    }
 }

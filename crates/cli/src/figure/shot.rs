@@ -31,9 +31,7 @@ impl Shot {
         quality: Quality,
         quiet: bool,
     ) -> Result<Self, Failure> {
-        let mut file = SceneFile::parse(text).map_err(Failure::bad_input)?;
-        file.run.photons = quality.photons(file.run.photons);
-        let mut scene = machine::resolved(name, file, Path::new(""), name)?;
+        let mut scene = resolved(name, text, &[], |n| quality.photons(n))?;
         for plane in &mut scene.planes {
             for axis in [&mut plane.grid.rho, &mut plane.grid.nu] {
                 *axis = FrequencyAxis {
@@ -53,6 +51,19 @@ impl Shot {
             planes,
         })
     }
+}
+
+/// A scene of the repository with some fields set, and a number of photons made from its own.
+pub(crate) fn resolved(
+    name: &str,
+    text: &str,
+    set: &[(String, String)],
+    photons: impl FnOnce(u64) -> u64,
+) -> Result<Scene, Failure> {
+    let file = SceneFile::parse(text).map_err(Failure::bad_input)?;
+    let mut file = file.with_all(set).map_err(Failure::bad_input)?;
+    file.run.photons = photons(file.run.photons);
+    machine::resolved(name, file, Path::new(""), name)
 }
 
 /// What was found, as NPZ: for each plane its light field, its radial spectra and the slices at

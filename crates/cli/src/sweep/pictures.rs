@@ -95,11 +95,25 @@ fn panel(plane: &str, others: &Point, path: &str, numbers: &[(f64, Number)]) -> 
     CurvePanel {
         title,
         x: Quantity::new(path, ""),
+        is_log: [go_by_factors(numbers.iter().map(|(x, _)| *x)), false],
         curves: vec![
             curve(CurveKind::Theory, "predicted", &predicted),
             curve(CurveKind::Measured, "measured", &measured),
         ],
     }
+}
+
+/// Whether values, three at least, grow by equal factors.
+fn go_by_factors(values: impl Iterator<Item = f64>) -> bool {
+    // What values of a range are rounded to, with room to spare.
+    const ROUNDING: f64 = 1e-6;
+    let mut values: Vec<f64> = values.collect();
+    values.dedup();
+    let factors: Vec<f64> = values.windows(2).map(|pair| pair[1] / pair[0]).collect();
+    let even = factors
+        .iter()
+        .all(|f| (f / factors[0] - 1.0).abs() < ROUNDING);
+    values.first().is_some_and(|first| *first > 0.0) && factors.len() >= 2 && even
 }
 
 fn name(plane: &serde_json::Value) -> &str {
@@ -112,5 +126,20 @@ fn others(at: &Found, together: bool) -> Point {
         Point::new()
     } else {
         at.point[1..].to_vec()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::go_by_factors;
+
+    #[test]
+    fn equal_factors_are_told_from_equal_steps() {
+        let by_factors = |values: &[f64]| go_by_factors(values.iter().copied());
+        assert!(by_factors(&[1.0, 10.0, 10.0, 100.0]));
+        assert!(by_factors(&[0.05, 0.1, 0.2]));
+        for other in [&[1.0, 2.0, 3.0][..], &[1.0, 2.0], &[-4.0, -2.0, -1.0], &[]] {
+            assert!(!by_factors(other), "{other:?}");
+        }
     }
 }

@@ -1,15 +1,13 @@
 //! Where things of a cut go.
 
-use crate::section::{PlaneMark, Section, Segment, SegmentKind};
+use crate::section::{PlaneMark, Section, Segment};
 use crate::style::TICK_TEXT;
 use crate::svg::Area;
 use crate::text::width;
 use etendue_field::Side;
 
-/// Distance of a plane's line from what stands at its place, and half that of two lines.
+/// Half of the distance of two numbers.
 const ASIDE: f64 = 9.0;
-/// The same of a plane behind a surface, beyond its hatching.
-const BEHIND: f64 = 16.0;
 /// Where a segment's name is written.
 #[derive(Debug)]
 pub(super) struct Name {
@@ -18,26 +16,19 @@ pub(super) struct Name {
     pub(super) row: usize,
 }
 
-/// Places of the planes' lines: to their side of what stands there, if anything does, and apart from each other.
-pub(super) fn plane_places(section: &Section, across: impl Fn(f64) -> f64) -> Vec<f64> {
-    // What stands within reach of a place.
-    let there = |place: f64, kind: Option<SegmentKind>| {
-        section.segments.iter().any(|s| {
-            let ends = [across(s.start[0]), across(s.end[0])];
-            let reach = ends[0].min(ends[1]) - ASIDE..ends[0].max(ends[1]) + ASIDE;
-            kind.is_none_or(|kind| s.kind == kind) && reach.contains(&place)
-        })
-    };
-    let aside = |plane: &PlaneMark| {
+/// Places of the planes' numbers: below their lines, to their side of them where others are near, and apart from each other.
+pub(super) fn number_places(section: &Section, across: impl Fn(f64) -> f64) -> Vec<f64> {
+    let true_places = || section.planes.iter().map(|plane| across(plane.distance));
+    let aside = |(i, plane): (usize, &PlaneMark)| {
         let place = across(plane.distance);
+        let near = |(j, other): (usize, f64)| i != j && (other - place).abs() < 2.0 * ASIDE;
         match plane.side {
-            _ if !there(place, None) => place,
+            _ if !true_places().enumerate().any(near) => place,
             Side::Before => place - ASIDE,
-            Side::After if there(place, Some(SegmentKind::Surface)) => place + BEHIND,
             Side::After => place + ASIDE,
         }
     };
-    let mut places: Vec<f64> = section.planes.iter().map(aside).collect();
+    let mut places: Vec<f64> = section.planes.iter().enumerate().map(aside).collect();
     let mut order: Vec<usize> = (0..places.len()).collect();
     order.sort_by(|a, b| places[*a].total_cmp(&places[*b]));
     // Those before something make room in front of it, the others behind.

@@ -90,6 +90,7 @@ pub fn scene(count: usize) -> Section {
         label: Some(label.to_owned()),
     };
     Section {
+        across: "*x*".to_owned(),
         length: 2.0,
         unfolded: false,
         half_width: 0.6,
@@ -111,6 +112,8 @@ pub fn scene(count: usize) -> Section {
             })
             .collect(),
         bodies: vec![vec![[0.4, 0.0], [0.5, 0.1], [0.6, 0.0], [0.5, -0.1]]],
+        other: None,
+        world: None,
     }
 }
 
@@ -123,8 +126,12 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
     let column = || Column {
         light_field: picture(),
         spectrum: picture(),
+        across: None,
         predicted: None,
-        verdict: "*p* = 0.5, pass".to_owned(),
+        verdict: vec![
+            "*p* = 0.5, pass".to_owned(),
+            "*χ*^{2}/dof = 1.01".to_owned(),
+        ],
         guides: vec![Guide {
             through: [0.0, 0.0],
             slope: -1.0,
@@ -151,17 +158,31 @@ pub fn corner() -> Array2<f64> {
 
 /// A plate of so many columns, with long texts and bars.
 pub fn grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
-    let picture = || Picture {
-        x: Axis::edges("*ρ*", "cycles/m", [-16.5, 16.5]),
-        y: Axis::edges("*ν*", "cycles per unit slope", [-32.5, 32.5]),
-        values,
+    plate_of(count, values, |_| [16.5, 32.5])
+}
+
+/// The same, each picture with axes of its own.
+pub fn uneven_grid(count: usize, values: ArrayView2<'_, f64>) -> Figure {
+    plate_of(count, values, |i| {
+        [0.15 + 0.2 * i as f64, 0.3 + 7.0 * i as f64]
+    })
+}
+
+fn plate_of(count: usize, values: ArrayView2<'_, f64>, ends: fn(usize) -> [f64; 2]) -> Figure {
+    let picture = |i| {
+        let [x, y] = ends(i);
+        Picture {
+            x: Axis::edges("*ρ*", "cycles/m", [-x, x]),
+            y: Axis::edges("*ν*", "cycles per unit slope", [-y, y]),
+            values,
+        }
     };
     let row = |name: &'static str, scale, shared| PlateRow {
         name,
         quantity: Quantity::new("∬ *L W* d*y* d*v*", "W m^{−2} sr^{−1} m"),
         scale,
         shared,
-        pictures: (0..count).map(|_| picture()).collect(),
+        pictures: (0..count).map(picture).collect(),
     };
     let some = |value: f64| vec![Some(value); count];
     plate(&Plate {

@@ -1,0 +1,50 @@
+//! The scene to scale, in the plane of D and X at the light: where its path turns.
+
+use super::Cut;
+use etendue_field::VirtualPlane;
+use etendue_figures::{Object, Segment, World};
+use etendue_scene::{Leg, Scene};
+use glam::DVec3;
+
+/// What has no end goes as far as this, metres: beyond any picture.
+const FAR: f64 = 1e4;
+/// A path that turns by less is straight.
+const STRAIGHT: f64 = 1e-9;
+
+/// The scene to scale; `None` where the path goes straight on and straight back.
+pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<World> {
+    let legs = &scene.path.legs;
+    let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;
+    let last = legs.iter().any(turns).then(|| legs.last()).flatten()?;
+    let point = |leg: &Leg, [z, x]: [f64; 2]| {
+        let local = DVec3::new(x.clamp(-FAR, FAR), 0.0, z - leg.start);
+        let place = leg.frame.to_world(local);
+        [place.z, place.x]
+    };
+    let pieces = Cut { scene, axis: 0 }.pieces(planes);
+    let objects = pieces.into_iter().map(|(leg, segment)| {
+        let leg = &legs[leg];
+        Object {
+            segment: Segment {
+                start: point(leg, segment.start),
+                end: point(leg, segment.end),
+                ..segment
+            },
+            light: [leg.frame.d.z, leg.frame.d.x],
+        }
+    });
+    let marks = planes.iter().map(|plane| {
+        let half = plane.window.x.half_width();
+        [-half, half].map(|x| point(&legs[plane.leg], [plane.distance, x]))
+    });
+    // Some of the way on from the last surface, whether or not a plane is there.
+    let way = scene.path.first_hit().min(last.length);
+    let farthest = planes.iter().map(|plane| plane.distance);
+    let end = farthest.fold(last.start + 0.3 * way, f64::max);
+    let corners = legs.iter().map(|leg| point(leg, [leg.start, 0.0]));
+    Some(World {
+        path: corners.chain([point(last, [end, 0.0])]).collect(),
+        objects: objects.collect(),
+        planes: marks.collect(),
+    })
+}

@@ -1,0 +1,140 @@
+//! The sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected, beside photons.
+
+use crate::failure::Failure;
+use crate::figure::Quality;
+use crate::figure::recipe::{Taken, Text};
+use crate::figure::shot::resolved;
+use crate::measure::measured;
+use crate::method::Method;
+use etendue_compare::{Applicability, criterion, measured_bandwidth};
+use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, curves};
+use etendue_theory::shading::Criterion;
+
+/// A field of a scene, and the values it takes.
+struct Sweep {
+    title: &'static str,
+    quantity: Quantity,
+    field: &'static str,
+    /// Ends of the lines, and where photons are counted.
+    ends: [f64; 2],
+    values: &'static [f64],
+    /// What a value of the field is on the axis.
+    shown: fn(f64) -> f64,
+}
+
+/// Points of a line.
+const POINTS: u32 = 40;
+
+/// Curves over curvature and distance without a blocker, and over curvature behind an edge.
+pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let curvature = |title, values| Sweep {
+        title,
+        quantity: Quantity::new("*k*", "1/m"),
+        field: "surfaces.0.form.Sphere",
+        ends: [-1.0, 1.0],
+        values,
+        shown: |k| k,
+    };
+    let distance = Sweep {
+        title: "Eq. 20, over distance",
+        quantity: Quantity::new("*d*", "m"),
+        field: "planes.0.at.Distance",
+        ends: [1.05, 2.0],
+        values: &[1.1, 1.3, 1.6, 1.9],
+        shown: |along| along - 1.0,
+    };
+    let [environment, edge] = [&taken.also[0], &taken.also[1]];
+    let values = &[-1.0, -0.7, -0.3, 0.0, 0.4, 0.8];
+    let behind = &[-0.7, -0.3, 0.0, 0.4, 0.8];
+    let panels = [
+        panel(
+            taken,
+            environment,
+            &curvature("Eq. 20, over curvature", values),
+        )?,
+        panel(taken, environment, &distance)?,
+        panel(taken, edge, &curvature("Eq. 21, edge 0.4 m off", behind))?,
+    ];
+    curves(&Curves {
+        title: "Criteria and photons".to_owned(),
+        note: "*B*: the frequency below which 95 % of the power lies, at a fixed point a distance *d* off. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'* \
+               Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is least the window sets what is measured."
+            .to_owned(),
+        y: Quantity::new("*B*", "cycles/slope"),
+        panels: panels.to_vec(),
+    })
+    .map_err(Failure::cannot_run)
+}
+
+fn panel(taken: &Taken<'_>, text: &Text, sweep: &Sweep) -> Result<CurvePanel, Failure> {
+    let [from, to] = sweep.ends;
+    let along = (0..=POINTS).map(|i| from + (to - from) * f64::from(i) / f64::from(POINTS));
+    let lines = along.map(|value| {
+        let criterion = at(text, sweep, value)?;
+        let [corrected, printed] = said(&criterion);
+        let x = (sweep.shown)(value);
+        Ok([[x, corrected, 0.0], [x, printed, 0.0]])
+    });
+    let lines: Vec<[[f64; 3]; 2]> = lines.collect::<Result<_, Failure>>()?;
+    let points = sweep
+        .values
+        .iter()
+        .map(|value| counted(taken, text, sweep, *value));
+    let curve = |kind, name: &str, points: Vec<[f64; 3]>| Curve {
+        kind,
+        name: name.to_owned(),
+        points,
+    };
+    let line = |i: usize| lines.iter().map(|both| both[i]).collect();
+    Ok(CurvePanel {
+        title: sweep.title.to_owned(),
+        x: sweep.quantity.clone(),
+        curves: vec![
+            curve(CurveKind::Rival, "as printed", line(1)),
+            curve(CurveKind::Theory, "corrected", line(0)),
+            curve(
+                CurveKind::Measured,
+                "photons",
+                points.collect::<Result<_, _>>()?,
+            ),
+        ],
+        is_log: [false; 2],
+    })
+}
+
+/// The bandwidth, corrected and as printed: behind an edge, if there is one.
+fn said(criterion: &Criterion) -> [f64; 2] {
+    if criterion.blocker_distance.is_some() {
+        [criterion.blocker(), criterion.printed_blocker()]
+    } else {
+        [criterion.environment(), criterion.printed_environment()]
+    }
+}
+
+fn at((name, text): &Text, sweep: &Sweep, value: f64) -> Result<Criterion, Failure> {
+    let scene = resolved(name, text, &set(sweep, value), |photons| photons)?;
+    let plane = &scene.planes[0];
+    let found = criterion(&scene, plane, &Applicability::new(&scene, plane));
+    found.ok_or_else(|| Failure::cannot_run(format!("{name} has no criterion")))
+}
+
+/// What photons say: the value on the axis, the bandwidth and its standard error.
+fn counted(
+    taken: &Taken<'_>,
+    (name, text): &Text,
+    sweep: &Sweep,
+    value: f64,
+) -> Result<[f64; 3], Failure> {
+    let quality: Quality = taken.quality;
+    let scene = resolved(name, text, &set(sweep, value), |n| quality.photons(n))?;
+    let batches = 0..scene.run.batches;
+    let measurement = measured(&scene, Method::Photons, batches, taken.quiet)?;
+    let found = measured_bandwidth(&measurement, 0).map_err(Failure::cannot_run)?;
+    let dark = || Failure::cannot_run(format!("no light comes to the eye of {name}"));
+    let found = found.ok_or_else(dark)?;
+    Ok([(sweep.shown)(value), found.value, found.error])
+}
+
+fn set(sweep: &Sweep, value: f64) -> [(String, String); 1] {
+    [(sweep.field.to_owned(), format!("{value:?}"))]
+}

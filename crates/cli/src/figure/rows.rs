@@ -1,0 +1,124 @@
+//! What figures show of the planes of their scenes, row by row.
+
+use crate::failure::Failure;
+use crate::figure::shot::Shot;
+use crate::pictures::{
+    light_field_axes, light_field_quantity, spectrum_axes, spectrum_quantity, verdict_lines,
+};
+use etendue_compare::PlaneComparison;
+use etendue_field::{Complex, Slices, VirtualPlane};
+use etendue_figures::{Figure, Picture, Plate, PlateRow, Quantity, Scale, plate};
+use ndarray::{Array2, ArrayView2, Axis as Along};
+
+/// Lowest level of a spectrum's colors, in decibels below its peak.
+pub(super) const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
+/// Powers below this share of the largest have no phase worth showing.
+pub(super) const LEAST: f64 = 1e-5;
+
+/// A plane of a scene with what was found there.
+#[derive(Clone, Copy)]
+pub(super) struct Seen<'a> {
+    pub(super) plane: &'a VirtualPlane,
+    pub(super) found: &'a PlaneComparison,
+}
+
+impl<'a> Seen<'a> {
+    pub(super) fn all(shot: &'a Shot) -> impl Iterator<Item = Self> {
+        let both = shot.scene.planes.iter().zip(&shot.planes);
+        both.map(|(plane, found)| Self { plane, found })
+    }
+
+    /// The plane of this name.
+    pub(super) fn at(shot: &'a Shot, name: &str) -> Result<Self, Failure> {
+        let missing = || Failure::cannot_run(format!("{} has no plane {name}", shot.scene.name));
+        Self::all(shot)
+            .find(|seen| seen.plane.name == name)
+            .ok_or_else(missing)
+    }
+
+    pub(super) fn light_field(&self) -> Picture<'a> {
+        let values = self.found.projection.mean.values.view();
+        let [x, y] = light_field_axes(self.plane, &self.found.projection.mean.grid);
+        Picture { x, y, values }
+    }
+
+    pub(super) fn spectrum<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
+        let [x, y] = spectrum_axes(self.plane);
+        Picture { x, y, values }
+    }
+}
+
+/// The plane at azimuth 0 of a spectrum, [ρ, ν]: by its power, or its phase.
+pub(super) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
+    let full = slices.full();
+    let slice = full.index_axis(Along(0), 0);
+    let most = slice.iter().map(|s| s.norm_sqr()).fold(0.0, f64::max);
+    slice.map(|s| of(*s, most))
+}
+
+pub(super) fn power(slices: &Slices) -> Array2<f64> {
+    slice(slices, &|s, _| s.norm_sqr())
+}
+
+/// In degrees.
+pub(super) fn phase(slices: &Slices) -> Array2<f64> {
+    slice(slices, &|s, most| {
+        if s.norm_sqr() > LEAST * most {
+            libm::atan2(s.im, s.re).to_degrees()
+        } else {
+            f64::NAN
+        }
+    })
+}
+
+pub(super) fn row<'a>(
+    name: &'a str,
+    quantity: Quantity,
+    scale: Scale,
+    shared: bool,
+    pictures: Vec<Picture<'a>>,
+) -> PlateRow<'a> {
+    PlateRow {
+        name,
+        quantity,
+        scale,
+        shared,
+        pictures,
+    }
+}
+
+/// Light fields, measured and predicted spectra of some planes.
+pub(super) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
+    let pictures = |of: &dyn Fn(&Seen<'a>) -> Picture<'a>| seen.iter().map(of).collect();
+    vec![
+        row(
+            "light field",
+            light_field_quantity(),
+            Scale::Linear,
+            shared,
+            pictures(&Seen::light_field),
+        ),
+        row(
+            "measured",
+            spectrum_quantity(),
+            DECIBEL,
+            shared,
+            pictures(&|seen| seen.spectrum(seen.found.radial.power.view())),
+        ),
+        row(
+            "predicted",
+            spectrum_quantity(),
+            DECIBEL,
+            shared,
+            pictures(&|seen| seen.spectrum(seen.found.predicted_radial.view())),
+        ),
+    ]
+}
+
+pub(super) fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {
+    seen.iter().map(|seen| verdict_lines(seen.found)).collect()
+}
+
+pub(super) fn drawn(of: &Plate<'_>) -> Result<Figure, Failure> {
+    plate(of).map_err(Failure::cannot_run)
+}

@@ -1,0 +1,155 @@
+//! Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy reflections.
+
+use crate::failure::Failure;
+use crate::figure::criteria::criteria;
+use crate::figure::recipe::Taken;
+use crate::figure::rows::{Seen, compared, drawn, feet};
+use etendue_field::{
+    Complex, EnvironmentMap, Light, Profile, Slices, SphericalGaussian, cis, modulus,
+};
+use etendue_figures::{
+    Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, curves, stacked,
+};
+use etendue_scene::Scene;
+use etendue_theory::shading::environment::{Glow, irradiance};
+use std::f64::consts::TAU;
+
+/// Fig. 14: a diffuse sphere in an environment.
+pub(crate) fn environment(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let names = ["environment", "curvature", "cosine", "reflection"];
+    let seen = names.map(|name| Seen::at(&taken.shots[0], name));
+    let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
+    let heads = ["environment", "curvature", "cosine", "reflection"];
+    let steps = drawn(&Plate {
+        title: "Diffuse shading under an environment map",
+        note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears it onto *ρ* = *kν*, the cosine blurs it along *ν*, and what leaves a diffuse \
+               surface is the line *ν* = 0. Predicted before reflection: by backward rays.",
+        heads: heads.map(str::to_owned).to_vec(),
+        rows: compared(&seen, false),
+        feet: feet(&seen),
+        bars: None,
+    })?;
+    Ok(stacked(&[steps, product(&taken.shots[0].scene, &seen[3])?]))
+}
+
+/// What is left at ν = 0, beside the product of the spectra of environment and cosine.
+fn product(scene: &Scene, shaded: &Seen<'_>) -> Result<Figure, Failure> {
+    let k = scene
+        .patches
+        .first()
+        .map_or(1.0, |object| object.patch.curvature[0]);
+    let glows = glows(&scene.light);
+    let sky = |nu: f64| glows.iter().map(|glow| glow.spectrum(nu)).sum::<Complex>();
+    let rho = shaded.plane.grid.rho.values();
+    let over = |spectrum: &dyn Fn(f64) -> Complex| {
+        let values = windowed(spectrum, &shaded.plane.window.x, &rho);
+        let peak = values[rho.len() / 2];
+        let both = rho.iter().zip(values);
+        both.map(|(rho, value)| [*rho, value / peak, 0.0]).collect()
+    };
+    let curve = |kind, name: &str, points| Curve {
+        kind,
+        name: name.to_owned(),
+        points,
+    };
+    let panel = CurvePanel {
+        title: "leaving the sphere".to_owned(),
+        x: Quantity::new("*ρ*", "cycles/m"),
+        curves: vec![
+            curve(
+                CurveKind::Rival,
+                "environment alone",
+                over(&|rho| sky(rho / k)),
+            ),
+            curve(
+                CurveKind::Theory,
+                "environment × cosine",
+                over(&|rho| irradiance(k, rho, &sky)),
+            ),
+            curve(
+                CurveKind::Measured,
+                "photons",
+                at_zero_nu(&shaded.found.measured),
+            ),
+        ],
+        is_log: [false; 2],
+    };
+    curves(&Curves {
+        title: "The product".to_owned(),
+        note: "|*S*_{0}| at *ν* = 0, where the light leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
+            .to_owned(),
+        y: Quantity::new("of that at 0", ""),
+        panels: vec![panel],
+    })
+    .map_err(Failure::cannot_run)
+}
+
+/// The lobes of an environment over longitude, integrated over latitude.
+fn glows(light: &Light) -> Vec<Glow> {
+    let Light::Environment { environment } = light else {
+        return Vec::new();
+    };
+    let EnvironmentMap::Lobes(lobes) = &environment.map else {
+        return Vec::new();
+    };
+    let glow = |lobe: &SphericalGaussian| Glow {
+        amplitude: lobe.radiance * lobe.width,
+        mean: libm::atan2(lobe.from.x, lobe.from.z.abs()),
+        deviation: lobe.width,
+    };
+    lobes.iter().map(glow).collect()
+}
+
+/// |spectrum ⊗ Ŵ| at some frequencies: back to positions, times the window, and forth again.
+fn windowed(spectrum: &dyn Fn(f64) -> Complex, window: &Profile, rho: &[f64]) -> Vec<f64> {
+    const STEPS: i32 = 400;
+    // Frequencies to four times the last: lobes of a tenth of a radian have none beyond.
+    let last = 4.0 * rho.last().copied().unwrap_or(1.0);
+    let along = |half: f64| (-STEPS..=STEPS).map(move |i| half * f64::from(i) / f64::from(STEPS));
+    let values: Vec<(f64, Complex)> = along(last).map(|q| (q, spectrum(q))).collect();
+    let wave = |z: f64| cis(TAU * z);
+    let field = |s: f64| {
+        let terms = values.iter().map(|(q, value)| value * wave(q * s));
+        terms.sum::<Complex>() * window.value(s)
+    };
+    let field: Vec<(f64, Complex)> = along(window.half_width()).map(|s| (s, field(s))).collect();
+    let at = |rho: &f64| {
+        let terms = field.iter().map(|(s, value)| value * wave(-rho * s));
+        modulus(terms.sum::<Complex>())
+    };
+    rho.iter().map(at).collect()
+}
+
+/// |S| at azimuth 0 along ν = 0, relative to that at zero, over ρ.
+fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
+    let full = slices.full();
+    let (grid, peak) = (&slices.grid, slices.at_zero());
+    let rho = grid.rho.values();
+    let points = rho.iter().enumerate();
+    points
+        .map(|(i, rho)| [*rho, full[[0, i, grid.nu.half]].norm() / peak, 0.0])
+        .collect()
+}
+
+/// Fig. 15: the steps of section 6.2, and its criteria beside photons.
+pub(crate) fn adaptive(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[0]).collect();
+    let heads = [
+        "a incidence",
+        "b curvature",
+        "c mirror",
+        "d lobe",
+        "e back",
+        "f outgoing",
+        "at the eye",
+    ];
+    let steps = drawn(&Plate {
+        title: "Bandwidth of a glossy reflection, step by step",
+        note: "A beam, light from far away with content at all frequencies in angle, on a glossy sphere. The lobe cuts the line off; curvature shears it twice, and travel once more.",
+        heads: heads.map(str::to_owned).to_vec(),
+        rows: compared(&seen, false),
+        feet: feet(&seen),
+        bars: None,
+    })?;
+    Ok(stacked(&[steps, criteria(taken)?]))
+}

@@ -1,0 +1,152 @@
+//! Figs. 3 and 13: coordinates of rays, and what it costs to take them for each other.
+
+use crate::failure::Failure;
+use crate::figure::recipe::{TWIST, Taken, Text};
+use crate::figure::rows::{Seen, compared, drawn, feet, row};
+use crate::figure::shot::resolved;
+use crate::pictures::{across, across_axes, light_field_quantity};
+use etendue_compare::{Applicability, Convergence, converge};
+use etendue_field::percent;
+use etendue_figures::{
+    Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, Scale, curves, stacked,
+};
+use ndarray::Array2;
+
+/// Fig. 3: stripes at equal angles, by slopes and by angles, and after travel.
+pub(crate) fn coordinates(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let names = ["two_plane", "travel", "plane_sphere"];
+    let seen = names.map(|name| Seen::at(&taken.shots[0], name));
+    let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
+    let mut rows = compared(&seen, false);
+    // No theory speaks of light of an environment on its way: photons are judged by the other tracer.
+    rows[2].name = "backward rays";
+    let spaces = drawn(&Plate {
+        title: "Two parameterisations, and travel",
+        note: "Five suns, 0.4 rad apart, behind a grating: stripes at slopes *u* = tan *θ*, which are not equally far apart, and at angles, which are. \
+               Travel shears them along *x*; angles are counted along T, which is against X.",
+        heads: ["slopes", "slopes, 0.5 m on", "angles, there"]
+            .map(str::to_owned)
+            .to_vec(),
+        rows,
+        feet: feet(&seen),
+        bars: None,
+    })?;
+    let panels = shrunk(&taken.also[0], &["angles"])?;
+    let error = orders(
+        "What it costs to take *u* for *θ*",
+        "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, whose window is *e* times as wide: the tangent is straight to second order.",
+        &panels,
+        2,
+    )?;
+    Ok(stacked(&[spaces, error]))
+}
+
+/// Fig. 13: directions by longitude and latitude about three equators.
+pub(crate) fn directions(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let [mirror, copper] = [&taken.shots[0], &taken.shots[1]];
+    let seen = [
+        Seen::at(mirror, "curvature")?,
+        Seen::at(mirror, "outgoing")?,
+        Seen::at(copper, "reflection")?,
+        Seen::at(copper, "outgoing")?,
+    ];
+    let others = seen.iter().map(|seen| {
+        let half = seen.found.projection.mean.grid;
+        across(&seen.found.measured, [half.half_x, half.half_u])
+    });
+    let others: Vec<Array2<f64>> = others.collect::<Option<_>>().unwrap_or_default();
+    let mut rows = compared(&seen, false);
+    rows[0].name = "along";
+    let pictures = seen.iter().zip(&others).map(|(seen, values)| {
+        let [x, y] = across_axes(seen.plane, &seen.found.projection.mean.grid);
+        etendue_figures::Picture {
+            x,
+            y,
+            values: values.view(),
+        }
+    });
+    let pictures = pictures.collect();
+    let quantity = light_field_quantity();
+    rows.insert(1, row("across", quantity, Scale::Linear, false, pictures));
+    let mut feet = feet(&seen);
+    for (lines, seen) in feet.iter_mut().zip(&seen) {
+        if let Some(first_order) = &seen.found.report.first_order {
+            let share = percent(first_order.chain.error, 1);
+            lines.push(format!("flat: off by {share}"));
+        }
+    }
+    let plate = drawn(&Plate {
+        title: "Directions in 3D, by longitude and latitude",
+        note: "A projector on a saddle whose axes lie 45° out of the plane of incidence: a mirror, and rough copper seen 6.9° beside that plane. The equator of the surface is the plane of \
+               incidence, that of outgoing light holds the outgoing ray. Along: position and longitude or slope. Across: the other two, as far as the frequencies go. Below: what first \
+               order errs by, which takes turns of the sphere for turns of a flat (*θ*, *φ*).",
+        heads: [
+            "mirror, normals",
+            "mirror, outgoing",
+            "copper, normals",
+            "copper, outgoing",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+        rows,
+        feet,
+        bars: None,
+    })?;
+    let panels = shrunk(&TWIST, &["curvature", "back", "outgoing"])?;
+    let error = orders(
+        "What a flat (*θ*, *φ*) costs",
+        "‖first order − exact‖/‖exact‖ at the mirror, in neighbourhoods *e* times as wide: they are flat to first order.",
+        &panels,
+        1,
+    )?;
+    Ok(stacked(&[plate, error]))
+}
+
+/// How the first-order errors of some planes of a scene fall with its neighbourhood.
+fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Failure> {
+    let scene = resolved(name, text, &[], |photons| photons)?;
+    let wanted = scene
+        .planes
+        .iter()
+        .filter(|plane| planes.contains(&plane.name.as_str()));
+    let found =
+        wanted.filter_map(|plane| converge(&scene, plane, &Applicability::new(&scene, plane)));
+    Ok(found.collect())
+}
+
+/// First-order errors, and lines of an order.
+fn orders(title: &str, note: &str, planes: &[Convergence], order: i32) -> Result<Figure, Failure> {
+    let panel = |plane: &Convergence| {
+        let [widest, error] = plane.steps[0];
+        let line = |[e, _]: &[f64; 2]| [*e, error * (e / widest).powi(order), 0.0];
+        let curve = |kind, name: String, points| Curve { kind, name, points };
+        CurvePanel {
+            title: crate::table::spaced(&plane.plane),
+            x: Quantity::new("*e*", ""),
+            curves: vec![
+                curve(
+                    CurveKind::Rival,
+                    format!("order {order}"),
+                    plane.steps.iter().map(line).collect(),
+                ),
+                curve(
+                    CurveKind::Measured,
+                    "against rays through the real geometry".to_owned(),
+                    plane
+                        .steps
+                        .iter()
+                        .map(|[e, error]| [*e, *error, 0.0])
+                        .collect(),
+                ),
+            ],
+            is_log: [true; 2],
+        }
+    };
+    curves(&Curves {
+        title: title.to_owned(),
+        note: note.to_owned(),
+        y: Quantity::new("error", ""),
+        panels: planes.iter().map(panel).collect(),
+    })
+    .map_err(Failure::cannot_run)
+}

@@ -1,0 +1,103 @@
+//! Table 1: each operator by the light before and after it.
+
+use crate::failure::Failure;
+use crate::figure::rows::{DECIBEL, Seen, drawn, feet, row};
+use crate::figure::shot::Shot;
+use crate::pictures::{light_field_quantity, spectrum_quantity};
+use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
+
+/// An operator: its name, and scene and plane before and after it.
+type Step = (&'static str, [[&'static str; 2]; 2]);
+
+/// As in the paper's table, in two parts.
+const PARTS: [(&str, [Step; 5]); 2] = [
+    (
+        "Maps and masks",
+        [
+            ("travel", [["travel", "near"], ["travel", "middle"]]),
+            (
+                "visibility",
+                [["fig1", "before_blockers"], ["fig1", "after_blockers"]],
+            ),
+            (
+                "light incidence",
+                [["incidence", "arrival"], ["incidence", "incidence"]],
+            ),
+            (
+                "outgoing angle",
+                [["incidence", "reflection"], ["incidence", "outgoing"]],
+            ),
+            (
+                "curvature",
+                [["fig10", "1_incidence"], ["fig10", "2_curvature"]],
+            ),
+        ],
+    ),
+    (
+        "Local shading",
+        [
+            ("cosine", [["fig10", "2_curvature"], ["fig10", "3_cosine"]]),
+            ("BRDF", [["fig10", "4_mirror"], ["fig10", "5_reflection"]]),
+            (
+                "texture",
+                [["glossy", "reflection"], ["textured_glossy", "texture"]],
+            ),
+            (
+                "separable BRDF",
+                [
+                    ["fresnel_grazing", "cosine"],
+                    ["fresnel_grazing", "reflection"],
+                ],
+            ),
+            (
+                "varying BRDF",
+                [["tiles", "mirrored"], ["tiles", "reflection"]],
+            ),
+        ],
+    ),
+];
+
+const NOTE: &str = "Measured. A map moves light and spectrum, a mask blurs the spectrum, a convolution cuts it off. Below: whether theory holds after the operator.";
+
+/// Light fields and spectra before and after each operator.
+pub(crate) fn operators(shots: &[Shot]) -> Result<Figure, Failure> {
+    let parts = PARTS.iter().enumerate().map(|(i, (title, steps))| {
+        let sides = [0, 1].map(|side| {
+            let seen = steps.iter().map(|(_, planes)| {
+                let [scene, plane] = planes[side];
+                let shot = shots.iter().find(|shot| shot.scene.name == scene);
+                let missing = || Failure::cannot_run(format!("no scene {scene}"));
+                Seen::at(shot.ok_or_else(missing)?, plane)
+            });
+            seen.collect::<Result<Vec<Seen<'_>>, Failure>>()
+        });
+        let [before, after] = sides;
+        let (before, after) = (before?, after?);
+        drawn(&Plate {
+            title,
+            note: if i == 0 { NOTE } else { "" },
+            heads: steps.iter().map(|(name, _)| (*name).to_owned()).collect(),
+            rows: rows(&before, &after),
+            feet: feet(&after),
+            bars: None,
+        })
+    });
+    Ok(stacked(&parts.collect::<Result<Vec<Figure>, _>>()?))
+}
+
+fn rows<'a>(before: &[Seen<'a>], after: &[Seen<'a>]) -> Vec<PlateRow<'a>> {
+    let light = |seen: &[Seen<'a>]| seen.iter().map(Seen::light_field).collect();
+    let power = |seen: &[Seen<'a>]| -> Vec<Picture<'a>> {
+        let pictures = seen
+            .iter()
+            .map(|seen| seen.spectrum(seen.found.radial.power.view()));
+        pictures.collect()
+    };
+    let (fields, spectra) = (light_field_quantity, spectrum_quantity);
+    vec![
+        row("before", fields(), Scale::Linear, false, light(before)),
+        row("after", fields(), Scale::Linear, false, light(after)),
+        row("before", spectra(), DECIBEL, false, power(before)),
+        row("after", spectra(), DECIBEL, false, power(after)),
+    ]
+}

@@ -1,0 +1,86 @@
+//! What the coordinates of a plane are called, and axes over them.
+
+use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
+use etendue_figures::{Axis, Quantity};
+
+/// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
+pub(super) struct Words {
+    pub(super) along: [&'static str; 2],
+    pub(super) across: [&'static str; 2],
+    angle: &'static str,
+    per_angle: &'static str,
+}
+
+impl Words {
+    const ACROSS: Self = Self {
+        along: ["*x*", "*u*"],
+        across: ["*y*", "*v*"],
+        angle: "",
+        per_angle: "cycles/slope",
+    };
+    const ON_SURFACE: Self = Self {
+        along: ["*s*", "*θ*"],
+        across: ["*t*", "*φ*"],
+        angle: "rad",
+        per_angle: "cycles/rad",
+    };
+
+    pub(super) fn of(plane: &VirtualPlane) -> Self {
+        match plane.orientation {
+            Orientation::Orthogonal => Self::ACROSS,
+            _ => Self::ON_SURFACE,
+        }
+    }
+
+    pub(super) fn projection_axes(&self, grid: &ProjectionGrid) -> [Axis; 2] {
+        [
+            Axis::edges(self.along[0], "m", [-grid.half_x, grid.half_x]),
+            Axis::edges(self.along[1], self.angle, [-grid.half_u, grid.half_u]),
+        ]
+    }
+
+    pub(super) fn frequency_axes(&self, grid: &SliceGrid) -> [Axis; 2] {
+        let axis = |name, unit, axis: &FrequencyAxis| {
+            Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
+        };
+        [
+            axis("*ρ*", "cycles/m", &grid.rho),
+            axis("*ν*", self.per_angle, &grid.nu),
+        ]
+    }
+
+    pub(super) fn light_field_quantity(&self) -> Quantity {
+        let [a, b] = self.across;
+        Quantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
+    }
+}
+
+/// The axes of the light field of a plane, (x, u) across its ray.
+pub(crate) fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+    Words::of(plane).projection_axes(grid)
+}
+
+/// The axes of its spectrum, (ρ, ν).
+pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
+    Words::of(plane).frequency_axes(&plane.grid)
+}
+
+/// The axes of the light field across the other two coordinates, (y, v).
+pub(crate) fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+    let words = Words::of(plane);
+    Words {
+        along: words.across,
+        ..words
+    }
+    .projection_axes(grid)
+}
+
+/// What a light field across the ray holds.
+pub(crate) fn light_field_quantity() -> Quantity {
+    Words::ACROSS.light_field_quantity()
+}
+
+/// What a radial spectrum holds.
+pub(crate) fn spectrum_quantity() -> Quantity {
+    Quantity::new("⟨|*S*_{φ}|^{2}⟩", "")
+}

@@ -1,0 +1,81 @@
+//! `etendue check --draw`: what a drawing of a scene shows.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::etendue;
+use std::fs;
+
+/// The drawing of a scene of the repository, as SVG.
+fn drawing(scene: &str) -> String {
+    let folder = tempfile::tempdir().unwrap();
+    let mut command = etendue();
+    command.current_dir(folder.path()).arg("check");
+    command
+        .arg(common::scene(&format!("{scene}.ron")))
+        .args(["--draw", "a.svg"]);
+    let output = command.output().unwrap();
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    fs::read_to_string(folder.path().join("a.svg")).unwrap()
+}
+
+#[test]
+fn a_cut_through_y_is_drawn_where_it_shows_something_else() {
+    // Bars along Y, and squares that jitter alone makes uneven.
+    for (scene, is_other) in [
+        ("grating", true),
+        ("fig9b", false),
+        ("table1/environment", false),
+    ] {
+        let is_drawn = drawing(scene).contains("font-style=\"italic\">y</tspan>");
+        assert_eq!(is_drawn, is_other, "{scene}");
+    }
+}
+
+#[test]
+fn a_path_that_turns_is_drawn_to_scale() {
+    for (scene, turns) in [
+        ("two_bounces", true),
+        ("fig10", true),
+        ("fig9b", false),
+        ("fig1", false),
+    ] {
+        assert_eq!(drawing(scene).contains(">to scale<"), turns, "{scene}");
+    }
+}
+
+#[test]
+fn surfaces_are_hatched_evenly_and_glass_is_not() {
+    // Strokes of hatching are the only lines of this kind.
+    let strokes = |scene: &str| {
+        drawing(scene)
+            .matches("stroke=\"#9a9a9a\" stroke-width=\"1\"")
+            .count()
+    };
+    assert_eq!(strokes("table1/lens"), 0);
+    assert_eq!(strokes("table1/refraction_in"), 0);
+    // A sphere is drawn in pieces shorter than the first stroke.
+    assert!(strokes("table1/environment") > 20);
+}
+
+#[test]
+fn light_from_far_away_is_no_lamp() {
+    let texts = |scene: &str| drawing(scene).matches(">sky<").count();
+    assert_eq!([texts("table1/environment"), texts("fig9b")], [1, 0]);
+}
+
+#[test]
+fn planes_stand_where_they_are() {
+    // All seven planes of this scene are at one place: there is one line for them, drawn seven times in each cut.
+    let svg = drawing("fig10");
+    let lines: Vec<&str> = svg
+        .lines()
+        .filter(|line| line.contains("dasharray=\"5 3\""))
+        .collect();
+    let places = lines.iter().map(|line| line.split(' ').nth(1).unwrap());
+    let mut places: Vec<&str> = places.collect();
+    assert_eq!(places.len(), 14);
+    places.dedup();
+    assert_eq!(places.len(), 1, "{places:?}");
+}

@@ -1,0 +1,299 @@
+//! Rows of pictures under each other, in as many blocks of columns as the width of a page asks for.
+
+use crate::axis::Axis;
+use crate::bar;
+use crate::color::{Colors, Scale, Shading, has_gaps, largest};
+use crate::figure::Error;
+use crate::panel::Panel;
+use crate::style::{HEAD_TEXT, LABEL_BASELINE, PAGE};
+use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use ndarray::ArrayView2;
+
+/// Values on a grid, [x, y], both axes ascending. NaN: no value.
+#[derive(Clone, Debug)]
+pub struct Picture<'a> {
+    /// The first axis of the array.
+    pub x: Axis,
+    /// The second.
+    pub y: Axis,
+    /// The values.
+    pub values: ArrayView2<'a, f64>,
+}
+
+/// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀): where the theory puts its content.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Guide {
+    /// The point (ρ₀, ν₀): the origin, or the centre of a replica.
+    pub through: [f64; 2],
+    /// dν/dρ, in metres; −d for light that has travelled d.
+    pub slope: f64,
+}
+
+/// A row of pictures that share colors.
+#[derive(Debug)]
+pub(crate) struct Row<'b, 'a> {
+    /// Its name.
+    pub(crate) name: &'b str,
+    /// Name and unit beside the color bar, markup.
+    pub(crate) bar: [String; 2],
+    pub(crate) scale: Scale,
+    /// Whether one range of colors is for all of the row. Otherwise each picture is relative to its own largest value.
+    pub(crate) shared: bool,
+    /// A picture for each column, and the lines over it.
+    pub(crate) cells: Vec<(&'b Picture<'a>, &'b [Guide])>,
+}
+
+impl Row<'_, '_> {
+    /// Whether the color bar of this row is that of another.
+    fn has_bar_of(&self, other: &Self) -> bool {
+        self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
+    }
+
+    fn shading(&self, peak: f64) -> Shading {
+        let [name, unit] = &self.bar;
+        match self.scale {
+            Scale::Linear => {
+                let top = if peak > 0.0 { peak } else { 1.0 };
+                Shading::linear(Colors::Sequential, Axis::edges(name, unit, [0.0, top]))
+            }
+            Scale::Decibel { floor } => Shading::decibel(name, floor, peak),
+            Scale::Phase => Shading::phase(name),
+        }
+    }
+}
+
+/// Left edge of the first picture: row name, axis label, tick texts.
+pub(crate) const LEFT: f64 = 75.0;
+/// Width to the right of the last picture, for the color bars.
+pub(crate) const RIGHT: f64 = 81.0;
+/// Width of all that is between.
+pub(crate) const INNER: f64 = PAGE - LEFT - RIGHT;
+/// Between pictures side by side of which the right one has no numbers beside its axis, or has.
+const GAPS: [f64; 2] = [26.0, 56.0];
+/// Between the lower edge of a picture and the upper edge of the one below, if that has its x axis, or has not.
+const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
+/// From the left edge of the first picture to the row name.
+const ROW_NAME: f64 = 63.0;
+
+/// The lines over spectra: on dark colors by themselves, on pale ones by what is under them.
+pub(crate) const GUIDE: [Stroke; 2] = [
+    Stroke {
+        color: "#10304a",
+        width: 2.6,
+        dash: GUIDE_DASH,
+    },
+    Stroke {
+        color: "#7fe0ff",
+        width: 1.0,
+        dash: GUIDE_DASH,
+    },
+];
+const GUIDE_DASH: &str = "4 5";
+
+/// A column in its place.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    column: usize,
+    left: f64,
+}
+
+/// Rows of pictures laid out for a page.
+#[derive(Debug)]
+pub(crate) struct Grid<'b, 'a> {
+    rows: Vec<Row<'b, 'a>>,
+    /// Side of a picture.
+    pub(crate) side: f64,
+    blocks: Vec<Vec<Place>>,
+}
+
+impl<'b, 'a> Grid<'b, 'a> {
+    /// Lays out rows of `columns` pictures that are at least `least` wide, if one fits.
+    ///
+    /// # Panics
+    /// When a row has not a picture for each column.
+    pub(crate) fn new(rows: Vec<Row<'b, 'a>>, columns: usize, least: f64) -> Self {
+        // Of one block, and of several, which would make a long page.
+        const MOST: [f64; 2] = [190.0, 112.0];
+        for row in &rows {
+            assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
+        }
+        let mut grid = Self {
+            rows,
+            side: 0.0,
+            blocks: Vec::new(),
+        };
+        for count in 1..=columns.max(1) {
+            let length = columns.div_ceil(count).max(1);
+            let starts: Vec<usize> = (0..columns).step_by(length).collect();
+            let gaps = |start: usize| -> f64 {
+                let after = start + 1..(start + length).min(columns);
+                after.map(|column| grid.gap(column)).sum()
+            };
+            let widest = starts.iter().map(|start| gaps(*start)).fold(0.0, f64::max);
+            let most = MOST[usize::from(count > 1)];
+            grid.side = ((INNER - widest) / length as f64).min(most).floor();
+            if grid.side >= least || length == 1 {
+                grid.blocks = starts
+                    .iter()
+                    .map(|start| grid.places(*start..(start + length).min(columns)))
+                    .collect();
+                break;
+            }
+        }
+        grid
+    }
+
+    fn places(&self, columns: std::ops::Range<usize>) -> Vec<Place> {
+        let mut left = LEFT;
+        let first = columns.start;
+        let place = |column| {
+            if column > first {
+                left += self.side + self.gap(column);
+            }
+            Place { column, left }
+        };
+        columns.map(place).collect()
+    }
+
+    /// Whether a picture has another y axis than its neighbour on the left.
+    fn differs(row: &Row<'_, '_>, column: usize) -> bool {
+        row.cells[column].0.y != row.cells[column - 1].0.y
+    }
+
+    /// The gap before a column.
+    fn gap(&self, column: usize) -> f64 {
+        let differs = self.rows.iter().any(|row| Self::differs(row, column));
+        GAPS[usize::from(differs)]
+    }
+
+    /// How many blocks there are, one under the other.
+    pub(crate) fn blocks(&self) -> usize {
+        self.blocks.len()
+    }
+
+    /// The columns of a block, each with its middle and the room a text under it has.
+    pub(crate) fn columns(&self, block: usize) -> impl Iterator<Item = (usize, f64, f64)> {
+        let places = &self.blocks[block];
+        let steps = places.windows(2).map(|pair| pair[1].left - pair[0].left);
+        let room = steps.fold(self.side + GAPS[1], f64::min) - 6.0;
+        let places = places.iter();
+        places.map(move |place| (place.column, place.left + 0.5 * self.side, room))
+    }
+
+    /// Width of the widest block.
+    pub(crate) fn width(&self) -> f64 {
+        let ends = self.blocks.iter().filter_map(|block| block.last());
+        let right = ends
+            .map(|place| place.left + self.side)
+            .fold(LEFT, f64::max);
+        right - LEFT
+    }
+
+    /// Whether the pictures of a row have the x axes of those below.
+    fn shares_x(&self, row: usize) -> bool {
+        self.rows.get(row + 1).is_some_and(|below| {
+            let mut both = self.rows[row].cells.iter().zip(&below.cells);
+            both.all(|((a, _), (b, _))| a.x == b.x)
+        })
+    }
+
+    /// Draws a block, its pictures from `top` on; returns the baseline of its lowest texts.
+    pub(crate) fn draw(&self, svg: &mut Svg, block: usize, top: f64) -> Result<f64, Error> {
+        let mut y = top;
+        // Rows that share a color bar, and from where to where it is.
+        let mut bars: Vec<(Shading, Area)> = Vec::new();
+        let places = &self.blocks[block];
+        let Some(last) = places.last() else {
+            return Ok(top);
+        };
+        for (index, row) in self.rows.iter().enumerate() {
+            let shading = self.row(svg, index, places, y)?;
+            let area = Area {
+                x: last.left,
+                y,
+                width: self.side,
+                height: self.side,
+            };
+            match bars.last_mut() {
+                Some((bar, whole)) if index > 0 && row.has_bar_of(&self.rows[index - 1]) => {
+                    bar.beyond = [0, 1].map(|end| bar.beyond[end] || shading.beyond[end]);
+                    whole.height = area.bottom() - whole.y;
+                }
+                _ => bars.push((shading, area)),
+            }
+            y += self.side + ROW_GAPS[usize::from(!self.shares_x(index))];
+        }
+        for (shading, area) in bars {
+            bar::draw(svg, &shading, area.right() + 10.0, area)?;
+        }
+        Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
+    }
+
+    /// The largest value of rows that share a color bar with this one.
+    fn peak(&self, index: usize) -> f64 {
+        let rows = self.rows.iter().filter(|r| r.has_bar_of(&self.rows[index]));
+        let cells = rows.flat_map(|row| &row.cells);
+        cells
+            .map(|(picture, _)| largest(picture.values))
+            .fold(0.0, f64::max)
+    }
+
+    /// The pictures of a row and its name; returns the colors of its bar.
+    fn row(&self, svg: &mut Svg, index: usize, places: &[Place], y: f64) -> Result<Shading, Error> {
+        let row = &self.rows[index];
+        let highest = self.peak(index);
+        let mut bar = row.shading(if row.shared { highest } else { 1.0 });
+        for (i, place) in places.iter().enumerate() {
+            let (picture, guides) = row.cells[place.column];
+            let panel = Panel {
+                area: Area {
+                    x: place.left,
+                    y,
+                    width: self.side,
+                    height: self.side,
+                },
+                x: &picture.x,
+                y: &picture.y,
+                label_x: !self.shares_x(index),
+                label_y: i == 0 || Self::differs(row, place.column),
+            };
+            let peak = if row.shared {
+                highest
+            } else {
+                largest(picture.values)
+            };
+            let shading = row.shading(peak).showing(picture.values);
+            bar.beyond = [0, 1].map(|end| bar.beyond[end] || shading.beyond[end]);
+            panel.heat_map(svg, picture.values, &shading)?;
+            draw_guides(svg, &panel, guides);
+            panel.axes(svg);
+        }
+        let at = [LEFT - ROW_NAME, y + 0.5 * self.side];
+        let style = Text::new(at, HEAD_TEXT, Anchor::Middle).bold().upwards();
+        svg.fitted(style, row.name, self.side);
+        Ok(bar)
+    }
+
+    /// Whether some cell of some picture has no value.
+    pub(crate) fn has_gaps(&self) -> bool {
+        let mut cells = self.rows.iter().flat_map(|row| &row.cells);
+        cells.any(|(picture, _)| has_gaps(picture.values))
+    }
+}
+
+fn draw_guides(svg: &mut Svg, panel: &Panel<'_>, guides: &[Guide]) {
+    if guides.is_empty() {
+        return;
+    }
+    svg.clipped(panel.area, |svg| {
+        for guide in guides {
+            let ends = panel.x.range().map(|rho| {
+                let nu = guide.through[1] + guide.slope * (rho - guide.through[0]);
+                panel.point(rho, nu)
+            });
+            for stroke in GUIDE {
+                svg.line(ends[0], ends[1], stroke);
+            }
+        }
+    });
+}

@@ -1,0 +1,153 @@
+//! The scene to scale, seen along Y of its light: where the central ray turns, and where things stand.
+
+use crate::cut::{BADGE, Hatching, PLANE, badge, line_of};
+use crate::section::{Segment, SegmentKind};
+use crate::style::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
+use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use etendue_field::tidy;
+
+/// Something in the scene.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Object {
+    /// What it is; points are (z, x).
+    pub segment: Segment,
+    /// Where light goes that arrives at it, (z, x).
+    pub light: [f64; 2],
+}
+
+/// The plane of D and X at the light; points are (z, x), metres.
+#[derive(Clone, Debug, PartialEq)]
+pub struct World {
+    /// Corners and ends of the central ray.
+    pub path: Vec<[f64; 2]>,
+    /// Lights, blockers and surfaces.
+    pub objects: Vec<Object>,
+    /// The virtual planes, as wide as their windows.
+    pub planes: Vec<[[f64; 2]; 2]>,
+}
+
+/// Height of the drawing, and of what is written above it.
+const DRAWING: f64 = 170.0;
+const HEAD: f64 = 30.0;
+
+impl World {
+    /// Height of all.
+    pub(crate) const HEIGHT: f64 = HEAD + DRAWING + 16.0;
+
+    /// Draws it at its upper left corner.
+    pub(crate) fn draw(&self, svg: &mut Svg, [x, y]: [f64; 2], width: f64) {
+        let area = Area {
+            x,
+            y: y + HEAD,
+            width,
+            height: DRAWING,
+        };
+        let title = Text::new([area.middle()[0], y + 22.0], LABEL_TEXT, Anchor::Middle);
+        svg.text(title, "to scale");
+        let (scale, middle) = self.scale(area);
+        let [cx, cy] = area.middle();
+        let place = |[z, x]: [f64; 2]| [cx + scale * (z - middle[0]), cy - scale * (x - middle[1])];
+        svg.clipped(area, |svg| self.objects(svg, &place));
+        let path: Vec<[f64; 2]> = self.path.iter().map(|point| place(*point)).collect();
+        svg.polyline(&path, Stroke::solid(INK, 1.3));
+        if let [.., from, to] = path[..] {
+            arrow(svg, from, to);
+        }
+        let mut numbers: Vec<[f64; 2]> = Vec::new();
+        for (i, plane) in self.planes.iter().enumerate() {
+            let ends = plane.map(place);
+            svg.line(ends[0], ends[1], Stroke::solid(PLANE, 1.2));
+            let number = free(ends, &numbers);
+            badge(svg, number, i);
+            numbers.push(number);
+        }
+        bar(svg, area, scale);
+    }
+
+    /// Units of the drawing to a metre, and what is in its middle: path, planes and lights are all seen.
+    fn scale(&self, area: Area) -> (f64, [f64; 2]) {
+        let lights = self
+            .objects
+            .iter()
+            .filter(|o| o.segment.kind == SegmentKind::Light);
+        let lights = lights.flat_map(|light| [light.segment.start, light.segment.end]);
+        let planes = self.planes.as_flattened().iter().copied();
+        let points: Vec<[f64; 2]> = self
+            .path
+            .iter()
+            .copied()
+            .chain(lights)
+            .chain(planes)
+            .collect();
+        let ends = [0, 1].map(|i| {
+            let along = points.iter().map(|point| point[i]);
+            [
+                along.clone().fold(f64::INFINITY, f64::min),
+                along.fold(f64::NEG_INFINITY, f64::max),
+            ]
+        });
+        // Room for numbers around what is drawn.
+        let room = [area.width - 60.0, area.height - 5.0 * BADGE];
+        let scales = [0, 1].map(|i| room[i] / (ends[i][1] - ends[i][0]).max(1e-9));
+        (
+            scales[0].min(scales[1]),
+            ends.map(|[low, high]| 0.5 * (low + high)),
+        )
+    }
+
+    fn objects(&self, svg: &mut Svg, place: &dyn Fn([f64; 2]) -> [f64; 2]) {
+        let mut hatching = Hatching::default();
+        for Object { segment, light } in &self.objects {
+            let ends = [segment.start, segment.end].map(place);
+            let (color, width) = line_of(segment.kind);
+            if segment.kind == SegmentKind::Surface {
+                hatching.draw(svg, ends, [light[0], -light[1]]);
+            }
+            if segment.kind != SegmentKind::Sky {
+                svg.line(ends[0], ends[1], Stroke::solid(color, 0.7 * width));
+            }
+        }
+    }
+}
+
+/// Where the number of a plane goes: beyond its end, and beyond numbers that are there.
+fn free([from, to]: [[f64; 2]; 2], taken: &[[f64; 2]]) -> [f64; 2] {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = libm::hypot(along[0], along[1]).max(1e-9);
+    let step = along.map(|a| a / length);
+    let mut number = [0, 1].map(|i| to[i] + BADGE * step[i]);
+    let apart = |a: &[f64; 2], b: [f64; 2]| libm::hypot(a[0] - b[0], a[1] - b[1]) >= 2.0 * BADGE;
+    while !taken.iter().all(|other| apart(other, number)) {
+        number = [0, 1].map(|i| number[i] + step[i]);
+    }
+    number
+}
+
+/// The tip of the central ray.
+fn arrow(svg: &mut Svg, from: [f64; 2], to: [f64; 2]) {
+    let along = [to[0] - from[0], to[1] - from[1]];
+    let length = libm::hypot(along[0], along[1]).max(1e-9);
+    let [a, b] = along.map(|a| a / length);
+    let wings = [-3.5, 3.5].map(|wing| [to[0] - 9.0 * a - wing * b, to[1] - 9.0 * b + wing * a]);
+    svg.polygon(&[to, wings[0], wings[1]], INK);
+}
+
+/// A length to measure by.
+fn bar(svg: &mut Svg, area: Area, scale: f64) {
+    let most = 110.0 / scale;
+    let decade = libm::pow(10.0, libm::floor(libm::log10(most)));
+    let lengths = [5.0, 2.0, 1.0].map(|digit| digit * decade);
+    let length = lengths
+        .into_iter()
+        .find(|length| *length <= most)
+        .unwrap_or(decade);
+    let [x, y] = [area.x, area.bottom() + 6.0];
+    let right = x + scale * length;
+    let stroke = Stroke::solid(INK, STROKE);
+    svg.line([x, y], [right, y], stroke);
+    for end in [x, right] {
+        svg.line([end, y - 3.0], [end, y + 3.0], stroke);
+    }
+    let style = Text::new([right + 6.0, y + 4.0], TICK_TEXT, Anchor::Start).fill(SOFT);
+    svg.text(style, &format!("{} m", tidy(length)));
+}
