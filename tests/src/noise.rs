@@ -2,7 +2,7 @@
 
 use crate::SEED;
 use crate::report::Bound::Below;
-use crate::report::{Check, EXACT, Row, Section};
+use crate::report::{Check, Row, Section};
 use crate::rows::Line;
 use crate::scenes::{fig9b, predicted, receiver, sampled, traced, words};
 use etendue_compare::{PlaneReport, Test, Verdict, compare};
@@ -198,7 +198,7 @@ fn row(scene: &Scene, report: &PlaneReport) -> Row {
     ];
     let passes = report.verdict == Verdict::Pass;
     let checks = vec![
-        Check::p(EXACT, report.p_value, Test::of(scene).level),
+        Check::exact(report, Test::of(scene).level),
         Check::fact("verdict", passes, "as a run judges"),
     ];
     Row::new(cells, checks)

@@ -1,6 +1,7 @@
 //! What a validation found: figures held against bounds, in tables, and how all of it reads.
 
 use crate::rows::Line;
+use etendue_compare::{PlaneReport, Verdict};
 
 /// What a figure must be. What is not a number is none of these.
 #[derive(Clone, Copy, Debug)]
@@ -42,6 +43,20 @@ impl Check {
     pub(crate) fn p(id: &'static str, p: Option<f64>, level: f64) -> Self {
         let bound = Bound::AtLeast(level);
         Self::new(id, p.unwrap_or(0.0), bound, "α over all planes")
+    }
+
+    /// Of photons against the exact prediction, as a run judges them: p, or that the stated error of the prediction is below the resolution and may be
+    /// all they disagree with.
+    pub(crate) fn exact(report: &PlaneReport, level: f64) -> Self {
+        let check = Self::p(EXACT, report.p_value, level);
+        if check.passes() || report.exact_verdict() != Verdict::Pass {
+            return check;
+        }
+        Self {
+            bound: Bound::AtLeast(0.0),
+            reason: "within the stated error of the prediction",
+            ..check
+        }
     }
 
     /// Of what must not be once.

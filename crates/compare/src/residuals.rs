@@ -88,7 +88,8 @@ impl Residuals {
 
     /// The residuals from the prediction nearest to the measurement of those that are off by no
     /// more than `error`|F| at each frequency, and than the fast transform is of the largest F.
-    pub(crate) fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
+    #[must_use]
+    pub fn forgiving(&self, prediction: &Slices, error: f64) -> Self {
         let mut moved = self.mean();
         let of_transform = TRANSFORM * largest(&prediction.half);
         moved.zip_mut_with(&prediction.half, |mean, f| {

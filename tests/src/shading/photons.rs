@@ -2,7 +2,7 @@
 
 use super::scenes;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, EXACT, Row, Section};
+use crate::report::{Check, Row, Section};
 use crate::rows::Line;
 use crate::scenes::{compared, predicted, referred, traced, traced_backwards};
 use etendue_compare::{PlaneComparison, Verdict, sidak};
@@ -51,7 +51,7 @@ pub(super) fn photons(photons: Option<u64>) -> Section {
             "Photons and seeds as in the files. The exact prediction is a quadrature of rays through the real geometry; the chain is affine maps onto the surface and off it, \
              the clamped cosine and the lobe that the central ray meets. Error: of the chain, computed from the exact prediction. Excess: its disagreement with the photons \
              beyond noise, and the upper 95 % bound of it. Resolvable: the excess that noise lets one see. Backward: against rays followed from the plane to the light, where \
-             that has an area or is an environment. Required beforehand of every plane: light; p exact ≥ {level:.6}, α = {ALPHA} over all {planes} planes; bound ≤ 1.1 errors \
+             that has an area or is an environment. Required beforehand of every plane: light; p exact ≥ {level:.6} unless the stated error of the prediction may be all of it, α = {ALPHA} over all {planes} planes; bound ≤ 1.1 errors \
              or 1 %; p backward ≥ the same level; and that what the scene emits is what it absorbs, stops and lets go, to {LEDGER:.0e}. {whole}"
         ),
         header: vec![
@@ -106,7 +106,7 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
     let light = report.in_window as f64;
     let mut checks = vec![
         Check::new("light", light, AtLeast(1.0), "p says nothing of the dark"),
-        Check::p(EXACT, report.p_value, level),
+        Check::exact(report, level),
         Check::fact("first order", agrees, "by the rule for first-order chains"),
         Check::new("ledger", imbalance.abs(), Below(LEDGER), "rounding"),
     ];

@@ -11,7 +11,7 @@ use etendue_trace::Tracer;
 use rayon::prelude::*;
 
 /// Beams, by their width in metres: that of the file, and one so narrow that its aberration is below its noise.
-const WIDTHS: [f64; 2] = [0.1, 0.001];
+const WIDTHS: [f64; 2] = [0.1, 1e-5];
 /// Standard errors.
 const MOST: f64 = 4.0;
 

@@ -5,7 +5,7 @@ use super::path::{Path, Stage};
 use super::planar::Found;
 use super::{Outcome, number, percent};
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, EXACT, Row, Section, worse};
+use crate::report::{Check, Row, Section, worse};
 use crate::rows::Line;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
@@ -33,7 +33,7 @@ pub(super) fn operators(outcomes: &[&Outcome], planes: usize, level: f64) -> Sec
             "Photons against the exact ray-space prediction and against the chain of affine maps. Error: of the chain, computed from the exact \
              prediction. Excess: its disagreement with the photons beyond noise, and the upper 95 % bound of it. Resolvable: the excess that noise \
              lets one see. Order: exponent with which the error falls on neighbourhoods 1, 1/2, 1/4 and 1/8 as large, by least squares; last: from 1/4 \
-             to 1/8. 2D: the section in the plane of incidence as in the table above, for one surface whose principal axes lie in it. Required of every plane: light; p exact ≥ {level:.6}, α = 0.01 over all {planes} planes (scenes with the same light are lit by the same photons, so \
+             to 1/8. 2D: the section in the plane of incidence as in the table above, for one surface whose principal axes lie in it. Required of every plane: light; p exact ≥ {level:.6} unless the stated error of the prediction may be all of it, α = 0.01 over all {planes} planes (scenes with the same light are lit by the same photons, so \
              that their p are alike, and the level is on the safe side); bound ≤ 1.1 errors or 1 %; order \
              within {ORDER} of 1 where light comes at an angle, of 2 where it comes along normals, no error where nothing is left out; p first \
              order < {level:.6} wherever the error is above twice the resolvable excess."
@@ -75,7 +75,7 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
     let light = report.in_window as f64;
     let mut checks = vec![
         Check::new("light", light, AtLeast(1.0), "p says nothing of the dark"),
-        Check::p(EXACT, report.p_value, level),
+        Check::exact(report, level),
         Check::fact("excess", agrees, "by the rule for first-order chains"),
         follows(&fall, known),
     ];
