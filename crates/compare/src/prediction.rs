@@ -4,12 +4,14 @@ use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
 use crate::class::Class;
 use crate::first_order::FirstOrder;
-use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
+use crate::ways::off_patches;
+use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
 use etendue_theory::{Budget, Model, Over};
 use ndarray::Array2;
+use std::f64::consts::TAU;
 
 /// Everything a measurement of a plane is held against.
 #[derive(Clone, Debug)]
@@ -87,13 +89,42 @@ impl Prediction {
         match &applicability.theory {
             Theory::Parallel(chain) => empty.by(chain, over, budget(scene), |_| None),
             Theory::None => empty,
-            Theory::Specular(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
-                FirstOrder::new(scene, view, over, exact)
-            }),
+            Theory::Specular(view) => {
+                let found = empty.by(view.as_ref(), over, budget(scene), |exact| {
+                    FirstOrder::new(scene, view, over, exact)
+                });
+                match off_patches(scene, plane, view) {
+                    Some(off) => found.shifted(off, &plane.window),
+                    None => found,
+                }
+            }
             Theory::Scattering(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
                 FirstOrder::of_reflection(view, exact)
             }),
         }
+    }
+
+    /// The same with an error beside its own: rays arrive `off` half-widths of the window from where
+    /// they are predicted. At (ρ, ν) that changes the spectrum by 2π `off` times ρ and ν in cycles
+    /// per half-width, as a share.
+    fn shifted(mut self, off: f64, window: &Window) -> Self {
+        if self.is_statistical() {
+            return self;
+        }
+        let grid = self.slices.grid;
+        let [x, u] = [window.x, window.u].map(|profile| profile.half_width());
+        let [mut changes, mut whole] = [0.0; 2];
+        for ((_, m, n), value) in self.slices.half.indexed_iter() {
+            let [rho, nu] = [grid.rho.spacing * m as f64, grid.nu.value(n)];
+            let cycles = libm::hypot(rho * x, nu * u);
+            changes += value.norm_sqr() * (TAU * off * cycles).powi(2);
+            whole += value.norm_sqr();
+        }
+        if whole > 0.0 {
+            let own = self.quadrature_error.unwrap_or(0.0);
+            self.quadrature_error = Some(libm::hypot(own, (changes / whole).sqrt()));
+        }
+        self
     }
 
     /// What a model says, and the first-order chain beside it.

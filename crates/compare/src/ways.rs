@@ -14,4 +14,4 @@ mod specular;
 mod surroundings;
 
 pub(crate) use scattered::unforeseen_by_scattering;
-pub(crate) use specular::unforeseen_by_rays;
+pub(crate) use specular::{off_patches, unforeseen_by_rays};

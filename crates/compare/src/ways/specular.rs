@@ -16,13 +16,7 @@ pub(crate) fn unforeseen_by_rays(
     plane: &VirtualPlane,
     view: &Observed<System>,
 ) -> Vec<String> {
-    let follower = Follower {
-        scene,
-        plane,
-        system: &view.system,
-        at: &view.plane,
-        around: Surroundings::new(scene, plane),
-    };
+    let follower = Follower::new(scene, plane, view);
     let mut found = met(|index| follower.check(follower.ray(index)?));
     found.extend(met(|index| follower.check(follower.ray_of_window(index)?)));
     let mut found = in_words(found, scene);
@@ -32,6 +26,16 @@ pub(crate) fn unforeseen_by_rays(
         format!("a mesh that sends light {percent:.3} % of the window beside its osculating patch")
     }));
     found
+}
+
+/// How far smooth meshes lead rays beside where their osculating patches do, in half-widths of the
+/// window (root mean square); `None` without a mesh.
+pub(crate) fn off_patches(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    view: &Observed<System>,
+) -> Option<f64> {
+    Follower::new(scene, plane, view).off_patches()
 }
 
 /// How far rays of a mesh may arrive from those of its osculating patch, in half-widths of the
@@ -52,6 +56,18 @@ pub(super) type Arrival = Option<(TwoPlane, f64)>;
 
 /// Distances closer than this share are one.
 const SAME: f64 = 1e-6;
+
+impl<'a> Follower<'a> {
+    fn new(scene: &'a Scene, plane: &'a VirtualPlane, view: &'a Observed<System>) -> Self {
+        Self {
+            scene,
+            plane,
+            system: &view.system,
+            at: &view.plane,
+            around: Surroundings::new(scene, plane),
+        }
+    }
+}
 
 impl Follower<'_> {
     /// How much light a ray brings into the window, and what it meets on its way that theory does not
