@@ -1,0 +1,367 @@
+/** The colors of the report, from black to light. */
+const COLORS = "AAAEAAAFAQAGAQEIAQEKAgEMAgIOAwIQAwISBAMUBQMWBgQZBwQbCAUdCQYfCgYhCwckDAcmDQgoDggrDwktEQkvEgoyEwo0FQs2Fgs5Fws7GQw+GgxAHAxDHQxFHwxHIQxKIgxMJAxOJgtRJwtTKQtVKwtXLQpZLwpaMApcMgpdNAlfNglgNwliOQljOwlkPAllPglmQAlnQgpnQwpoRQppRwppSAtqSgtqSwxrTQxrTw1sUA1sUg5sUw5tVQ9tVw9tWBBuWhFuWxFuXRJuXxJuYBNuYhRuYxRuZRVuZxVuaBZuahduaxdubRhubxhucBluchlucxpudRttdhtteBxtehxtex1tfR1sfh5sgB9sgh9rgyBrhSBrhiFqiCFqiiJpiyJpjSNpjiRokCRokSVnkyVnlSZmliZmmCdlmShlmyhknSljniljoCpioStioythpCxgpi1fpy1fqS5eqy9drC9drjBcrzFbsTFasjJZtDNZtTRYtzRXuDVWujZVuzdUvThTvjlSwDlRwTpQwjtPxDxOxT1Nxz5MyD9LyUBKy0FJzEJIzUNHz0RG0EVF0UZE00dD1EhC1UlA1ks/2Ew+2U092k4820873FE53lI431M34FQ24VY14lc041gy5Fox5Vsw5l0v514u6F8s6WEr6mIq6mQp62Un7Gcm7Wgl7mok7mwi720h8G8g8HEe8XId8nQc8nYa83cZ9HkY9HsW9XwV9X4U9oAT9oIR94MQ94UP+IcN+IkM+IoL+YwK+Y4J+ZAI+pIH+pQG+pUG+5cG+5kG+5sG+50G+58H/KEI/KMJ/KQK/KYL/KgN/KoP/KwQ/K4S/LAU/LIW+7QY+7Ya+7gc+7of+7wh+r4j+sAl+sIo+sQq+cUs+ccv+cky+Ms0+M03988699E99tNA9tVD9ddG9dlJ9NtM9N1P9N9S8+FW8+NZ8uRd8uZh8uhl8epp8ett8e1x8e918fB58fJ98vOB8vWG8/aK9PeO9fmS9vqW9/uZ+fyd+v2g/P+k";
+/** Which numbers change what is seen at each plane; at the others all do. */
+const VIEWED = ["window_x", "window_u", "rho_max", "rho_step", "nu_max", "nu_step", "glossy"];
+const BY_LIGHT = ["width", ...VIEWED];
+const DEPENDS = { light: BY_LIGHT, before_blockers: ["at", ...BY_LIGHT] };
+const TITLES = {
+  light: ["light", "a product of a box and the window"],
+  before_blockers: ["before blockers", "travel: a shear along x, and along ν"],
+  after_blockers: ["after blockers", "a product: its spectrum is convolved"],
+  receiver: ["at the receiver", "travel: sheared with its replicas"],
+  irradiance: ["times the cosine", "a product: blurred along ν"],
+  leaving: ["leaving", "all slopes added up: ν = 0 is left"],
+  curvature: ["in local normals", "curvature: a shear along slope, and along ρ"],
+  reflection: ["after the lobe", "convolved over slopes: a low-pass in ν"],
+};
+
+const byId = (id) => document.getElementById(id);
+const make = (name, parent, attributes = {}, text = null) => {
+  const element = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+  if (text !== null) element.textContent = text;
+  if (parent) parent.append(element);
+  return element;
+};
+const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+const digits = (value, n = 3) => Number(value.toPrecision(n)).toString().replace("-", "−");
+const palette = (() => {
+  const colors = bytes(COLORS);
+  // Little-endian RGBA.
+  return Uint32Array.from({ length: 256 }, (_, i) => (0xff000000 | (colors[3 * i + 2] << 16) | (colors[3 * i + 1] << 8) | colors[3 * i]) >>> 0);
+})();
+const shade = (share) => palette[Math.round(255 * Math.min(1, Math.max(0, share)))];
+
+let explorer = null;
+let background = null;
+let world = null;
+const state = { floor: -40, planes: new Map(), order: [], pending: false, busy: false, waiting: false, step: 0, at: null };
+/** Milliseconds of work in each frame, for those who measure it. */
+const frames = [];
+
+const get = (name) => explorer.get(name);
+const set = (name, value) => {
+  explorer.set(name, value);
+  request();
+};
+const request = () => {
+  if (state.pending) return;
+  state.pending = true;
+  requestAnimationFrame(frame);
+};
+
+/** A light field or a spectrum on a canvas, with lines over it. */
+class Picture {
+  constructor(plane, kind) {
+    Object.assign(this, { plane, kind });
+    const box = make("div", plane.box, { class: "picture" });
+    const label = `${plane.name.replaceAll("_", " ")}: ${kind === "field" ? "light field" : "spectrum"}`;
+    this.canvas = make("canvas", box, { tabindex: "0", role: "img", "aria-label": label });
+    this.context = this.canvas.getContext("2d");
+    this.over = document.createElementNS(SVG, "svg");
+    this.over.setAttribute("viewBox", "-1 -1 2 2");
+    this.over.setAttribute("preserveAspectRatio", "none");
+    box.append(this.over);
+    this.lines = [0, 1].map(() => this.over.appendChild(document.createElementNS(SVG, "line")));
+    this.mark = this.over.appendChild(document.createElementNS(SVG, "circle"));
+    this.mark.setAttribute("class", "mark");
+    this.mark.setAttribute("r", "0.06");
+    this.mark.style.display = "none";
+    this.canvas.addEventListener("pointermove", (event) => this.point(event));
+    this.canvas.addEventListener("pointerdown", (event) => this.point(event));
+    this.canvas.addEventListener("keydown", (event) => this.key(event));
+  }
+  point(event) {
+    const box = this.canvas.getBoundingClientRect();
+    tell(this, [(2 * (event.clientX - box.left)) / box.width - 1, 1 - (2 * (event.clientY - box.top)) / box.height]);
+  }
+  key(event) {
+    const step = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, 1], ArrowDown: [0, -1] }[event.key];
+    if (!step) return;
+    event.preventDefault();
+    const from = state.at && state.at.picture === this ? state.at.share : [0, 0];
+    const cells = [this.canvas.width, this.canvas.height];
+    tell(this, from.map((share, i) => Math.min(0.999, Math.max(-0.999, share + (2 * step[i]) / cells[i]))));
+  }
+  /** `share(i, j)` of `width` × `height` cells, as places on the color bar. */
+  draw(width, height, share) {
+    if (!this.image || this.image.width !== width || this.image.height !== height) {
+      Object.assign(this.canvas, { width, height });
+      this.image = this.context.createImageData(width, height);
+      this.pixels = new Uint32Array(this.image.data.buffer);
+    }
+    for (let i = 0; i < width; i++) {
+      for (let j = 0; j < height; j++) this.pixels[(height - 1 - j) * width + i] = shade(share(i, j));
+    }
+    this.context.putImageData(this.image, 0, 0);
+  }
+  /** Lines through the middle, of these slopes in shares of the picture. */
+  line(slopes) {
+    this.lines.forEach((line, i) => {
+      const slope = slopes[i];
+      line.style.display = slope === undefined ? "none" : "";
+      if (slope === undefined) return;
+      const ends = { x1: -1, y1: -slope, x2: 1, y2: slope };
+      for (const [key, value] of Object.entries(ends)) line.setAttribute(key, String(value));
+    });
+  }
+}
+
+/** A place on the path: its heading and its two pictures. */
+class Plane {
+  constructor(name) {
+    this.name = name;
+    this.key = "";
+    this.box = make("section", byId("planes"), { class: "plane" });
+    this.title = make("h3", this.box);
+    this.words = make("p", this.box);
+    this.fieldPicture = new Picture(this, "field");
+    this.spectrumPicture = new Picture(this, "spectrum");
+  }
+  head() {
+    const [title, words] = TITLES[this.name];
+    this.title.textContent = title;
+    this.words.textContent = this.name === "leaving" && get("glossy") > 0 ? "back from the normals: curvature again" : words;
+  }
+  show({ field, spectrum }) {
+    Object.assign(this, { field, spectrum });
+    this.draw();
+  }
+  draw() {
+    if (!this.field) return;
+    const [cells, , , rho, , nu] = explorer.axes();
+    const most = this.field.reduce((a, b) => (b > a ? b : a), 1e-300);
+    this.fieldPicture.draw(cells, cells, (i, j) => this.field[i * cells + j] / most);
+    const width = 2 * nu + 1;
+    const power = new Float64Array(this.spectrum.length / 2);
+    let peak = 1e-300;
+    for (let i = 0; i < power.length; i++) {
+      power[i] = this.spectrum[2 * i] ** 2 + this.spectrum[2 * i + 1] ** 2;
+      if (power[i] > peak) peak = power[i];
+    }
+    this.peak = peak;
+    const toLevel = 10 / Math.LN10 / -state.floor;
+    const share = power.map((value) => 1 + toLevel * Math.log(value / peak + 1e-300));
+    this.spectrumPicture.draw(2 * rho + 1, width, (i, j) => (i >= rho ? share[(i - rho) * width + j] : share[(rho - i) * width + width - 1 - j]));
+    this.spectrumPicture.line(byId("guides").checked ? this.slopes() : []);
+    this.fieldPicture.line([]);
+    if (state.at && state.at.picture.plane === this) tell(state.at.picture, state.at.share);
+  }
+  /** ν = −h ρ of the light and of the blockers, as shares of the picture. */
+  slopes() {
+    const [, , , rho, rhoStep, nu, nuStep] = explorer.axes();
+    const scale = (rho * rhoStep) / (nu * nuStep);
+    const [at, travel, fill] = [get("at"), get("travel"), get("fill")];
+    const blocked = fill > 0 ? [travel - at] : [];
+    const bend = get("curvature") * { curvature: 1, reflection: 1, leaving: get("glossy") > 0 ? 2 : 0 }[this.name];
+    const seen = (h) => h / (1 + bend * h);
+    const from = { light: [0], before_blockers: [at], after_blockers: fill > 0 ? [at, 0] : [at], receiver: [travel, ...blocked], irradiance: [travel, ...blocked] };
+    if (from[this.name]) return from[this.name].map((h) => h * scale);
+    if (this.name === "leaving" && get("glossy") === 0) return [0];
+    const turned = this.name === "curvature" ? -1 : 1;
+    return [travel, ...blocked].map((h) => turned * scale * seen(h));
+  }
+}
+
+/** What the numbers at a place of a picture are. */
+const tell = (picture, share) => {
+  if (state.at && state.at.picture !== picture) state.at.picture.mark.style.display = "none";
+  state.at = { picture, share };
+  const { plane, kind, mark } = picture;
+  mark.style.display = "";
+  mark.setAttribute("cx", String(share[0]));
+  mark.setAttribute("cy", String(-share[1]));
+  const [cells, halfX, halfU, rho, rhoStep, nu, nuStep] = explorer.axes();
+  const cell = (n, value) => Math.min(n - 1, Math.max(0, Math.floor(((value + 1) / 2) * n)));
+  const line = byId("pointed");
+  const title = TITLES[plane.name][0];
+  if (kind === "field") {
+    const [i, j] = share.map((value) => cell(cells, value));
+    const place = [(2 * (i + 0.5)) / cells - 1, (2 * (j + 0.5)) / cells - 1];
+    line.textContent = `${title}: x = ${digits(place[0] * halfX)} m, u = ${digits(place[1] * halfU)}: ${plane.field[i * cells + j].toPrecision(6)} W m⁻² sr⁻¹ m`;
+    return;
+  }
+  const [i, j] = [cell(2 * rho + 1, share[0]) - rho, cell(2 * nu + 1, share[1]) - nu];
+  const index = 2 * (Math.abs(i) * (2 * nu + 1) + (i < 0 ? nu - j : nu + j));
+  const [re, im] = [plane.spectrum[index], plane.spectrum[index + 1] * (i < 0 ? -1 : 1)];
+  const level = (10 * Math.log10((re * re + im * im) / plane.peak)).toFixed(2).replace("-", "−");
+  line.textContent = `${title}: ρ = ${digits(i * rhoStep)} 1/m, ν = ${digits(j * nuStep)}: ${re.toExponential(6)} ${im < 0 ? "−" : "+"} ${Math.abs(im).toExponential(6)} i, ${level} dB`;
+};
+
+const keyOf = (name, all) => {
+  const names = DEPENDS[name];
+  return names ? names.map((n) => get(n)).join() : all;
+};
+
+/** Makes the planes of the scene that are not there yet, and hides those that are not its own. */
+const arrange = () => {
+  const names = explorer.planes().split("\n");
+  state.order = names.map((name, index) => {
+    const isSlow = name.startsWith("*");
+    const plain = name.replace("*", "");
+    if (!state.planes.has(plain)) state.planes.set(plain, new Plane(plain));
+    return { plane: state.planes.get(plain), index, isSlow };
+  });
+  const shown = new Set(state.order.map(({ plane }) => plane));
+  for (const plane of state.planes.values()) plane.box.hidden = !shown.has(plane);
+  for (const { plane } of state.order) {
+    byId("planes").append(plane.box);
+    plane.head();
+  }
+  state.glossy = get("glossy");
+};
+
+const frame = () => {
+  state.pending = false;
+  const start = performance.now();
+  if (state.glossy !== get("glossy")) arrange();
+  const all = explorer.fragment();
+  for (const { plane, index, isSlow } of state.order) {
+    const key = keyOf(plane.name, all);
+    if (isSlow || plane.key === key) continue;
+    plane.key = key;
+    plane.show({ field: explorer.field(index), spectrum: explorer.spectrum(index) });
+  }
+  askForSlow(all);
+  world.draw();
+  sliders();
+  facts();
+  frames.push(performance.now() - start);
+  clearTimeout(state.settling);
+  state.settling = setTimeout(settle, 150);
+};
+
+const askForSlow = (fragment) => {
+  if (state.busy) {
+    state.waiting = true;
+    return;
+  }
+  const planes = state.order.filter(({ plane, isSlow }) => isSlow && plane.key !== fragment);
+  if (planes.length === 0) return;
+  state.busy = true;
+  background.postMessage({ fragment, key: fragment, planes: planes.map(({ plane, index }) => ({ name: plane.name, index })) });
+};
+
+const answered = ({ data }) => {
+  if (data.done) {
+    state.busy = false;
+    if (state.waiting) {
+      state.waiting = false;
+      askForSlow(explorer.fragment());
+    }
+    return;
+  }
+  const found = state.order.find(({ plane, isSlow }) => isSlow && plane.name === data.name);
+  if (!found) return;
+  found.plane.key = data.key;
+  found.plane.show(data);
+};
+
+/** Once nothing moves: what costs time and need not follow each frame. */
+const settle = () => {
+  byId("scene").textContent = explorer.scene();
+  const fragment = explorer.fragment();
+  history.replaceState(null, "", fragment ? `#${fragment}` : location.href.split("#")[0]);
+};
+
+const facts = () => {
+  const [travel, at, pitch] = [get("travel"), get("at"), get("pitch")];
+  const all = [`the light's line at the receiver is ν = −${digits(travel)} ρ`];
+  if (get("fill") > 0) all.push(`replicas at multiples of ${digits(1 / pitch)} cycles/m, on ν = −${digits(travel - at)} ρ`);
+  if (get("glossy") > 0) {
+    const [cutoff, even, edge] = explorer.criterion();
+    all.push(`the lobe lets ${digits(cutoff)} cycles/rad pass (99 % of its energy); an eye 1 m off sees at most ${digits(even)} under an even sky (Eq. 20), ${digits(edge)} behind an edge of the blockers (Eq. 21)`);
+  }
+  byId("facts").textContent = `${all.join("; ")}.`;
+};
+
+const GROUPS = { width: "light", position: "light", travel: "travel", at: "blockers", pitch: "blockers", fill: "blockers", count: "blockers", curvature: "receiver", exponent: "receiver" };
+const inputs = [];
+const toSlider = (row, value) => (row.step > 0 ? value : Math.log10(value));
+const buildSliders = () => {
+  for (const row of JSON.parse(wasm_bindgen.Explorer.table())) {
+    if (!row.label) continue;
+    const group = document.querySelector(`[data-group="${GROUPS[row.name]}"]`);
+    const label = make("label", group, {}, `${row.label} `);
+    const range = { min: toSlider(row, row.min), max: toSlider(row, row.max), step: row.step || 0.01 };
+    const input = make("input", label, { type: "range", id: row.name, ...range });
+    const output = make("output", label);
+    input.addEventListener("input", () => set(row.name, row.step > 0 ? Number(input.value) : Math.round(10 ** Number(input.value))));
+    inputs.push({ row, label, input, output });
+  }
+  for (const radio of document.querySelectorAll('[name="glossy"]')) radio.addEventListener("input", () => set("glossy", Number(radio.value)));
+};
+const sliders = () => {
+  for (const { row, label, input, output } of inputs) {
+    const value = get(row.name);
+    input.value = String(toSlider(row, value));
+    output.textContent = `${digits(value)} ${row.unit}`;
+    label.hidden = (row.name === "curvature" || row.name === "exponent") && get("glossy") === 0;
+  }
+  for (const radio of document.querySelectorAll('[name="glossy"]')) radio.checked = Number(radio.value) === get("glossy");
+};
+
+/** Shows a step of the tour; `sets` whether the scene becomes the step's. */
+const step = (index, sets) => {
+  state.step = Math.min(STEPS.length - 1, Math.max(0, index));
+  const { title, words, planes, set: values } = STEPS[state.step];
+  byId("title").textContent = title;
+  byId("words").textContent = words;
+  byId("step").textContent = `${state.step + 1} of ${STEPS.length}`;
+  byId("previous").disabled = state.step === 0;
+  byId("next").disabled = state.step === STEPS.length - 1;
+  if (sets) for (const [name, value] of Object.entries(values)) explorer.set(name, value);
+  arrange();
+  for (const plane of state.planes.values()) plane.box.classList.toggle("told", planes.includes(plane.name));
+  request();
+};
+
+const listen = () => {
+  byId("previous").addEventListener("click", () => step(state.step - 1, true));
+  byId("next").addEventListener("click", () => step(state.step + 1, true));
+  document.addEventListener("keydown", (event) => {
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === "n") step(state.step + 1, true);
+    if (event.key === "p") step(state.step - 1, true);
+    if (/^[1-8]$/.test(event.key)) step(Number(event.key) - 1, true);
+  });
+  const redraw = () => {
+    for (const { plane } of state.order) plane.draw();
+  };
+  byId("floor").addEventListener("input", () => {
+    state.floor = Number(byId("floor").value);
+    byId("level").textContent = `${byId("floor").value.replace("-", "−")} dB`;
+    redraw();
+  });
+  byId("guides").addEventListener("input", redraw);
+  byId("save").addEventListener("click", () => {
+    const link = make("a", null, { download: "explorer.ron" });
+    link.href = URL.createObjectURL(new Blob([explorer.scene()], { type: "text/plain" }));
+    link.click();
+    setTimeout(() => URL.revokeObjectURL(link.href), 1000);
+  });
+  byId("reset").addEventListener("click", () => begin(""));
+  addEventListener("hashchange", () => begin(location.hash));
+};
+
+const begin = (fragment) => {
+  if (explorer) explorer.free();
+  explorer = new wasm_bindgen.Explorer(fragment);
+  // Without a scene of its own the page begins with the first step.
+  step(0, fragment === "");
+};
+
+const start = async () => {
+  const module = await WebAssembly.compile(bytes(byId("wasm").textContent));
+  wasm_bindgen.initSync({ module });
+  const code = [byId("glue").textContent, byId("background").textContent].join("\n");
+  background = new Worker(URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
+  background.onmessage = answered;
+  background.postMessage({ module });
+  world = new World(byId("world"), get, set);
+  buildSliders();
+  listen();
+  begin(location.hash);
+  document.documentElement.dataset.ready = "yes";
+};
+start();
