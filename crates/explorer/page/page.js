@@ -7,11 +7,11 @@ const DEPENDS = { light: BY_LIGHT, before_blockers: ["at", ...BY_LIGHT] };
 const TITLES = {
   light: ["light", "a product of a box and the window"],
   before_blockers: ["before blockers", "travel: a shear along x, and along ν"],
-  after_blockers: ["after blockers", "a product: its spectrum is convolved"],
+  after_blockers: ["after blockers", "a product: the spectrum is convolved"],
   receiver: ["at the receiver", "travel: sheared with its replicas"],
   irradiance: ["times the cosine", "a product: blurred along ν"],
   leaving: ["leaving", "all slopes added up: ν = 0 is left"],
-  curvature: ["in local normals", "curvature: a shear along slope, and along ρ"],
+  curvature: ["in local normals", "curvature: a shear along ρ"],
   reflection: ["after the lobe", "convolved over slopes: a low-pass in ν"],
 };
 
@@ -232,6 +232,7 @@ const frame = () => {
 };
 
 const askForSlow = (fragment) => {
+  if (!background) return;
   if (state.busy) {
     state.waiting = true;
     return;
@@ -259,8 +260,13 @@ const answered = ({ data }) => {
 
 /** Once nothing moves: what costs time and need not follow each frame. */
 const settle = () => {
-  byId("scene").textContent = explorer.scene();
   const fragment = explorer.fragment();
+  for (const { plane, index, isSlow } of state.order) {
+    if (background || !isSlow || plane.key === fragment) continue;
+    plane.key = fragment;
+    plane.show({ field: explorer.field(index), spectrum: explorer.spectrum(index) });
+  }
+  byId("scene").textContent = explorer.scene();
   history.replaceState(null, "", fragment ? `#${fragment}` : location.href.split("#")[0]);
 };
 
@@ -282,7 +288,7 @@ const buildSliders = () => {
   for (const row of JSON.parse(wasm_bindgen.Explorer.table())) {
     if (!row.label) continue;
     const group = document.querySelector(`[data-group="${GROUPS[row.name]}"]`);
-    const label = make("label", group, {}, `${row.label} `);
+    const label = make("label", group, { class: "ranged" }, row.label);
     const range = { min: toSlider(row, row.min), max: toSlider(row, row.max), step: row.step || 0.01 };
     const input = make("input", label, { type: "range", id: row.name, ...range });
     const output = make("output", label);
@@ -351,13 +357,23 @@ const begin = (fragment) => {
   step(0, fragment === "");
 };
 
+/** Slow planes are made beside the page, or where that may not be, once nothing moves. */
+const work = (module) => {
+  const code = [byId("glue").textContent, byId("background").textContent].join("\n");
+  try {
+    background = new Worker(URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
+  } catch {
+    return;
+  }
+  background.onmessage = answered;
+  background.onerror = () => (background = null);
+  background.postMessage({ module });
+};
+
 const start = async () => {
   const module = await WebAssembly.compile(bytes(byId("wasm").textContent));
   wasm_bindgen.initSync({ module });
-  const code = [byId("glue").textContent, byId("background").textContent].join("\n");
-  background = new Worker(URL.createObjectURL(new Blob([code], { type: "text/javascript" })));
-  background.onmessage = answered;
-  background.postMessage({ module });
+  work(module);
   world = new World(byId("world"), get, set);
   buildSliders();
   listen();

@@ -1,8 +1,9 @@
 /** The scene from the side: z to the right, x up, and handles to drag. */
 const SVG = "http://www.w3.org/2000/svg";
-const VIEW = { width: 960, height: 200, left: 40, meter: 430, up: 260 };
+const VIEW = { width: 960, height: 300, left: 50, meter: 415, up: 420 };
 const z = (meters) => VIEW.left + VIEW.meter * meters;
-const x = (meters) => VIEW.height / 2 - VIEW.up * meters;
+const MIDDLE = 135;
+const x = (meters) => MIDDLE - VIEW.up * meters;
 
 class World {
   /** `get(name)` and `set(name, value)` are the numbers of the scene. */
@@ -15,7 +16,7 @@ class World {
       this.parts[name] = this.add(kind, { class: look });
     }
     this.labels = ["light", "blockers", "receiver"].map((text) => {
-      const label = this.add("text", { y: VIEW.height - 6, "text-anchor": "middle" });
+      const label = this.add("text", { y: VIEW.height - 8, "text-anchor": "middle" });
       label.textContent = text;
       return label;
     });
@@ -39,7 +40,7 @@ class World {
     return element;
   }
   grip(kind, label, drag, [name, isUp, step]) {
-    const look = kind === "circle" ? { r: 8, class: "handle" } : { class: "grip" };
+    const look = kind === "circle" ? { r: 11, class: "handle" } : { class: "grip" };
     const element = this.add(kind, { ...look, tabindex: "0", role: "slider", "aria-label": label });
     element.addEventListener("pointerdown", (event) => {
       this.dragged = drag;
@@ -63,7 +64,7 @@ class World {
     const scale = VIEW.width / box.width;
     this.dragged({
       z: ((event.clientX - box.left) * scale - VIEW.left) / VIEW.meter,
-      x: (VIEW.height / 2 - (event.clientY - box.top) * scale) / VIEW.up,
+      x: (MIDDLE - (event.clientY - box.top) * scale) / VIEW.up,
     });
   }
   /** Which blocker, counted from the middle, the handle of the pitch is on. */
@@ -91,7 +92,7 @@ class World {
     const [pitch, fill, count] = [get("pitch"), get("fill"), get("count")];
     const slat = (i) => {
       const middle = (i - (count - 1) / 2) * pitch;
-      const [top, bottom] = [middle + (fill * pitch) / 2, middle - (fill * pitch) / 2].map((meters) => Math.min(VIEW.height - 22, x(meters)));
+      const [top, bottom] = [middle + (fill * pitch) / 2, middle - (fill * pitch) / 2].map((meters) => Math.min(VIEW.height - 34, x(meters)));
       return bottom > 0 && top < bottom ? `M${at} ${top}V${bottom}` : "";
     };
     put(slats, { d: fill > 0 ? [...Array(count).keys()].map(slat).join("") : "" });
@@ -99,7 +100,7 @@ class World {
     const depth = glossy ? VIEW.meter * World.DEEPER * 0.5 * get("curvature") * World.HIGH ** 2 : 0;
     const high = World.HIGH;
     put(receiver, { d: `M${end + depth} ${x(position + high)}Q${end - depth} ${x(position)} ${end + depth} ${x(position - high)}` });
-    const line = (at) => `M${at} 10V${VIEW.height - 20}`;
+    const line = (at) => `M${at} 10V${VIEW.height - 34}`;
     put(this.grips.light, { d: `M${light} ${top - 14}V${bottom + 14}` });
     put(this.grips.blockers, { d: line(at) });
     put(this.grips.receiver, { d: line(end) });

@@ -100,15 +100,6 @@ impl Explorer {
         ]
     }
 
-    /// ρ̂ of the receiver's lobe at the frequencies ν ≥ 0 of the spectra.
-    #[must_use]
-    pub fn lobe(&self) -> Vec<f64> {
-        let axis = grid(&self.setup).nu;
-        let lobe = lobe(&self.setup);
-        let values = axis.values().into_iter().skip(axis.half);
-        values.map(|nu| lobe.spectrum(nu)).collect()
-    }
-
     /// What the sampling criterion says at an eye one metre from the glossy receiver: the cutoff
     /// of the lobe (99 %), cycles per radian, then bandwidths under an environment (Eq. 20 of
     /// Durand et al. 2005) and behind an edge of the blockers (Eq. 21), both corrected.

@@ -144,7 +144,7 @@ pub const TABLE: [Entry; 20] = [
     entry(
         Key::Exponent,
         "exponent",
-        ["exponent of the lobe", ""],
+        ["lobe, n", ""],
         [5.0, 2000.0],
         0.0,
         200.0,

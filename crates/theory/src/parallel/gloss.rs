@@ -16,7 +16,7 @@ use crate::Chain;
 use crate::numerics::sinc::sinc;
 use crate::shading::Lobe;
 use etendue_field::{
-    Complex, FrequencyAxis, Profile, Projection, ProjectionGrid, SliceGrid, Slices, Window, whole,
+    FrequencyAxis, Profile, Projection, ProjectionGrid, SliceGrid, Slices, Window, whole,
 };
 use ndarray::Array2;
 use std::f64::consts::FRAC_PI_2;
@@ -206,6 +206,7 @@ fn transform(profile: &Profile, frequency: f64) -> f64 {
 mod tests {
     use super::*;
     use crate::testing::*;
+    use etendue_field::Complex;
 
     fn behind_blockers() -> Chain {
         chain(0.2, &[(0.5, blockers(3, 0.2, 0.1)), (0.5, vec![])])
