@@ -49,10 +49,10 @@ class Browser {
     for (const part of ["Runtime", "Log", "Network", "Page"]) await browser.send(`${part}.enable`);
     return browser;
   }
-  async open(url) {
+  async open(url, isReady = "document.documentElement?.dataset.ready === 'yes'") {
     await this.send("Page.navigate", { url: "about:blank" });
     await this.send("Page.navigate", { url });
-    await this.until("document.documentElement?.dataset.ready === 'yes'");
+    await this.until(isReady);
   }
   /** The value of an expression in the page, awaited. */
   async value(expression) {

@@ -1,7 +1,7 @@
 "use strict";
 // Uses the explorer as a student would, and holds its numbers against those of the command: run by .ci/explorer.
-const { execFileSync } = require("node:child_process");
-const { mkdtempSync, rmSync, writeFileSync } = require("node:fs");
+const { execFileSync, spawnSync } = require("node:child_process");
+const { mkdtempSync, readFileSync, rmSync, writeFileSync } = require("node:fs");
 const { tmpdir } = require("node:os");
 const { join, resolve } = require("node:path");
 const { Browser } = require("./browser.js");
@@ -90,6 +90,22 @@ const planted = async (browser, folder) => {
   const share = norm(curved.spectrum.map((value, i) => value - command[i])) / norm(command);
   console.log(`planted: a curvature of a tenth more differs by ${(100 * share).toFixed(1)} %`);
   expect("a wrong curvature is seen", share > FIRST_ORDER_OFF.wide);
+};
+
+/** From the report of a run to its scene. */
+const linked = async (browser, folder) => {
+  for (const scene of ["squares", "glossy"]) {
+    const results = join(folder, `${scene}-run`);
+    const ended = spawnSync(program, ["run", join(folder, `${scene}.ron`), "--photons", "4096", "--quiet", "--out", results]);
+    expect(`${scene} is run`, [0, 1, 4].includes(ended.status));
+    await browser.open(`file://${results}/report.html`, "document.documentElement?.dataset.drawn > 0");
+    await browser.value("document.querySelector('a.explorer').click()");
+    await browser.until("document.documentElement?.dataset.ready === 'yes'");
+    await browser.value("settle()");
+    expect(`the report leads to ${scene}`, (await browser.value("explorer.scene()")) === readFileSync(join(folder, `${scene}.ron`), "utf8"));
+    expect("the page is the committed one", readFileSync(page).equals(readFileSync(join(results, "explorer.html"))));
+  }
+  console.log("reports lead to their scenes");
 };
 
 const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.length / 2)];
@@ -186,7 +202,8 @@ const main = async () => {
     await drags(browser);
     await compare(browser, folder);
     await planted(browser, folder);
-    const asked = browser.everRequested.filter((url) => !/^(file|blob|data|about):/.test(url) || (url.startsWith("file:") && !url.startsWith(address)));
+    await linked(browser, folder);
+    const asked = browser.everRequested.filter((url) => !/^(file|blob|data|about):/.test(url) || (url.startsWith("file:") && !/^[^#]*(report|explorer)\.html(#.*)?$/.test(url)));
     expect(`nothing is asked of the network: ${asked.join(" ")}`, asked.length === 0);
     expect(`the page wrote to the console: ${browser.console.join("; ")}`, browser.console.length === 0);
   } finally {

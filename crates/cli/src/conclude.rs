@@ -4,6 +4,7 @@ use crate::inquiry::inquire;
 use crate::measure::measured;
 use crate::method::Method;
 use crate::predict::predicted;
+use crate::report::explorer;
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
 use crate::summary::{Stopwatch, Summary};
 use crate::{aimed, field, files, photons, pictures, progress, report, say, table, target};
@@ -71,7 +72,8 @@ pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bo
     };
     let beside = pictures::PATH_NAMES
         .into_iter()
-        .chain([TIMING, report::NAME]);
+        .chain([TIMING, report::NAME])
+        .chain(explorer::fragment(&scene.file).map(|_| explorer::NAME));
     Plan {
         index: SUMMARY,
         files: scene
@@ -173,8 +175,11 @@ fn written(
     let data = report::data(case, summary, planes, &path);
     results.write(
         report::NAME,
-        report::page(&case.scene.name, &[data]).as_bytes(),
+        report::page(&case.scene.name, &[(String::new(), data)]).as_bytes(),
     )?;
+    if explorer::fragment(&summary.scene_file).is_some() {
+        results.write(explorer::NAME, explorer::PAGE)?;
+    }
     if ending.save.contains(&Save::Photons) {
         photons::save(&mut results, case)?;
     }

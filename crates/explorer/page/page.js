@@ -281,7 +281,7 @@ const facts = () => {
   byId("facts").textContent = `${all.join("; ")}.`;
 };
 
-const GROUPS = { width: "light", position: "light", travel: "travel", at: "blockers", pitch: "blockers", fill: "blockers", count: "blockers", curvature: "receiver", exponent: "receiver" };
+const GROUPS = { width: "light", position: "light", travel: "light", at: "blockers", pitch: "blockers", fill: "blockers", count: "blockers", curvature: "receiver", exponent: "receiver" };
 const inputs = [];
 const toSlider = (row, value) => (row.step > 0 ? value : Math.log10(value));
 const buildSliders = () => {

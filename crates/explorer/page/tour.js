@@ -40,7 +40,7 @@ const STEPS = [
     set: { width: 0.06, position: 0, travel: 1, at: 0.5, pitch: 0.06, fill: 0.5, glossy: 1, curvature: 0.8, exponent: 400 },
     planes: ["receiver", "curvature"],
     words: "Seen from the normal at each place of a curved surface, directions turn with position. Ray space shears along its slopes, and the spectrum along ρ: what was at (ρ, ν) is now at (ρ + k ν, ν). " +
-      "On the surface positions are counted the other way, which turns the picture over. Drag the curvature: the lines turn about the ν axis.",
+      "On the surface positions are counted the other way, which turns the picture over. Drag the curvature: what lies at ν = 0 stays, the rest slides along ρ.",
   },
   {
     title: "7. A glossy lobe is a low-pass",

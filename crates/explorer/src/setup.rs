@@ -106,7 +106,7 @@ pub const TABLE: [Entry; 20] = [
     entry(
         Key::Travel,
         "travel",
-        ["distance", "m"],
+        ["travel", "m"],
         [0.3, 2.0],
         0.01,
         1.0,
@@ -229,13 +229,13 @@ impl Setup {
             .map(|entry| entry.key)
     }
 
-    /// What stands after # in a URL: all that is not as it was at the start.
+    /// What stands after # in a URL: all that is not as it was at the start, and never nothing.
     #[must_use]
     pub fn fragment(&self) -> String {
         let mut text = String::new();
         for entry in TABLE {
             let value = self.get(entry.key);
-            if value.to_bits() != entry.default.to_bits() {
+            if entry.key == Key::Width || value.to_bits() != entry.default.to_bits() {
                 let between = if text.is_empty() { "" } else { "&" };
                 // Writing to a string does not fail.
                 let _ = write!(text, "{between}{}={value}", entry.name);
@@ -274,7 +274,7 @@ mod tests {
     #[test]
     fn fragments_come_back() {
         let mut setup = Setup::default();
-        assert_eq!(setup.fragment(), "");
+        assert_eq!(setup.fragment(), "width=0.06");
         setup.set(Key::Travel, 1.7);
         setup.set(Key::Distance, 1.2);
         setup.set(Key::Width, 0.1 + 0.2);
