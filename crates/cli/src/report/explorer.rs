@@ -252,7 +252,7 @@ mod tests {
             unreachable!()
         };
         *radiance = 2.0;
-        let mut far = file.clone();
+        let mut far = file;
         let SurfaceFile::Rectangle { center, .. } = &mut far.surfaces[0] else {
             unreachable!()
         };

@@ -1,9 +1,9 @@
-//! A chain after a lobe: its light field convolved over slopes along x (docs/theory.md, section 9).
+//! A chain after a lobe: its light field convolved over slopes along x (docs/theory.md (36a)).
 //!
-//! In flatland a glossy reflection multiplies the spectrum by that of its lobe, ρ̂(Ωu), and the
+//! In flatland a glossy reflection multiplies the spectrum by that of its lobe, ρ̂'(Ωu), and the
 //! window at the plane comes last:
 //!
-//! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂(q) I(ρ, q) dq,
+//! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
 //!
 //! I being the spectrum under a window that leaves all slopes in whose lobes reach the plane's. The
 //! integral is a sum over q: the field it comes from ends, so the sum is exact up to the lobe's
@@ -103,7 +103,7 @@ struct Blur {
     /// All slopes whose lobes reach the window.
     wide: Profile,
     lattice: FrequencyAxis,
-    /// ρ̂ on it, times its spacing.
+    /// ρ̂' on it, times its spacing.
     hats: Vec<f64>,
     window: Profile,
 }

@@ -1,4 +1,4 @@
-//! What a curved mirror or a thin lens shows of a chain: its images.
+//! What a curved mirror or a thin lens shows of a chain: its images (docs/theory.md, section 9).
 
 use crate::{Chain, Operator, Source};
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
