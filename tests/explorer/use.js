@@ -55,12 +55,17 @@ const compare = async (browser, folder) => {
     writeFileSync(file, await browser.value("explorer.scene()"));
     execFileSync(program, ["predict", file, "--quiet", "--out", join(folder, scene)]);
     let worst = 0;
+    let followed = 0;
     const off = [];
     const glossy = fragment.includes("glossy=1");
     for (const plane of await numbers(browser)) {
       const command = predicted(join(folder, scene), plane);
       if (glossy && FIRST_ORDER.includes(plane.name)) {
         const share = norm(plane.spectrum.map((value, i) => value - command.spectrum[i])) / norm(command.spectrum);
+        const values = await browser.value(`[...explorer.follow(explorer.planes().split("\\n").indexOf("${plane.name}"))]`);
+        const [spectrum, field] = [values.slice(0, plane.spectrum.length), values.slice(plane.spectrum.length)];
+        followed = Math.max(followed, difference(spectrum, command.spectrum), difference(field, command.field));
+        expect(`${scene}: rays at ${plane.name} are the command's, ${followed.toExponential(1)}`, followed <= SAME);
         expect(`${scene}: ${plane.name} is the command's to first order, ${share}`, share <= FIRST_ORDER_OFF[scene === "near" ? "near" : "wide"]);
         off.push(`${plane.name} ${(100 * share).toFixed(1)} %`);
         continue;
@@ -71,7 +76,7 @@ const compare = async (browser, folder) => {
         expect(`${scene}: ${kind} at ${plane.name} is the command's, ${apart.toExponential(1)}`, apart <= SAME);
       }
     }
-    console.log(`${scene}: differs from the command by ${worst.toExponential(1)} of the largest value${off.length ? `; first order by ${off.join(", ")}` : ""}`);
+    console.log(`${scene}: differs from the command by ${worst.toExponential(1)} of the largest value${off.length ? `; by rays ${followed.toExponential(1)}; first order is off by ${off.join(", ")}` : ""}`);
   }
 };
 
@@ -112,6 +117,8 @@ const median = (values) => [...values].sort((a, b) => a - b)[Math.floor(values.l
 
 /** Drags a handle back and forth; work and time from one frame to the next, in milliseconds. */
 const drag = async (browser, name, [dx, dy]) => {
+  await browser.until("!state.pending && !state.busy");
+  await browser.value("new Promise((drawn) => requestAnimationFrame(() => requestAnimationFrame(drawn)))");
   const { x, y } = await browser.value(`(() => {
     const box = world.grips.${name}.getBoundingClientRect();
     return { x: box.x + box.width / 2, y: box.y + box.height / (${name === "width" || name === "pitch"} ? 2 : 1.5) }; })()`);
@@ -187,6 +194,11 @@ const keys = async (browser) => {
   await browser.value("document.querySelectorAll('canvas')[7].focus()");
   await browser.press("ArrowRight");
   expect("a value is told", /^at the receiver: ρ = .* dB$/.test(await browser.value("byId('pointed').textContent")));
+  await browser.value("set('glossy', 1)");
+  await browser.until("!state.pending && byId('follow').hidden === false");
+  await browser.press("r");
+  await browser.until("state.order.slice(4).every(({ plane }) => /^by rays; first order is off by/.test(plane.words.textContent))");
+  await browser.value("set('glossy', 0)");
   await browser.until("byId('scene').textContent === explorer.scene() && location.hash === '#' + explorer.fragment()");
   const before = await browser.value("state.planes.get('receiver').spectrumPicture.canvas.toDataURL()");
   await browser.value("byId('floor').value = '-20'; byId('floor').dispatchEvent(new Event('input'))");

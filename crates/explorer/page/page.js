@@ -123,6 +123,12 @@ class Plane {
     this.title.textContent = title;
     this.words.textContent = this.name === "leaving" && get("glossy") > 0 ? "back from the normals: curvature again" : words;
   }
+  /** As theory has it in closed form. */
+  first(index) {
+    if (this.followed) this.head();
+    this.followed = false;
+    this.show({ field: explorer.field(index), spectrum: explorer.spectrum(index) });
+  }
   show({ field, spectrum }) {
     Object.assign(this, { field, spectrum });
     this.draw();
@@ -146,6 +152,16 @@ class Plane {
     this.spectrumPicture.line(byId("guides").checked ? this.slopes() : []);
     this.fieldPicture.line([]);
     if (state.at && state.at.picture.plane === this) tell(state.at.picture, state.at.share);
+  }
+  /** What rays found in the place of first order. */
+  follow(values) {
+    const size = this.spectrum.length;
+    const [spectrum, field] = [values.subarray(0, size), values.subarray(size)];
+    const norm = (of) => Math.sqrt(spectrum.reduce((sum, value, i) => sum + of(value, i) ** 2, 0));
+    const off = norm((value, i) => value - this.spectrum[i]) / norm((value) => value);
+    this.words.textContent = `by rays; first order is off by ${digits(100 * off, 2)} %`;
+    this.followed = true;
+    this.show({ field, spectrum });
   }
   /** ν = −h ρ of the light and of the blockers, as shares of the picture. */
   slopes() {
@@ -220,7 +236,7 @@ const frame = () => {
     const key = keyOf(plane.name, all);
     if (isSlow || plane.key === key) continue;
     plane.key = key;
-    plane.show({ field: explorer.field(index), spectrum: explorer.spectrum(index) });
+    plane.first(index);
   }
   askForSlow(all);
   world.draw();
@@ -243,7 +259,23 @@ const askForSlow = (fragment) => {
   background.postMessage({ fragment, key: fragment, planes: planes.map(({ plane, index }) => ({ name: plane.name, index })) });
 };
 
+/** Rays off the glossy receiver, a second or so for each plane. */
+const follow = () => {
+  if (get("glossy") === 0 || state.pending) return;
+  const fragment = explorer.fragment();
+  const planes = state.order.slice(4);
+  for (const { plane } of planes) plane.words.textContent = "following rays …";
+  const list = planes.map(({ plane, index }) => ({ name: plane.name, index }));
+  if (background) background.postMessage({ fragment, follow: list });
+  else for (const { name, index } of list) answered({ data: { name, key: fragment, followed: explorer.follow(index) } });
+};
+
 const answered = ({ data }) => {
+  if (data.followed) {
+    const plane = state.planes.get(data.name);
+    if (data.key === explorer.fragment() && !state.pending && !plane.followed) plane.follow(data.followed);
+    return;
+  }
   if (data.done) {
     state.busy = false;
     if (state.waiting) {
@@ -264,7 +296,7 @@ const settle = () => {
   for (const { plane, index, isSlow } of state.order) {
     if (background || !isSlow || plane.key === fragment) continue;
     plane.key = fragment;
-    plane.show({ field: explorer.field(index), spectrum: explorer.spectrum(index) });
+    plane.first(index);
   }
   byId("scene").textContent = explorer.scene();
   history.replaceState(null, "", fragment ? `#${fragment}` : location.href.split("#")[0]);
@@ -295,6 +327,7 @@ const buildSliders = () => {
     input.addEventListener("input", () => set(row.name, row.step > 0 ? Number(input.value) : Math.round(10 ** Number(input.value))));
     inputs.push({ row, label, input, output });
   }
+  byId("follow").parentElement.append(byId("follow"));
   for (const radio of document.querySelectorAll('[name="glossy"]')) radio.addEventListener("input", () => set("glossy", Number(radio.value)));
 };
 const sliders = () => {
@@ -304,6 +337,7 @@ const sliders = () => {
     output.textContent = `${digits(value)} ${row.unit}`;
     label.hidden = (row.name === "curvature" || row.name === "exponent") && get("glossy") === 0;
   }
+  byId("follow").hidden = get("glossy") === 0;
   for (const radio of document.querySelectorAll('[name="glossy"]')) radio.checked = Number(radio.value) === get("glossy");
 };
 
@@ -328,6 +362,7 @@ const listen = () => {
   document.addEventListener("keydown", (event) => {
     if (event.ctrlKey || event.metaKey || event.altKey) return;
     if (event.key === "n") step(state.step + 1, true);
+    if (event.key === "r") follow();
     if (event.key === "p") step(state.step - 1, true);
     if (/^[1-8]$/.test(event.key)) step(Number(event.key) - 1, true);
   });
@@ -346,6 +381,7 @@ const listen = () => {
     link.click();
     setTimeout(() => URL.revokeObjectURL(link.href), 1000);
   });
+  byId("follow").addEventListener("click", follow);
   byId("reset").addEventListener("click", () => begin(""));
   addEventListener("hashchange", () => begin(location.hash));
 };

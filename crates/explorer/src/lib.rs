@@ -4,13 +4,14 @@
 //! A [`Setup`] holds what can be set. A [`Plane`] is a place on the path: its light field and its
 //! spectrum are those of [`etendue_theory`], between parallel planes the very numbers that
 //! `etendue predict` gives for the scene that [`scene`] writes. On a curved glossy receiver they
-//! are first-order, in flatland: no cosine, and a lobe that blurs along x alone.
+//! are first-order, without the cosine, and rays are followed off the sphere when asked.
 //!
 //! For WebAssembly the crate is a library of JavaScript (`page`); `.ci/explorer` builds the page.
 
 #[cfg(target_family = "wasm")]
 mod page;
 mod planes;
+mod rays;
 mod ron;
 mod setup;
 

@@ -83,6 +83,20 @@ impl Explorer {
             .collect()
     }
 
+    /// The spectrum and then the light field at a plane by rays, in the order of both; nothing
+    /// where they are exact already.
+    #[must_use]
+    pub fn follow(&self, plane: usize) -> Vec<f64> {
+        let plane = Plane::all(&self.setup)[plane];
+        let Some((slices, field)) = plane.followed(&self.setup) else {
+            return Vec::new();
+        };
+        let first = slices.half.outer_iter().next();
+        let parts = first.into_iter().flatten();
+        let spectrum = parts.flat_map(|value| [value.re, value.im]);
+        spectrum.chain(field.values.iter().copied()).collect()
+    }
+
     /// Cells of a light field along each axis, half-widths in x and u, then steps to each side and
     /// spacing along ρ and along ν.
     #[must_use]

@@ -1,5 +1,6 @@
 //! What is looked at along the path, and its numbers: each a call of `etendue_theory`.
 
+use crate::rays;
 use crate::setup::{Key, Setup};
 use etendue_field::random::{self, Stream};
 use etendue_field::{
@@ -114,6 +115,14 @@ impl Plane {
         }
     }
 
+    /// Both as `etendue predict` has them on a glossy receiver, by nets of rays; `None` elsewhere,
+    /// where nothing is first-order.
+    #[must_use]
+    pub fn followed(self, setup: &Setup) -> Option<(Slices, Projection)> {
+        let found = rays::followed(self, setup)?;
+        Some((found.slices, found.projection))
+    }
+
     /// What light meets before it arrives here, between parallel planes.
     fn chain(self, setup: &Setup) -> Chain {
         let (blockers, receiver) = (setup.get(Key::Distance), setup.get(Key::Travel));
@@ -146,23 +155,26 @@ impl Plane {
                 albedo,
             });
         }
-        let side = setup.get(Key::Width);
-        let square = Rectangle {
-            center: [0.0; 2],
-            size: [side; 2],
-        };
-        let light = Light::Area {
-            shape: Shape::Rectangle(square),
-            radiance: 1.0,
-            exponent: 0.0,
-        };
         Chain {
             source: Source {
                 name: "light".to_owned(),
-                light,
+                light: square(setup),
             },
             operators,
         }
+    }
+}
+
+/// The light.
+pub(crate) fn square(setup: &Setup) -> Light {
+    let square = Rectangle {
+        center: [0.0; 2],
+        size: [setup.get(Key::Width); 2],
+    };
+    Light::Area {
+        shape: Shape::Rectangle(square),
+        radiance: 1.0,
+        exponent: 0.0,
     }
 }
 
@@ -229,7 +241,7 @@ pub(crate) fn seed(setup: &Setup) -> u64 {
 }
 
 /// The blockers, from the central ray.
-fn shapes(setup: &Setup) -> Vec<Shape> {
+pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
     let count = count(setup);
     let [pitch, fill, jitter] = [Key::Pitch, Key::Fill, Key::Jitter].map(|key| setup.get(key));
     let middle = -setup.get(Key::Position);

@@ -1,6 +1,7 @@
 //! The scene as a file for `etendue run`.
 
 use crate::planes::{Plane, SLAT, count, grid, place, seed};
+use crate::rays::{APERTURE, AZIMUTHS};
 use crate::setup::{Key, Setup};
 use etendue_field::FrequencyAxis;
 use std::fmt::Write;
@@ -31,7 +32,7 @@ pub fn scene(setup: &Setup) -> String {
 {planes}
     ],
     window: (x: Hann({window_x}), u: Hann({window_u})),
-    frequencies: (azimuths: 2, rho: {rho}, nu: {nu}),
+    frequencies: (azimuths: {AZIMUTHS}, rho: {rho}, nu: {nu}),
     run: (photons: {PHOTONS}, seed: 1, batches: 64),
 )
 ",
@@ -91,7 +92,7 @@ fn receiver(setup: &Setup, x: f64, end: f64) -> String {
     };
     format!(
         "Smooth(name: \"receiver\", center: ({x}, 0, {end}), facing: (0, 0, -1), form: {form}, \
-         aperture: 0.6,
+         aperture: {APERTURE},
             event: Reflects(brdf: (lobe: Phong({exponent}), albedo: {albedo})))"
     )
 }
