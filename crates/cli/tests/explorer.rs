@@ -5,7 +5,7 @@
 mod common;
 
 use common::call;
-use etendue_explorer::{Key, Plane, Setup, scene};
+use etendue_explorer::{CELLS, Key, Plane, Setup, scene};
 use etendue_field::{Complex, Projection, Slices};
 use ndarray::{Array2, Array3};
 use ndarray_npy::NpzReader;
@@ -55,7 +55,7 @@ fn numbers_are_those_of_the_saved_scene() {
         assert_eq!(output.status.code(), Some(0), "{output:?}");
         for plane in Plane::all(&setup) {
             let command = predicted(&folder.path().join(&name), plane);
-            let closed = (plane.spectrum(&setup), plane.field(&setup));
+            let closed = (plane.spectrum(&setup), plane.field(&setup, CELLS));
             let followed = plane.followed(&setup);
             let off = apart(followed.as_ref().unwrap_or(&closed), &command);
             // The same sums; where frames differ by rounding, its digits.
@@ -63,7 +63,10 @@ fn numbers_are_those_of_the_saved_scene() {
             if plane == Plane::Arrived {
                 let mut moved = setup.clone();
                 moved.set(Key::Travel, setup.get(Key::Travel) + 1e-9);
-                let off = apart(&(plane.spectrum(&moved), plane.field(&moved)), &command);
+                let off = apart(
+                    &(plane.spectrum(&moved), plane.field(&moved, CELLS)),
+                    &command,
+                );
                 assert!(off > 1e-12, "a nanometre is seen: {off:e}");
             }
         }

@@ -10,9 +10,10 @@ onmessage = ({ data }) => {
   explorer = new wasm_bindgen.Explorer(data.fragment);
   for (const { name, index } of data.follow || []) postMessage({ name, key: data.fragment, followed: explorer.follow(index) });
   if (data.follow) return;
+  if (data.isCoarse) explorer.coarsen();
   for (const { name, index } of data.planes) {
-    const [field, spectrum] = [explorer.field(index), explorer.spectrum(index)];
-    postMessage({ name, key: data.key, field, spectrum }, [field.buffer, spectrum.buffer]);
+    const [axes, field, spectrum] = [explorer.axes(), explorer.field(index), explorer.spectrum(index)];
+    postMessage({ name, key: data.fragment, isCoarse: data.isCoarse, axes, field, spectrum }, [field.buffer, spectrum.buffer]);
   }
   postMessage({ done: true });
 };

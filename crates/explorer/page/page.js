@@ -35,9 +35,11 @@ const shade = (share) => palette[Math.round(255 * Math.min(1, Math.max(0, share)
 let explorer = null;
 let background = null;
 let world = null;
-const state = { floor: -40, planes: new Map(), order: [], pending: false, busy: false, waiting: false, step: 0, at: null };
+const state = { floor: -40, planes: new Map(), order: [], pending: false, busy: false, wanted: null, step: 0, at: null };
 /** Milliseconds of work in each frame, for those who measure it. */
 const frames = [];
+/** When a slow plane was drawn. */
+const slowFrames = [];
 
 const get = (name) => explorer.get(name);
 const set = (name, value) => {
@@ -98,7 +100,8 @@ class Picture {
   /** Lines through the middle, of these slopes in shares of the picture. */
   line(slopes) {
     this.lines.forEach((line, i) => {
-      const slope = slopes[i];
+      // What is seen at infinity is upright.
+      const slope = slopes[i] && Math.max(-1e4, Math.min(1e4, slopes[i]));
       line.style.display = slope === undefined ? "none" : "";
       if (slope === undefined) return;
       const ends = { x1: -1, y1: -slope, x2: 1, y2: slope };
@@ -127,15 +130,15 @@ class Plane {
   first(index) {
     if (this.followed) this.head();
     this.followed = false;
-    this.show({ field: explorer.field(index), spectrum: explorer.spectrum(index) });
+    this.show({ axes: explorer.axes(), field: explorer.field(index), spectrum: explorer.spectrum(index) });
   }
-  show({ field, spectrum }) {
-    Object.assign(this, { field, spectrum });
+  show({ axes, field, spectrum }) {
+    Object.assign(this, { axes, field, spectrum });
     this.draw();
   }
   draw() {
     if (!this.field) return;
-    const [cells, , , rho, , nu] = explorer.axes();
+    const [cells, , , rho, , nu] = this.axes;
     const most = this.field.reduce((a, b) => (b > a ? b : a), 1e-300);
     this.fieldPicture.draw(cells, cells, (i, j) => this.field[i * cells + j] / most);
     const width = 2 * nu + 1;
@@ -161,11 +164,11 @@ class Plane {
     const off = norm((value, i) => value - this.spectrum[i]) / norm((value) => value);
     this.words.textContent = `by rays; first order is off by ${digits(100 * off, 2)} %`;
     this.followed = true;
-    this.show({ field, spectrum });
+    this.show({ axes: explorer.axes(), field, spectrum });
   }
   /** ν = −h ρ of the light and of the blockers, as shares of the picture. */
   slopes() {
-    const [, , , rho, rhoStep, nu, nuStep] = explorer.axes();
+    const [, , , rho, rhoStep, nu, nuStep] = this.axes;
     const scale = (rho * rhoStep) / (nu * nuStep);
     const [at, travel, fill] = [get("at"), get("travel"), get("fill")];
     const blocked = fill > 0 ? [travel - at] : [];
@@ -187,7 +190,7 @@ const tell = (picture, share) => {
   mark.style.display = "";
   mark.setAttribute("cx", String(share[0]));
   mark.setAttribute("cy", String(-share[1]));
-  const [cells, halfX, halfU, rho, rhoStep, nu, nuStep] = explorer.axes();
+  const [cells, halfX, halfU, rho, rhoStep, nu, nuStep] = plane.axes;
   const cell = (n, value) => Math.min(n - 1, Math.max(0, Math.floor(((value + 1) / 2) * n)));
   const line = byId("pointed");
   const title = TITLES[plane.name][0];
@@ -238,7 +241,7 @@ const frame = () => {
     plane.key = key;
     plane.first(index);
   }
-  askForSlow(all);
+  askForSlow(true);
   world.draw();
   sliders();
   facts();
@@ -247,16 +250,19 @@ const frame = () => {
   state.settling = setTimeout(settle, 150);
 };
 
-const askForSlow = (fragment) => {
+/** Coarse while anything moves, then fine. */
+const askForSlow = (isCoarse) => {
   if (!background) return;
   if (state.busy) {
-    state.waiting = true;
+    state.wanted = { isCoarse };
     return;
   }
-  const planes = state.order.filter(({ plane, isSlow }) => isSlow && plane.key !== fragment);
+  const fragment = explorer.fragment();
+  const isOld = ({ plane, isSlow }) => isSlow && plane.key !== fragment && !(isCoarse && plane.coarse === fragment);
+  const planes = state.order.filter(isOld);
   if (planes.length === 0) return;
   state.busy = true;
-  background.postMessage({ fragment, key: fragment, planes: planes.map(({ plane, index }) => ({ name: plane.name, index })) });
+  background.postMessage({ fragment, isCoarse, planes: planes.map(({ plane, index }) => ({ name: plane.name, index })) });
 };
 
 /** Rays off the glossy receiver, a second or so for each plane. */
@@ -278,20 +284,21 @@ const answered = ({ data }) => {
   }
   if (data.done) {
     state.busy = false;
-    if (state.waiting) {
-      state.waiting = false;
-      askForSlow(explorer.fragment());
-    }
+    const wanted = state.wanted;
+    state.wanted = null;
+    if (wanted) askForSlow(wanted.isCoarse);
     return;
   }
   const found = state.order.find(({ plane, isSlow }) => isSlow && plane.name === data.name);
   if (!found) return;
-  found.plane.key = data.key;
+  found.plane[data.isCoarse ? "coarse" : "key"] = data.key;
   found.plane.show(data);
+  slowFrames.push(performance.now());
 };
 
 /** Once nothing moves: what costs time and need not follow each frame. */
 const settle = () => {
+  askForSlow(false);
   const fragment = explorer.fragment();
   for (const { plane, index, isSlow } of state.order) {
     if (background || !isSlow || plane.key === fragment) continue;
@@ -416,4 +423,4 @@ const start = async () => {
   begin(location.hash);
   document.documentElement.dataset.ready = "yes";
 };
-start();
+start().catch((error) => (byId("words").textContent = `This browser does not run the page: ${error.message}`));

@@ -15,6 +15,6 @@ mod rays;
 mod ron;
 mod setup;
 
-pub use planes::{Plane, grid, lobe};
+pub use planes::{CELLS, Plane, grid, lobe};
 pub use ron::scene;
 pub use setup::{Entry, Key, Setup, TABLE};

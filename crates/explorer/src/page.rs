@@ -1,7 +1,6 @@
 //! What the page calls.
 
-use crate::planes::CELLS;
-use crate::{Key, Plane, Setup, TABLE, grid, lobe, scene};
+use crate::{CELLS, Key, Plane, Setup, TABLE, grid, lobe, scene};
 use etendue_theory::shading::Criterion;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -10,6 +9,8 @@ use wasm_bindgen::prelude::wasm_bindgen;
 #[derive(Debug)]
 pub struct Explorer {
     setup: Setup,
+    /// Of a light field, along each axis.
+    cells: usize,
 }
 
 #[wasm_bindgen]
@@ -20,7 +21,17 @@ impl Explorer {
     pub fn new(fragment: &str) -> Self {
         Self {
             setup: Setup::of_fragment(fragment),
+            cells: CELLS,
         }
+    }
+
+    /// Takes every other frequency, where the window needs no more, and larger cells: what is
+    /// moving need not be as fine, and each number stays as exact as it was.
+    pub fn coarsen(&mut self) {
+        for key in [Key::RhoStep, Key::NuStep] {
+            self.setup.set(key, 2.0 * self.setup.get(key));
+        }
+        self.cells = CELLS / 2;
     }
 
     /// The scene as it stands after # in a URL.
@@ -68,7 +79,9 @@ impl Explorer {
     /// The light field at a plane: cells along x, along u, then the values, u fastest.
     #[must_use]
     pub fn field(&self, plane: usize) -> Vec<f64> {
-        let values = Plane::all(&self.setup)[plane].field(&self.setup).values;
+        let values = Plane::all(&self.setup)[plane]
+            .field(&self.setup, self.cells)
+            .values;
         values.iter().copied().collect()
     }
 
@@ -104,7 +117,7 @@ impl Explorer {
         let grid = grid(&self.setup);
         let half = |key| self.setup.get(key);
         vec![
-            CELLS as f64,
+            self.cells as f64,
             half(Key::WindowX),
             half(Key::WindowU),
             grid.rho.half as f64,

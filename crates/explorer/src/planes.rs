@@ -14,8 +14,11 @@ use etendue_theory::{
 
 /// Length of a slat along Y, metres: more than any window sees.
 pub(crate) const SLAT: f64 = 8.0;
-/// Cells of a picture along each axis.
-pub(crate) const CELLS: usize = 64;
+/// Cells of a picture along each axis, as the command has them.
+pub const CELLS: usize = 64;
+
+/// Most frequencies to each side of zero: more take too long to be dragged.
+const MOST: usize = 160;
 
 /// A place on the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -92,11 +95,11 @@ impl Plane {
         }
     }
 
-    /// The light field in (x, u), its values in rows of constant x.
+    /// The light field in (x, u) as so many cells along each axis, its values in rows of constant x.
     #[must_use]
-    pub fn field(self, setup: &Setup) -> Projection {
+    pub fn field(self, setup: &Setup, cells: usize) -> Projection {
         let window = window(setup);
-        let cells = ProjectionGrid::new(&window, CELLS);
+        let cells = ProjectionGrid::new(&window, cells);
         match self {
             Self::Curved => {
                 let mut found = projection(&imaged(setup, 1.0), &window, &cells);
@@ -279,7 +282,7 @@ pub fn grid(setup: &Setup) -> SliceGrid {
     let axis = |most: Key, step: Key, half_width: Key| {
         // Never wider than the window asks for.
         let spacing = setup.get(step).min(0.5 / setup.get(half_width));
-        let half = whole((setup.get(most) / spacing - 1e-9).ceil());
+        let half = whole((setup.get(most) / spacing - 1e-9).ceil()).min(MOST);
         FrequencyAxis { half, spacing }
     };
     SliceGrid {
