@@ -15,8 +15,8 @@ class World {
       const look = { fan: "fan", axis: "ray dashed", window: "window", light: "light", slats: "slat", receiver: "receiver" }[name];
       this.parts[name] = this.add(kind, { class: look });
     }
-    this.labels = ["light", "blockers", "receiver"].map((text) => {
-      const label = this.add("text", { y: VIEW.height - 8, "text-anchor": "middle" });
+    this.labels = ["light", "blockers", "receiver"].map((text, i) => {
+      const label = this.add("text", { y: VIEW.height - 8, "text-anchor": i < 2 ? "middle" : "start" });
       label.textContent = text;
       return label;
     });
@@ -107,7 +107,7 @@ class World {
     put(this.grips.width, { cx: light, cy: top });
     put(this.grips.pitch, { cx: at, cy: x(this.nearest() * pitch), visibility: fill > 0 ? "visible" : "hidden" });
     put(this.grips.curvature, { cx: end + depth, cy: x(position + high), visibility: glossy ? "visible" : "hidden" });
-    this.labels.forEach((label, i) => put(label, { x: [light, at, end][i], visibility: i === 1 && fill === 0 ? "hidden" : "visible" }));
+    this.labels.forEach((label, i) => put(label, { x: [light, at, end - 20][i], visibility: i === 1 && fill === 0 ? "hidden" : "visible" }));
     for (const grip of Object.values(this.grips)) put(grip, { "aria-valuenow": get(grip.name) });
   }
 }
