@@ -5,6 +5,7 @@ use crate::inquiry::inquire;
 use crate::measure::measured;
 use crate::method::Method;
 use crate::predict::predicted;
+use crate::report::explorer;
 use crate::results::arrays;
 use crate::results::summary::{Stopwatch, Summary};
 use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
@@ -58,7 +59,8 @@ pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bo
     };
     let beside = pictures::PATH_NAMES
         .into_iter()
-        .chain([TIMING, report::NAME]);
+        .chain([TIMING, report::NAME])
+        .chain(explorer::fragment(&scene.file).map(|_| explorer::NAME));
     Plan {
         index: SUMMARY,
         files: scene
@@ -160,8 +162,11 @@ fn written(
     let data = report::data(case, summary, planes, &path);
     results.write(
         report::NAME,
-        report::page(&case.scene.name, &[data]).as_bytes(),
+        report::page(&case.scene.name, &[(String::new(), data)]).as_bytes(),
     )?;
+    if explorer::fragment(&summary.scene_file).is_some() {
+        results.write(explorer::NAME, explorer::PAGE)?;
+    }
     if ending.save.contains(&Save::Photons) {
         photons::save(&mut results, case)?;
     }

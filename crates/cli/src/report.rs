@@ -2,6 +2,7 @@
 //! `etendue report`, which puts several of them side by side.
 
 mod data;
+pub(crate) mod explorer;
 
 use crate::args::ReportArgs;
 use crate::failure::Failure;
@@ -20,8 +21,8 @@ pub(crate) const NAME: &str = "report.html";
 /// Most bytes of a page that is read.
 const MOST: u64 = 1 << 28;
 
-/// What is around the data of a run in a page.
-const BEFORE: &str = "<script type=\"application/json\" class=\"run-data\">";
+/// What is around the data of a run in a page; before it, where the explorer is.
+const BEFORE: &str = "class=\"run-data\">";
 const AFTER: &str = "</script>";
 
 /// `etendue report`: returns the exit code.
@@ -41,6 +42,10 @@ pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
     };
     let names: Vec<String> = args.folders.iter().filter_map(folder).collect();
     let out = OutputFile::claim(&args.out, args.force.force, &inputs)?;
+    let parent = args.out.parent().filter(|path| *path != Path::new(""));
+    let parent = parent.unwrap_or(Path::new("."));
+    let beside = args.folders.iter().map(|folder| address(folder, parent));
+    let blocks: Vec<_> = beside.zip(blocks).collect();
     out.write(page(&names.join(", "), &blocks).as_bytes())?;
     say(&format!("report in {}", args.out.display()));
     Ok(0)
@@ -68,12 +73,21 @@ fn stored(folder: &Path) -> Result<String, Failure> {
     Ok(data.to_owned())
 }
 
-/// A page of the data of some runs.
-pub(crate) fn page(title: &str, blocks: &[String]) -> String {
-    let data: Vec<String> = blocks
-        .iter()
-        .map(|data| format!("{BEFORE}{data}{AFTER}"))
-        .collect();
+/// A folder as seen from another, with a / at its end.
+fn address(folder: &Path, from: &Path) -> String {
+    let absolute = |path: &Path| std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
+    let [folder, from] = [folder, from].map(absolute);
+    let inside = folder.strip_prefix(&from).unwrap_or(&folder);
+    format!("{}/", inside.display())
+}
+
+/// A page of the data of some runs, each with the folder it is in, as seen from the page.
+pub(crate) fn page(title: &str, blocks: &[(String, String)]) -> String {
+    let block = |(folder, data): &(String, String)| {
+        let folder = escaped(folder).replace('"', "&quot;");
+        format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
+    };
+    let data: Vec<String> = blocks.iter().map(block).collect();
     let [sequential, diverging] = etendue_figures::palettes().map(|colors| STANDARD.encode(colors));
     let colors = format!("{{\"sequential\": \"{sequential}\", \"diverging\": \"{diverging}\"}}");
     // The data last: whatever stands in them is not looked at again.

@@ -86,6 +86,38 @@ fn runs_stand_side_by_side() {
 }
 
 #[test]
+fn a_scene_that_the_explorer_knows_leads_there() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    let setup = etendue_explorer::Setup::of_fragment("travel=0.7&fill=0");
+    fs::write(path.join("known.ron"), etendue_explorer::scene(&setup)).unwrap();
+    fs::write(path.join("other.ron"), SCENE).unwrap();
+    for name in ["known", "other"] {
+        let run = format!("run {name}.ron --photons 4096 --out {name}");
+        let code = call(path, &run).status.code();
+        // So few photons leave the known one undecided.
+        assert!([Some(0), Some(4)].contains(&code), "{name}");
+        let is_known = name == "known";
+        let summary = json(&path.join(name).join("summary.json"));
+        assert_eq!(summary["files"]["explorer.html"].is_string(), is_known);
+        assert_eq!(path.join(name).join("explorer.html").exists(), is_known);
+    }
+    let output = call_report(path, "report known other --out both.html");
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let page = path.join("both.html");
+    let [known, other] = &data(&page)[..] else {
+        panic!("two runs")
+    };
+    assert_eq!(known["explorer"], setup.fragment());
+    assert!(other["explorer"].is_null());
+    assert!(
+        fs::read_to_string(page)
+            .unwrap()
+            .contains("data-folder=\"known/\"")
+    );
+}
+
+#[test]
 fn what_is_no_whole_result_is_refused() {
     let folder = runs();
     let path = folder.path();

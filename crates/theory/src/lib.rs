@@ -72,7 +72,8 @@ mod work;
 pub use model::{Model, Observed, Over};
 pub use nets::{Budget, REPLICATES};
 pub use parallel::{
-    Chain, Harmonics, Operator, Source, at, derivative, projection, quadrature_error, slices,
+    Chain, Harmonics, Operator, Source, at, blurred_projection, blurred_slices, derivative,
+    projection, quadrature_error, slices,
 };
 pub use parameter::Parameter;
 pub use predicted::Predicted;

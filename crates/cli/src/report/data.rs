@@ -1,5 +1,6 @@
 //! What a page shows of a run.
 
+use super::explorer;
 use crate::case::Case;
 use crate::pictures::{light_field_axes, spectrum_axes};
 use crate::results::arrays::{radial_z, z};
@@ -25,6 +26,8 @@ struct Run<'a> {
     words: String,
     provenance: String,
     scene_file: &'a SceneFile,
+    /// What shows it in the explorer.
+    explorer: Option<String>,
     /// The strip along the path, SVG.
     path: &'a str,
     planes: Vec<Plane<'a>>,
@@ -138,6 +141,7 @@ pub(crate) fn data(
         words: verdict_text(summary),
         provenance,
         scene_file: &summary.scene_file,
+        explorer: explorer::fragment(&summary.scene_file),
         path,
         planes: each.collect(),
     };

@@ -1,7 +1,7 @@
 "use strict";
 // Draws the runs whose data stand in this page. Spectra are held for ρ ≥ 0: S(−ρ, −ν) = S*(ρ, ν).
 const read = (element) => JSON.parse(element.textContent);
-const runs = [...document.querySelectorAll("script.run-data")].map(read);
+const runs = [...document.querySelectorAll("script.run-data")].map((element) => ({ ...read(element), folder: element.dataset.folder }));
 const colors = read(document.getElementById("colors"));
 const bytes = (text) => Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
 const floats = (text) => new Float32Array(bytes(text).buffer);
@@ -213,6 +213,11 @@ const showRun = (run) => {
   const drawing = make("div", null, article, { class: "path" });
   // An SVG of Étendue's own making: it has no script and names nothing outside.
   drawing.innerHTML = run.path;
+  if (run.explorer !== null) {
+    // Beside its results; a file has no other address than its own.
+    const href = `${encodeURI(run.folder)}explorer.html#${run.explorer}`;
+    make("a", "this scene in the explorer, to be dragged", make("p", null, article), { href, class: "explorer" });
+  }
   table(
     article,
     ["plane", "class", "in window", "χ²/dof", "p", "rel. error", "noise alone", "verdict"],

@@ -12,6 +12,7 @@
 //! | terms of the product over masks, as polygons | `expansion`, `patch`, `disc`, `polygon`, `corners` |
 //! | windows, gratings and factors of slope, as waves | `wave`, `slope`, `row` |
 //! | a diffuse receiver | `receiver` |
+//! | a curved glossy receiver, met head on, in flatland | `images`, `gloss` |
 //! | the same light by nets of rays | `sampled` |
 
 mod at;
@@ -22,7 +23,9 @@ mod describe;
 mod disc;
 mod error;
 pub(crate) mod expansion;
+mod gloss;
 mod harmonics;
+mod images;
 #[cfg(test)]
 mod laws;
 mod model;
@@ -41,6 +44,7 @@ pub use at::at;
 pub use chain::{Chain, Operator, Source};
 pub use derivative::derivative;
 pub use error::quadrature_error;
+pub use gloss::{blurred_projection, blurred_slices};
 pub use harmonics::Harmonics;
 pub use projection::projection;
 pub use slices::slices;

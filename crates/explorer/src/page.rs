@@ -1,0 +1,157 @@
+//! What the page calls.
+
+use crate::{CELLS, Key, Plane, Setup, TABLE, grid, lobe, scene};
+use etendue_theory::shading::Criterion;
+use wasm_bindgen::prelude::wasm_bindgen;
+
+/// A scene and what is seen of it.
+#[wasm_bindgen]
+#[derive(Debug)]
+pub struct Explorer {
+    setup: Setup,
+    /// Of a light field, along each axis.
+    cells: usize,
+}
+
+#[wasm_bindgen]
+impl Explorer {
+    /// The scene that stands after # in a URL.
+    #[must_use]
+    #[wasm_bindgen(constructor)]
+    pub fn new(fragment: &str) -> Self {
+        Self {
+            setup: Setup::of_fragment(fragment),
+            cells: CELLS,
+        }
+    }
+
+    /// Takes every other frequency, where the window needs no more, and larger cells: what is
+    /// moving need not be as fine, and each number stays as exact as it was.
+    pub fn coarsen(&mut self) {
+        for key in [Key::RhoStep, Key::NuStep] {
+            self.setup.set(key, 2.0 * self.setup.get(key));
+        }
+        self.cells = CELLS / 2;
+    }
+
+    /// The scene as it stands after # in a URL.
+    #[must_use]
+    pub fn fragment(&self) -> String {
+        self.setup.fragment()
+    }
+
+    /// The numbers that can be set, as JSON: name, label, unit, min, max, step.
+    #[must_use]
+    pub fn table() -> String {
+        let rows = TABLE.map(|entry| {
+            let [min, max] = entry.range;
+            let (name, label, unit) = (entry.name, entry.label, entry.unit);
+            let step = entry.step;
+            format!(
+                "{{\"name\":\"{name}\",\"label\":\"{label}\",\"unit\":\"{unit}\",\
+                 \"min\":{min},\"max\":{max},\"step\":{step}}}"
+            )
+        });
+        format!("[{}]", rows.join(","))
+    }
+
+    /// A number by its name; not a number if there is none of that name.
+    #[must_use]
+    pub fn get(&self, name: &str) -> f64 {
+        Setup::named(name).map_or(f64::NAN, |key| self.setup.get(key))
+    }
+
+    /// Sets a number by its name.
+    pub fn set(&mut self, name: &str, value: f64) {
+        if let Some(key) = Setup::named(name) {
+            self.setup.set(key, value);
+        }
+    }
+
+    /// The names of the planes, one to a line; a * before those that take long.
+    #[must_use]
+    pub fn planes(&self) -> String {
+        let all = Plane::all(&self.setup).into_iter();
+        let shown = |p: Plane| format!("{}{}", if p.is_slow() { "*" } else { "" }, p.name());
+        all.map(shown).collect::<Vec<_>>().join("\n")
+    }
+
+    /// The light field at a plane: cells along x, along u, then the values, u fastest.
+    #[must_use]
+    pub fn field(&self, plane: usize) -> Vec<f64> {
+        let values = Plane::all(&self.setup)[plane]
+            .field(&self.setup, self.cells)
+            .values;
+        values.iter().copied().collect()
+    }
+
+    /// Its spectrum at azimuth 0, for ρ ≥ 0: real and imaginary parts by turns, ν fastest.
+    #[must_use]
+    pub fn spectrum(&self, plane: usize) -> Vec<f64> {
+        let slices = Plane::all(&self.setup)[plane].spectrum(&self.setup);
+        slices
+            .half
+            .iter()
+            .flat_map(|value| [value.re, value.im])
+            .collect()
+    }
+
+    /// The spectrum and then the light field at a plane by rays, in the order of both; nothing
+    /// where they are exact already.
+    #[must_use]
+    pub fn follow(&self, plane: usize) -> Vec<f64> {
+        let plane = Plane::all(&self.setup)[plane];
+        let Some((slices, field)) = plane.followed(&self.setup) else {
+            return Vec::new();
+        };
+        let first = slices.half.outer_iter().next();
+        let parts = first.into_iter().flatten();
+        let spectrum = parts.flat_map(|value| [value.re, value.im]);
+        spectrum.chain(field.values.iter().copied()).collect()
+    }
+
+    /// Cells of a light field along each axis, half-widths in x and u, then steps to each side and
+    /// spacing along ρ and along ν.
+    #[must_use]
+    pub fn axes(&self) -> Vec<f64> {
+        let grid = grid(&self.setup);
+        let half = |key| self.setup.get(key);
+        vec![
+            self.cells as f64,
+            half(Key::WindowX),
+            half(Key::WindowU),
+            grid.rho.half as f64,
+            grid.rho.spacing,
+            grid.nu.half as f64,
+            grid.nu.spacing,
+        ]
+    }
+
+    /// What the sampling criterion says at an eye one metre from the glossy receiver: the cutoff
+    /// of the lobe (99 %), cycles per radian, then bandwidths under an environment (Eq. 20 of
+    /// Durand et al. 2005) and behind an edge of the blockers (Eq. 21), both corrected.
+    #[must_use]
+    pub fn criterion(&self) -> Vec<f64> {
+        let get = |key| self.setup.get(key);
+        let criterion = Criterion {
+            curvature: get(Key::Curvature),
+            incidence: 0.0,
+            outgoing: 0.0,
+            distance: 1.0,
+            blocker_distance: Some(get(Key::Travel) - get(Key::Distance)),
+            lobe_cutoff: lobe(&self.setup).cutoff(0.99),
+            environment_cutoff: 0.0,
+        };
+        vec![
+            criterion.lobe_cutoff,
+            criterion.environment(),
+            criterion.blocker(),
+        ]
+    }
+
+    /// The scene file.
+    #[must_use]
+    pub fn scene(&self) -> String {
+        scene(&self.setup)
+    }
+}

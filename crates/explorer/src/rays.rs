@@ -1,0 +1,109 @@
+//! The curved glossy receiver as it is: rays followed off a sphere, as `etendue predict` does it.
+
+use crate::planes::{CELLS, Plane, grid, shapes, square, window};
+use crate::setup::{Key, Setup};
+use etendue_field::{
+    Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,
+    SliceGrid,
+};
+use etendue_theory::{Budget, Model, Observed, Over, Predicted, rays, scattering};
+use glam::DVec3;
+
+/// What the command gives a scene with as many photons as saved ones have: rays in all, and the
+/// error that is good enough.
+const BUDGET: Budget = Budget {
+    nodes: 1.1e6,
+    error: 3e-3,
+};
+/// Radius of the receiver, metres.
+pub(crate) const APERTURE: f64 = 0.6;
+/// Of a saved scene; rays are added until all of its slices are good enough.
+pub(crate) const AZIMUTHS: usize = 2;
+
+/// The light field at a plane on a glossy receiver by nets of rays; `None` for other planes.
+pub(crate) fn followed(plane: Plane, setup: &Setup) -> Option<Predicted> {
+    let window = window(setup);
+    let grid = SliceGrid {
+        azimuths: AZIMUTHS,
+        ..grid(setup)
+    };
+    let cells = ProjectionGrid::new(&window, CELLS);
+    let over: Over<'_> = (&window, &grid, &cells);
+    let (light, layers) = (square(setup), layers(setup));
+    let patch = patch(setup);
+    match plane {
+        Plane::Curved => {
+            let system = rays::System {
+                light,
+                layers,
+                elements: Vec::new(),
+            };
+            let plane = seen(&patch, Orientation::LocalNormals, true);
+            Some(Observed { system, plane }.predict(&[], over, BUDGET))
+        }
+        Plane::Blurred | Plane::Glossy => {
+            let orientation = if plane == Plane::Glossy {
+                Orientation::Orthogonal
+            } else {
+                Orientation::LocalNormals
+            };
+            let system = scattering::System {
+                light,
+                layers,
+                name: "receiver".to_owned(),
+                patch,
+                reflectance: reflectance(setup),
+            };
+            let plane = seen(&patch, orientation, false);
+            Some(Observed { system, plane }.predict(&[], over, BUDGET))
+        }
+        _ => None,
+    }
+}
+
+fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
+    if setup.get(Key::Fill) <= 0.0 {
+        return Vec::new();
+    }
+    let mask = Mask::Opaque {
+        shapes: shapes(setup),
+        half_planes: Vec::new(),
+    };
+    vec![(setup.get(Key::Distance), mask)]
+}
+
+/// The receiver in the frame at the light, turned to it.
+fn patch(setup: &Setup) -> Patch {
+    let vertex = DVec3::Z * setup.get(Key::Travel);
+    Patch {
+        frame: Frame::new(vertex, DVec3::NEG_Z, DVec3::X).expect("axes at right angles"),
+        curvature: [setup.get(Key::Curvature); 3],
+        aperture: APERTURE,
+    }
+}
+
+fn reflectance(setup: &Setup) -> Reflectance {
+    let exponent = setup.get(Key::Exponent);
+    Reflectance {
+        brdf: Brdf {
+            lobe: Lobe::Phong { exponent },
+            albedo: setup.get(Key::Albedo),
+            fresnel: Fresnel::White,
+        },
+        blend: None,
+        texture: None,
+    }
+}
+
+/// A plane where the central ray meets the receiver; straight back X is turned round.
+fn seen(patch: &Patch, orientation: Orientation, arriving: bool) -> rays::Plane {
+    let frame = Frame::new(patch.frame.origin, DVec3::NEG_Z, DVec3::NEG_X);
+    rays::Plane {
+        frame: frame.expect("axes at right angles"),
+        orientation,
+        longitude: 0.0,
+        patch: orientation.is_local().then_some(*patch),
+        arriving,
+        quantity: Quantity::Radiance,
+    }
+}

@@ -1,0 +1,117 @@
+//! The scene as a file for `etendue run`.
+
+use crate::planes::{Plane, SLAT, count, grid, place, seed};
+use crate::rays::{APERTURE, AZIMUTHS};
+use crate::setup::{Key, Setup};
+use etendue_field::FrequencyAxis;
+use std::fmt::Write;
+
+/// Photons of a run that takes some seconds.
+const PHOTONS: u64 = 4_194_304;
+
+/// The scene file.
+#[must_use]
+pub fn scene(setup: &Setup) -> String {
+    let get = |key| setup.get(key);
+    let (x, distance, end) = (get(Key::Position), get(Key::Distance), get(Key::Travel));
+    let grid = grid(setup);
+    let axis = |axis: &FrequencyAxis| format!("(max: {}, spacing: {})", axis.max(), axis.spacing);
+    let planes: Vec<String> = Plane::all(setup)
+        .into_iter()
+        .map(|p| plane(p, setup))
+        .collect();
+    format!(
+        "// Set up in the explorer, docs/explorer.html#{fragment}
+(
+    light: Rectangle(center: ({x}, 0, 0), size: ({side}, {side}), radiance: 1),
+{blockers}    surfaces: [
+        {receiver},
+    ],
+    path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"receiver\"]),
+    planes: [
+{planes}
+    ],
+    window: (x: Hann({window_x}), u: Hann({window_u})),
+    frequencies: (azimuths: {AZIMUTHS}, rho: {rho}, nu: {nu}),
+    run: (photons: {PHOTONS}, seed: 1, batches: 64),
+)
+",
+        fragment = setup.fragment(),
+        side = get(Key::Width),
+        blockers = blockers(setup, distance),
+        receiver = receiver(setup, x, end),
+        planes = planes.join("\n"),
+        window_x = get(Key::WindowX),
+        window_u = get(Key::WindowU),
+        rho = axis(&grid.rho),
+        nu = axis(&grid.nu),
+    )
+}
+
+fn blockers(setup: &Setup, distance: f64) -> String {
+    let [pitch, fill, jitter] = [Key::Pitch, Key::Fill, Key::Jitter].map(|key| setup.get(key));
+    let count = count(setup);
+    if fill <= 0.0 {
+        return String::new();
+    }
+    let head = format!("name: \"blockers\", center: (0, 0, {distance})");
+    if setup.is(Key::Squares) {
+        let seed = seed(setup);
+        return format!(
+            "    blockers: [
+        JitteredSquares({head}, count: ({count}, {count}), pitch: {pitch}, fill: {fill}, \
+             jitter: {jitter}, seed: {seed}),
+    ],
+"
+        );
+    }
+    let mut text = format!("    blockers: [\n        Shapes({head}, shapes: [\n");
+    for i in 0..count {
+        let (at, side) = (place(i, count) * pitch, fill * pitch);
+        // Writing to a string does not fail.
+        let _ = writeln!(
+            text,
+            "            Rectangle(center: ({at}, 0), size: ({side}, {SLAT})),"
+        );
+    }
+    text + "        ]),\n    ],\n"
+}
+
+fn receiver(setup: &Setup, x: f64, end: f64) -> String {
+    let albedo = setup.get(Key::Albedo);
+    if !setup.is(Key::Glossy) {
+        return format!(
+            "Rectangle(name: \"receiver\", center: ({x}, 0, {end}), size: (6, 6), albedo: {albedo})"
+        );
+    }
+    let [curvature, exponent] = [Key::Curvature, Key::Exponent].map(|key| setup.get(key));
+    let form = if curvature.abs() > 0.0 {
+        format!("Sphere({curvature})")
+    } else {
+        "Plane".to_owned()
+    };
+    format!(
+        "Smooth(name: \"receiver\", center: ({x}, 0, {end}), facing: (0, 0, -1), form: {form}, \
+         aperture: {APERTURE},
+            event: Reflects(brdf: (lobe: Phong({exponent}), albedo: {albedo})))"
+    )
+}
+
+/// A plane; beside blockers that are not there it stands where they would be.
+fn plane(plane: Plane, setup: &Setup) -> String {
+    let distance = setup.get(Key::Distance);
+    let are_there = setup.get(Key::Fill) > 0.0;
+    let before_receiver = "at: Before(\"receiver\")";
+    let place = match plane {
+        Plane::Light => "at: Emission".to_owned(),
+        Plane::Travelled if are_there => "at: Before(\"blockers\")".to_owned(),
+        Plane::Blocked if are_there => "at: After(\"blockers\")".to_owned(),
+        Plane::Travelled | Plane::Blocked => format!("at: Distance({distance})"),
+        Plane::Arrived => before_receiver.to_owned(),
+        Plane::Irradiance => format!("{before_receiver}, quantity: DifferentialIrradiance"),
+        Plane::Curved => format!("{before_receiver}, orientation: LocalNormals"),
+        Plane::Blurred => "at: After(\"receiver\"), orientation: LocalNormals".to_owned(),
+        Plane::Diffuse | Plane::Glossy => "at: After(\"receiver\")".to_owned(),
+    };
+    format!("        (name: \"{}\", {place}),", plane.name())
+}

@@ -1,0 +1,289 @@
+//! A chain after a lobe: its light field convolved over slopes along x (docs/theory.md (36a)).
+//!
+//! In flatland a glossy reflection multiplies the spectrum by that of its lobe, ρ̂'(Ωu), and the
+//! window at the plane comes last:
+//!
+//! S(ρ, ν) = ∫ Ŵ(ν − q) ρ̂'(q) I(ρ, q) dq,
+//!
+//! I being the spectrum under a window that leaves all slopes in whose lobes reach the plane's. The
+//! integral is a sum over q: the field it comes from ends, so the sum is exact up to the lobe's
+//! tail once the spacing keeps the copies of that field apart. Along y the same takes a share of
+//! all light out of the window, which is exact where the field is a product of one of (x, u) and one
+//! of (y, v), as behind slats along y.
+
+use super::{projection, slices};
+use crate::Chain;
+use crate::numerics::sinc::sinc;
+use crate::shading::Lobe;
+use etendue_field::{
+    FrequencyAxis, Profile, Projection, ProjectionGrid, SliceGrid, Slices, Window, whole,
+};
+use ndarray::Array2;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// What of a lobe's peak is left out in spectra and in pictures.
+const TAIL: f64 = 1e-10;
+const SEEN_TAIL: f64 = 1e-4;
+/// How far apart the copies of the field are kept, in their widths.
+const APART: f64 = 1.05;
+/// Lobes of this reach, in radians, count as cut off.
+const BROAD: f64 = 1.5;
+/// Most frequencies to each side that a narrow lobe is followed to.
+const MOST: usize = 512;
+
+/// The slice at azimuth 0 of the chain's field after a lobe, under a window.
+///
+/// # Panics
+/// When the grid has more than the one azimuth.
+#[must_use]
+pub fn blurred_slices(chain: &Chain, lobe: &Lobe, window: &Window, grid: &SliceGrid) -> Slices {
+    assert_eq!(grid.azimuths, 1, "flatland has one azimuth");
+    let blur = Blur::new(lobe, &window.u);
+    let sharp = SliceGrid {
+        nu: blur.lattice,
+        ..*grid
+    };
+    let wide = Window {
+        u: blur.wide,
+        ..*window
+    };
+    let sharp = slices(chain, &wide, &sharp);
+    let weights: Vec<_> = grid
+        .nu
+        .values()
+        .into_iter()
+        .map(|nu| blur.weights(nu))
+        .collect();
+    let share = share(chain, lobe, window);
+    let mut blurred = Slices::zeros(*grid);
+    for ((k, m, n), value) in blurred.half.indexed_iter_mut() {
+        let row = weights[n].iter().enumerate();
+        *value = row
+            .map(|(j, weight)| sharp.half[[k, m, j]] * weight * share)
+            .sum();
+    }
+    blurred
+}
+
+/// What is left of all light when its slopes along y are blurred.
+fn share(chain: &Chain, lobe: &Lobe, window: &Window) -> f64 {
+    let blur = Blur::new(lobe, &window.v);
+    let none = FrequencyAxis {
+        half: 0,
+        spacing: 1.0,
+    };
+    // The second of two azimuths is along y.
+    let grid = SliceGrid {
+        azimuths: 2,
+        rho: none,
+        nu: blur.lattice,
+    };
+    let wide = Window {
+        v: blur.wide,
+        ..*window
+    };
+    let sharp = slices(chain, &wide, &grid);
+    let row = blur.weights(0.0).into_iter().enumerate();
+    let after: f64 = row
+        .map(|(j, weight)| sharp.half[[1, 0, j]].re * weight)
+        .sum();
+    let before = slices(
+        chain,
+        window,
+        &SliceGrid {
+            azimuths: 1,
+            rho: none,
+            nu: none,
+        },
+    )
+    .at_zero();
+    if before > 0.0 { after / before } else { 1.0 }
+}
+
+/// A lobe over one slope, as a sum over frequencies.
+struct Blur {
+    /// All slopes whose lobes reach the window.
+    wide: Profile,
+    lattice: FrequencyAxis,
+    /// ρ̂' on it, times its spacing.
+    hats: Vec<f64>,
+    window: Profile,
+}
+
+impl Blur {
+    fn new(lobe: &Lobe, window: &Profile) -> Self {
+        let reach = reach(lobe, TAIL);
+        let half = window.half_width() + reach;
+        let period = 2.0 * APART * half;
+        let lattice = FrequencyAxis {
+            half: whole((highest(reach) * period).ceil()).min(MOST),
+            spacing: 1.0 / period,
+        };
+        let frequencies = lattice.values().into_iter();
+        let hats = frequencies
+            .map(|q| lattice.spacing * lobe.spectrum(q))
+            .collect();
+        Self {
+            wide: Profile::Box(half),
+            lattice,
+            hats,
+            window: *window,
+        }
+    }
+
+    /// What each frequency before the lobe adds to ν after it.
+    fn weights(&self, nu: f64) -> Vec<f64> {
+        let frequencies = self.lattice.values().into_iter().zip(&self.hats);
+        frequencies
+            .map(|(q, hat)| hat * transform(&self.window, nu - q))
+            .collect()
+    }
+}
+
+/// The picture of the chain's field after a lobe, as [`projection`] has it without: to some share
+/// of a cell, over which the lobe is taken to be even.
+#[must_use]
+pub fn blurred_projection(
+    chain: &Chain,
+    lobe: &Lobe,
+    window: &Window,
+    grid: &ProjectionGrid,
+) -> Projection {
+    let half_u = window.u.half_width() + reach(lobe, SEEN_TAIL);
+    let u = Profile::Box(half_u);
+    let wide = Window { u, ..*window };
+    let sharp = projection(chain, &wide, &ProjectionGrid { half_u, ..*grid });
+    let n = grid.bins;
+    let cell = 2.0 * half_u / n as f64;
+    let share = share(chain, lobe, window);
+    let weights = Array2::from_shape_fn((n, n), |(to, from)| {
+        let u = grid.center(to, grid.half_u);
+        share * cell * window.u.value(u) * lobe.value(u - grid.center(from, half_u))
+    });
+    Projection {
+        grid: *grid,
+        values: sharp.values.dot(&weights.t()),
+    }
+}
+
+/// The angle beyond which a lobe is below a share of its peak.
+fn reach(lobe: &Lobe, share: f64) -> f64 {
+    let least = share * lobe.value(0.0);
+    let (mut inside, mut outside) = (0.0, FRAC_PI_2);
+    for _ in 0..20 {
+        let middle = 0.5 * (inside + outside);
+        if lobe.value(middle) > least {
+            inside = middle;
+        } else {
+            outside = middle;
+        }
+    }
+    outside
+}
+
+/// A frequency beyond which a lobe leaves nothing: that of a Gaussian with the same reach, and
+/// three times that of lobes that end at a right angle, whose transforms have tails.
+fn highest(reach: f64) -> f64 {
+    let deviations = (-2.0 * libm::log(TAIL)).sqrt();
+    let tail = if reach < BROAD { 1.0 } else { 3.0 };
+    tail * deviations * deviations / (TAU * reach)
+}
+
+/// The transform of a profile.
+fn transform(profile: &Profile, frequency: f64) -> f64 {
+    let half = profile.half_width();
+    let terms = profile.cosine_terms().into_iter();
+    terms
+        .map(|term| {
+            let side = |f: f64| sinc(2.0 * half * f);
+            let both = side(frequency - term.frequency) + side(frequency + term.frequency);
+            term.weight * half * both
+        })
+        .sum()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::*;
+    use etendue_field::Complex;
+
+    fn behind_blockers() -> Chain {
+        chain(0.2, &[(0.5, blockers(3, 0.2, 0.1)), (0.5, vec![])])
+    }
+
+    fn seen() -> Window {
+        window(Profile::Hann(0.3), Profile::Hann(0.3))
+    }
+
+    fn grid(half: usize, spacing: f64) -> SliceGrid {
+        let axis = FrequencyAxis { half, spacing };
+        SliceGrid {
+            azimuths: 1,
+            rho: axis,
+            nu: axis,
+        }
+    }
+
+    fn largest(slices: &Slices) -> f64 {
+        slices.half.iter().map(|s| s.norm()).fold(0.0, f64::max)
+    }
+
+    #[test]
+    fn what_a_narrow_lobe_takes_is_in_proportion_to_its_width_squared() {
+        let (chain, window, grid) = (behind_blockers(), seen(), grid(8, 1.0));
+        let plain = slices(&chain, &window, &grid);
+        let off = |deviation: f64| {
+            let lobe = Lobe::Gaussian { deviation };
+            let blurred = blurred_slices(&chain, &lobe, &window, &grid);
+            largest(&Slices {
+                half: &blurred.half - &plain.half,
+                ..plain.clone()
+            }) / largest(&plain)
+        };
+        let [narrow, twice] = [0.002, 0.004].map(off);
+        assert!(
+            narrow < 0.001 && (twice / narrow - 4.0).abs() < 0.1,
+            "{narrow:e} {twice:e}"
+        );
+    }
+
+    #[test]
+    fn a_square_light_loses_as_much_along_y_as_along_x() {
+        let (chain, window, grid) = (chain(0.2, &[(1.0, vec![])]), seen(), grid(0, 1.0));
+        let lobe = Lobe::Phong { exponent: 30.0 };
+        let plain = slices(&chain, &window, &grid).at_zero();
+        let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
+        let along_y = share(&chain, &lobe, &window);
+        // Rounding of some hundred terms.
+        assert!(along_y < 0.9 && (left / along_y.powi(2) - 1.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn pictures_add_up_to_the_spectrum() {
+        for exponent in [5.0, 12.0, 60.0, 400.0] {
+            let lobe = Lobe::Phong { exponent };
+            let (chain, window, grid) = (behind_blockers(), seen(), grid(3, 1.5));
+            let spectrum = blurred_slices(&chain, &lobe, &window, &grid);
+            let cells = ProjectionGrid::new(&window, 256);
+            let picture = blurred_projection(&chain, &lobe, &window, &cells);
+            for (m, n) in [(0, 3), (1, 4), (3, 2), (2, 6)] {
+                let (rho, nu) = (grid.rho.value(m + 3), grid.nu.value(n));
+                let sum: Complex = picture
+                    .values
+                    .indexed_iter()
+                    .map(|((i, j), value)| {
+                        let [x, u] = [cells.center(i, cells.half_x), cells.center(j, cells.half_u)];
+                        etendue_field::cis(-TAU * (rho * x + nu * u)) * value
+                    })
+                    .sum();
+                let off = (sum * cells.cell_area() - spectrum.half[[0, m, n]]).norm();
+                // Cells of 1/128 of the half-width, and the tail of pictures.
+                assert!(
+                    off < 1e-3 * spectrum.at_zero(),
+                    "{exponent} {m} {n}: {off:e}"
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,174 @@
+//! What a curved mirror or a thin lens shows of a chain: its images (docs/theory.md, section 9).
+
+use crate::{Chain, Operator, Source};
+use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
+
+/// How near to its focal plane a plane may stand, as a share of its distance. Its image is at
+/// infinity there, and positions on the image lose as many digits.
+const NEAREST: f64 = 1e-6;
+
+impl Chain {
+    /// The chain that ends in the same light field after u' = u + `power` x at its end, as a
+    /// thin lens of focal length −1/power does it, and to first order a curved mirror met head on.
+    ///
+    /// A ray that arrives at (x, u') was at x − h u = m (x − h/m u') in a plane at distance h,
+    /// m = 1 + power · h: what stands there is seen at the distance h/m, 1/m times as large.
+    /// `None` where light varies with slope or leaves a surface: that has no image.
+    #[must_use]
+    pub fn imaged(&self, power: f64) -> Option<Self> {
+        let Light::Area {
+            shape,
+            radiance,
+            exponent,
+        } = self.source.light
+        else {
+            return None;
+        };
+        let path = self.path();
+        if exponent != 0.0 || path.cosines > 0 || path.reflection.is_some() {
+            return None;
+        }
+        let light = seen(power, path.distance);
+        let mut at = light.distance;
+        let mut operators = Vec::new();
+        for operator in &self.operators {
+            if let Operator::Visibility { name, .. } = operator {
+                let layer = path.layers.get(operators.len() / 2)?;
+                let image = seen(power, layer.distance);
+                operators.push(travel(at - image.distance));
+                operators.push(Operator::Visibility {
+                    name: name.clone(),
+                    mask: image.of_mask(layer.mask),
+                });
+                at = image.distance;
+            }
+        }
+        operators.push(travel(at));
+        let light = Light::Area {
+            shape: light.of_shape(&shape),
+            radiance,
+            exponent,
+        };
+        let name = self.source.name.clone();
+        Some(Self {
+            source: Source { name, light },
+            operators,
+        })
+    }
+}
+
+/// Between images, either way along the axis.
+fn travel(distance: f64) -> Operator {
+    Operator::Travel {
+        from: "image".to_owned(),
+        to: "image".to_owned(),
+        distance,
+    }
+}
+
+/// Where the image of a plane is, and how large things are on it.
+struct Image {
+    distance: f64,
+    scale: f64,
+}
+
+fn seen(power: f64, distance: f64) -> Image {
+    let shrink = 1.0 + power * distance;
+    let shrink = shrink.abs().max(NEAREST).copysign(shrink);
+    Image {
+        distance: distance / shrink,
+        scale: 1.0 / shrink,
+    }
+}
+
+impl Image {
+    fn of_shape(&self, shape: &Shape) -> Shape {
+        let place = |center: [f64; 2]| center.map(|c| c * self.scale);
+        match *shape {
+            Shape::Rectangle(Rectangle { center, size }) => Shape::Rectangle(Rectangle {
+                center: place(center),
+                size: size.map(|side| side * self.scale.abs()),
+            }),
+            Shape::Disc(Disc { center, radius }) => Shape::Disc(Disc {
+                center: place(center),
+                radius: radius * self.scale.abs(),
+            }),
+        }
+    }
+
+    fn of_mask(&self, mask: &Mask) -> Mask {
+        match mask {
+            Mask::Opaque {
+                shapes,
+                half_planes,
+            } => Mask::Opaque {
+                shapes: shapes.iter().map(|shape| self.of_shape(shape)).collect(),
+                half_planes: half_planes
+                    .iter()
+                    .map(|half| self.of_half_plane(half))
+                    .collect(),
+            },
+            Mask::Grating(grating) => Mask::Grating(Grating {
+                frequency: grating.frequency / self.scale,
+                ..*grating
+            }),
+        }
+    }
+
+    fn of_half_plane(&self, half: &HalfPlane) -> HalfPlane {
+        HalfPlane {
+            edge: half.edge * self.scale,
+            above: half.above == (self.scale > 0.0),
+            ..*half
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::at;
+    use crate::geometry::Map;
+    use crate::testing::*;
+    use etendue_field::{Profile, Window};
+
+    /// All light of the chain in slope, a part of it in position.
+    fn open(half: f64) -> Window {
+        Window {
+            u: Profile::Box(3.0),
+            v: Profile::Box(3.0),
+            ..window(Profile::Hann(half), Profile::Box(3.0))
+        }
+    }
+
+    #[test]
+    fn images_shear_the_spectrum_as_the_map_does() {
+        let chain = chain(
+            0.2,
+            &[
+                (0.5, blockers(3, 0.2, 0.1)),
+                (0.4, vec![]),
+                (0.3, blockers(2, 0.3, 0.15)),
+            ],
+        );
+        for power in [0.7, -0.4, -2.5] {
+            let imaged = chain.imaged(power).unwrap();
+            let window = open(0.3);
+            let sheared = Map::<2>::back(power);
+            for [rho, nu] in [[0.0, 0.0], [1.3, 0.8], [2.0, -1.7]] {
+                // In both sections at once, as the image is.
+                let [x, u] = sheared.transpose_apply([rho, nu]);
+                let before = at(&chain, &window, [x, 0.5 * x, u, 0.5 * u]);
+                let after = at(&imaged, &window, [rho, 0.5 * rho, nu, 0.5 * nu]);
+                let error = (after - before).norm() / at(&chain, &window, [0.0; 4]).re;
+                assert!(error < 1e-12, "{power} {rho} {nu}: {error:e}"); // rounding
+            }
+        }
+    }
+
+    #[test]
+    fn slopes_have_no_image() {
+        let mut shaded = chain(0.2, &[(0.5, vec![])]);
+        shaded.operators.push(cosine());
+        assert_eq!(shaded.imaged(0.5), None);
+    }
+}
