@@ -127,7 +127,13 @@ fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
     let rho = grid.rho.values();
     let points = rho.iter().enumerate();
     points
-        .map(|(i, rho)| [*rho, full[[0, i, grid.nu.half]].norm() / peak, 0.0])
+        .map(|(i, rho)| {
+            [
+                *rho,
+                full[[0, i, grid.nu.half]].norm_sqr().sqrt() / peak,
+                0.0,
+            ]
+        })
         .collect()
 }
 
