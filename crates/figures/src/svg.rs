@@ -124,15 +124,24 @@ impl Svg {
     }
 
     pub(crate) fn polyline(&mut self, points: &[[f64; 2]], stroke: Stroke) {
+        let data = if points.iter().copied().all(is_near) {
+            path(points)
+        } else {
+            let pieces = points.windows(2).filter_map(|ends| near(ends[0], ends[1]));
+            pieces.map(|piece| path(&piece)).collect()
+        };
         self.raw(&format!(
-            "<path d=\"{}\" fill=\"none\"{}/>",
-            path(points),
+            "<path d=\"{data}\" fill=\"none\"{}/>",
             stroke.attributes()
         ));
     }
 
     /// A filled polygon; `fill` is a color or a paint server.
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]], fill: &str) {
+        let near = points
+            .iter()
+            .map(|point| point.map(|at| at.clamp(-FAR, FAR)));
+        let points = &near.collect::<Vec<_>>();
         self.raw(&format!("<path d=\"{}Z\" fill=\"{fill}\"/>", path(points)));
     }
 
@@ -148,7 +157,8 @@ impl Svg {
         self.raw(&format!("<rect{} fill=\"{fill}\"/>", place(area)));
     }
 
-    pub(crate) fn circle(&mut self, [x, y]: [f64; 2], radius: f64, fill: &str) {
+    pub(crate) fn circle(&mut self, center: [f64; 2], radius: f64, fill: &str) {
+        let [x, y] = center.map(|at| at.clamp(-FAR, FAR));
         self.raw(&format!(
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{fill}\"/>",
             number(x),
@@ -256,6 +266,33 @@ impl Svg {
     }
 }
 
+/// Farther from the corner of a drawing than this nothing is written: programs that draw it may not bear
+/// such numbers.
+const FAR: f64 = 1e4;
+
+fn is_near(point: [f64; 2]) -> bool {
+    point.iter().all(|at| at.abs() <= FAR)
+}
+
+/// The part of a line that is near (Liang and Barsky 1984, ACM Trans. Graph. 3(1)).
+fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
+    let [mut first, mut last] = [0.0_f64, 1.0_f64];
+    for axis in 0..2 {
+        let along = to[axis] - from[axis];
+        // Shares of the way at both borders, which are not numbers on a line beside them.
+        let borders = [-FAR, FAR].map(|border| (border - from[axis]) / along);
+        if along != 0.0 {
+            first = first.max(borders[0].min(borders[1]));
+            last = last.min(borders[0].max(borders[1]));
+        } else if from[axis].abs() > FAR {
+            return None;
+        }
+    }
+    let at = |share: f64| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
+    let ends = [at(first), at(last)].map(|end| end.map(|at| at.clamp(-FAR, FAR)));
+    (first < last).then_some(ends)
+}
+
 /// Path data through the points.
 fn path(points: &[[f64; 2]]) -> String {
     let mut data = String::new();
@@ -278,5 +315,28 @@ fn number(value: f64) -> String {
         rounded.to_string()
     } else {
         "0".to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A mirror of some micrometres beside a light of a metre had coordinates of 10⁹, on which the
+    /// program that draws gave up.
+    #[test]
+    fn lines_far_away_are_cut_and_keep_their_way() {
+        assert_eq!(
+            near([-1e9, 50.0], [1e9, 50.0]),
+            Some([[-FAR, 50.0], [FAR, 50.0]])
+        );
+        let cut = near([0.0, 0.0], [4e9, 2e9]).unwrap_or_default();
+        assert!((cut[1][0] - FAR).abs() < 1e-6 && (cut[1][1] - 0.5 * FAR).abs() < 1e-6);
+        assert_eq!(near([2.0 * FAR, 0.0], [2.0 * FAR, 1e9]), None);
+        assert_eq!(near([-3.0 * FAR, 0.0], [0.0, 3.0 * FAR]), None);
+        let mut svg = Svg::default();
+        svg.line([1e12, 3.0], [-1e12, 3.0], Stroke::solid("#000", 1.0));
+        svg.circle([0.0, -1e15], 2.0, "#000");
+        assert!(!svg.finish(10.0, 10.0).contains("00000"));
     }
 }
