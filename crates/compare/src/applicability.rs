@@ -5,7 +5,7 @@ use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
 use crate::system::{print, scattered, system, unvisited};
-use crate::ways::{unforeseen_by_rays, unforeseen_by_scattering};
+use crate::ways::{off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::{Budget, Chain, Model, Observed, Over, Parameter, Work, rays, scattering};
@@ -19,6 +19,9 @@ pub struct Applicability {
     pub reasons: Vec<String>,
     /// Why no light reaches the plane, in words; `None` where some may.
     pub dark: Option<String>,
+    /// How far smooth meshes lead rays beside where their osculating patches do, in half-widths of
+    /// the window; `None` without one.
+    pub off_patches: Option<f64>,
 }
 
 /// The theories of a windowed light field.
@@ -49,9 +52,9 @@ impl Theory {
     }
 
     /// What of a scene is not as the theory takes it to be, in words.
-    fn obstacles(&self, scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
+    fn obstacles(&self, scene: &Scene, plane: &VirtualPlane, off: Option<f64>) -> Vec<String> {
         let mut found = match self {
-            Self::Specular(view) => unforeseen_by_rays(scene, plane, view),
+            Self::Specular(view) => unforeseen_by_rays(scene, plane, view, off),
             Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),
             Self::Parallel(_) => return obstacles_to_theory(scene, plane),
             Self::None => return Vec::new(),
@@ -111,12 +114,17 @@ impl Applicability {
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
         let theory = Theory::of(scene, plane);
-        let reasons = theory.obstacles(scene, plane);
+        let off_patches = match &theory {
+            Theory::Specular(view) => off_patches(scene, plane, view),
+            Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,
+        };
+        let reasons = theory.obstacles(scene, plane, off_patches);
         if !reasons.is_empty() {
             return Self {
                 theory: Theory::None,
                 reasons,
                 dark: None,
+                off_patches: None,
             };
         }
         // Light that goes other ways than theory's might pass beside what stands in these.
@@ -125,6 +133,7 @@ impl Applicability {
             theory,
             reasons,
             dark,
+            off_patches,
         }
     }
 

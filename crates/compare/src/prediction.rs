@@ -4,7 +4,6 @@ use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
 use crate::class::Class;
 use crate::first_order::FirstOrder;
-use crate::ways::off_patches;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
@@ -93,7 +92,7 @@ impl Prediction {
                 let found = empty.by(view.as_ref(), over, budget(scene), |exact| {
                     FirstOrder::new(scene, view, over, exact)
                 });
-                match off_patches(scene, plane, view) {
+                match applicability.off_patches {
                     Some(off) => found.shifted(off, &plane.window),
                     None => found,
                 }

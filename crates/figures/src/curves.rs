@@ -32,6 +32,18 @@ pub struct Curve {
     pub points: Vec<[f64; 3]>,
 }
 
+impl Curve {
+    /// A curve of this kind and name through points.
+    #[must_use]
+    pub fn new(kind: CurveKind, name: &str, points: Vec<[f64; 3]>) -> Self {
+        Self {
+            kind,
+            name: name.to_owned(),
+            points,
+        }
+    }
+}
+
 /// Curves in one frame.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CurvePanel {

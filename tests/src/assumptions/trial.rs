@@ -98,6 +98,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> En
         theory,
         reasons: Vec::new(),
         dark: None,
+        off_patches: None,
     }];
     let [_, longest] = seconds(scene, &regardless);
     if longest > LONGEST || too_much_work(scene, &regardless).is_some() {

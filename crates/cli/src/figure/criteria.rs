@@ -80,19 +80,14 @@ fn panel(taken: &Taken<'_>, text: &Text, sweep: &Sweep) -> Result<CurvePanel, Fa
         .values
         .iter()
         .map(|value| counted(taken, text, sweep, *value));
-    let curve = |kind, name: &str, points: Vec<[f64; 3]>| Curve {
-        kind,
-        name: name.to_owned(),
-        points,
-    };
     let line = |i: usize| lines.iter().map(|both| both[i]).collect();
     Ok(CurvePanel {
         title: sweep.title.to_owned(),
         x: sweep.quantity.clone(),
         curves: vec![
-            curve(CurveKind::Rival, "as printed", line(1)),
-            curve(CurveKind::Theory, "corrected", line(0)),
-            curve(
+            Curve::new(CurveKind::Rival, "as printed", line(1)),
+            Curve::new(CurveKind::Theory, "corrected", line(0)),
+            Curve::new(
                 CurveKind::Measured,
                 "photons",
                 points.collect::<Result<_, _>>()?,

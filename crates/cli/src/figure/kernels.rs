@@ -14,11 +14,7 @@ fn curve(kind: CurveKind, name: &str, [from, to]: [f64; 2], f: &dyn Fn(f64) -> f
         let x = from + (to - from) * f64::from(i) / f64::from(POINTS);
         [x, f(x), 0.0]
     };
-    Curve {
-        kind,
-        name: name.to_owned(),
-        points: (0..=POINTS).map(point).collect(),
-    }
+    Curve::new(kind, name, (0..=POINTS).map(point).collect())
 }
 
 fn panel(title: &str, x: Quantity, curves: Vec<Curve>) -> CurvePanel {

@@ -19,12 +19,11 @@ pub(crate) fn environment(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let names = ["environment", "curvature", "cosine", "reflection"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
-    let heads = ["environment", "curvature", "cosine", "reflection"];
     let steps = drawn(&Plate {
         title: "Diffuse shading under an environment map",
         note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears it onto *ρ* = *kν*, the cosine blurs it along *ν*, and what leaves a diffuse \
                surface is the line *ν* = 0. Predicted before reflection: by backward rays.",
-        heads: heads.map(str::to_owned).to_vec(),
+        heads: names.map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
@@ -47,26 +46,21 @@ fn product(scene: &Scene, shaded: &Seen<'_>) -> Result<Figure, Failure> {
         let both = rho.iter().zip(values);
         both.map(|(rho, value)| [*rho, value / peak, 0.0]).collect()
     };
-    let curve = |kind, name: &str, points| Curve {
-        kind,
-        name: name.to_owned(),
-        points,
-    };
     let panel = CurvePanel {
         title: "leaving the sphere".to_owned(),
         x: Quantity::new("*ρ*", "cycles/m"),
         curves: vec![
-            curve(
+            Curve::new(
                 CurveKind::Rival,
                 "environment alone",
                 over(&|rho| sky(rho / k)),
             ),
-            curve(
+            Curve::new(
                 CurveKind::Theory,
                 "environment × cosine",
                 over(&|rho| irradiance(k, rho, &sky)),
             ),
-            curve(
+            Curve::new(
                 CurveKind::Measured,
                 "photons",
                 at_zero_nu(&shaded.found.measured),
@@ -127,13 +121,7 @@ fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
     let rho = grid.rho.values();
     let points = rho.iter().enumerate();
     points
-        .map(|(i, rho)| {
-            [
-                *rho,
-                full[[0, i, grid.nu.half]].norm_sqr().sqrt() / peak,
-                0.0,
-            ]
-        })
+        .map(|(i, rho)| [*rho, modulus(full[[0, i, grid.nu.half]]) / peak, 0.0])
         .collect()
 }
 

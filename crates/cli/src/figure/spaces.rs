@@ -119,19 +119,18 @@ fn orders(title: &str, note: &str, planes: &[Convergence], order: i32) -> Result
     let panel = |plane: &Convergence| {
         let [widest, error] = plane.steps[0];
         let line = |[e, _]: &[f64; 2]| [*e, error * (e / widest).powi(order), 0.0];
-        let curve = |kind, name: String, points| Curve { kind, name, points };
         CurvePanel {
             title: crate::table::spaced(&plane.plane),
             x: Quantity::new("*e*", ""),
             curves: vec![
-                curve(
+                Curve::new(
                     CurveKind::Rival,
-                    format!("order {order}"),
+                    &format!("order {order}"),
                     plane.steps.iter().map(line).collect(),
                 ),
-                curve(
+                Curve::new(
                     CurveKind::Measured,
-                    "against rays through the real geometry".to_owned(),
+                    "against rays through the real geometry",
                     plane
                         .steps
                         .iter()

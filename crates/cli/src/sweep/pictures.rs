@@ -78,13 +78,11 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
 
 /// Measured and predicted numbers of a plane over the field that is swept.
 fn panel(plane: &str, others: &Point, path: &str, numbers: &[(f64, Number)]) -> CurvePanel {
-    let curve = |kind, name: &str, point: &dyn Fn(&Number) -> Option<[f64; 2]>| Curve {
-        kind,
-        name: name.to_owned(),
-        points: numbers
+    let curve = |kind, name: &str, point: &dyn Fn(&Number) -> Option<[f64; 2]>| {
+        let points = numbers
             .iter()
-            .filter_map(|(x, number)| point(number).map(|[y, error]| [*x, y, error]))
-            .collect(),
+            .filter_map(|(x, number)| point(number).map(|[y, error]| [*x, y, error]));
+        Curve::new(kind, name, points.collect())
     };
     let predicted = |number: &Number| Some([number.predicted?, 0.0]);
     let measured = |number: &Number| Some([number.measured?, number.error.unwrap_or(0.0)]);

@@ -10,18 +10,18 @@ use etendue_theory::rays::{Plane, System};
 use glam::DVec3;
 
 /// What light for a plane meets between or at the surfaces of a system that theory does not know
-/// of, in words.
+/// of, in words; [`off_patches`] says how far `off` meshes lead it.
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
     view: &Observed<System>,
+    off: Option<f64>,
 ) -> Vec<String> {
     let follower = Follower::new(scene, plane, view);
     let mut found = met(|index| follower.check(follower.ray(index)?));
     found.extend(met(|index| follower.check(follower.ray_of_window(index)?)));
     let mut found = in_words(found, scene);
-    let off = follower.off_patches().filter(|off| *off > OFF_PATCHES);
-    found.extend(off.map(|off| {
+    found.extend(off.filter(|off| *off > OFF_PATCHES).map(|off| {
         let percent = 100.0 * off;
         format!("a mesh that sends light {percent:.3} % of the window beside its osculating patch")
     }));
