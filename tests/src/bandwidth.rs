@@ -1,6 +1,7 @@
 //! The page on glossy reflections.
 
 use crate::shading::glossy;
+use etendue_figures::Style;
 use std::fs;
 use std::process::ExitCode;
 
@@ -14,7 +15,7 @@ pub(crate) fn page(photons: Option<u64>) -> ExitCode {
     let (section, curves) = glossy(photons);
     println!("{}", section.markdown());
     if photons.is_none() {
-        let written = etendue_figures::curves(&curves)
+        let written = etendue_figures::curves(&curves, &Style::default())
             .map_err(|error| error.to_string())
             .and_then(|figure| {
                 let page = format!("{HEAD}{}", section.markdown());

@@ -313,22 +313,39 @@ pub(crate) struct ReportArgs {
 #[command(after_help = "Examples:
   etendue figure 9
   etendue figure all --quality draft --out out/figures
+  etendue figure my.ron                                      light field and spectra along the path of a scene of one's own
+  etendue figure a.ron b.ron --plane receiver --out out      scenes side by side at a plane, in one range of colors
 
-Figures of Durand et al. 2005: 1, 4, 5, 6, 7, 8, 9, 10, 11 and 12. Those of kernels, 5 and 12, are theory alone; all others are measured,
+Figures of Durand et al. 2005: 1, 3 to 15, and table1. Those of kernels, 5 and 12, are theory alone; all others are measured,
 and predicted beside it. Each has a folder with
   figure.png, .svg, .pdf   the PDF at most 7 inches wide, two columns of a journal; text is text
   figure.npz               light fields and spectra of all planes (docs/conventions.md)
   figure.csv               the numbers of curves and bars
   figure.json              whether each plane agrees with theory, and the command that makes the figure again
-  NAME.ron                 its scenes")]
+  NAME.ron                 its scenes; those of one's own stand in figure.json as they were run
+Exit codes are those of run, of the worst plane.")]
 pub(crate) struct FigureArgs {
-    /// Number of the figure in the paper (1, 4 to 12), or all
-    #[arg(value_name = "NAME")]
-    pub(crate) name: String,
+    /// Figures of the paper (1, 3 to 15, table1, or all), or scene files, which make one figure
+    #[arg(value_name = "NAME|SCENE.ron", required = true)]
+    pub(crate) names: Vec<String>,
+
+    /// Set a field of the scene files, such as blockers.0.fill=0.5; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// The plane at which scene files are shown; of one scene file, it alone [default: of several the last, of one all]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) plane: Option<String>,
 
     /// Folder of the figures
     #[arg(long, value_name = "DIR", default_value = crate::figure::FOLDER)]
     pub(crate) out: PathBuf,
+
+    /// Looks, in RON; each field may be left out: (titles: false, width: 3.33, floor: -40, palette: Viridis).
+    /// Without titles notes are left out too; width is that of the page in inches, 3.3 to 7; floor that of spectra
+    /// in dB; palettes are Inferno, Magma, Viridis and Cividis
+    #[arg(long, value_name = "FILE")]
+    pub(crate) style: Option<PathBuf>,
 
     /// How much work goes into it
     #[arg(long, value_name = "QUALITY", default_value = "print")]
@@ -352,7 +369,7 @@ pub(crate) struct FigureArgs {
   etendue sweep scenes/fig9b.ron --together --set surfaces.0.center.2=1.5,2,3 --set surfaces.0.albedo=0.2,0.5,0.8
 
 Leaves in its folder
-  sweep.csv                            a row for each plane at each point and each number: the frequencies that hold 95 % of the power,
+  sweep.csv, sweep.parquet             a row for each plane at each point and each number: the frequencies that hold 95 % of the power,
                                        the shear slope, and each parameter, measured with its standard error and predicted
   bandwidth_rho, bandwidth_nu, slope   curves over the field that is named first, as PNG, SVG and CSV; a grid with more than 24
                                        panels has none

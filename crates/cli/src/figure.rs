@@ -1,13 +1,15 @@
-//! `etendue figure`: the figures of Durand et al. 2005, made anew from measurement and theory.
+//! `etendue figure`: the figures of Durand et al. 2005, made anew from measurement and theory, and figures of the user's scenes.
 
 mod criteria;
 mod kernels;
+mod own;
 mod plates;
 mod recipe;
 mod rows;
 mod shading;
 mod shot;
 mod spaces;
+mod style;
 mod table1;
 
 use crate::args::FigureArgs;
@@ -19,10 +21,14 @@ use crate::threads::on_threads;
 use crate::{progress, say};
 use clap::ValueEnum;
 use etendue_compare::{HighFrequencyShare, Verdict};
-use recipe::{RECIPES, Recipe, Taken};
+use etendue_figures::{Figure, Style};
+use etendue_scene::{Scene, SceneFile};
+use own::shell_word;
+use recipe::{RECIPES, Recipe, Taken, Text};
 use serde::Serialize;
 use shot::Shot;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 use std::time::Instant;
 
 /// How much work goes into a figure.
@@ -65,23 +71,51 @@ impl Quality {
 /// Where figures go unless told otherwise.
 pub(crate) const FOLDER: &str = "results/figures";
 
+/// What a figure is made of.
+pub(crate) struct Subject {
+    /// Its folder below that of all figures.
+    name: String,
+    about: String,
+    /// What stands behind `etendue figure` to make it again.
+    arguments: String,
+    /// The scenes that are run, at their own frequencies.
+    scenes: Vec<Scene>,
+    /// Whether these are the user's: then the index holds them.
+    is_own: bool,
+    /// Name and text of scene files of the repository, which are kept with it.
+    texts: Vec<Text>,
+    /// Files that must not be replaced.
+    inputs: Vec<PathBuf>,
+    /// Whether it shows curves or bars, which are kept as a table.
+    has_table: bool,
+    /// Other scene files, from which curves are computed or measured.
+    also: &'static [Text],
+    /// The plane of each scene that is shown, where not all are.
+    planes: Vec<String>,
+    draw: fn(&Taken<'_>) -> Result<Figure, Failure>,
+}
+
 /// `etendue figure`: returns the exit code.
 pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
-    let recipes: Vec<&Recipe> = match args.name.as_str() {
-        "all" => RECIPES.iter().collect(),
-        name => vec![recipe::named(name)?],
+    let subjects = if args.names.iter().any(|name| own::is_scene(name)) {
+        vec![own::subject(args)?]
+    } else {
+        of_paper(args)?
     };
+    let style = args.style.as_deref().map(style::read).transpose()?;
     on_threads(&args.threads, || {
-        let bar = progress::steps("drawing", recipes.len(), "figures", args.quiet);
+        let bar = progress::steps("drawing", subjects.len(), "figures", args.quiet);
         let mut worst = Verdict::Pass;
-        for recipe in recipes {
-            bar.set_message(recipe.name);
+        for subject in subjects {
+            bar.set_message(subject.name.clone());
             let begun = Instant::now();
-            let verdict = bar.suspend(|| made(args, recipe))?;
+            let said = format!(": {}", subject.about);
+            let name = subject.name.clone();
+            let verdict = bar.suspend(|| made(args, style, subject))?;
             if !args.quiet {
-                let (name, seconds) = (recipe.name, begun.elapsed().as_secs_f64());
+                let seconds = begun.elapsed().as_secs_f64();
                 let verdict = crate::table::word(verdict);
-                let line = format!("figure {name}: {verdict}, {seconds:.1} s: {}", recipe.about);
+                let line = format!("figure {name}: {verdict}, {seconds:.1} s{said}");
                 bar.suspend(|| say(&line));
             }
             worst = worst.and(verdict);
@@ -99,6 +133,29 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
     })
 }
 
+/// The figures of the paper that are asked for.
+fn of_paper(args: &FigureArgs) -> Result<Vec<Subject>, Failure> {
+    let of_scenes = [
+        ("--set", !args.set.is_empty()),
+        ("--plane", args.plane.is_some()),
+    ];
+    if let Some((option, _)) = of_scenes.iter().find(|(_, given)| *given) {
+        let message = format!("{option} is for figures of scene files: etendue figure SCENE.ron");
+        return Err(Failure::bad_input(message));
+    }
+    let is_all = args.names.iter().any(|name| name == "all");
+    let recipes: Vec<&'static Recipe> = if is_all {
+        RECIPES.iter().collect()
+    } else {
+        let recipes = args.names.iter().map(|name| recipe::named(name));
+        recipes.collect::<Result<_, _>>()?
+    };
+    let subjects = recipes.into_iter();
+    subjects
+        .map(|recipe| recipe.subject(args.quality))
+        .collect()
+}
+
 /// `figure.json`, all but the hashes of the files.
 #[derive(Debug, Serialize)]
 struct Index<'a> {
@@ -108,11 +165,17 @@ struct Index<'a> {
     command: String,
     version: &'a str,
     quality: Quality,
+    /// What was chosen of its looks, where that was something.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    style: Option<Style>,
     /// Frequencies along each axis for one of the scene.
     finer: usize,
     /// The hash of each scene with the photons of this quality, at its own frequencies.
     scenes: BTreeMap<&'a str, String>,
     photons: BTreeMap<&'a str, u64>,
+    /// The user's scenes, as they were run but for the frequencies.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    scene_files: &'a BTreeMap<String, SceneFile>,
     planes: Vec<Judged<'a>>,
     files: &'a BTreeMap<String, String>,
 }
@@ -128,25 +191,41 @@ struct Judged<'a> {
 }
 
 /// Makes a figure; returns the verdict on all planes of its scenes.
-fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
+fn made(args: &FigureArgs, style: Option<Style>, subject: Subject) -> Result<Verdict, Failure> {
     let endings = ["png", "svg", "pdf", "csv", "npz"].map(|end| format!("figure.{end}"));
-    let scenes = recipe.texts().map(|(name, _)| format!("{name}.ron"));
+    let texts = subject.texts.iter().map(|(name, _)| format!("{name}.ron"));
     let plan = Plan {
         index: FIGURE,
-        files: endings.into_iter().chain(scenes).collect(),
-        inputs: Vec::new(),
+        files: endings.into_iter().chain(texts).collect(),
+        inputs: subject.inputs.clone(),
         force: args.force.force,
     };
-    let mut results = Results::claim(&args.out.join(recipe.name), plan)?;
-    let shots = recipe.scenes.iter();
-    let shots = shots.map(|(name, text)| Shot::take(name, text, args.quality, args.quiet));
+    let mut results = Results::claim(&args.out.join(&subject.name), plan)?;
+    let files = subject.scenes.iter().filter(|_| subject.is_own);
+    let files: BTreeMap<String, SceneFile> = files
+        .map(|scene| (scene.name.clone(), scene.file.clone()))
+        .collect();
+    let shots = subject.scenes.iter();
+    let shots = shots.map(|scene| Shot::take(scene.clone(), args.quality, args.quiet));
     let shots: Vec<Shot> = shots.collect::<Result<_, _>>()?;
-    write(&mut results, recipe, args, &shots)?;
+    let taken = Taken {
+        shots: &shots,
+        also: subject.also,
+        planes: &subject.planes,
+        quality: args.quality,
+        style: style.unwrap_or_default(),
+        quiet: args.quiet,
+    };
+    write(&mut results, &subject, &taken)?;
     let all = shots
         .iter()
         .flat_map(|shot| shot.planes.iter().map(move |plane| (shot, plane)));
     let all: Vec<_> = all.map(|(shot, plane)| (shot, &plane.report)).collect();
-    let finished = results.finish(|files| {
+    let of_scenes = shots.iter().map(|shot| (shot.scene.name.as_str(), shot));
+    let styled = args.style.iter();
+    let styled = styled.map(|path| format!(" --style {}", shell_word(&path.to_string_lossy())));
+    let styled: String = styled.collect();
+    let finished = results.finish(|written| {
         let quality = args.quality.to_possible_value();
         let quality = quality.as_ref().map_or("", |value| value.get_name());
         let judged = all.iter().map(|(shot, report)| Judged {
@@ -158,22 +237,26 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
             high_frequency_share: &report.high_frequency_share,
         });
         json(&Index {
-            figure: recipe.name,
-            about: recipe.about,
-            command: format!("etendue figure {} --quality {quality}", recipe.name),
+            figure: &subject.name,
+            about: &subject.about,
+            command: format!(
+                "etendue figure {}{styled} --quality {quality}",
+                subject.arguments
+            ),
             version: VERSION,
             quality: args.quality,
+            style,
             finer: args.quality.finer(),
-            photons: shots
-                .iter()
-                .map(|shot| (shot.scene.name.as_str(), shot.photons))
+            photons: of_scenes
+                .clone()
+                .map(|(name, shot)| (name, shot.photons))
                 .collect(),
-            scenes: shots
-                .iter()
-                .map(|s| (s.scene.name.as_str(), s.scene.hash()))
+            scenes: of_scenes
+                .map(|(name, shot)| (name, shot.scene.hash()))
                 .collect(),
+            scene_files: &files,
             planes: judged.collect(),
-            files,
+            files: written,
         })
     })?;
     finished.tell_replaced(args.quiet);
@@ -182,31 +265,21 @@ fn made(args: &FigureArgs, recipe: &Recipe) -> Result<Verdict, Failure> {
 }
 
 /// The picture of a figure, what is behind it, and its scenes.
-fn write(
-    results: &mut Results,
-    recipe: &Recipe,
-    args: &FigureArgs,
-    shots: &[Shot],
-) -> Result<(), Failure> {
-    let figure = (recipe.draw)(&Taken {
-        shots,
-        also: recipe.also,
-        quality: args.quality,
-        quiet: args.quiet,
-    })?;
+fn write(results: &mut Results, subject: &Subject, taken: &Taken<'_>) -> Result<(), Failure> {
+    let figure = (subject.draw)(taken)?;
     let pdf = figure.pdf().map_err(Failure::cannot_run)?;
     let png = figure.png().map_err(Failure::cannot_run)?;
     results.write("figure.pdf", &pdf)?;
     results.write("figure.png", &png)?;
     results.write("figure.svg", figure.svg.as_bytes())?;
     // Strips have a row for each cell there, which the arrays hold in less.
-    if recipe.has_table {
+    if subject.has_table {
         results.write("figure.csv", figure.csv.as_bytes())?;
     }
-    if !shots.is_empty() {
-        results.write("figure.npz", &shot::arrays(shots)?)?;
+    if !taken.shots.is_empty() {
+        results.write("figure.npz", &shot::arrays(taken.shots)?)?;
     }
-    for (name, text) in recipe.texts() {
+    for (name, text) in &subject.texts {
         results.write(&format!("{name}.ron"), text.as_bytes())?;
     }
     Ok(())

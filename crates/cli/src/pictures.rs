@@ -21,7 +21,7 @@ use etendue_compare::{
 };
 use etendue_field::{Side, VirtualPlane};
 use etendue_figures::{
-    Column, Comparison, Figure, Guide, Picture, Scale, Strip, comparison, section, strip,
+    Column, Comparison, Figure, Guide, Picture, Scale, Strip, Style, comparison, section, strip,
 };
 use etendue_scene::Scene;
 use std::cmp::Ordering;
@@ -116,19 +116,18 @@ pub(crate) fn path(
     planes: &[PlaneComparison],
 ) -> Result<String, Failure> {
     let photons = case.measurement.emitted();
-    let figure = strip_of(&case.scene, photons, &case.theories, planes, false)?;
+    let figure = strip_of(&case.scene, photons, &case.theories, planes, None)?;
     write(results, "path", &figure)?;
     Ok(figure.svg)
 }
 
-/// The planes in the order in which light meets them; with their predicted spectra below, if these
-/// are wanted. `photons` are those emitted: parts of a measurement are less than the scene asks for.
+/// The planes in the order in which light meets them; in the style of a figure with their predicted spectra below. `photons` are those emitted: parts of a measurement are less than the scene asks for.
 pub(crate) fn strip_of(
     scene: &Scene,
     photons: u64,
     theories: &[Applicability],
     planes: &[PlaneComparison],
-    predicted: bool,
+    style: Option<&Style>,
 ) -> Result<Figure, Failure> {
     let mut along: Vec<_> = scene
         .planes
@@ -139,6 +138,7 @@ pub(crate) fn strip_of(
         let place = |plane: &VirtualPlane| (plane.distance, plane.side == Side::After);
         place(a).partial_cmp(&place(b)).unwrap_or(Ordering::Equal)
     });
+    let predicted = style.is_some();
     let columns = along.iter().map(|(plane, (compared, theory))| {
         let mut column = column(scene, plane, theory, compared);
         if predicted {
@@ -170,7 +170,7 @@ pub(crate) fn strip_of(
             values: values.view(),
         });
     }
-    strip(&Strip {
+    let drawn = Strip {
         title: &format!(
             "{}: the light field along the path, and its spectrum",
             scene.name
@@ -185,8 +185,8 @@ pub(crate) fn strip_of(
         light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
         floor: FLOOR,
-    })
-    .map_err(Failure::cannot_run)
+    };
+    strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
 }
 
 /// What the dashed lines of a strip are, in words.

@@ -28,7 +28,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use table::{BANDWIDTHS, Found, SLOPE};
 
-const TABLE: &str = "sweep.csv";
+/// The table, in two formats.
+const TABLES: [&str; 2] = ["sweep.csv", "sweep.parquet"];
 
 /// `etendue sweep`: returns the exit code.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
@@ -142,7 +143,7 @@ fn plan(inputs: &[PathBuf], force: bool) -> Plan {
         pictures.flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
     Plan {
         index: SWEEP,
-        files: pictures.chain([TABLE.to_owned()]).collect(),
+        files: pictures.chain(TABLES.map(str::to_owned)).collect(),
         inputs: inputs.to_vec(),
         force,
     }
@@ -238,7 +239,8 @@ fn finish(
     mut results: Results,
 ) -> Result<u8, Failure> {
     let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
-    results.write(TABLE, &table::csv(&paths, found)?)?;
+    results.write(TABLES[0], &table::csv(&paths, found)?)?;
+    results.write(TABLES[1], &table::parquet(&paths, found)?)?;
     let figures = pictures::drawn(&base.name, found, args.together)?;
     for (name, figure) in pictures::NAMES.iter().zip(&figures) {
         crate::pictures::write(&mut results, name, figure)?;

@@ -4,7 +4,7 @@
 
 mod common;
 
-use common::{array, call, files, json, refused};
+use common::{SCENE, array, call, files, json, refused};
 use etendue_field::Complex;
 use ndarray::{Array1, Array2};
 use std::fs;
@@ -137,4 +137,109 @@ fn an_unknown_figure_is_refused_and_names_those_there_are() {
         "figure 16 --out out",
         &["no figure 16", "1, 3, 4, 5", "table1, all"],
     );
+}
+
+/// A folder with a scene, the same with narrower blockers, and a style.
+fn own() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
+    let scene = SCENE.replace("photons: 20000", "photons: 400000");
+    write("wide.ron", &scene);
+    let narrow = scene.replace("fill: 0.5999999999999999", "fill: 0.3");
+    write("narrow.ron", &narrow);
+    write(
+        "plain.ron",
+        "(titles: false, width: 3.33, floor: -30, palette: Viridis)",
+    );
+    folder
+}
+
+fn svg(folder: &std::path::Path, name: &str) -> String {
+    fs::read_to_string(folder.join(name).join("figure.svg")).unwrap()
+}
+
+#[test]
+fn a_scene_of_ones_own_has_a_figure_of_its_path() {
+    let folder = own();
+    let path = folder.path();
+    let call_again = "figure wide.ron --set run.seed=7 --quality draft --out f";
+    assert_eq!(call(path, call_again).status.code(), Some(0));
+    let index = json(&path.join("f/wide/figure.json"));
+    assert_eq!(
+        index["command"],
+        "etendue figure wide.ron --set run.seed=7 --quality draft"
+    );
+    assert_eq!(index["scene_files"]["wide"]["run"]["seed"], 7);
+    assert_eq!(index["photons"]["wide"], 50_000);
+    let drawn = svg(path, "f/wide");
+    assert!(drawn.contains("along the path") && drawn.contains("predicted"));
+    let rho: Array1<f64> = array(&path.join("f/wide/figure.npz"), "wide.receiver.rho");
+    assert_eq!(rho[1] - rho[0], 0.5, "twice as fine as the scene has them");
+}
+
+#[test]
+fn scenes_stand_side_by_side_at_a_plane() {
+    let folder = own();
+    let path = folder.path();
+    let both = "figure wide.ron narrow.ron --quality draft --out f";
+    assert_eq!(call(path, both).status.code(), Some(0));
+    let drawn = svg(path, "f/wide-narrow");
+    for text in ["At receiver", ">wide<", ">narrow<"] {
+        assert!(drawn.contains(text), "{text}");
+    }
+    let light = format!("{both} --plane light --force");
+    assert_eq!(call(path, &light).status.code(), Some(0));
+    assert!(svg(path, "f/wide-narrow").contains("At light"));
+}
+
+#[test]
+fn a_style_changes_how_a_figure_looks_and_not_its_numbers() {
+    let folder = own();
+    let path = folder.path();
+    for (style, out) in [("", "a"), ("--style plain.ron", "b")] {
+        let made = format!("figure wide.ron --quality draft {style} --out {out}");
+        assert_eq!(call(path, &made).status.code(), Some(0));
+    }
+    let [usual, plain] = ["a", "b"].map(|out| svg(path, &format!("{out}/wide")));
+    let width = |svg: &str| -> f64 {
+        let rest = svg.split_once("width=\"").unwrap().1;
+        rest.split_once('"').unwrap().0.parse().unwrap()
+    };
+    assert_eq!([width(&usual), width(&plain)], [672.0, 320.0]);
+    assert!(usual.contains("along the path") && !plain.contains("along the path"));
+    assert!(plain.contains(">−30<") && !plain.contains(">−40<"));
+    let npz = |out: &str| fs::read(path.join(out).join("wide/figure.npz")).unwrap();
+    assert_eq!(npz("a"), npz("b"));
+    let index = json(&path.join("b/wide/figure.json"));
+    assert_eq!(
+        index["command"],
+        "etendue figure wide.ron --style plain.ron --quality draft"
+    );
+    assert_eq!(index["style"]["palette"], "Viridis");
+}
+
+#[test]
+fn what_makes_no_figure_is_refused() {
+    let folder = own();
+    let path = folder.path();
+    for (text, parts) in [
+        ("(width: 2)", ["width: 2", "3.3 to 7 inches"]),
+        ("(floor: 10)", ["floor: 10", "-200 to -1 dB"]),
+        ("(colour: 1)", ["bad.ron: 1:", "`palette`"]),
+    ] {
+        fs::write(path.join("bad.ron"), text).unwrap();
+        refused(path, "figure wide.ron --style bad.ron --out out", &parts);
+    }
+    for (arguments, parts) in [
+        ("7 --plane light", ["--plane is for", "SCENE.ron"]),
+        ("7 wide.ron", ["7 is no scene file", ""]),
+        ("wide.ron ./wide.ron", ["two scenes are named wide", ""]),
+        (
+            "wide.ron --plane leaving",
+            ["wide has no plane leaving", "light, receiver"],
+        ),
+        ("lost.ron", ["cannot read lost.ron", ""]),
+    ] {
+        refused(path, &format!("figure {arguments} --out out"), &parts);
+    }
 }

@@ -7,15 +7,20 @@ use crate::style::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 
-/// How much longer than its bar a label may be.
-const OVERHANG: f64 = 12.0;
 /// Width of the bar itself.
 pub(crate) const WIDTH: f64 = 12.0;
 /// Height of the point that marks an end beyond which values keep the last color.
 const POINT: f64 = 9.0;
 
-/// Draws the bar of `shading` to the right of a panel: its left edge at `x`, as high as `panel`.
-pub(crate) fn draw(svg: &mut Svg, shading: &Shading, x: f64, panel: Area) -> Result<(), Error> {
+/// Draws the bar of `shading` to the right of a panel: its left edge at `x`, as high as `panel`. Its label may be longer by
+/// `overhang`.
+pub(crate) fn draw(
+    svg: &mut Svg,
+    shading: &Shading,
+    x: f64,
+    panel: Area,
+    overhang: f64,
+) -> Result<(), Error> {
     let [low, high] = shading.beyond;
     let top = panel.y + if high { POINT } else { 0.0 };
     let bottom = panel.bottom() - if low { POINT } else { 0.0 };
@@ -29,7 +34,7 @@ pub(crate) fn draw(svg: &mut Svg, shading: &Shading, x: f64, panel: Area) -> Res
         svg.image(area, &href);
     }
     outline(svg, shading, area);
-    scale(svg, shading, area);
+    scale(svg, shading, area, overhang);
     Ok(())
 }
 
@@ -56,7 +61,7 @@ fn outline(svg: &mut Svg, shading: &Shading, area: Area) {
 }
 
 /// Ticks and the label, to the right of the bar.
-fn scale(svg: &mut Svg, shading: &Shading, area: Area) {
+fn scale(svg: &mut Svg, shading: &Shading, area: Area, overhang: f64) {
     let axis = &shading.axis;
     let mut widest: f64 = 0.0;
     for tick in axis.ticks((area.height / 24.0).min(6.0)) {
@@ -69,7 +74,7 @@ fn scale(svg: &mut Svg, shading: &Shading, area: Area) {
     let at = [area.right() + TICK + 3.0 + widest + 16.0, area.middle()[1]];
     let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
     let label = axis.quantity.label(axis.exponent());
-    svg.fitted(style, &label, area.height + OVERHANG);
+    svg.fitted(style, &label, area.height + overhang);
 }
 
 /// A key for cells without a value, ending at `right` on the baseline `y`.

@@ -3,6 +3,7 @@
 use crate::axis::Axis;
 use etendue_field::whole;
 use ndarray::ArrayView2;
+use serde::{Deserialize, Serialize};
 
 /// How values are laid on the colors.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,11 +25,24 @@ pub(crate) type Rgb = [u8; 3];
 /// Cells without a value (NaN): a grey neither map contains.
 pub(crate) const NO_VALUE: Rgb = [158, 158, 158];
 
+/// Colors of magnitudes, dark to pale; lightness grows evenly, so that they survive grey printing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub enum Palette {
+    /// Black, purple, orange, pale yellow.
+    Inferno,
+    /// Black, purple, pink, pale yellow.
+    Magma,
+    /// Purple, blue, green, yellow.
+    Viridis,
+    /// Blue, grey, yellow: nearly the same to all eyes.
+    Cividis,
+}
+
 /// A family of colors over 0 ≤ t ≤ 1.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Colors {
-    /// Black, purple, orange, pale yellow; lightness grows evenly.
-    Sequential,
+    /// From dark to pale.
+    Sequential(Palette),
     /// Blue, white, red.
     Diverging,
     /// The same at both ends: pale, blue, dark, red, pale.
@@ -48,10 +62,16 @@ const CIRCLE: [[f64; 3]; 8] = [
 ];
 
 impl Colors {
+    /// Those of magnitudes where nobody has chosen others.
+    pub(crate) const MAGNITUDES: Self = Self::Sequential(Palette::Inferno);
+
     pub(crate) fn at(self, t: f64) -> Rgb {
         let t = t.clamp(0.0, 1.0);
         let color = match self {
-            Self::Sequential => colorous::INFERNO.eval_continuous(t),
+            Self::Sequential(Palette::Inferno) => colorous::INFERNO.eval_continuous(t),
+            Self::Sequential(Palette::Magma) => colorous::MAGMA.eval_continuous(t),
+            Self::Sequential(Palette::Viridis) => colorous::VIRIDIS.eval_continuous(t),
+            Self::Sequential(Palette::Cividis) => colorous::CIVIDIS.eval_continuous(t),
             Self::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - t),
             Self::Cyclic => return on_circle(t),
         };
@@ -62,7 +82,7 @@ impl Colors {
 /// The colors of magnitudes, dark to pale, and of differences, blue to red: 256 of each, as red, green and blue.
 #[must_use]
 pub fn palettes() -> [Vec<u8>; 2] {
-    [Colors::Sequential, Colors::Diverging].map(|colors| {
+    [Colors::MAGNITUDES, Colors::Diverging].map(|colors| {
         let levels = (0..=255u8).map(|level| f64::from(level) / 255.0);
         levels.flat_map(|t| colors.at(t)).collect()
     })
@@ -114,10 +134,10 @@ impl Shading {
     }
 
     /// Decibels below `peak` on an axis from `floor` to 0.
-    pub(crate) fn decibel(name: &str, floor: f64, peak: f64) -> Self {
+    pub(crate) fn decibel(colors: Colors, name: &str, floor: f64, peak: f64) -> Self {
         let floor = if floor < 0.0 { floor } else { -60.0 };
         Self {
-            colors: Colors::Sequential,
+            colors,
             axis: Axis::edges(name, "dB", [floor, 0.0]),
             reference: Some(if peak > 0.0 { peak } else { 1.0 }),
             beyond: [false; 2],
@@ -175,13 +195,13 @@ mod tests {
 
     #[test]
     fn powers_below_the_floor_and_negative_ones_share_its_color() {
-        let shading = Shading::decibel("", -60.0, 2.0);
-        let floor = Colors::Sequential.at(0.0);
+        let shading = Shading::decibel(Colors::MAGNITUDES, "", -60.0, 2.0);
+        let floor = Colors::MAGNITUDES.at(0.0);
         for power in [2e-6, 1e-9, 0.0, -1.0, f64::NEG_INFINITY] {
             assert_eq!(shading.color(power), floor, "{power}");
         }
-        assert_eq!(shading.color(2.0), Colors::Sequential.at(1.0));
-        assert_eq!(shading.color(f64::INFINITY), Colors::Sequential.at(1.0));
+        assert_eq!(shading.color(2.0), Colors::MAGNITUDES.at(1.0));
+        assert_eq!(shading.color(f64::INFINITY), Colors::MAGNITUDES.at(1.0));
         assert_ne!(shading.color(2e-5), floor);
     }
 
@@ -210,7 +230,7 @@ mod tests {
 
     #[test]
     fn gaps_are_grey_and_not_saturation() {
-        let shading = Shading::linear(Colors::Sequential, Axis::edges("", "", [0.0, 1.0]));
+        let shading = Shading::linear(Colors::MAGNITUDES, Axis::edges("", "", [0.0, 1.0]));
         assert_eq!(shading.color(f64::NAN), NO_VALUE);
         let values = array![[f64::NAN, 0.5], [0.0, 1.0]];
         assert_eq!(

@@ -39,6 +39,8 @@ const PANEL: f64 = 240.0;
 /// Left edges of the three panels and of the two color bars; the shared bar belongs to the first two panels.
 const PANELS_X: [f64; 3] = [66.0, 66.0 + PANEL + 18.0, 66.0 + 2.0 * PANEL + 118.0];
 const BARS_X: [f64; 2] = [PANELS_X[1] + PANEL + 10.0, PANELS_X[2] + PANEL + 10.0];
+/// How much longer than its bar a label may be.
+const OVERHANG: f64 = 12.0;
 const WIDTH: f64 = BARS_X[1] + bar::WIDTH + 52.0;
 
 /// Draws a comparison: measured and predicted on one color scale, the difference on ±4 σ.
@@ -94,8 +96,8 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
         let at = [panel.area.middle()[0], top - 9.0];
         svg.text(Text::new(at, HEAD_TEXT, Anchor::Middle).bold(), name);
     }
-    bar::draw(svg, &value, BARS_X[0], area(1, top))?;
-    bar::draw(svg, &difference, BARS_X[1], area(2, top))
+    bar::draw(svg, &value, BARS_X[0], area(1, top), OVERHANG)?;
+    bar::draw(svg, &difference, BARS_X[1], area(2, top), OVERHANG)
 }
 
 fn area(index: usize, top: f64) -> Area {
@@ -117,14 +119,14 @@ fn value_shading(comparison: &Comparison<'_>) -> Shading {
                 quantity: comparison.quantity.clone(),
                 ..Axis::edges("", "", [0.0, if top > 0.0 { top } else { 1.0 }])
             };
-            Shading::linear(Colors::Sequential, axis)
+            Shading::linear(Colors::MAGNITUDES, axis)
         }
         Scale::Decibel { floor } => {
             let name = format!(
                 "{} relative to the predicted peak",
                 comparison.quantity.name
             );
-            Shading::decibel(&name, floor, largest(predicted))
+            Shading::decibel(Colors::MAGNITUDES, &name, floor, largest(predicted))
         }
         Scale::Phase => Shading::phase(&comparison.quantity.name),
     };

@@ -5,10 +5,11 @@ use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::LEFT;
 use crate::panel::Panel;
 use crate::style::{
-    FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, PAGE, THEORY_COLOR, TICK_TEXT,
+    FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, Style, THEORY_COLOR, TICK_TEXT,
 };
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::{plain, width};
+use etendue_field::whole;
 
 /// What a curve is, which says how it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -77,6 +78,8 @@ const TITLE: f64 = 440.0;
 /// Height of a panel, and its greatest width.
 const HEIGHT: f64 = 136.0;
 const WIDEST: f64 = 262.0;
+/// Least width of a panel that has others beside it.
+const NARROWEST: f64 = 100.0;
 const BETWEEN: [f64; 2] = [58.0, 74.0];
 /// Width of numbers beside an axis for which there is room.
 const USUAL: f64 = 28.0;
@@ -97,8 +100,7 @@ const SAMPLE: f64 = 30.0;
 ///
 /// # Errors
 /// When the numbers cannot be written.
-pub fn curves(curves: &Curves) -> Result<Figure, Error> {
-    let columns = curves.panels.len().clamp(1, ACROSS);
+pub fn curves(curves: &Curves, style: &Style) -> Result<Figure, Error> {
     // Long numbers beside an axis move its name.
     let ticks = curves.panels.iter().flat_map(|panel| {
         let [_, y] = axes(panel, &curves.y);
@@ -109,16 +111,19 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
         .fold(0.0, f64::max);
     let more = (widest - USUAL).max(0.0);
     let (left, between) = (LEFT + more, BETWEEN[0] + more);
-    let room = PAGE - left - RIGHT - (columns - 1) as f64 * between;
+    let page = style.page() - left - RIGHT;
+    let across = whole((page + between) / (NARROWEST + between));
+    let columns = curves.panels.len().clamp(1, across.clamp(1, ACROSS));
+    let room = page - (columns - 1) as f64 * between;
     let size = (room / columns as f64).floor().min(WIDEST);
     let inner = columns as f64 * (size + between) - between;
     let mut svg = Svg::default();
-    let top = svg.title(left, inner.max(TITLE), &curves.title, &curves.note);
-    let key_right = key(&mut svg, curves, [left, top + 16.0]);
-    let top = top + 58.0;
+    let inner = inner.max(TITLE.min(page));
+    let top = style.title(&mut svg, left, inner, &curves.title, &curves.note);
+    let top = key(&mut svg, curves, [left, top + 16.0], inner) + 42.0;
     let mut bottom = top;
     for (i, panel) in curves.panels.iter().enumerate() {
-        let [column, row] = [i % ACROSS, i / ACROSS].map(|n| n as f64);
+        let [column, row] = [i % columns, i / columns].map(|n| n as f64);
         let area = Area {
             x: left + column * (size + between),
             y: top + row * (HEIGHT + BETWEEN[1]),
@@ -129,22 +134,24 @@ pub fn curves(curves: &Curves) -> Result<Figure, Error> {
         bottom = area.bottom();
     }
     Ok(Figure {
-        svg: svg.finish(
-            (left + inner.max(TITLE)).max(key_right) + RIGHT,
-            bottom + LABEL_BASELINE + 14.0,
-        ),
+        svg: svg.finish(left + inner + RIGHT, bottom + LABEL_BASELINE + 14.0),
         csv: numbers(curves)?,
     })
 }
 
-/// Each name once, with what it looks like; returns where they end.
-fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) -> f64 {
+/// Each name once, with what it looks like, in as many lines as it takes; returns the last baseline.
+fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f64 {
+    let mut x = left;
     let mut known: Vec<&str> = Vec::new();
     for curve in curves.panels.iter().flat_map(|p| &p.curves) {
         if known.contains(&curve.name.as_str()) {
             continue;
         }
         known.push(&curve.name);
+        let long = SAMPLE + 8.0 + width(&plain(&curve.name), LABEL_TEXT);
+        if x > left && x + long > left + room {
+            [x, y] = [left, y + 18.0];
+        }
         let middle = y - 4.0;
         match curve.kind {
             CurveKind::Theory => svg.line([x, middle], [x + SAMPLE, middle], THEORY),
@@ -160,9 +167,9 @@ fn key(svg: &mut Svg, curves: &Curves, [mut x, y]: [f64; 2]) -> f64 {
             Text::new([start, y], LABEL_TEXT, Anchor::Start),
             &curve.name,
         );
-        x = start + width(&plain(&curve.name), LABEL_TEXT) + 30.0;
+        x += long + 30.0;
     }
-    x - 30.0
+    y
 }
 
 /// Whether a point can be drawn.

@@ -5,7 +5,7 @@ use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::Error;
 use crate::panel::Panel;
-use crate::style::{HEAD_TEXT, LABEL_BASELINE, PAGE};
+use crate::style::{HEAD_TEXT, LABEL_BASELINE, Style};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use ndarray::ArrayView2;
 
@@ -49,14 +49,17 @@ impl Row<'_, '_> {
         self.bar == other.bar && self.scale == other.scale && self.shared == other.shared
     }
 
-    fn shading(&self, peak: f64) -> Shading {
+    fn shading(&self, peak: f64, style: &Style) -> Shading {
         let [name, unit] = &self.bar;
+        let colors = Colors::Sequential(style.palette);
         match self.scale {
             Scale::Linear => {
                 let top = if peak > 0.0 { peak } else { 1.0 };
-                Shading::linear(Colors::Sequential, Axis::edges(name, unit, [0.0, top]))
+                Shading::linear(colors, Axis::edges(name, unit, [0.0, top]))
             }
-            Scale::Decibel { floor } => Shading::decibel(name, floor, peak),
+            Scale::Decibel { floor } => {
+                Shading::decibel(colors, name, style.floor.unwrap_or(floor), peak)
+            }
             Scale::Phase => Shading::phase(name),
         }
     }
@@ -66,10 +69,8 @@ impl Row<'_, '_> {
 pub(crate) const LEFT: f64 = 75.0;
 /// Width to the right of the last picture, for the color bars.
 pub(crate) const RIGHT: f64 = 81.0;
-/// Width of all that is between.
-pub(crate) const INNER: f64 = PAGE - LEFT - RIGHT;
 /// Between pictures side by side of which the right one has no numbers beside its axis, or has.
-const GAPS: [f64; 2] = [26.0, 56.0];
+pub(crate) const GAPS: [f64; 2] = [26.0, 56.0];
 /// Between the lower edge of a picture and the upper edge of the one below, if that has its x axis, or has not.
 const ROW_GAPS: [f64; 2] = [14.0, LABEL_BASELINE + 18.0];
 /// From the left edge of the first picture to the row name.
@@ -97,10 +98,16 @@ struct Place {
     left: f64,
 }
 
+/// Width of all that is between the left edge and the color bars.
+pub(crate) fn inner(style: &Style) -> f64 {
+    style.page() - LEFT - RIGHT
+}
+
 /// Rows of pictures laid out for a page.
 #[derive(Debug)]
 pub(crate) struct Grid<'b, 'a> {
     rows: Vec<Row<'b, 'a>>,
+    style: Style,
     /// Side of a picture.
     pub(crate) side: f64,
     blocks: Vec<Vec<Place>>,
@@ -111,7 +118,7 @@ impl<'b, 'a> Grid<'b, 'a> {
     ///
     /// # Panics
     /// When a row has not a picture for each column.
-    pub(crate) fn new(rows: Vec<Row<'b, 'a>>, columns: usize, least: f64) -> Self {
+    pub(crate) fn new(rows: Vec<Row<'b, 'a>>, columns: usize, least: f64, style: &Style) -> Self {
         // Of one block, and of several, which would make a long page.
         const MOST: [f64; 2] = [190.0, 112.0];
         for row in &rows {
@@ -119,6 +126,7 @@ impl<'b, 'a> Grid<'b, 'a> {
         }
         let mut grid = Self {
             rows,
+            style: *style,
             side: 0.0,
             blocks: Vec::new(),
         };
@@ -131,7 +139,7 @@ impl<'b, 'a> Grid<'b, 'a> {
             };
             let widest = starts.iter().map(|start| gaps(*start)).fold(0.0, f64::max);
             let most = MOST[usize::from(count > 1)];
-            grid.side = ((INNER - widest) / length as f64).min(most).floor();
+            grid.side = ((inner(style) - widest) / length as f64).min(most).floor();
             if grid.side >= least || length == 1 {
                 grid.blocks = starts
                     .iter()
@@ -202,6 +210,7 @@ impl<'b, 'a> Grid<'b, 'a> {
         let mut y = top;
         // Rows that share a color bar, and from where to where it is.
         let mut bars: Vec<(Shading, Area)> = Vec::new();
+        let mut closest = ROW_GAPS[1];
         let places = &self.blocks[block];
         let Some(last) = places.last() else {
             return Ok(top);
@@ -219,12 +228,17 @@ impl<'b, 'a> Grid<'b, 'a> {
                     bar.beyond = [0, 1].map(|end| bar.beyond[end] || shading.beyond[end]);
                     whole.height = area.bottom() - whole.y;
                 }
-                _ => bars.push((shading, area)),
+                _ => {
+                    if index > 0 {
+                        closest = closest.min(ROW_GAPS[usize::from(!self.shares_x(index - 1))]);
+                    }
+                    bars.push((shading, area));
+                }
             }
             y += self.side + ROW_GAPS[usize::from(!self.shares_x(index))];
         }
         for (shading, area) in bars {
-            bar::draw(svg, &shading, area.right() + 10.0, area)?;
+            bar::draw(svg, &shading, area.right() + 10.0, area, closest - 2.0)?;
         }
         Ok(y - ROW_GAPS[1] + LABEL_BASELINE)
     }
@@ -242,7 +256,7 @@ impl<'b, 'a> Grid<'b, 'a> {
     fn row(&self, svg: &mut Svg, index: usize, places: &[Place], y: f64) -> Result<Shading, Error> {
         let row = &self.rows[index];
         let highest = self.peak(index);
-        let mut bar = row.shading(if row.shared { highest } else { 1.0 });
+        let mut bar = row.shading(if row.shared { highest } else { 1.0 }, &self.style);
         for (i, place) in places.iter().enumerate() {
             let (picture, guides) = row.cells[place.column];
             let panel = Panel {
@@ -262,7 +276,7 @@ impl<'b, 'a> Grid<'b, 'a> {
             } else {
                 largest(picture.values)
             };
-            let shading = row.shading(peak).showing(picture.values);
+            let shading = row.shading(peak, &self.style).showing(picture.values);
             bar.beyond = [0, 1].map(|end| bar.beyond[end] || shading.beyond[end]);
             panel.heat_map(svg, picture.values, &shading)?;
             draw_guides(svg, &panel, guides);

@@ -55,7 +55,7 @@ mod text;
 mod world;
 
 pub use axis::{Axis, Quantity};
-pub use color::{Scale, palettes};
+pub use color::{Palette, Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
 pub use figure::{Error, Figure, stacked};
@@ -63,4 +63,5 @@ pub use grid::{Guide, Picture};
 pub use plate::{Bars, Plate, PlateRow, plate};
 pub use section::{PlaneMark, Section, Segment, SegmentKind, section};
 pub use strip::{Column, Strip, strip};
+pub use style::Style;
 pub use world::{Object, World};

@@ -4,9 +4,9 @@ use crate::axis::{Axis, Quantity, minus};
 use crate::bar;
 use crate::color::Scale;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{Grid, LEFT, Picture, RIGHT, Row};
+use crate::grid::{Grid, LEFT, Picture, RIGHT, Row, inner};
 use crate::panel::Panel;
-use crate::style::{FAINT, HEAD_TEXT, INK, SOFT, THEORY_COLOR, TICK_TEXT};
+use crate::style::{FAINT, HEAD_TEXT, INK, SOFT, Style, THEORY_COLOR, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::{lines, plain};
 use etendue_field::uncertain;
@@ -63,8 +63,10 @@ const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
 /// The least width of a picture: those that do not fit go below.
 const LEAST: f64 = 58.0;
+/// Least width of what is under a title, if the page has it.
+const TITLE: f64 = 440.0;
 
-/// Draws a plate, as wide as two columns of a journal at most.
+/// Draws a plate, as wide as the page at most.
 ///
 /// The CSV has the numbers of the bars; it is empty without bars.
 ///
@@ -73,12 +75,13 @@ const LEAST: f64 = 58.0;
 ///
 /// # Panics
 /// When a row has not a picture for each head.
-pub fn plate(plate: &Plate<'_>) -> Result<Figure, Error> {
+pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     let rows = plate.rows.iter().map(row);
-    let grid = Grid::new(rows.collect(), plate.heads.len(), LEAST);
+    let grid = Grid::new(rows.collect(), plate.heads.len(), LEAST, style);
     let mut svg = Svg::default();
-    let inner = grid.width().max(440.0);
-    let mut bottom = svg.title(LEFT, inner + 0.8 * RIGHT, plate.title, plate.note);
+    let inner = grid.width().max(TITLE.min(inner(style)));
+    let room = inner + 0.8 * RIGHT;
+    let mut bottom = style.title(&mut svg, LEFT, room, plate.title, plate.note);
     for block in 0..grid.blocks() {
         let top = bottom + if block == 0 { 26.0 } else { 40.0 };
         for (column, middle, room) in grid.columns(block) {

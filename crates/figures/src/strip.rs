@@ -5,10 +5,10 @@ use crate::bar;
 use crate::color::{Colors, Scale, hex};
 use crate::cut::Cut;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{GUIDE, Grid, Guide, INNER, LEFT, Picture, RIGHT};
+use crate::grid::{GAPS, GUIDE, Grid, Guide, LEFT, Picture, RIGHT, inner};
 use crate::plate::feet;
 use crate::section::Section;
-use crate::style::{SOFT, TICK_TEXT};
+use crate::style::{SOFT, Style, TICK_TEXT};
 use crate::svg::{Anchor, Area, Svg, Text};
 
 /// What is shown under a virtual plane.
@@ -109,19 +109,21 @@ const LEADERS: f64 = 34.0;
 /// The least width of a picture: columns that do not fit go below the others.
 const LEAST: f64 = 78.0;
 
-/// Draws a strip, as wide as two columns of a journal.
+/// Draws a strip, as wide as the page.
 ///
 /// The CSV has a row for each cell of each picture; the numbers of the cut are those of [`section`](crate::section()).
 ///
 /// # Errors
 /// When a heat map or the numbers cannot be written.
-pub fn strip(strip: &Strip<'_>) -> Result<Figure, Error> {
+pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let mut svg = Svg::default();
-    let grid = grid(strip);
-    let top = svg.title(LEFT, INNER + RIGHT - 8.0, strip.title, strip.note);
+    let inner = inner(style);
+    let grid = grid(strip, style);
+    let room = inner + RIGHT - 8.0;
+    let top = style.title(&mut svg, LEFT, room, strip.title, strip.note);
     let area = strip
         .section
-        .draw_above(&mut svg, [LEFT, top], [INNER, CUT]);
+        .draw_above(&mut svg, [LEFT, top], [inner, CUT]);
     let cut = Cut::new(strip.section, area);
     cut.draw(&mut svg);
     let mut bottom = area.bottom();
@@ -139,15 +141,15 @@ pub fn strip(strip: &Strip<'_>) -> Result<Figure, Error> {
         bottom = grid.draw(&mut svg, block, heads + Cut::HEADING)?;
         bottom = feet(&mut svg, &verdicts, &grid, block, bottom);
     }
-    let bottom = keys(&mut svg, strip, &grid, bottom);
+    let bottom = keys(&mut svg, strip, &grid, [LEFT + inner, bottom], style);
     Ok(Figure {
-        svg: svg.finish(LEFT + INNER + RIGHT, bottom + 14.0),
+        svg: svg.finish(LEFT + inner + RIGHT, bottom + 14.0),
         csv: numbers(strip)?,
     })
 }
 
 /// The pictures under the cut.
-fn grid<'b, 'a>(strip: &'b Strip<'a>) -> Grid<'b, 'a> {
+fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> Grid<'b, 'a> {
     let row = |row: Row| {
         let cell = |column: &'b Column<'a>| {
             let guides = match row {
@@ -168,31 +170,39 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>) -> Grid<'b, 'a> {
         }
     };
     let rows = Row::of(strip).into_iter().map(row).collect();
-    Grid::new(rows, strip.columns.len(), LEAST)
+    // Two stand side by side on the narrowest page.
+    let half = 0.5 * (inner(style) - GAPS[1]);
+    Grid::new(rows, strip.columns.len(), LEAST.min(half), style)
 }
 
 /// The keys to dashed lines and to cells without a value; returns the lowest baseline.
-fn keys(svg: &mut Svg, strip: &Strip<'_>, grid: &Grid<'_, '_>, bottom: f64) -> f64 {
+fn keys(
+    svg: &mut Svg,
+    strip: &Strip<'_>,
+    grid: &Grid<'_, '_>,
+    [right, bottom]: [f64; 2],
+    style: &Style,
+) -> f64 {
     let guided = strip.columns.iter().any(|column| !column.guides.is_empty());
     let gaps = grid.has_gaps();
     let y = bottom + if guided || gaps { 18.0 } else { 0.0 };
     if guided {
-        guide_key(svg, [LEFT, y]);
+        guide_key(svg, [LEFT, y], style);
     }
     if gaps {
-        bar::gap_key(svg, LEFT + INNER, y);
+        bar::gap_key(svg, right, y);
     }
     y
 }
 
-fn guide_key(svg: &mut Svg, [x, y]: [f64; 2]) {
+fn guide_key(svg: &mut Svg, [x, y]: [f64; 2], style: &Style) {
     let swatch = Area {
         x,
         y: y - 10.0,
         width: 34.0,
         height: 12.0,
     };
-    svg.fill(swatch, &hex(Colors::Sequential.at(0.0)));
+    svg.fill(swatch, &hex(Colors::Sequential(style.palette).at(0.0)));
     for stroke in GUIDE {
         svg.line([x, y - 4.0], [swatch.right(), y - 4.0], stroke);
     }

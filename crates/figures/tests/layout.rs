@@ -7,7 +7,7 @@ mod common;
 use common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
 use etendue_field::Side;
 use etendue_figures::{
-    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, curves, section, stacked,
+    Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, Style, curves, section, stacked,
 };
 use resvg::usvg;
 
@@ -40,9 +40,9 @@ fn gallery() -> Vec<Figure> {
         figures.push(uneven_grid(count, values.view()));
     }
     for count in [1, 3, 5] {
-        figures.push(curves(&lines(count)).unwrap());
+        figures.push(curves(&lines(count), &Style::default()).unwrap());
     }
-    let [one, two] = [1, 3].map(|i| curves(&lines(i)).unwrap());
+    let [one, two] = [1, 3].map(|i| curves(&lines(i), &Style::default()).unwrap());
     figures.push(stacked(&[grid(4, values.view()), one, two]));
     figures
 }
@@ -124,7 +124,7 @@ fn strips_plates_and_curves_are_no_wider_than_two_columns() {
     let values = corner();
     let strips = (1..=8).map(|count| path(&scene(count), values.view()));
     let plates = (1..=8).map(|count| grid(count, values.view()));
-    let panels = (1..=5).map(|count| curves(&lines(count)).unwrap());
+    let panels = (1..=5).map(|count| curves(&lines(count), &Style::default()).unwrap());
     for figure in strips.chain(plates).chain(panels) {
         let (_, size) = written(&figure);
         assert!(size.width() <= 672.0, "{} of 96 to the inch", size.width());

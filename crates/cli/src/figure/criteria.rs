@@ -7,7 +7,7 @@ use crate::figure::shot::resolved;
 use crate::measure::measured;
 use crate::method::Method;
 use etendue_compare::{Applicability, criterion, measured_bandwidth};
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, curves};
+use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity};
 use etendue_theory::shading::Criterion;
 
 /// A field of a scene, and the values it takes.
@@ -55,7 +55,7 @@ pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
         panel(taken, environment, &distance)?,
         panel(taken, edge, &curvature("Eq. 21, edge 0.4 m off", behind))?,
     ];
-    curves(&Curves {
+    taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
         note: "*B*: the frequency below which 95 % of the power lies, at a fixed point a distance *d* off. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'* \
                Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is least the window sets what is measured."
@@ -63,7 +63,6 @@ pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
         y: Quantity::new("*B*", "cycles/slope"),
         panels: panels.to_vec(),
     })
-    .map_err(Failure::cannot_run)
 }
 
 fn panel(taken: &Taken<'_>, text: &Text, sweep: &Sweep) -> Result<CurvePanel, Failure> {

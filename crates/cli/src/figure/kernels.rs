@@ -1,7 +1,8 @@
 //! Curves of kernels that the paper draws: cosines and Fresnel factors, and their transforms.
 
 use crate::failure::Failure;
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, curves};
+use crate::figure::recipe::Taken;
+use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity};
 use etendue_theory::shading::{Fresnel, cosine_hat, g_hat, g_hat_3d};
 use std::f64::consts::FRAC_PI_2;
 
@@ -26,24 +27,23 @@ fn panel(title: &str, x: Quantity, curves: Vec<Curve>) -> CurvePanel {
     }
 }
 
-fn drawn(title: &str, note: &str, panels: Vec<CurvePanel>) -> Result<Figure, Failure> {
-    curves(&Curves {
+fn values(title: &str, note: &str, panels: Vec<CurvePanel>) -> Curves {
+    Curves {
         title: title.to_owned(),
         note: note.to_owned(),
         y: Quantity::new("value", ""),
         panels,
-    })
-    .map_err(Failure::cannot_run)
+    }
 }
 
 /// g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
-pub(crate) fn slopes() -> Result<Figure, Failure> {
+pub(crate) fn slopes(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let slope = || Quantity::new("*v*", "slope");
     let frequency = || Quantity::new("*Ω*", "cycles/slope");
     let g = |v: f64| libm::pow(1.0 + v * v, -1.5);
     let g_3d = |v: f64| libm::pow(1.0 + v * v, -2.0);
     let (flat, solid) = ("2D: *g*", "3D: *G*, along one axis");
-    drawn(
+    taken.curves(&values(
         "The cosine over slopes, and its transforms",
         "*g* = (1 + *v*^{2})^{−3/2}, *G* = (1 + *u*^{2} + *v*^{2})^{−2}; transforms 4π*Ω* *K*_{1}(2π*Ω*) and half π times that.",
         vec![
@@ -64,11 +64,11 @@ pub(crate) fn slopes() -> Result<Figure, Failure> {
                 ],
             ),
         ],
-    )
+    ))
 }
 
 /// cos₊ and cos₊ times the Fresnel factors of a dielectric and a conductor (Fig. 12).
-pub(crate) fn fresnel() -> Result<Figure, Failure> {
+pub(crate) fn fresnel(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let glass = Fresnel::Dielectric { index: 1.5 };
     // Aluminium at 650 nm, as in the figures of microfacet papers.
     let metal = Fresnel::Conductor {
@@ -102,9 +102,9 @@ pub(crate) fn fresnel() -> Result<Figure, Failure> {
     let [functions, transforms]: [Vec<CurvePanel>; 2] =
         [0, 1].map(|i| pairs.iter().map(|pair| pair[i].clone()).collect());
     let panels = [functions, transforms].concat();
-    drawn(
+    taken.curves(&values(
         "The clamped cosine, alone and with Fresnel factors",
         "Glass: *n* = 1.5. Aluminium: 1.488 + 7.821 i, at 650 nm.",
         panels,
-    )
+    ))
 }

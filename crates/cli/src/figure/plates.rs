@@ -1,20 +1,20 @@
 //! Figures of several scenes, or several kinds of spectra, side by side.
 
 use crate::failure::Failure;
-use crate::figure::rows::{DECIBEL, Seen, compared, drawn, feet, phase, power, row};
-use crate::figure::shot::Shot;
+use crate::figure::recipe::Taken;
+use crate::figure::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
 use crate::pictures::light_field_quantity;
 use etendue_field::percent;
 use etendue_figures::{Bars, Figure, Plate, Quantity, Scale};
 use ndarray::Array2;
 
 /// Fig. 4: light of a point after a short way, a line in ray space, and of a spot where it begins.
-pub(crate) fn lights(shots: &[Shot]) -> Result<Figure, Failure> {
+pub(crate) fn lights(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let seen = [
-        Seen::at(&shots[0], "near")?,
-        Seen::at(&shots[0], "receiver")?,
-        Seen::at(&shots[1], "light")?,
-        Seen::at(&shots[1], "receiver")?,
+        Seen::at(&taken.shots[0], "near")?,
+        Seen::at(&taken.shots[0], "receiver")?,
+        Seen::at(&taken.shots[1], "light")?,
+        Seen::at(&taken.shots[1], "receiver")?,
     ];
     let heads = [
         "point, after 0.5 m",
@@ -22,7 +22,7 @@ pub(crate) fn lights(shots: &[Shot]) -> Result<Figure, Failure> {
         "spot",
         "spot, after 2 m",
     ];
-    drawn(&Plate {
+    taken.plate(&Plate {
         title: "Light sources",
         note: "A point is a Dirac in space and even in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
         heads: heads.map(str::to_owned).to_vec(),
@@ -33,7 +33,7 @@ pub(crate) fn lights(shots: &[Shot]) -> Result<Figure, Failure> {
 }
 
 /// Fig. 6: a scene by its steps.
-pub(crate) fn steps(shots: &[Shot]) -> Result<Figure, Failure> {
+pub(crate) fn steps(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let names = [
         "light",
         "before_blockers",
@@ -42,7 +42,7 @@ pub(crate) fn steps(shots: &[Shot]) -> Result<Figure, Failure> {
         "irradiance",
         "leaving",
     ];
-    let seen = names.map(|name| Seen::at(&shots[0], name));
+    let seen = names.map(|name| Seen::at(&taken.shots[0], name));
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
     let heads = [
         "1 emission",
@@ -66,7 +66,7 @@ pub(crate) fn steps(shots: &[Shot]) -> Result<Figure, Failure> {
         1,
         row("2D slice", quantity, DECIBEL, false, slices.collect()),
     );
-    drawn(&Plate {
+    taken.plate(&Plate {
         title: "The steps of diffuse shading",
         note: "2D: the slice at azimuth 0, predicted. Below it radial spectra, means over azimuths.",
         heads: heads.map(str::to_owned).to_vec(),
@@ -77,8 +77,11 @@ pub(crate) fn steps(shots: &[Shot]) -> Result<Figure, Failure> {
 }
 
 /// Fig. 7: occluders that cancel.
-pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
-    let seen = shots.iter().map(|shot| Seen::at(shot, "after_occluders"));
+pub(crate) fn occluders(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let seen = taken
+        .shots
+        .iter()
+        .map(|shot| Seen::at(shot, "after_occluders"));
     let seen: Vec<Seen<'_>> = seen.collect::<Result<_, _>>()?;
     let found = seen
         .iter()
@@ -107,7 +110,7 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
             pictures(1),
         ),
     ];
-    drawn(&Plate {
+    taken.plate(&Plate {
         title: "Occluders whose spectra cancel",
         note: "Measured, the slice at azimuth 0. Each occluder leaves half of the light; their phases differ, and together they leave none.",
         heads: ["one occluder", "the other", "both"]
@@ -121,10 +124,10 @@ pub(crate) fn occluders(shots: &[Shot]) -> Result<Figure, Failure> {
 
 /// Fig. 8: slopes and angles at the receiver. The chain takes one for the other, and its error is what the paper calls
 /// not significant.
-pub(crate) fn parameterisations(shots: &[Shot]) -> Result<Figure, Failure> {
+pub(crate) fn parameterisations(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let seen = [
-        Seen::at(&shots[0], "slopes")?,
-        Seen::at(&shots[0], "angles")?,
+        Seen::at(&taken.shots[0], "slopes")?,
+        Seen::at(&taken.shots[0], "angles")?,
     ];
     let mut feet = feet(&seen);
     if let Some(first_order) = &seen[1].found.report.first_order {
@@ -135,7 +138,7 @@ pub(crate) fn parameterisations(shots: &[Shot]) -> Result<Figure, Failure> {
         );
         feet[1].push(format!("*u* for *θ*: off by {found}, computed {error}"));
     }
-    drawn(&Plate {
+    taken.plate(&Plate {
         title: "Two parameterisations",
         note: "Angles are counted along T, which is against X here: the shear has the other sign.",
         heads: ["by slopes", "by angles"].map(str::to_owned).to_vec(),
@@ -146,10 +149,10 @@ pub(crate) fn parameterisations(shots: &[Shot]) -> Result<Figure, Failure> {
 }
 
 /// Fig. 9: blockers of three sizes.
-pub(crate) fn blockers(shots: &[Shot]) -> Result<Figure, Failure> {
-    let seen = shots.iter().map(|shot| Seen::at(shot, "receiver"));
+pub(crate) fn blockers(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let seen = taken.shots.iter().map(|shot| Seen::at(shot, "receiver"));
     let seen: Vec<Seen<'_>> = seen.collect::<Result<_, _>>()?;
-    let leaving = shots.iter().map(|shot| Seen::at(shot, "leaving"));
+    let leaving = taken.shots.iter().map(|shot| Seen::at(shot, "leaving"));
     let leaving: Vec<Seen<'_>> = leaving.collect::<Result<_, _>>()?;
     let shares: Vec<_> = leaving
         .iter()
@@ -162,7 +165,7 @@ pub(crate) fn blockers(shots: &[Shot]) -> Result<Figure, Failure> {
             .map(|share| of(&share.share).map(|x| 100.0 * x))
             .collect::<Vec<_>>()
     };
-    drawn(&Plate {
+    taken.plate(&Plate {
         title: "Blockers of three sizes, seen from the receiver",
         note: "The receiver sees most high frequencies behind blockers of middle size: replicas of the smallest are sheared out of its reach.",
         heads: ["pitch 2 m", "pitch 0.2 m", "pitch 0.04 m"]

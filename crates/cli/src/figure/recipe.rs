@@ -3,12 +3,13 @@
 use crate::failure::Failure;
 use crate::figure::plates::{blockers, lights, occluders, parameterisations, steps};
 use crate::figure::shading::{adaptive, environment};
-use crate::figure::shot::Shot;
+use crate::figure::shot::{Shot, resolved};
 use crate::figure::spaces::{coordinates, directions};
 use crate::figure::table1::operators;
-use crate::figure::{Quality, kernels};
+use crate::figure::{Quality, Subject, kernels};
 use crate::pictures;
-use etendue_figures::Figure;
+use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
+use etendue_scene::Scene;
 
 /// A figure: the scenes it is measured in, and how it is drawn.
 #[derive(Debug)]
@@ -30,9 +31,29 @@ pub(crate) struct Recipe {
 pub(crate) type Text = (&'static str, &'static str);
 
 impl Recipe {
-    /// All its scene files.
-    pub(crate) fn texts(&self) -> impl Iterator<Item = &'static Text> {
-        self.scenes.iter().chain(self.also)
+    /// Its scenes with as many photons as the quality asks for.
+    fn scenes(&self, quality: Quality) -> Result<Vec<Scene>, Failure> {
+        let scenes = self.scenes.iter();
+        scenes
+            .map(|(name, text)| resolved(name, text, &[], |n| quality.photons(n)))
+            .collect()
+    }
+
+    /// The figure to be made.
+    pub(crate) fn subject(&'static self, quality: Quality) -> Result<Subject, Failure> {
+        Ok(Subject {
+            name: self.name.to_owned(),
+            about: self.about.to_owned(),
+            arguments: self.name.to_owned(),
+            scenes: self.scenes(quality)?,
+            is_own: false,
+            texts: self.scenes.iter().chain(self.also).copied().collect(),
+            inputs: Vec::new(),
+            has_table: self.has_table,
+            also: self.also,
+            planes: Vec::new(),
+            draw: self.draw,
+        })
     }
 }
 
@@ -43,8 +64,34 @@ pub(crate) struct Taken<'a> {
     pub(crate) shots: &'a [Shot],
     /// The other scene files.
     pub(crate) also: &'static [Text],
+    /// The plane of each scene that is shown, where not all are.
+    pub(crate) planes: &'a [String],
     pub(crate) quality: Quality,
+    pub(crate) style: Style,
     pub(crate) quiet: bool,
+}
+
+impl Taken<'_> {
+    /// Draws pictures in rows and columns.
+    pub(super) fn plate(&self, of: &Plate<'_>) -> Result<Figure, Failure> {
+        plate(of, &self.style).map_err(Failure::cannot_run)
+    }
+
+    /// Draws curves.
+    pub(super) fn curves(&self, of: &Curves) -> Result<Figure, Failure> {
+        curves(of, &self.style).map_err(Failure::cannot_run)
+    }
+
+    /// The planes of the first scene along its path, measured and predicted.
+    pub(super) fn strip(&self) -> Result<Figure, Failure> {
+        let Shot {
+            scene,
+            photons,
+            theories,
+            planes,
+        } = &self.shots[0];
+        pictures::strip_of(scene, *photons, theories, planes, Some(&self.style))
+    }
 }
 
 /// The scene files of the repository that figures use.
@@ -65,7 +112,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
-        draw: |taken| strip(taken.shots),
+        draw: |taken| taken.strip(),
     },
     Recipe {
         name: "3",
@@ -84,7 +131,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: false,
-        draw: |taken| lights(taken.shots),
+        draw: lights,
     },
     Recipe {
         name: "5",
@@ -92,7 +139,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[],
         also: &[],
         has_table: true,
-        draw: |_| kernels::slopes(),
+        draw: kernels::slopes,
     },
     Recipe {
         name: "6",
@@ -100,7 +147,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
-        draw: |taken| steps(taken.shots),
+        draw: steps,
     },
     Recipe {
         name: "7",
@@ -112,7 +159,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: false,
-        draw: |taken| occluders(taken.shots),
+        draw: occluders,
     },
     Recipe {
         name: "8",
@@ -120,7 +167,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig8", scene!("fig8"))],
         also: &[],
         has_table: false,
-        draw: |taken| parameterisations(taken.shots),
+        draw: parameterisations,
     },
     Recipe {
         name: "9",
@@ -132,7 +179,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: true,
-        draw: |taken| blockers(taken.shots),
+        draw: blockers,
     },
     Recipe {
         name: "10",
@@ -140,7 +187,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig10", scene!("fig10"))],
         also: &[],
         has_table: false,
-        draw: |taken| strip(taken.shots),
+        draw: |taken| taken.strip(),
     },
     Recipe {
         name: "11",
@@ -148,7 +195,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("solar_oven", scene!("table1/solar_oven"))],
         also: &[],
         has_table: false,
-        draw: |taken| strip(taken.shots),
+        draw: |taken| taken.strip(),
     },
     Recipe {
         name: "12",
@@ -156,7 +203,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[],
         also: &[],
         has_table: true,
-        draw: |_| kernels::fresnel(),
+        draw: kernels::fresnel,
     },
     Recipe {
         name: "13",
@@ -200,7 +247,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: false,
-        draw: |taken| operators(taken.shots),
+        draw: operators,
     },
 ];
 
@@ -209,20 +256,12 @@ pub(crate) fn named(name: &str) -> Result<&'static Recipe, Failure> {
     let mut recipes = RECIPES.iter();
     recipes.find(|recipe| recipe.name == name).ok_or_else(|| {
         let names: Vec<&str> = RECIPES.iter().map(|recipe| recipe.name).collect();
-        let message = format!("no figure {name}; allowed: {}, all", names.join(", "));
+        let message = format!(
+            "no figure {name}; allowed: {}, all, or scene files, whose names end in .ron or .json",
+            names.join(", ")
+        );
         Failure::bad_input(message)
     })
-}
-
-/// The planes of one scene along its path, measured and predicted.
-fn strip(shots: &[Shot]) -> Result<Figure, Failure> {
-    let Shot {
-        scene,
-        photons,
-        theories,
-        planes,
-    } = &shots[0];
-    pictures::strip_of(scene, *photons, theories, planes, true)
 }
 
 #[cfg(test)]
@@ -236,16 +275,19 @@ mod tests {
     fn every_figure_fits_its_page_and_can_be_read() {
         for recipe in RECIPES {
             let quality = Quality::Sketch;
-            let shots = recipe.scenes.iter();
-            let shots = shots.map(|(name, text)| Shot::take(name, text, quality, true));
+            let subject = recipe.subject(quality).unwrap();
+            let shots = subject.scenes.iter().cloned();
+            let shots = shots.map(|scene| Shot::take(scene, quality, true));
             let shots: Vec<Shot> = shots.collect::<Result<_, _>>().unwrap();
             let taken = Taken {
                 shots: &shots,
                 also: recipe.also,
+                planes: &[],
                 quality,
+                style: Style::default(),
                 quiet: true,
             };
-            let figure = (recipe.draw)(&taken).unwrap();
+            let figure = (subject.draw)(&taken).unwrap();
             let numbers = |name: &str| -> Vec<f64> {
                 let mark = format!("{name}=\"");
                 let rest = figure.svg.split(&mark).skip(1);

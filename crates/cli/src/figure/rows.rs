@@ -7,7 +7,7 @@ use crate::pictures::{
 };
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
-use etendue_figures::{Figure, Picture, Plate, PlateRow, Quantity, Scale, plate};
+use etendue_figures::{Picture, PlateRow, Quantity, Scale};
 use ndarray::{Array2, ArrayView2, Axis as Along};
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
@@ -117,8 +117,4 @@ pub(super) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
 
 pub(super) fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {
     seen.iter().map(|seen| verdict_lines(seen.found)).collect()
-}
-
-pub(super) fn drawn(of: &Plate<'_>) -> Result<Figure, Failure> {
-    plate(of).map_err(Failure::cannot_run)
 }

@@ -3,14 +3,11 @@
 use crate::failure::Failure;
 use crate::figure::criteria::criteria;
 use crate::figure::recipe::Taken;
-use crate::figure::rows::{Seen, compared, drawn, feet};
+use crate::figure::rows::{Seen, compared, feet};
 use etendue_field::{
     Complex, EnvironmentMap, Light, Profile, Slices, SphericalGaussian, cis, modulus,
 };
-use etendue_figures::{
-    Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, curves, stacked,
-};
-use etendue_scene::Scene;
+use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, stacked};
 use etendue_theory::shading::environment::{Glow, irradiance};
 use std::f64::consts::TAU;
 
@@ -19,7 +16,7 @@ pub(crate) fn environment(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let names = ["environment", "curvature", "cosine", "reflection"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
-    let steps = drawn(&Plate {
+    let steps = taken.plate(&Plate {
         title: "Diffuse shading under an environment map",
         note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears it onto *ρ* = *kν*, the cosine blurs it along *ν*, and what leaves a diffuse \
                surface is the line *ν* = 0. Predicted before reflection: by backward rays.",
@@ -28,11 +25,12 @@ pub(crate) fn environment(taken: &Taken<'_>) -> Result<Figure, Failure> {
         feet: feet(&seen),
         bars: None,
     })?;
-    Ok(stacked(&[steps, product(&taken.shots[0].scene, &seen[3])?]))
+    Ok(stacked(&[steps, product(taken, &seen[3])?]))
 }
 
 /// What is left at ν = 0, beside the product of the spectra of environment and cosine.
-fn product(scene: &Scene, shaded: &Seen<'_>) -> Result<Figure, Failure> {
+fn product(taken: &Taken<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure> {
+    let scene = &taken.shots[0].scene;
     let k = scene
         .patches
         .first()
@@ -68,14 +66,13 @@ fn product(scene: &Scene, shaded: &Seen<'_>) -> Result<Figure, Failure> {
         ],
         is_log: [false; 2],
     };
-    curves(&Curves {
+    taken.curves(&Curves {
         title: "The product".to_owned(),
         note: "|*S*_{0}| at *ν* = 0, where the light leaves. Lines: the product in 2D, seen through the same window, with and without the spectrum of the cosine."
             .to_owned(),
         y: Quantity::new("of that at 0", ""),
         panels: vec![panel],
     })
-    .map_err(Failure::cannot_run)
 }
 
 /// The lobes of an environment over longitude, integrated over latitude.
@@ -137,7 +134,7 @@ pub(crate) fn adaptive(taken: &Taken<'_>) -> Result<Figure, Failure> {
         "f outgoing",
         "at the eye",
     ];
-    let steps = drawn(&Plate {
+    let steps = taken.plate(&Plate {
         title: "Bandwidth of a glossy reflection, step by step",
         note: "A beam, light from far away with content at all frequencies in angle, on a glossy sphere. The lobe cuts the line off; curvature shears it twice, and travel once more.",
         heads: heads.map(str::to_owned).to_vec(),

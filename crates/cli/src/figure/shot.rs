@@ -1,4 +1,4 @@
-//! A scene of the repository, run for a figure.
+//! A scene that is run for a figure.
 
 use crate::case::Case;
 use crate::conclude::judged;
@@ -25,13 +25,7 @@ pub(crate) struct Shot {
 
 impl Shot {
     /// Runs a scene.
-    pub(crate) fn take(
-        name: &str,
-        text: &str,
-        quality: Quality,
-        quiet: bool,
-    ) -> Result<Self, Failure> {
-        let mut scene = resolved(name, text, &[], |n| quality.photons(n))?;
+    pub(crate) fn take(mut scene: Scene, quality: Quality, quiet: bool) -> Result<Self, Failure> {
         for plane in &mut scene.planes {
             for axis in [&mut plane.grid.rho, &mut plane.grid.nu] {
                 *axis = FrequencyAxis {

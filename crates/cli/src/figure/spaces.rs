@@ -2,13 +2,13 @@
 
 use crate::failure::Failure;
 use crate::figure::recipe::{TWIST, Taken, Text};
-use crate::figure::rows::{Seen, compared, drawn, feet, row};
+use crate::figure::rows::{Seen, compared, feet, row};
 use crate::figure::shot::resolved;
 use crate::pictures::{across, across_axes, light_field_quantity};
 use etendue_compare::{Applicability, Convergence, converge};
 use etendue_field::percent;
 use etendue_figures::{
-    Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, Scale, curves, stacked,
+    Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, Scale, stacked,
 };
 use ndarray::Array2;
 
@@ -20,7 +20,7 @@ pub(crate) fn coordinates(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let mut rows = compared(&seen, false);
     // No theory speaks of light of an environment on its way: photons are judged by the other tracer.
     rows[2].name = "backward rays";
-    let spaces = drawn(&Plate {
+    let spaces = taken.plate(&Plate {
         title: "Two parameterisations, and travel",
         note: "Five suns, 0.4 rad apart, behind a grating: stripes at slopes *u* = tan *θ*, which are not equally far apart, and at angles, which are. \
                Travel shears them along *x*; angles are counted along T, which is against X.",
@@ -33,6 +33,7 @@ pub(crate) fn coordinates(taken: &Taken<'_>) -> Result<Figure, Failure> {
     })?;
     let panels = shrunk(&taken.also[0], &["angles"])?;
     let error = orders(
+        taken,
         "What it costs to take *u* for *θ*",
         "‖first order − exact‖/‖exact‖ of the spectrum in Fig. 8, whose window is *e* times as wide: the tangent is straight to second order.",
         &panels,
@@ -75,7 +76,7 @@ pub(crate) fn directions(taken: &Taken<'_>) -> Result<Figure, Failure> {
             lines.push(format!("flat: off by {share}"));
         }
     }
-    let plate = drawn(&Plate {
+    let plate = taken.plate(&Plate {
         title: "Directions in 3D, by longitude and latitude",
         note: "A projector on a saddle whose axes lie 45° out of the plane of incidence: a mirror, and rough copper seen 6.9° beside that plane. The equator of the surface is the plane of \
                incidence, that of outgoing light holds the outgoing ray. Along: position and longitude or slope. Across: the other two, as far as the frequencies go. Below: what first \
@@ -94,6 +95,7 @@ pub(crate) fn directions(taken: &Taken<'_>) -> Result<Figure, Failure> {
     })?;
     let panels = shrunk(&TWIST, &["curvature", "back", "outgoing"])?;
     let error = orders(
+        taken,
         "What a flat (*θ*, *φ*) costs",
         "‖first order − exact‖/‖exact‖ at the mirror, in neighbourhoods *e* times as wide: they are flat to first order.",
         &panels,
@@ -115,7 +117,13 @@ fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Fail
 }
 
 /// First-order errors, and lines of an order.
-fn orders(title: &str, note: &str, planes: &[Convergence], order: i32) -> Result<Figure, Failure> {
+fn orders(
+    taken: &Taken<'_>,
+    title: &str,
+    note: &str,
+    planes: &[Convergence],
+    order: i32,
+) -> Result<Figure, Failure> {
     let panel = |plane: &Convergence| {
         let [widest, error] = plane.steps[0];
         let line = |[e, _]: &[f64; 2]| [*e, error * (e / widest).powi(order), 0.0];
@@ -141,11 +149,10 @@ fn orders(title: &str, note: &str, planes: &[Convergence], order: i32) -> Result
             is_log: [true; 2],
         }
     };
-    curves(&Curves {
+    taken.curves(&Curves {
         title: title.to_owned(),
         note: note.to_owned(),
         y: Quantity::new("error", ""),
         panels: planes.iter().map(panel).collect(),
     })
-    .map_err(Failure::cannot_run)
 }

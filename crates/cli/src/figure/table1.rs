@@ -1,8 +1,8 @@
 //! Table 1: each operator by the light before and after it.
 
 use crate::failure::Failure;
-use crate::figure::rows::{DECIBEL, Seen, drawn, feet, row};
-use crate::figure::shot::Shot;
+use crate::figure::recipe::Taken;
+use crate::figure::rows::{DECIBEL, Seen, feet, row};
 use crate::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 
@@ -60,12 +60,12 @@ const PARTS: [(&str, [Step; 5]); 2] = [
 const NOTE: &str = "Measured. A map moves light and spectrum, a mask blurs the spectrum, a convolution cuts it off. Below: whether theory holds after the operator.";
 
 /// Light fields and spectra before and after each operator.
-pub(crate) fn operators(shots: &[Shot]) -> Result<Figure, Failure> {
+pub(crate) fn operators(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let parts = PARTS.iter().enumerate().map(|(i, (title, steps))| {
         let sides = [0, 1].map(|side| {
             let seen = steps.iter().map(|(_, planes)| {
                 let [scene, plane] = planes[side];
-                let shot = shots.iter().find(|shot| shot.scene.name == scene);
+                let shot = taken.shots.iter().find(|shot| shot.scene.name == scene);
                 let missing = || Failure::cannot_run(format!("no scene {scene}"));
                 Seen::at(shot.ok_or_else(missing)?, plane)
             });
@@ -73,7 +73,7 @@ pub(crate) fn operators(shots: &[Shot]) -> Result<Figure, Failure> {
         });
         let [before, after] = sides;
         let (before, after) = (before?, after?);
-        drawn(&Plate {
+        taken.plate(&Plate {
             title,
             note: if i == 0 { NOTE } else { "" },
             heads: steps.iter().map(|(name, _)| (*name).to_owned()).collect(),

@@ -2,6 +2,7 @@
 
 use super::explorer;
 use crate::case::Case;
+use crate::method::Method;
 use crate::pictures::{light_field_axes, spectrum_axes};
 use crate::results::arrays::{radial_z, z};
 use crate::results::summary::Summary;
@@ -123,17 +124,21 @@ pub(crate) fn data(
     let each = each.map(|((plane, found), prediction)| {
         Plane::new(plane, found, prediction, slices <= MOST_SLICES)
     });
+    let method = match summary.method {
+        Method::Photons => "",
+        _ => " --method backward",
+    };
     let provenance = format!(
-        "etendue {}, {} photons in {} batches, seed {}, α = {}\nscene hash {}\netendue run {}.ron --photons {} --seed {}",
+        "etendue {}, {} photons in {} batches, seed {}, α = {}\nscene hash {}\nthe scene below, as {name}.json: etendue run {name}.json --photons {} --seed {}{method}",
         summary.version,
         grouped(summary.photons),
         summary.batches,
         summary.seed,
         summary.alpha,
         summary.scene_hash,
-        summary.scene,
         summary.photons,
-        summary.seed
+        summary.seed,
+        name = summary.scene,
     );
     let run = Run {
         scene: &summary.scene,

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::sweep::table::{BANDWIDTHS, Found, Number, SLOPE, numbers};
 use crate::table::spaced;
 use crate::values::{Point, shown};
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, curves};
+use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Style};
 
 /// Names of the pictures, without their endings.
 pub(crate) const NAMES: [&str; 3] = ["bandwidth_rho", "bandwidth_nu", "slope"];
@@ -65,13 +65,13 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
             numbers.sort_by(|a, b| a.0.total_cmp(&b.0));
             panel(plane, others, &found[0].point[0].0, &numbers)
         };
-        curves(&Curves {
+        let curves = Curves {
             title: format!("{}: {}", spaced(scene), y.name),
             note: note.clone(),
             y,
             panels: panels.iter().map(panel).collect(),
-        })
-        .map_err(Failure::cannot_run)
+        };
+        etendue_figures::curves(&curves, &Style::default()).map_err(Failure::cannot_run)
     };
     quantities.into_iter().map(figure).collect()
 }

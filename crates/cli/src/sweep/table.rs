@@ -2,7 +2,14 @@
 
 use crate::failure::Failure;
 use crate::values::Point;
+use parquet::basic::{LogicalType, Repetition, Type as Physical};
+use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
+use parquet::errors::ParquetError;
+use parquet::file::properties::WriterProperties;
+use parquet::file::writer::SerializedFileWriter;
+use parquet::schema::types::Type;
 use serde_json::Value;
+use std::sync::Arc;
 
 /// A number of a plane that is measured and predicted.
 #[derive(Clone, Debug, PartialEq)]
@@ -59,49 +66,120 @@ pub(crate) fn numbers(plane: &Value) -> Vec<Number> {
     numbers
 }
 
+/// A column of the table.
+enum Column {
+    Words(Vec<String>),
+    /// `None` where there is no number.
+    Numbers(Vec<Option<f64>>),
+}
+
+/// What stands in a row.
+struct Row<'a> {
+    at: &'a Found,
+    plane: &'a Value,
+    number: Number,
+}
+
+/// Names and columns: the fields that are swept, then what stands in each row.
+fn columns(paths: &[String], found: &[Found]) -> Vec<(String, Column)> {
+    let planes = found
+        .iter()
+        .flat_map(|at| at.planes().map(move |plane| (at, plane)));
+    let rows = planes.flat_map(|(at, plane)| {
+        let numbers = numbers(plane).into_iter();
+        numbers.map(move |number| Row { at, plane, number })
+    });
+    let rows: Vec<Row<'_>> = rows.collect();
+    let words = |of: &dyn Fn(&Row<'_>) -> String| Column::Words(rows.iter().map(of).collect());
+    let values =
+        |of: &dyn Fn(&Row<'_>) -> Option<f64>| Column::Numbers(rows.iter().map(of).collect());
+    let text = |key: &'static str| {
+        words(&move |row| row.plane[key].as_str().unwrap_or_default().to_owned())
+    };
+    let share = |key: &'static str| values(&move |row| row.plane[key].as_f64());
+    let swept = paths.iter().enumerate();
+    let swept = swept.map(|(i, path)| (path.clone(), values(&|row| Some(row.at.point[i].1))));
+    let rest = [
+        ("point", words(&|row| row.at.folder.clone())),
+        ("plane", text("name")),
+        ("class", text("class")),
+        ("verdict", text("verdict")),
+        ("p_value", share("p_value")),
+        ("relative_error", share("relative_error")),
+        ("noise_limit", share("noise_limit")),
+        ("quantity", words(&|row| row.number.quantity.clone())),
+        ("unit", words(&|row| row.number.unit.clone())),
+        ("measured", values(&|row| row.number.measured)),
+        ("predicted", values(&|row| row.number.predicted)),
+        ("error", values(&|row| row.number.error)),
+    ];
+    let rest = rest.map(|(name, column)| (name.to_owned(), column));
+    swept.chain(rest).collect()
+}
+
 /// The table as CSV, all digits, empty where there is no number.
 pub(crate) fn csv(paths: &[String], found: &[Found]) -> Result<Vec<u8>, Failure> {
+    let columns = columns(paths, found);
     let mut writer = csv::Writer::from_writer(Vec::new());
-    let mut write = |row: Vec<String>| writer.write_record(row).map_err(Failure::cannot_run);
-    let columns = [
-        "point",
-        "plane",
-        "class",
-        "verdict",
-        "p_value",
-        "relative_error",
-        "noise_limit",
-        "quantity",
-        "unit",
-        "measured",
-        "predicted",
-        "error",
-    ];
-    write(
-        paths
-            .iter()
-            .cloned()
-            .chain(columns.map(str::to_owned))
-            .collect(),
-    )?;
-    for at in found {
-        for plane in at.planes() {
-            for number in numbers(plane) {
-                let mut row: Vec<String> = at.point.iter().map(|(_, x)| x.to_string()).collect();
-                row.push(at.folder.clone());
-                let words = ["name", "class", "verdict"].map(|key| plane[key].as_str());
-                row.extend(words.map(|word| word.unwrap_or_default().to_owned()));
-                let shares = ["p_value", "relative_error", "noise_limit"];
-                row.extend(shares.map(|key| digits(plane[key].as_f64())));
-                row.extend([number.quantity, number.unit]);
-                row.extend([number.measured, number.predicted, number.error].map(digits));
-                write(row)?;
-            }
-        }
+    let names = columns.iter().map(|(name, _)| name);
+    writer.write_record(names).map_err(Failure::cannot_run)?;
+    let count = columns.first().map_or(0, |(_, column)| match column {
+        Column::Words(words) => words.len(),
+        Column::Numbers(numbers) => numbers.len(),
+    });
+    for row in 0..count {
+        let cells = columns.iter().map(|(_, column)| match column {
+            Column::Words(words) => words[row].clone(),
+            Column::Numbers(numbers) => numbers[row].map_or(String::new(), |x| format!("{x:?}")),
+        });
+        writer.write_record(cells).map_err(Failure::cannot_run)?;
     }
     writer.into_inner().map_err(Failure::cannot_run)
 }
 
-fn digits(number: Option<f64>) -> String {
-    number.map_or(String::new(), |x| format!("{x:?}"))
+/// The same as Parquet: strings, and doubles that are null where there is no number.
+pub(crate) fn parquet(paths: &[String], found: &[Found]) -> Result<Vec<u8>, Failure> {
+    written(&columns(paths, found)).map_err(Failure::cannot_run)
+}
+
+fn written(columns: &[(String, Column)]) -> Result<Vec<u8>, ParquetError> {
+    let field = |(name, column): &(String, Column)| {
+        let field = match column {
+            Column::Words(_) => Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
+                .with_logical_type(Some(LogicalType::String))
+                .with_repetition(Repetition::REQUIRED),
+            Column::Numbers(_) => Type::primitive_type_builder(name, Physical::DOUBLE)
+                .with_repetition(Repetition::OPTIONAL),
+        };
+        field.build().map(Arc::new)
+    };
+    let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
+    let schema = Type::group_type_builder("sweep")
+        .with_fields(fields)
+        .build()?;
+    let properties = WriterProperties::builder().set_created_by("etendue".to_owned());
+    let mut writer =
+        SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties.build()))?;
+    let mut group = writer.next_row_group()?;
+    for (_, column) in columns {
+        let Some(mut to) = group.next_column()? else {
+            break;
+        };
+        match column {
+            Column::Words(words) => {
+                let words: Vec<ByteArray> = words.iter().map(|word| word.as_str().into()).collect();
+                to.typed::<ByteArrayType>()
+                    .write_batch(&words, None, None)?;
+            }
+            Column::Numbers(numbers) => {
+                let values: Vec<f64> = numbers.iter().flatten().copied().collect();
+                let levels: Vec<i16> = numbers.iter().map(|x| i16::from(x.is_some())).collect();
+                to.typed::<DoubleType>()
+                    .write_batch(&values, Some(&levels), None)?;
+            }
+        }
+        to.close()?;
+    }
+    group.close()?;
+    writer.into_inner()
 }

@@ -11,7 +11,7 @@ use base64::Engine;
 use etendue_field::Side;
 use etendue_figures::{
     Axis, Bars, Column, Comparison, Figure, Guide, Picture, PlaneMark, Plate, PlateRow, Quantity,
-    Scale, Section, Segment, SegmentKind, Strip, comparison, plate, strip,
+    Scale, Section, Segment, SegmentKind, Strip, Style, comparison, plate, strip,
 };
 use ndarray::{Array2, ArrayView2};
 
@@ -137,7 +137,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
             slope: -1.0,
         }],
     };
-    strip(&Strip {
+    let path = Strip {
         title: "The path",
         note: "",
         section,
@@ -145,8 +145,8 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         light_field: Quantity::new("*L*", "W m⁻² sr⁻¹"),
         spectrum: Quantity::new("|*S*|^{2}", "W²"),
         floor: -60.0,
-    })
-    .unwrap()
+    };
+    strip(&path, &Style::default()).unwrap()
 }
 
 /// One bright cell at high x and high y of a 5 × 3 array.
@@ -185,7 +185,7 @@ fn plate_of(count: usize, values: ArrayView2<'_, f64>, ends: fn(usize) -> [f64; 
         pictures: (0..count).map(picture).collect(),
     };
     let some = |value: f64| vec![Some(value); count];
-    plate(&Plate {
+    let rows = Plate {
         title: "A plate",
         note: "and a note below it",
         heads: (0..count)
@@ -210,6 +210,6 @@ fn plate_of(count: usize, values: ArrayView2<'_, f64>, ends: fn(usize) -> [f64; 
             errors: some(0.2),
             predicted: some(1.4),
         }),
-    })
-    .unwrap()
+    };
+    plate(&rows, &Style::default()).unwrap()
 }

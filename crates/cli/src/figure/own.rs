@@ -1,0 +1,146 @@
+//! Figures of the user's scenes: one along its path, or several side by side at a plane.
+
+use crate::args::{FigureArgs, SceneArgs};
+use crate::failure::Failure;
+use crate::figure::Subject;
+use crate::figure::recipe::Taken;
+use crate::figure::rows::{Seen, compared, feet};
+use crate::{load, warnings};
+use etendue_figures::{Figure, Plate};
+use etendue_scene::Scene;
+use std::path::{Path, PathBuf};
+
+/// Whether a name on the command line is that of a scene file.
+pub(super) fn is_scene(name: &str) -> bool {
+    let ending = Path::new(name).extension();
+    ending.is_some_and(|ending| ending == "ron" || ending == "json")
+}
+
+/// The figure of the scenes named on the command line.
+pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
+    if let Some(name) = args.names.iter().find(|name| !is_scene(name)) {
+        let message = format!(
+            "{name} is no scene file, and beside scene files there is nothing else: they are one figure"
+        );
+        return Err(Failure::bad_input(message));
+    }
+    let mut scenes: Vec<Scene> = Vec::new();
+    let mut inputs: Vec<PathBuf> = Vec::new();
+    for name in &args.names {
+        let scene = SceneArgs {
+            path: PathBuf::from(name),
+            set: args.set.clone(),
+        };
+        let found = load::scene(&scene, |run| {
+            run.photons = args.quality.photons(run.photons);
+        })?;
+        if scenes.iter().any(|scene| scene.name == found.name) {
+            let message = format!(
+                "two scenes are named {}: give one file another name",
+                found.name
+            );
+            return Err(Failure::bad_input(message));
+        }
+        warnings::tell(&found, args.quiet);
+        inputs.extend(load::inputs(&scene, &found));
+        scenes.push(found);
+    }
+    let planes = planes(&scenes, args.plane.as_deref())?;
+    let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
+    let (name, listed) = (names.join("-"), names.join(", "));
+    let about = if planes.is_empty() {
+        format!("the light field along the path of {listed}")
+    } else {
+        format!("{listed} side by side")
+    };
+    Ok(Subject {
+        name,
+        about,
+        arguments: arguments(args),
+        scenes,
+        is_own: true,
+        texts: Vec::new(),
+        inputs,
+        has_table: false,
+        also: &[],
+        draw: if planes.is_empty() {
+            |taken| taken.strip()
+        } else {
+            side_by_side
+        },
+        planes,
+    })
+}
+
+/// The plane of each scene that is shown; none where all of one scene are.
+fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure> {
+    if scenes.len() == 1 && asked.is_none() {
+        return Ok(Vec::new());
+    }
+    let plane = |scene: &Scene| {
+        let names: Vec<&str> = scene
+            .planes
+            .iter()
+            .map(|plane| plane.name.as_str())
+            .collect();
+        let name = asked.or(names.last().copied()).unwrap_or_default();
+        if names.contains(&name) {
+            return Ok(name.to_owned());
+        }
+        let message = format!(
+            "{} has no plane {name}; it has {}",
+            scene.name,
+            names.join(", ")
+        );
+        Err(Failure::bad_input(message))
+    };
+    scenes.iter().map(plane).collect()
+}
+
+/// What stands behind `etendue figure` to make it again.
+fn arguments(args: &FigureArgs) -> String {
+    let mut words: Vec<String> = args.names.iter().map(|name| shell_word(name)).collect();
+    for (path, value) in &args.set {
+        words.extend(["--set".to_owned(), shell_word(&format!("{path}={value}"))]);
+    }
+    if let Some(plane) = &args.plane {
+        words.extend(["--plane".to_owned(), shell_word(plane)]);
+    }
+    words.join(" ")
+}
+
+/// A word as a shell reads it.
+pub(super) fn shell_word(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=^,:+".contains(c);
+    if word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
+/// A plane of each scene, in one range of colors.
+fn side_by_side(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let seen = taken.shots.iter().zip(taken.planes);
+    let seen: Vec<Seen<'_>> = seen
+        .map(|(shot, plane)| Seen::at(shot, plane))
+        .collect::<Result<_, _>>()?;
+    let heads = taken
+        .shots
+        .iter()
+        .map(|shot| crate::table::spaced(&shot.scene.name));
+    let mut names: Vec<String> = taken
+        .planes
+        .iter()
+        .map(|name| crate::table::spaced(name))
+        .collect();
+    names.dedup();
+    taken.plate(&Plate {
+        title: &format!("At {}", names.join(", ")),
+        note: "Spectra are means over azimuths.",
+        heads: heads.collect(),
+        rows: compared(&seen, true),
+        feet: feet(&seen),
+        bars: None,
+    })
+}

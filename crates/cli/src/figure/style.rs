@@ -1,0 +1,38 @@
+//! The looks of figures, from a file.
+
+use crate::failure::Failure;
+use etendue_figures::Style;
+use etendue_scene::{limits, read_file};
+use std::path::Path;
+
+/// Reads a style.
+pub(super) fn read(path: &Path) -> Result<Style, Failure> {
+    let fault =
+        |why: &dyn std::fmt::Display| Failure::bad_input(format!("{}: {why}", path.display()));
+    let bytes =
+        read_file(path, limits::FILE_BYTES).map_err(|e| fault(&format!("cannot be read: {e}")))?;
+    let style: Style = ron::Options::default()
+        .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
+        .from_bytes(&bytes)
+        .map_err(|e| fault(&e))?;
+    let [least, most] = Style::WIDTHS;
+    if !(least..=most).contains(&style.width) {
+        return Err(fault(&format!(
+            "width: {} is not allowed; allowed: {least} to {most} inches",
+            style.width
+        )));
+    }
+    if let Some(floor) = style
+        .floor
+        .filter(|floor| !(LOWEST..=HIGHEST).contains(floor))
+    {
+        return Err(fault(&format!(
+            "floor: {floor} is not allowed; allowed: {LOWEST} to {HIGHEST} dB"
+        )));
+    }
+    Ok(style)
+}
+
+/// Lower ends of the colors of spectra, dB: below the noise of any number of photons, and where something is seen.
+const LOWEST: f64 = -200.0;
+const HIGHEST: f64 = -1.0;
