@@ -77,15 +77,21 @@ pub(crate) fn attack(seeds: &[String], dice: &mut Dice) -> Attack {
 /// The name of a scene file.
 pub(crate) const SCENE: &str = "scene.ron";
 
-/// An attack on the scene file among these files: checked, and once in eight times run.
+/// An attack on the scene file among these files: checked, and once in eight times run, or swept, or drawn as a figure.
 pub(crate) fn on_scene(files: Folder, dice: &mut Dice) -> Attack {
     let words = |line: &str| line.split_whitespace().map(str::to_owned).collect();
+    let run = *dice.pick(&[
+        "run scene.ron --photons 2000",
+        "run scene.ron --photons 2000",
+        "sweep scene.ron --photons 2000 --set run.seed=1,2 --out out",
+        "figure scene.ron --set run.photons=16000 --quality draft --out out",
+    ]);
     // Few azimuths: it is the values that may break something, not their number.
-    let run = "run scene.ron --photons 2000 --quiet --threads 2 --set frequencies.azimuths=2";
+    let run = format!("{run} --quiet --threads 2 --set frequencies.azimuths=2");
     Attack {
         files,
         arguments: words("check scene.ron"),
-        then: dice.one_in(8).then(|| words(run)),
+        then: dice.one_in(8).then(|| words(&run)),
         sound: None,
         summary: None,
     }

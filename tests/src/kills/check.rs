@@ -27,7 +27,7 @@ pub(super) fn state(files: &Folder, index: &str) -> State {
 }
 
 fn whole(files: &Folder, index: &str, bytes: &[u8]) -> Result<(), String> {
-    for (name, hash) in listed(bytes).ok_or(format!("{index} lists no files"))? {
+    for (name, hash) in listed(index, bytes).ok_or(format!("{index} lists no files"))? {
         match files.get(&name) {
             Some(Some(bytes)) if *blake3::hash(bytes).to_hex() == *hash => (),
             Some(Some(_)) => return Err(format!("{name} is not what {index} lists")),
@@ -41,11 +41,14 @@ fn whole(files: &Folder, index: &str, bytes: &[u8]) -> Result<(), String> {
     }
 }
 
-/// The names and hashes that an index lists.
-pub(super) fn listed(index: &[u8]) -> Option<Vec<(String, String)>> {
-    let tree: Value = serde_json::from_slice(index).ok()?;
+/// The names and hashes that an index lists, which lies beside them.
+pub(super) fn listed(index: &str, bytes: &[u8]) -> Option<Vec<(String, String)>> {
+    let beside = index.rfind('/').map_or("", |at| &index[..=at]);
+    let tree: Value = serde_json::from_slice(bytes).ok()?;
     let pairs = tree.get("files")?.as_object()?.iter();
-    let pair = |(name, hash): (&String, &Value)| Some((name.clone(), hash.as_str()?.to_owned()));
+    let pair = |(name, hash): (&String, &Value)| {
+        Some((format!("{beside}{name}"), hash.as_str()?.to_owned()))
+    };
     pairs.map(pair).collect()
 }
 

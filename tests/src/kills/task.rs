@@ -16,17 +16,28 @@ pub(super) enum Verb {
     Measure,
     Predict,
     Compare,
+    Sweep,
+    Figure,
 }
 
 impl Verb {
-    pub(super) const ALL: [Self; 4] = [Self::Run, Self::Measure, Self::Predict, Self::Compare];
+    pub(super) const ALL: [Self; 6] = [
+        Self::Run,
+        Self::Measure,
+        Self::Predict,
+        Self::Compare,
+        Self::Sweep,
+        Self::Figure,
+    ];
 
-    /// Its index.
+    /// Its index, in the folder that it was told.
     pub(super) fn index(self) -> &'static str {
         match self {
             Self::Run | Self::Compare => "summary.json",
             Self::Measure => "measurement.json",
             Self::Predict => "prediction.json",
+            Self::Sweep => "sweep.json",
+            Self::Figure => "scene/figure.json",
         }
     }
 
@@ -40,6 +51,10 @@ impl Verb {
             Self::Compare => format!(
                 "compare --measured in/{} --predicted in/p --out out --quiet --threads 2",
                 if seed == EARLIER { "a" } else { "b" }
+            ),
+            Self::Sweep => format!("sweep out/scene.ron --set light.radiance=1,2 {ending}"),
+            Self::Figure => format!(
+                "figure out/scene.ron --set run.seed={seed} --quality draft --out out --quiet --threads 2"
             ),
         })
     }

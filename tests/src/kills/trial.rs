@@ -2,7 +2,7 @@
 
 use super::check::{self, NO_HASH, State};
 use super::disk::{FullDisk, Mount, limited};
-use super::task::Task;
+use super::task::{Task, Verb};
 use crate::hostile::child;
 use crate::hostile::dice::Dice;
 use crate::hostile::folder::{self, Folder};
@@ -171,17 +171,20 @@ impl Bench<'_> {
         let files = folder::read(&place.join("out"))?;
         judge(task, &files, "after the next run", findings);
         let index = files.get(task.verb.index()).cloned().flatten();
-        let listed = check::listed(&index.unwrap_or_default()).unwrap_or_default();
+        let listed = check::listed(task.verb.index(), &index.unwrap_or_default());
+        let listed = listed.unwrap_or_default();
         let own = [task.verb.index(), "timing.json"];
         let belongs = |name: &str| {
             own.contains(&name)
+                // Runs of a sweep are kept for the next, each as a result of its own.
+                || (task.verb == Verb::Sweep && name.starts_with("points/"))
                 || task.foreign.contains_key(name)
                 || listed.iter().any(|(known, _)| known == name)
         };
         let mut stray = files.iter().filter(|(_, bytes)| bytes.is_some());
         if let Some((name, _)) = stray.find(|(name, _)| !belongs(name)) {
             findings.push((Finding::Leftover, format!("{name} is left over")));
-        } else if let Some(name) = files.keys().find(|name| name.contains(".etendue")) {
+        } else if let Some(name) = files.keys().find(|name| is_unfinished(task, name)) {
             findings.push((Finding::Leftover, format!("{name} is left over")));
         }
         Ok(())
@@ -192,7 +195,7 @@ impl Bench<'_> {
         let place = self.at.join("trial");
         let out = place.join("out");
         let index = fs::read(out.join(task.verb.index())).unwrap_or_default();
-        let listed = check::listed(&index).unwrap_or_default();
+        let listed = check::listed(task.verb.index(), &index).unwrap_or_default();
         let mut theirs = listed.iter().map(|(name, _)| name);
         let Some(name) = theirs.find(|name| !task.foreign.contains_key(*name)) else {
             return Ok(());
@@ -209,6 +212,12 @@ impl Bench<'_> {
         }
         Ok(())
     }
+}
+
+/// Whether this is what a writer that has ended leaves. A point of a sweep is cleared when it is run again.
+fn is_unfinished(task: &Task, name: &str) -> bool {
+    let is_point = task.verb == Verb::Sweep && name.starts_with("points/");
+    name.contains(".etendue") && !is_point
 }
 
 /// Size of a disk that holds what is there, and some of what comes.
