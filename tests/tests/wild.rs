@@ -199,6 +199,7 @@ fn scenes_that_were_wrong_do_not_fail() {
     use Class::{Exact, FirstOrder, Reference};
     holds("fine_grating_floor", &[("leaving", Exact)]);
     holds("wide_gaussian_sky", &[("outgoing", FirstOrder)]);
+    holds("leaning_mesh", &[("on_it", FirstOrder)]);
     let legs = [("outgoing", FirstOrder), ("beyond", Reference)];
     holds("blocker_in_later_leg", &legs);
     let twice = [("outgoing", Reference), ("beyond", Reference)];

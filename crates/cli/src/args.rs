@@ -5,6 +5,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use etendue_scene::RunFile;
 use std::ops::Range;
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]
@@ -59,6 +60,7 @@ pub(crate) enum Command {
   etendue run scenes/fig9b.ron
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
+  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      again and again, until it is done
 
 Photon counts may be written 10_000_000, 1e7 or 2^23.
 Powers of two have least noise, in 64 batches or 2^m.")]
@@ -84,6 +86,14 @@ pub(crate) struct RunArgs {
     /// these do not do
     #[arg(long, value_name = "SHARE", value_parser = share)]
     pub(crate) target_error: Option<f64>,
+
+    /// Go on from the batches that a run of the same command has left; several processes may share the work
+    #[arg(long, conflicts_with_all = ["target_error", "expect"])]
+    pub(crate) resume: bool,
+
+    /// Begin no more batches after this time, such as 90s, 30m or 1h 30m; what is done is kept for --resume
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
+    pub(crate) time: Option<Duration>,
 
     /// What else to keep
     #[arg(long, value_name = "WHAT", value_delimiter = ',')]
@@ -341,9 +351,9 @@ pub(crate) struct FigureArgs {
     #[arg(long, value_name = "DIR", default_value = crate::figure::FOLDER)]
     pub(crate) out: PathBuf,
 
-    /// Looks, in RON; each field may be left out: (titles: false, width: 3.33, floor: -40, palette: Viridis).
-    /// Without titles notes are left out too; width is that of the page in inches, 3.3 to 7; floor that of spectra
-    /// in dB; palettes are Inferno, Magma, Viridis and Cividis
+    /// Looks, in RON; each field may be left out: (titles: false, scene: false, verdicts: false, width: 3.33,
+    /// floor: -40, palette: Viridis). Titles go with their notes; the scene is the drawing above its planes; width is
+    /// that of the page in inches, 3.3 to 7; floor that of spectra in dB; palettes are Inferno, Magma, Viridis and Cividis
     #[arg(long, value_name = "FILE")]
     pub(crate) style: Option<PathBuf>,
 

@@ -18,12 +18,12 @@ use crate::results::sealed::json;
 use crate::results::stored::VERSION;
 use crate::results::{FIGURE, Plan, Results};
 use crate::threads::on_threads;
+use crate::values::shell_word;
 use crate::{progress, say};
 use clap::ValueEnum;
 use etendue_compare::{HighFrequencyShare, Verdict};
 use etendue_figures::{Figure, Style};
 use etendue_scene::{Scene, SceneFile};
-use own::shell_word;
 use recipe::{RECIPES, Recipe, Taken, Text};
 use serde::Serialize;
 use shot::Shot;
@@ -151,9 +151,7 @@ fn of_paper(args: &FigureArgs) -> Result<Vec<Subject>, Failure> {
         recipes.collect::<Result<_, _>>()?
     };
     let subjects = recipes.into_iter();
-    subjects
-        .map(|recipe| recipe.subject(args.quality))
-        .collect()
+    subjects.map(|recipe| recipe.subject()).collect()
 }
 
 /// `figure.json`, all but the hashes of the files.
@@ -220,7 +218,10 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: Subject) -> Result<Ver
     let all = shots
         .iter()
         .flat_map(|shot| shot.planes.iter().map(move |plane| (shot, plane)));
-    let all: Vec<_> = all.map(|(shot, plane)| (shot, &plane.report)).collect();
+    // Of a user's scenes those planes count that are shown.
+    let is_shown = |name: &String| subject.planes.is_empty() || subject.planes.contains(name);
+    let all = all.map(|(shot, plane)| (shot, &plane.report));
+    let all: Vec<_> = all.filter(|(_, report)| is_shown(&report.name)).collect();
     let of_scenes = shots.iter().map(|shot| (shot.scene.name.as_str(), shot));
     let styled = args.style.iter();
     let styled = styled.map(|path| format!(" --style {}", shell_word(&path.to_string_lossy())));
@@ -260,6 +261,14 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: Subject) -> Result<Ver
         })
     })?;
     finished.tell_replaced(args.quiet);
+    for (shot, report) in all.iter().filter(|_| !args.quiet) {
+        if let Some(reason) = &report.undecided {
+            say(&format!(
+                "{}, {}: undecided: {reason}",
+                shot.scene.name, report.name
+            ));
+        }
+    }
     let verdicts = all.iter().map(|(_, report)| report.verdict);
     Ok(verdicts.fold(Verdict::Pass, Verdict::and))
 }

@@ -19,6 +19,7 @@ mod figure;
 mod inquiry;
 mod interrupt;
 mod judge;
+mod lasting;
 mod limits;
 mod load;
 mod machine;

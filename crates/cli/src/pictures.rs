@@ -89,9 +89,12 @@ pub(crate) fn plane(
     let difference = radial_z(plane);
     let spectrum = Comparison {
         title: &format!(
-            "{}: radial spectrum, mean over {} azimuths",
+            "{}: power spectrum, {}",
             spaced(name),
-            plane.measured.grid.azimuths
+            match plane.measured.grid.azimuths {
+                1 => "at azimuth 0".to_owned(),
+                azimuths => format!("mean over {azimuths} azimuths"),
+            }
         ),
         note: &note,
         x: rho,
@@ -176,9 +179,10 @@ pub(crate) fn strip_of(
             scene.name
         ),
         note: &format!(
-            "{} photons, seed {}; spectra are means over azimuths.{dashed}",
+            "{} photons, seed {}; spectra are {}.{dashed}",
             grouped(photons),
-            scene.run.seed
+            scene.run.seed,
+            spectra_are(scene.planes.iter())
         ),
         section: &section,
         columns,
@@ -187,6 +191,16 @@ pub(crate) fn strip_of(
         floor: FLOOR,
     };
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
+}
+
+/// What is drawn of the spectra of planes, in words.
+pub(crate) fn spectra_are<'a>(planes: impl Iterator<Item = &'a VirtualPlane>) -> &'static str {
+    let counts: Vec<usize> = planes.map(|plane| plane.grid.azimuths).collect();
+    match counts.iter().filter(|count| **count == 1).count() {
+        0 => "means over azimuths",
+        slices if slices == counts.len() => "those at azimuth 0",
+        _ => "means over azimuths, or those at azimuth 0 where there is one",
+    }
 }
 
 /// What the dashed lines of a strip are, in words.

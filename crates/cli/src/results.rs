@@ -8,6 +8,7 @@ pub(crate) mod arrays;
 pub(crate) mod batches;
 mod claim;
 mod commit;
+pub(crate) mod kept;
 mod lock;
 pub(crate) mod npz;
 pub(crate) mod output;
@@ -24,6 +25,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
+use std::time::Duration;
 
 /// The index of a comparison.
 pub(crate) const SUMMARY: &str = "summary.json";
@@ -48,7 +50,7 @@ const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
 /// What a command is going to write, and what it reads.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Plan {
     pub(crate) index: &'static str,
     /// Files beside the index, relative to the folder, with `/`.
@@ -124,6 +126,18 @@ impl Results {
         interrupt::begin(unfinished.to_vec(), || fs::create_dir_all(&staged))
             .map_err(|e| Failure::write(&staged, e))?;
         Ok(results)
+    }
+
+    /// The same, but waits while another process writes there.
+    pub(crate) fn claim_in_turn(folder: &Path, plan: Plan) -> Result<Self, Failure> {
+        loop {
+            match Self::claim(folder, plan.clone()) {
+                Err(failure) if failure.message.ends_with(lock::BUSY) => {
+                    std::thread::sleep(Duration::from_millis(100));
+                }
+                ended => return ended,
+            }
+        }
     }
 
     /// Writes a file that the index lists.

@@ -2,16 +2,18 @@ use crate::args::{RunArgs, Save};
 use crate::case::Case;
 use crate::conclude::{Ending, conclude, plan};
 use crate::failure::Failure;
-use crate::measure::measured;
+use crate::lasting::{self, Lasting};
 use crate::predict::predicted;
-use crate::results::stored::check_earlier;
+use crate::results::kept::Kept;
+use crate::results::stored::{check_earlier, summary_of};
 use crate::results::summary::Stopwatch;
-use crate::results::{Results, SUMMARY};
+use crate::results::{Plan, Results, SUMMARY};
 use crate::threads::on_threads;
 use crate::{field, limits, load, method, photons, say, target, warnings};
 use etendue_compare::Applicability;
 use etendue_scene::Scene;
 use std::path::Path;
+use std::time::Instant;
 
 /// `etendue run`: returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
@@ -31,8 +33,56 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
             field::check_memory(&scene)?;
         }
         check_earlier(&folder, SUMMARY, &scene, args.force.force)?;
-        let results = Results::claim(&folder, plan)?;
-        stages(args, scene, theories, results)
+        let begin = |plan: Plan| {
+            if args.resume {
+                Results::claim_in_turn(&folder, plan)
+            } else {
+                Results::claim(&folder, plan)
+            }
+        };
+        let mut results = Some(begin(plan.clone())?);
+        if args.resume {
+            if let Some(code) = finished(&folder, &scene, args) {
+                return Ok(code);
+            }
+            // Others have a part in it: it is nobody's until it is measured.
+            results = None;
+        }
+        stages(
+            args,
+            scene,
+            theories,
+            Place {
+                folder: &folder,
+                plan,
+                results,
+            },
+        )
+    })
+}
+
+/// Where a result is going to be.
+struct Place<'a> {
+    folder: &'a Path,
+    plan: Plan,
+    /// `None` where several processes measure.
+    results: Option<Results>,
+}
+
+/// The exit code of a run that is done, whose verdict is told once more.
+fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
+    let summary = summary_of(folder, scene, args.photons.method)?;
+    let verdict = summary["verdict"].as_str()?;
+    if !args.quiet {
+        say(&format!(
+            "verdict: {verdict}; the run is done: {}",
+            folder.display()
+        ));
+    }
+    Some(match verdict {
+        "pass" => 0,
+        "fail" => 1,
+        _ => 4,
     })
 }
 
@@ -40,15 +90,20 @@ fn stages(
     args: &RunArgs,
     mut scene: Scene,
     theories: Vec<Applicability>,
-    results: Results,
+    place: Place<'_>,
 ) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
     if args.save.contains(&Save::Photons) && !args.quiet {
         say(&photons::announcement(&scene));
     }
     let method = args.photons.method;
+    let kept = Kept::of(place.folder, &scene, method);
+    let lasting = Lasting {
+        resume: args.resume,
+        until: args.time.and_then(|time| Instant::now().checked_add(time)),
+    };
     let measurement = match args.target_error {
-        None => measured(&scene, method, 0..scene.run.batches, args.quiet)?,
+        None => lasting::measured(&scene, method, &kept, lasting, args.quiet)?,
         Some(target) => {
             let target = (target, args.photons.photons);
             target::reached(&mut scene, method, target, args.quiet)?
@@ -64,10 +119,22 @@ fn stages(
         measurement,
         predictions,
     };
+    let results = match place.results {
+        Some(results) => results,
+        None => {
+            let results = Results::claim_in_turn(place.folder, place.plan)?;
+            if let Some(code) = finished(place.folder, &case.scene, args) {
+                return Ok(code);
+            }
+            results
+        }
+    };
     let ending = Ending {
         save: &args.save,
         expect: args.expect,
         quiet: args.quiet,
     };
-    conclude(&case, &ending, results, watch)
+    let code = conclude(&case, &ending, results, watch)?;
+    kept.remove();
+    Ok(code)
 }

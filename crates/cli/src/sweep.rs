@@ -10,9 +10,8 @@ use crate::args::{SceneArgs, SweepArgs};
 use crate::case::Case;
 use crate::conclude::judged;
 use crate::failure::Failure;
-use crate::results::sealed;
 use crate::results::sealed::json;
-use crate::results::stored::{VERSION, check_earlier};
+use crate::results::stored::{VERSION, check_earlier, summary_of};
 use crate::results::summary::Summary;
 use crate::results::{MOST_INDEX, Plan, Results, SUMMARY, SWEEP};
 use crate::table::aligned;
@@ -161,7 +160,7 @@ fn run_all<'a>(
         bar.set_message(shown(&point));
         let name = format!("points/{}", name_of(scene, args));
         let there = folder.join(&name);
-        let summary = match earlier(&there, scene, args) {
+        let summary = match summary_of(&there, scene, args.photons.method) {
             Some(summary) => summary,
             None => run(args, scene, theories, &there, inputs)?,
         };
@@ -181,17 +180,6 @@ fn run_all<'a>(
 fn name_of(scene: &Scene, args: &SweepArgs) -> String {
     let what = format!("{} {}", scene.hash(), args.photons.method.words());
     blake3::hash(what.as_bytes()).to_hex()[..16].to_owned()
-}
-
-/// The summary of a run of this very scene, by the same method and version.
-fn earlier(folder: &Path, scene: &Scene, args: &SweepArgs) -> Option<Value> {
-    let bytes = read_file(&folder.join(SUMMARY), MOST_INDEX).ok()?;
-    let summary: Value = serde_json::from_slice(&bytes).ok()?;
-    let method = serde_json::to_value(args.photons.method).ok()?;
-    let same = summary["scene_hash"] == scene.hash()
-        && summary["version"] == VERSION
-        && summary["method"] == method;
-    (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
 /// Runs a scene, and leaves its summary in the folder.

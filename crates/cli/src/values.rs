@@ -162,9 +162,43 @@ pub(crate) fn shown(point: &Point) -> String {
     parts.collect::<Vec<_>>().join(", ")
 }
 
+/// The end of a path, by which its field is known: `Ggx` of `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` of `light.center.0`.
+pub(crate) fn short(path: &str) -> &str {
+    let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());
+    let name = path
+        .rsplit('.')
+        .position(|part| !is_number(part))
+        .unwrap_or(0);
+    let mut dots = path.rmatch_indices('.').map(|(at, _)| at + 1);
+    dots.nth(name).map_or(path, |at| &path[at..])
+}
+
+/// A word as a shell reads it.
+pub(crate) fn shell_word(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=^,:+".contains(c);
+    if word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', "'\\''"))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_field_is_known_by_the_end_of_its_path() {
+        for (path, name) in [
+            ("surfaces.0.event.Reflects.brdf.lobe.Ggx", "Ggx"),
+            ("light.center.0", "center.0"),
+            ("planes.0.at.Distance", "Distance"),
+            ("radiance", "radiance"),
+            ("0", "0"),
+        ] {
+            assert_eq!(short(path), name);
+        }
+    }
 
     fn values(text: &str) -> Option<Vec<f64>> {
         sweep(&format!("a.b={text}")).ok().map(|sweep| sweep.values)

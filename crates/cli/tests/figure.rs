@@ -149,7 +149,7 @@ fn own() -> tempfile::TempDir {
     write("narrow.ron", &narrow);
     write(
         "plain.ron",
-        "(titles: false, width: 3.33, floor: -30, palette: Viridis)",
+        "(titles: false, scene: false, width: 3.33, floor: -30, palette: Viridis)",
     );
     folder
 }
@@ -171,6 +171,7 @@ fn a_scene_of_ones_own_has_a_figure_of_its_path() {
     );
     assert_eq!(index["scene_files"]["wide"]["run"]["seed"], 7);
     assert_eq!(index["photons"]["wide"], 50_000);
+    assert_eq!(index["scene_files"]["wide"]["run"]["photons"], 400_000);
     let drawn = svg(path, "f/wide");
     assert!(drawn.contains("along the path") && drawn.contains("predicted"));
     let rho: Array1<f64> = array(&path.join("f/wide/figure.npz"), "wide.receiver.rho");
@@ -186,12 +187,12 @@ fn scenes_stand_side_by_side_at_a_plane() {
     let both = "figure wide.ron narrow.ron --quality draft --out f";
     assert_eq!(call(path, both).status.code(), Some(0));
     let drawn = svg(path, "f/wide-narrow");
-    for text in ["At receiver", ">wide<", ">narrow<"] {
+    for text in [">receiver<", ">wide<", ">narrow<"] {
         assert!(drawn.contains(text), "{text}");
     }
     let light = format!("{both} --plane light --force");
     assert_eq!(call(path, &light).status.code(), Some(0));
-    assert!(svg(path, "f/wide-narrow").contains("At light"));
+    assert!(svg(path, "f/wide-narrow-light").contains(">light<"));
 }
 
 #[test]
@@ -208,7 +209,8 @@ fn a_style_changes_how_a_figure_looks_and_not_its_numbers() {
         rest.split_once('"').unwrap().0.parse().unwrap()
     };
     assert_eq!([width(&usual), width(&plain)], [672, 320]);
-    assert!(usual.contains("along the path") && !plain.contains("along the path"));
+    assert!(usual.contains("along the path") && usual.contains("central ray"));
+    assert!(!plain.contains("along the path") && !plain.contains("central ray"));
     assert!(plain.contains(">−30<") && !plain.contains(">−40<"));
     let npz = |out: &str| fs::read(path.join(out).join("wide/figure.npz")).unwrap();
     assert_eq!(npz("a"), npz("b"));
@@ -241,6 +243,7 @@ fn what_makes_no_figure_is_refused() {
             ["wide has no plane leaving", "light, receiver"],
         ),
         ("lost.ron", ["cannot read lost.ron", ""]),
+        ("wide", ["did you mean wide.ron?", "scene files"]),
     ] {
         refused(path, &format!("figure {arguments} --out out"), &parts);
     }

@@ -89,7 +89,8 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
             svg.fitted(style, &plate.heads[column], room);
         }
         bottom = grid.draw(&mut svg, block, top)?;
-        bottom = feet(&mut svg, &plate.feet, &grid, block, bottom);
+        let verdicts: &[Vec<String>] = if style.verdicts { &plate.feet } else { &[] };
+        bottom = feet(&mut svg, verdicts, &grid, block, bottom);
     }
     if let Some(bars) = &plate.bars {
         let area = Area {

@@ -121,19 +121,25 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
     let grid = grid(strip, style);
     let room = inner + RIGHT - 8.0;
     let top = style.title(&mut svg, LEFT, room, strip.title, strip.note);
-    let area = strip
-        .section
-        .draw_above(&mut svg, [LEFT, top], [inner, CUT]);
+    let mut unseen = Svg::default();
+    let drawn = if style.scene { &mut svg } else { &mut unseen };
+    let area = strip.section.draw_above(drawn, [LEFT, top], [inner, CUT]);
     let cut = Cut::new(strip.section, area);
-    cut.draw(&mut svg);
-    let mut bottom = area.bottom();
-    let verdicts = strip.columns.iter().map(|column| column.verdict.clone());
+    cut.draw(drawn);
+    let mut bottom = if style.scene { area.bottom() } else { top };
+    let verdicts = strip.columns.iter().filter(|_| style.verdicts);
+    let verdicts = verdicts.map(|column| column.verdict.clone());
     let verdicts: Vec<Vec<String>> = verdicts.collect();
     for block in 0..grid.blocks() {
         // Lines to columns further down would cross those above: there numbers alone lead to them.
-        let heads = bottom + if grid.blocks() == 1 { LEADERS } else { 14.0 };
+        let heads = bottom
+            + if grid.blocks() == 1 && style.scene {
+                LEADERS
+            } else {
+                14.0
+            };
         for (column, middle, room) in grid.columns(block) {
-            if grid.blocks() == 1 {
+            if grid.blocks() == 1 && style.scene {
                 cut.leader(&mut svg, column, [middle, heads]);
             }
             cut.heading(&mut svg, column, [middle, heads], room);

@@ -10,6 +10,10 @@ use serde::{Deserialize, Serialize};
 pub struct Style {
     /// Whether titles, and the notes below them, are drawn. A paper has captions instead.
     pub titles: bool,
+    /// Whether the scene is drawn above its planes.
+    pub scene: bool,
+    /// Whether verdicts stand below their planes.
+    pub verdicts: bool,
     /// Largest width of the page, inches, [`Style::WIDTHS`]; as many pictures stand side by side as fit.
     pub width: f64,
     /// Lower end of the colors of spectra, in decibels, below 0; `None`: that of the figure.
@@ -23,6 +27,8 @@ impl Default for Style {
     fn default() -> Self {
         Self {
             titles: true,
+            scene: true,
+            verdicts: true,
             width: Self::WIDTHS[1],
             floor: None,
             palette: Palette::Inferno,

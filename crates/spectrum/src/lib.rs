@@ -43,7 +43,7 @@ pub use batch::{Batch, PlaneBatch};
 pub use etendue_field::transform::{Accumulator, SliceTransform};
 pub use histogram::ProjectionHistogram;
 pub use jackknife::Uncertain;
-pub use measure::{PROJECTION_BINS, measure};
+pub use measure::{PROJECTION_BINS, Watch, measure, measure_watched};
 pub use measurement::{Measurement, MergeError};
 pub use radial::{CrossPower, RadialPower};
 pub use ray_moments::{CovarianceEstimate, RayMoments, covariance};

@@ -24,6 +24,41 @@ pub fn measure(
     batches: Range<u32>,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Measurement {
+    let batches: Vec<u32> = batches.collect();
+    measure_watched(source, planes, &batches, &Told(progress))
+}
+
+/// What goes on while batches are measured, told and asked from several threads.
+pub trait Watch: Sync {
+    /// So many photons more are traced.
+    fn traced(&self, photons: u64);
+
+    /// Whether a batch is to be measured, asked when its turn comes.
+    fn wants(&self, _batch: u32) -> bool {
+        true
+    }
+
+    /// A batch is done.
+    fn done(&self, _batch: &Batch) {}
+}
+
+/// One that counts photons alone.
+struct Told<'a>(&'a (dyn Fn(u64) + Sync));
+
+impl Watch for Told<'_> {
+    fn traced(&self, photons: u64) {
+        (self.0)(photons);
+    }
+}
+
+/// [`measure`] of distinct batches in any order, of which those are left out that `watch` does not want.
+#[must_use]
+pub fn measure_watched(
+    source: &dyn PhotonSource,
+    planes: &[VirtualPlane],
+    batches: &[u32],
+    watch: &dyn Watch,
+) -> Measurement {
     let plans: Vec<_> = planes
         .iter()
         .map(|p| SliceTransform::new(&p.grid))
@@ -35,26 +70,31 @@ pub fn measure(
             .collect()
     };
     let part = |recorders: &mut Vec<Recorder<'_>>, index: u32, part: u32| {
-        measure_part(source, [index, part], recorders, progress)
+        measure_part(source, [index, part], recorders, &|photons| {
+            watch.traced(photons);
+        })
+    };
+    let whole = |own: &mut Vec<Recorder<'_>>, index: u32| {
+        let parts = source.parts(index);
+        if parts == 1 {
+            return Some(part(own, index, 0));
+        }
+        let parts = (0..parts).into_par_iter().with_max_len(1);
+        let parts = parts.map_init(recorders, |own, number| part(own, index, number));
+        let parts: Vec<Batch> = parts.collect();
+        parts.into_iter().reduce(|mut sum, part| {
+            sum.add(&part);
+            sum
+        })
     };
     let measured: Vec<Option<Batch>> = batches
-        .into_par_iter()
+        .par_iter()
         .with_max_len(1)
         .map_init(recorders, |own, index| {
-            if source.emitted(index) == 0 {
-                return None;
-            }
-            let parts = source.parts(index);
-            if parts == 1 {
-                return Some(part(own, index, 0));
-            }
-            let parts = (0..parts).into_par_iter().with_max_len(1);
-            let parts = parts.map_init(recorders, |own, number| part(own, index, number));
-            let parts: Vec<Batch> = parts.collect();
-            parts.into_iter().reduce(|mut sum, part| {
-                sum.add(&part);
-                sum
-            })
+            let emits = source.emitted(*index) > 0 && watch.wants(*index);
+            let batch = emits.then(|| whole(own, *index)).flatten();
+            batch.iter().for_each(|batch| watch.done(batch));
+            batch
         })
         .collect();
     Measurement::of(planes, measured.into_iter().flatten())

@@ -5,6 +5,9 @@ use crate::failure::Failure;
 use crate::figure::Subject;
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{Seen, compared, feet};
+use crate::pictures::spectra_are;
+use crate::table::{grouped, spaced};
+use crate::values::shell_word;
 use crate::{load, warnings};
 use etendue_figures::{Figure, Plate};
 use etendue_scene::Scene;
@@ -31,9 +34,7 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
             path: PathBuf::from(name),
             set: args.set.clone(),
         };
-        let found = load::scene(&scene, |run| {
-            run.photons = args.quality.photons(run.photons);
-        })?;
+        let found = load::scene(&scene, |_| ())?;
         if scenes.iter().any(|scene| scene.name == found.name) {
             let message = format!(
                 "two scenes are named {}: give one file another name",
@@ -47,11 +48,15 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
     }
     let planes = planes(&scenes, args.plane.as_deref())?;
     let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-    let (name, listed) = (names.join("-"), names.join(", "));
+    let at = args
+        .plane
+        .as_ref()
+        .map_or(String::new(), |plane| format!("-{plane}"));
+    let (name, listed) = (names.join("-") + &at, names.join(", "));
     let about = if planes.is_empty() {
         format!("the light field along the path of {listed}")
     } else {
-        format!("{listed} side by side")
+        format!("{listed} at {}", joined(&planes))
     };
     Ok(Subject {
         name,
@@ -109,38 +114,36 @@ fn arguments(args: &FigureArgs) -> String {
     words.join(" ")
 }
 
-/// A word as a shell reads it.
-pub(super) fn shell_word(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=^,:+".contains(c);
-    if word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
-}
-
 /// A plane of each scene, in one range of colors.
 fn side_by_side(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().zip(taken.planes);
     let seen: Vec<Seen<'_>> = seen
         .map(|(shot, plane)| Seen::at(shot, plane))
         .collect::<Result<_, _>>()?;
-    let heads = taken
+    let heads = taken.shots.iter().map(|shot| spaced(&shot.scene.name));
+    let photons: Vec<String> = taken
         .shots
         .iter()
-        .map(|shot| crate::table::spaced(&shot.scene.name));
-    let mut names: Vec<String> = taken
-        .planes
-        .iter()
-        .map(|name| crate::table::spaced(name))
+        .map(|shot| grouped(shot.photons))
         .collect();
-    names.dedup();
+    let note = format!(
+        "{} photons; spectra are {}.",
+        joined(&photons),
+        spectra_are(seen.iter().map(|seen| seen.plane))
+    );
     taken.plate(&Plate {
-        title: &format!("At {}", names.join(", ")),
-        note: "Spectra are means over azimuths.",
+        title: &joined(taken.planes),
+        note: &note,
         heads: heads.collect(),
         rows: compared(&seen, true),
         feet: feet(&seen),
         bars: None,
     })
+}
+
+/// Different words in their order, as people write them.
+fn joined(words: &[String]) -> String {
+    let mut words: Vec<String> = words.iter().map(|word| spaced(word)).collect();
+    words.dedup();
+    words.join(", ")
 }

@@ -9,7 +9,7 @@ use crate::figure::table1::operators;
 use crate::figure::{Quality, Subject, kernels};
 use crate::pictures;
 use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
-use etendue_scene::Scene;
+use std::path::Path;
 
 /// A figure: the scenes it is measured in, and how it is drawn.
 #[derive(Debug)]
@@ -31,21 +31,15 @@ pub(crate) struct Recipe {
 pub(crate) type Text = (&'static str, &'static str);
 
 impl Recipe {
-    /// Its scenes with as many photons as the quality asks for.
-    fn scenes(&self, quality: Quality) -> Result<Vec<Scene>, Failure> {
-        let scenes = self.scenes.iter();
-        scenes
-            .map(|(name, text)| resolved(name, text, &[], |n| quality.photons(n)))
-            .collect()
-    }
-
     /// The figure to be made.
-    pub(crate) fn subject(&'static self, quality: Quality) -> Result<Subject, Failure> {
+    pub(crate) fn subject(&'static self) -> Result<Subject, Failure> {
+        let scenes = self.scenes.iter();
+        let scenes = scenes.map(|(name, text)| resolved(name, text, &[], |photons| photons));
         Ok(Subject {
             name: self.name.to_owned(),
             about: self.about.to_owned(),
             arguments: self.name.to_owned(),
-            scenes: self.scenes(quality)?,
+            scenes: scenes.collect::<Result<_, _>>()?,
             is_own: false,
             texts: self.scenes.iter().chain(self.also).copied().collect(),
             inputs: Vec::new(),
@@ -256,8 +250,14 @@ pub(crate) fn named(name: &str) -> Result<&'static Recipe, Failure> {
     let mut recipes = RECIPES.iter();
     recipes.find(|recipe| recipe.name == name).ok_or_else(|| {
         let names: Vec<&str> = RECIPES.iter().map(|recipe| recipe.name).collect();
+        let file = format!("{name}.ron");
+        let meant = if Path::new(&file).is_file() {
+            format!(" (did you mean {file}?)")
+        } else {
+            String::new()
+        };
         let message = format!(
-            "no figure {name}; allowed: {}, all, or scene files, whose names end in .ron or .json",
+            "no figure {name}{meant}; allowed: {}, all, or scene files, whose names end in .ron or .json",
             names.join(", ")
         );
         Failure::bad_input(message)
@@ -275,7 +275,7 @@ mod tests {
     fn every_figure_fits_its_page_and_can_be_read() {
         for recipe in RECIPES {
             let quality = Quality::Sketch;
-            let subject = recipe.subject(quality).unwrap();
+            let subject = recipe.subject().unwrap();
             let shots = subject.scenes.iter().cloned();
             let shots = shots.map(|scene| Shot::take(scene, quality, true));
             let shots: Vec<Shot> = shots.collect::<Result<_, _>>().unwrap();

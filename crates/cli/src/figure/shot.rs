@@ -26,6 +26,8 @@ pub(crate) struct Shot {
 impl Shot {
     /// Runs a scene.
     pub(crate) fn take(mut scene: Scene, quality: Quality, quiet: bool) -> Result<Self, Failure> {
+        scene.run.photons = quality.photons(scene.run.photons);
+        scene.file.run.photons = scene.run.photons;
         for plane in &mut scene.planes {
             for axis in [&mut plane.grid.rho, &mut plane.grid.nu] {
                 *axis = FrequencyAxis {

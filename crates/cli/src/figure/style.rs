@@ -14,7 +14,7 @@ pub(super) fn read(path: &Path) -> Result<Style, Failure> {
     let style: Style = ron::Options::default()
         .with_default_extension(ron::extensions::Extensions::IMPLICIT_SOME)
         .from_bytes(&bytes)
-        .map_err(|e| fault(&e))?;
+        .map_err(|e| fault(&format!("{e}; a style is such as {EXAMPLE}")))?;
     let [least, most] = Style::WIDTHS;
     if !(least..=most).contains(&style.width) {
         return Err(fault(&format!(
@@ -32,6 +32,10 @@ pub(super) fn read(path: &Path) -> Result<Style, Failure> {
     }
     Ok(style)
 }
+
+/// Every field of a style.
+const EXAMPLE: &str =
+    "(titles: false, scene: false, verdicts: false, width: 3.33, floor: -40, palette: Viridis)";
 
 /// Lower ends of the colors of spectra, dB: below the noise of any number of photons, and where something is seen.
 const LOWEST: f64 = -200.0;

@@ -7,6 +7,7 @@ use crate::pictures::{light_field_axes, spectrum_axes};
 use crate::results::arrays::{radial_z, z};
 use crate::results::summary::Summary;
 use crate::table::{grouped, verdict_text};
+use crate::values::shell_word;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use etendue_compare::{PlaneComparison, PlaneReport, Prediction, Verdict};
@@ -128,8 +129,9 @@ pub(crate) fn data(
         Method::Photons => "",
         _ => " --method backward",
     };
+    let file = format!("{}.json", summary.scene);
     let provenance = format!(
-        "etendue {}, {} photons in {} batches, seed {}, α = {}\nscene hash {}\nthe scene below, as {name}.json: etendue run {name}.json --photons {} --seed {}{method}",
+        "etendue {}, {} photons in {} batches, seed {}, α = {}\nscene hash {}\nthe scene below, as {file}: etendue run {word} --photons {} --seed {}{method}",
         summary.version,
         grouped(summary.photons),
         summary.batches,
@@ -138,7 +140,7 @@ pub(crate) fn data(
         summary.scene_hash,
         summary.photons,
         summary.seed,
-        name = summary.scene,
+        word = shell_word(&file),
     );
     let run = Run {
         scene: &summary.scene,

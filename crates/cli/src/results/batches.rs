@@ -37,7 +37,18 @@ pub(crate) fn names(planes: &[VirtualPlane]) -> Vec<String> {
 
 /// Writes all batches of a measurement.
 pub(crate) fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Failure> {
-    let flux = measurement.batches().map(|batch| {
+    let batches: Vec<&Batch> = measurement.batches().collect();
+    let files = files(measurement.planes(), &batches)?;
+    let mut files = files.into_iter();
+    files.try_for_each(|(name, bytes)| results.write(&name, &bytes))
+}
+
+/// The files of some batches at `planes`: name and content of each.
+pub(crate) fn files(
+    planes: &[VirtualPlane],
+    batches: &[&Batch],
+) -> Result<Vec<(String, Vec<u8>)>, Failure> {
+    let flux = batches.iter().map(|batch| {
         let Ledger {
             emitted,
             absorbed,
@@ -47,23 +58,21 @@ pub(crate) fn write(results: &mut Results, measurement: &Measurement) -> Result<
         [emitted, absorbed, escaped, stopped]
     });
     let flux = Array2::from(flux.collect::<Vec<_>>());
-    let ledger = numbered(measurement)?.add("ledger", &flux)?.bytes()?;
-    results.write(LEDGER, &ledger)?;
-    for (index, plane) in measurement.planes().iter().enumerate() {
-        results.write(&file_of(plane), &at_plane(measurement, index)?)?;
-    }
-    Ok(())
+    let ledger = numbered(batches)?.add("ledger", &flux)?.bytes()?;
+    let each = planes.iter().enumerate();
+    let each = each.map(|(i, plane)| Ok((file_of(plane), at_plane(plane, batches, i)?)));
+    each.chain([Ok((LEDGER.to_owned(), ledger))]).collect()
 }
 
 /// A file that says which batches its rows are.
-fn numbered(measurement: &Measurement) -> Result<Npz, Failure> {
-    let numbers: Array1<u32> = measurement.batches().map(|b| b.index).collect();
-    let emitted: Array1<u64> = measurement.batches().map(|b| b.emitted).collect();
+fn numbered(batches: &[&Batch]) -> Result<Npz, Failure> {
+    let numbers: Array1<u32> = batches.iter().map(|b| b.index).collect();
+    let emitted: Array1<u64> = batches.iter().map(|b| b.emitted).collect();
     Npz::new().add("batch", &numbers)?.add("emitted", &emitted)
 }
 
-fn at_plane(measurement: &Measurement, index: usize) -> Result<Vec<u8>, Failure> {
-    let each = || measurement.at_plane(index);
+fn at_plane(plane: &VirtualPlane, batches: &[&Batch], index: usize) -> Result<Vec<u8>, Failure> {
+    let each = || batches.iter().map(|batch| &batch.planes[index]);
     let tally = each().map(|batch| {
         let PlaneTally {
             crossed,
@@ -73,8 +82,7 @@ fn at_plane(measurement: &Measurement, index: usize) -> Result<Vec<u8>, Failure>
         [crossed, inside, outside]
     });
     let tally = Array2::from(tally.collect::<Vec<_>>());
-    let grid = measurement.planes()[index].grid;
-    let npz = numbered(measurement)?.add("tally", &tally)?;
+    let npz = numbered(batches)?.add("tally", &tally)?;
     let npz = add_stacked(npz, "slices", each().map(|b| b.slices.half.view()))?;
     let npz = add_stacked(
         npz,
@@ -83,7 +91,9 @@ fn at_plane(measurement: &Measurement, index: usize) -> Result<Vec<u8>, Failure>
     )?;
     let moments = each().map(|batch| batch.moments.0);
     let moments = Array2::from(moments.collect::<Vec<_>>());
-    npz.add("moments", &moments)?.add_half_axes(&grid)?.bytes()
+    npz.add("moments", &moments)?
+        .add_half_axes(&plane.grid)?
+        .bytes()
 }
 
 /// Adds arrays of one shape as one, with an axis before theirs.
@@ -109,12 +119,21 @@ pub(crate) fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Mea
     if held.seed != seed {
         return Err(stored.fault(format!("seed {}; that of its scene is {seed}", held.seed)));
     }
-    let mut file = stored.npz(LEDGER)?;
+    read_files(&|name| stored.npz(name), held, planes)
+}
+
+/// Reads the batches that are held in files, which `open` opens by their names.
+pub(crate) fn read_files(
+    open: &dyn Fn(&str) -> Result<NpzFile, Failure>,
+    held: &Held,
+    planes: &[VirtualPlane],
+) -> Result<Measurement, Failure> {
+    let mut file = open(LEDGER)?;
     let rows = Rows::read(&mut file, held)?;
     let ledger: Array2<f64> = file.array("ledger", [rows.numbers.len(), 4])?;
     let mut columns = Vec::new();
     for plane in planes {
-        let batches = plane_batches(&mut stored.npz(&file_of(plane))?, held, &rows, plane)?;
+        let batches = plane_batches(&mut open(&file_of(plane))?, held, &rows, plane)?;
         columns.push(batches.into_iter());
     }
     let mut measurement = Measurement::new(planes.to_vec());
@@ -130,7 +149,9 @@ pub(crate) fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Mea
             },
             planes: columns.iter_mut().filter_map(Iterator::next).collect(),
         };
-        measurement.insert(batch).map_err(|e| stored.fault(e))?;
+        measurement
+            .insert(batch)
+            .map_err(|e| file.fault("batch", e))?;
     }
     Ok(measurement)
 }

@@ -6,6 +6,9 @@ use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
+/// Why a folder cannot be had.
+pub(super) const BUSY: &str = "another etendue is writing there";
+
 /// A locked file, which goes away with the lock.
 #[derive(Debug)]
 pub(crate) struct Lock {
@@ -28,7 +31,7 @@ impl Lock {
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {
-                    return Err(Failure::write(busy, "another etendue is writing there"));
+                    return Err(Failure::write(busy, BUSY));
                 }
                 Err(TryLockError::Error(error)) => return Err(failure(error)),
             }

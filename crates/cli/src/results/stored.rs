@@ -2,10 +2,11 @@
 
 use crate::failure::Failure;
 use crate::machine;
+use crate::method::Method;
 use crate::results::npz::NpzFile;
 use crate::results::sealed;
 use crate::results::sealed::json;
-use crate::results::{Finished, MOST_INDEX, Results};
+use crate::results::{Finished, MOST_INDEX, Results, SUMMARY};
 use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -198,6 +199,16 @@ impl<T> Stored<T> {
     pub(crate) fn fault(&self, what: impl Display) -> Failure {
         Failure::bad_input(format!("{}: {what}", self.path.display()))
     }
+}
+
+/// The summary of a run of this very scene, by the same method and version.
+pub(crate) fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
+    let bytes = read_file(&folder.join(SUMMARY), MOST_INDEX).ok()?;
+    let summary: Value = serde_json::from_slice(&bytes).ok()?;
+    let same = summary["scene_hash"] == scene.hash()
+        && summary["version"] == VERSION
+        && summary["method"] == serde_json::to_value(method).ok()?;
+    (sealed::is_sealed(&bytes) && same).then_some(summary)
 }
 
 /// Fails where a folder holds a result of another scene, so that no result takes the place of one

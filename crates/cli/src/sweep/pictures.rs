@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use crate::sweep::table::{BANDWIDTHS, Found, Number, SLOPE, numbers};
 use crate::table::spaced;
-use crate::values::{Point, shown};
+use crate::values::{Point, short, shown};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Style};
 
 /// Names of the pictures, without their endings.
@@ -48,6 +48,9 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
     if together && fields.len() > 1 {
         note += &format!(" In step with {}.", fields[1..].join(", "));
     }
+    if short(fields[0]) != fields[0] {
+        note += &format!(" {}: {}.", short(fields[0]), fields[0]);
+    }
     let figure = |(quantity, y): (&str, Quantity)| {
         let panel = |(plane, others): &(String, Point)| {
             let at = found
@@ -86,13 +89,16 @@ fn panel(plane: &str, others: &Point, path: &str, numbers: &[(f64, Number)]) -> 
     };
     let predicted = |number: &Number| Some([number.predicted?, 0.0]);
     let measured = |number: &Number| Some([number.measured?, number.error.unwrap_or(0.0)]);
-    let title = match shown(others).as_str() {
+    let others = others
+        .iter()
+        .map(|(path, value)| (short(path).to_owned(), *value));
+    let title = match shown(&others.collect()).as_str() {
         "" => spaced(plane),
         others => format!("{}, {others}", spaced(plane)),
     };
     CurvePanel {
         title,
-        x: Quantity::new(path, ""),
+        x: Quantity::new(short(path), ""),
         is_log: [go_by_factors(numbers.iter().map(|(x, _)| *x)), false],
         curves: vec![
             curve(CurveKind::Theory, "predicted", &predicted),

@@ -223,17 +223,31 @@ impl Walk {
         if plane.orientation == Orientation::Tangent {
             self.back(shape, theta1);
         }
-        let Incidence { n, mut t, b, .. } = hit.incidence;
+        let Incidence { n, t, b, .. } = hit.incidence;
+        let mut at = Frame {
+            x: t,
+            y: b,
+            d: n,
+            ..hit.arriving
+        };
         if plane.frame.d.dot(n) < 0.0 {
             // Seen from the other side: −T, B and −N, and directions are not flipped any more.
-            t = -t;
+            (at.x, at.d) = (-t, -n);
             let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
             self.step(
                 &Map::linear(other).spectrum_map(),
                 "map  seen from the other side".into(),
             );
         }
-        self.onto_surface(t, b, plane);
+        let beside = plane.frame.to_local(at.origin).abs().max_element();
+        let lean = plane.frame.vector_to_local(at.d).truncate().length();
+        if plane.orientation == Orientation::Tangent && beside.max(lean) > 1e-9 {
+            // A mesh: the plane touches it, and the patch that stands for it passes a little beside.
+            let map = onto_leaning(plane, &at, theta1);
+            self.step(&map.spectrum_map(), "map  frame of the plane".into());
+        } else {
+            self.onto_surface(at.x, b, plane);
+        }
         Some(())
     }
 
@@ -346,6 +360,43 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
         }
     }
     matrix
+}
+
+/// From positions and angles in the plane of a frame, `theta` being the longitude of the central ray there, to those of a plane on a
+/// surface that leans or lies beside it.
+fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> Map<4> {
+    let local = |v: DVec3| plane.frame.vector_to_local(v);
+    let (sin, cos) = libm::sincos(theta);
+    let start = plane.frame.to_local(at.origin);
+    let away = local(sin * at.x + cos * at.d);
+    // By longitude and latitude.
+    let turned = [cos * at.x - sin * at.d, at.y].map(local);
+    let slope = [away.x, away.y].map(|w| w / away.z);
+    let (flat, up) = (
+        libm::hypot(away.x, away.z),
+        libm::sqrt(1.0 - away.y * away.y),
+    );
+    let mut map = Map::identity();
+    for (i, axis) in [at.x, at.y].map(local).into_iter().enumerate() {
+        for (row, along) in [axis.x, axis.y].into_iter().enumerate() {
+            map.matrix[row][i] = along - axis.z * slope[row];
+        }
+    }
+    for (i, w) in turned.into_iter().enumerate() {
+        for (row, across) in [w.x, w.y].into_iter().enumerate() {
+            map.matrix[row][i + 2] = -start.z * (across - w.z * slope[row]) / away.z;
+        }
+        map.matrix[2][i + 2] = (away.z * w.x - away.x * w.z) / (flat * flat);
+        map.matrix[3][i + 2] = w.y / up;
+    }
+    let central = [
+        start.x - start.z * slope[0],
+        start.y - start.z * slope[1],
+        libm::atan2(away.x, away.z) - plane.longitude,
+        libm::asin(away.y),
+    ];
+    map.offset = std::array::from_fn(|row| central[row] - theta * map.matrix[row][2]);
+    map
 }
 
 fn identity() -> SpectrumMap<4> {

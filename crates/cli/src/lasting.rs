@@ -1,0 +1,158 @@
+//! A measurement that outlives its process: its batches are kept as they are done.
+
+use crate::failure::Failure;
+use crate::method::{Method, source};
+use crate::results::kept::Kept;
+use crate::{interrupt, progress};
+use etendue_scene::Scene;
+use etendue_spectrum::{Batch, Measurement, Watch, measure_watched};
+use indicatif::ProgressBar;
+use std::hash::{BuildHasher, RandomState};
+use std::io::Write;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// A run that ends before this leaves nothing behind: it is soon made again.
+const SHORT: Duration = Duration::from_secs(5);
+
+/// How long a measurement may take, and whether others have a part in it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lasting {
+    /// Goes on from what is kept, and shares the work with others that do.
+    pub(crate) resume: bool,
+    /// When no more batches are begun.
+    pub(crate) until: Option<Instant>,
+}
+
+/// Measures all batches of a scene. Where time is up first, those that are done are kept, and that is said.
+pub(crate) fn measured(
+    scene: &Scene,
+    method: Method,
+    kept: &Kept,
+    lasting: Lasting,
+    quiet: bool,
+) -> Result<Measurement, Failure> {
+    let source = source(scene, method)?;
+    let emitted = |batch: u32| source.emitted(batch);
+    let lit: Vec<u32> = (0..scene.run.batches).filter(|b| emitted(*b) > 0).collect();
+    let bar = progress::photons(lit.iter().map(|b| emitted(*b)).sum(), quiet);
+    let keeper = Keeper {
+        kept,
+        lasting,
+        bar: &bar,
+        begun: Instant::now(),
+        waiting: Mutex::default(),
+        is_late: AtomicBool::default(),
+        is_full: AtomicBool::default(),
+    };
+    let mut all = Measurement::new(scene.planes.clone());
+    if !lasting.resume {
+        kept.remove();
+    }
+    loop {
+        if lasting.resume {
+            for path in kept.read(&mut all, &emitted)? {
+                let path = path.display();
+                bar.suspend(|| warn(&format!("{path} is damaged: the batch is measured again")));
+            }
+            bar.set_position(all.emitted());
+        }
+        let mut missing: Vec<u32> = lit.iter().copied().filter(|b| !all.contains(*b)).collect();
+        if missing.is_empty() {
+            break;
+        }
+        if lasting.resume {
+            // Processes that share the work begin at different batches.
+            let begin = RandomState::new().hash_one(0) % missing.len() as u64;
+            missing.rotate_left(usize::try_from(begin).unwrap_or(0));
+        }
+        let found = measure_watched(&*source, &scene.planes, &missing, &keeper);
+        all = all.merge(found).map_err(Failure::cannot_run)?;
+        if keeper.is_late.load(Ordering::Relaxed) {
+            keeper.keep();
+            bar.finish_and_clear();
+            let done = all.batches().len();
+            return Err(Failure::cannot_run(format!(
+                "time is up: {done} of {} batches are kept in {}; the same command with --resume goes on from them",
+                lit.len(),
+                kept.folder().display()
+            )));
+        }
+    }
+    bar.finish_and_clear();
+    Ok(all)
+}
+
+/// A line on standard error.
+fn warn(line: &str) {
+    // A reader that has gone changes nothing.
+    let _ = writeln!(std::io::stderr(), "warning: {line}");
+}
+
+/// Keeps batches as they are done.
+struct Keeper<'a> {
+    kept: &'a Kept,
+    lasting: Lasting,
+    bar: &'a ProgressBar,
+    begun: Instant,
+    /// Done and not yet kept.
+    waiting: Mutex<Vec<Batch>>,
+    is_late: AtomicBool,
+    /// Whether no more can be kept.
+    is_full: AtomicBool,
+}
+
+impl Keeper<'_> {
+    /// Writes what waits. Where that fails the run goes on without it.
+    fn keep(&self) {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        let batches = std::mem::take(&mut *waiting);
+        drop(waiting);
+        if self.is_full.load(Ordering::Relaxed) {
+            return;
+        }
+        for batch in &batches {
+            if let Err(failure) = self.kept.write(batch) {
+                if !self.is_full.swap(true, Ordering::Relaxed) {
+                    let message = failure.message;
+                    self.bar.suspend(|| {
+                        warn(&format!("{message}: a run that ends early cannot go on"));
+                    });
+                }
+                return;
+            }
+        }
+        interrupt::keeps(
+            "interrupted: the batches that are done are kept, and the same command with --resume goes on from them",
+        );
+    }
+}
+
+impl Watch for Keeper<'_> {
+    fn traced(&self, photons: u64) {
+        self.bar.inc(photons);
+    }
+
+    fn wants(&self, batch: u32) -> bool {
+        if self
+            .lasting
+            .until
+            .is_some_and(|until| Instant::now() >= until)
+        {
+            self.is_late.store(true, Ordering::Relaxed);
+            return false;
+        }
+        !(self.lasting.resume && self.kept.has(batch))
+    }
+
+    fn done(&self, batch: &Batch) {
+        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
+        waiting.push(batch.clone());
+        drop(waiting);
+        let is_eager = self.lasting.resume || self.lasting.until.is_some();
+        if is_eager || self.begun.elapsed() > SHORT {
+            self.keep();
+        }
+    }
+}

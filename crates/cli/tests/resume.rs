@@ -1,0 +1,142 @@
+//! `etendue run --resume` and `--time`: a run goes on from the batches that one before it has left.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{SCENE, call, etendue, files, json};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use std::time::Duration;
+
+const RUN: &str = "run small.ron --photons 2^22 --threads 2";
+
+/// A folder with the scene, and in `whole` the result of a run that was left alone.
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    let output = call(folder.path(), &format!("{RUN} --out whole"));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    folder
+}
+
+/// The result is that of the run that was left alone, and nothing is beside it.
+fn is_whole(folder: &Path, out: &str) {
+    let [mut found, mut whole] = [out, "whole"].map(|name| files(&folder.join(name)));
+    for files in [&mut found, &mut whole] {
+        files.remove("timing.json");
+    }
+    assert_eq!(
+        found.keys().collect::<Vec<_>>(),
+        whole.keys().collect::<Vec<_>>()
+    );
+    assert!(found == whole, "the bytes of {out} are those of one run");
+}
+
+/// The batches that a run has left.
+fn batches(folder: &Path, out: &str) -> Vec<PathBuf> {
+    let names = files(&folder.join(out)).into_keys();
+    let names = names.filter(|name| name.ends_with(".batch"));
+    names.map(|name| folder.join(out).join(name)).collect()
+}
+
+fn started(folder: &Path, out: &str) -> Child {
+    etendue()
+        .current_dir(folder)
+        .args(RUN.split(' '))
+        .args(["--resume", "--quiet", "--out", out])
+        .stderr(Stdio::null())
+        .spawn()
+        .unwrap()
+}
+
+#[test]
+fn a_run_goes_on_where_its_time_was_up() {
+    let folder = folder();
+    let path = folder.path();
+    let mut held = 0;
+    let mut ended = 0;
+    for _ in 0..100 {
+        let output = call(path, &format!("{RUN} --out parts --resume --time 300ms"));
+        if output.status.code() == Some(0) {
+            break;
+        }
+        ended += 1;
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(3), "{message}");
+        assert!(message.contains("time is up: "), "{message}");
+        assert!(!path.join("parts/summary.json").exists());
+        let now = batches(path, "parts").len();
+        assert!(now >= held, "{now} batches after {held}");
+        assert!(message.contains(&format!(" {now} of 64")), "{message}");
+        held = now;
+    }
+    assert!(ended > 0, "the time was never up");
+    is_whole(path, "parts");
+    // What is done is told, and stays.
+    let again = call(path, &format!("{RUN} --out parts --resume"));
+    assert_eq!(again.status.code(), Some(0));
+    is_whole(path, "parts");
+}
+
+#[test]
+fn a_run_goes_on_where_it_was_killed_or_damaged() {
+    let folder = folder();
+    let path = folder.path();
+    for moment in [30, 70, 110, 150] {
+        let mut child = started(path, "parts");
+        std::thread::sleep(Duration::from_millis(moment));
+        child.kill().unwrap();
+        child.wait().unwrap();
+    }
+    let mut left = batches(path, "parts");
+    if left.is_empty() {
+        // A slow machine: then these are made in order.
+        call(path, &format!("{RUN} --out parts --resume --time 300ms"));
+        left = batches(path, "parts");
+    }
+    let cut = fs::read(&left[0]).unwrap();
+    fs::write(&left[0], &cut[..cut.len() / 2]).unwrap();
+    let beside = left[0].with_file_name("00000063-0123.batch");
+    fs::write(beside, "no batch").unwrap();
+    let output = call(path, &format!("{RUN} --out parts --resume"));
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{message}");
+    assert!(
+        message.contains("is damaged: the batch is measured again"),
+        "{message}"
+    );
+    is_whole(path, "parts");
+}
+
+#[test]
+fn processes_share_a_run() {
+    let folder = folder();
+    let path = folder.path();
+    let mut all: Vec<Child> = (0..3).map(|_| started(path, "parts")).collect();
+    // One dies on the way.
+    std::thread::sleep(Duration::from_millis(60));
+    all[0].kill().unwrap();
+    all[0].wait().unwrap();
+    for child in &mut all[1..] {
+        assert_eq!(child.wait().unwrap().code(), Some(0));
+    }
+    is_whole(path, "parts");
+}
+
+#[test]
+fn batches_of_another_run_are_not_taken() {
+    let folder = folder();
+    let path = folder.path();
+    let other = format!("{RUN} --out parts --resume --time 100ms --seed 9");
+    let ended = call(path, &other).status.code();
+    assert!(matches!(ended, Some(0 | 3)), "{ended:?}");
+    let output = call(path, &format!("{RUN} --out parts --resume"));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let seed = json(&path.join("parts/summary.json"))["seed"].clone();
+    assert_eq!(seed, json(&path.join("whole/summary.json"))["seed"]);
+    if ended == Some(3) {
+        assert!(!batches(path, "parts").is_empty(), "the other may go on");
+    }
+}
