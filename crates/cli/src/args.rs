@@ -35,6 +35,8 @@ pub(crate) enum Command {
     Measure(MeasureArgs),
     /// Predict a scene, for `compare`.
     Predict(PredictArgs),
+    /// Print the commands that measure a scene in parts, on as many machines, and put them together.
+    Split(SplitArgs),
     /// Compare what was measured with what was predicted; writes what `run` writes.
     Compare(CompareArgs),
     /// Validate a scene; print the chain read off it and the class of each plane; with --draw, draw it.
@@ -139,6 +141,32 @@ pub(crate) struct MeasureArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue split scenes/fig9b.ron --photons 2^36 --parts 32               a command for each part, and two for the end
+  etendue split scenes/fig9b.ron --photons 2^36 --parts 32 --slurm > job.sh && sh job.sh
+
+Parts may run in any order, anywhere: the result has the bytes of one run.")]
+pub(crate) struct SplitArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Parts, each of about as many batches
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) parts: u32,
+
+    /// Print a script for Slurm: an array of jobs, and one that depends on all
+    #[arg(long)]
+    pub(crate) slurm: bool,
+
+    /// Folder for the results, with those of the parts inside [default: out/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
 }
 
 #[derive(Debug, Args)]

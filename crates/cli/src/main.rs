@@ -33,6 +33,7 @@ mod report;
 mod results;
 mod run;
 mod schema;
+mod split;
 mod sweep;
 mod table;
 mod target;
@@ -53,6 +54,7 @@ fn main() -> ExitCode {
     let outcome = interrupt::install().and_then(|()| match command {
         Command::Run(args) => run::run(&args),
         Command::Measure(args) => measure::measure(&args),
+        Command::Split(args) => split::split(&args),
         Command::Predict(args) => predict::predict(&args),
         Command::Compare(args) => compare::compare(&args),
         Command::Check(args) => check::check(&args),

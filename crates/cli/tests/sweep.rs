@@ -134,7 +134,7 @@ fn a_grid_and_fields_in_step() {
     let curves = rows(&path.join("grid/slope.csv"));
     let panels: std::collections::BTreeSet<&String> = curves.iter().map(|r| &r["panel"]).collect();
     assert_eq!(panels.len(), 4, "{panels:?}");
-    assert!(panels.contains(&"receiver, blockers.0.fill=0.6".to_owned()));
+    assert!(panels.contains(&"receiver, fill=0.6".to_owned()));
 }
 
 #[test]

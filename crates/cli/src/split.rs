@@ -1,0 +1,147 @@
+//! `etendue split`: the commands that measure a scene in parts, on as many machines, and put them together.
+
+use crate::args::SplitArgs;
+use crate::failure::Failure;
+use crate::method::Method;
+use crate::values::shell_word;
+use crate::{load, method, say};
+use clap::ValueEnum;
+use std::path::Path;
+
+/// `etendue split`: returns the exit code.
+pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
+    let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    method::check(&scene, args.photons.method)?;
+    let (parts, batches) = (args.parts, scene.run.batches);
+    if parts > batches {
+        return Err(Failure::bad_input(format!(
+            "--parts {parts}: the scene has {batches} batches, and a part is one at least"
+        )));
+    }
+    let out = args.out.clone();
+    let out = out.unwrap_or_else(|| Path::new("out").join(&scene.name));
+    let below = |name: &str| shell_word(&out.join(name).to_string_lossy());
+    let work = Work {
+        name: shell_word(&scene.name),
+        scene: scene_words(args),
+        parts,
+        batches,
+        // Digits stand behind it.
+        part: below("parts/"),
+        predicted: below("predicted"),
+        out: shell_word(&out.to_string_lossy()),
+    };
+    say(&if args.slurm {
+        work.slurm()
+    } else {
+        work.commands()
+    });
+    Ok(0)
+}
+
+/// The scene and how it is measured, as on the command line.
+fn scene_words(args: &SplitArgs) -> String {
+    let mut words = vec![args.scene.path.to_string_lossy().into_owned()];
+    for (path, value) in &args.scene.set {
+        words.extend(["--set".to_owned(), format!("{path}={value}")]);
+    }
+    let numbers = [
+        ("--photons", args.photons.photons),
+        ("--seed", args.photons.seed),
+    ];
+    for (option, number) in numbers {
+        words.extend(
+            number
+                .iter()
+                .flat_map(|n| [option.to_owned(), n.to_string()]),
+        );
+    }
+    if args.photons.method != Method::Photons {
+        let method = args.photons.method.to_possible_value();
+        let name = method.as_ref().map_or("", |value| value.get_name());
+        words.extend(["--method".to_owned(), name.to_owned()]);
+    }
+    let words = words.iter().map(|word| shell_word(word));
+    words.collect::<Vec<_>>().join(" ")
+}
+
+/// Work to be split, in the words of a shell.
+struct Work {
+    name: String,
+    scene: String,
+    parts: u32,
+    batches: u32,
+    part: String,
+    predicted: String,
+    out: String,
+}
+
+impl Work {
+    fn measure(&self, batches: &str, part: &str) -> String {
+        let Self {
+            scene, part: parts, ..
+        } = self;
+        format!("etendue measure {scene} --batches {batches} --out {parts}{part}")
+    }
+
+    fn predict(&self) -> String {
+        format!("etendue predict {} --out {}", self.scene, self.predicted)
+    }
+
+    fn compare(&self) -> String {
+        let Self {
+            part,
+            predicted,
+            out,
+            ..
+        } = self;
+        format!("etendue compare --measured {part}* --predicted {predicted} --out {out}")
+    }
+
+    /// A command for each part, then those that come after all.
+    fn commands(&self) -> String {
+        let Self { parts, batches, .. } = self;
+        let first = |part: u32| u64::from(*batches) * u64::from(part) / u64::from(*parts);
+        let each = (0..*parts).map(|part| {
+            let range = format!("{}..{}", first(part), first(part + 1));
+            self.measure(&range, &part.to_string())
+        });
+        let after = [self.predict(), self.compare()];
+        each.chain(after).collect::<Vec<_>>().join("\n")
+    }
+
+    /// A script that hands these to Slurm.
+    fn slurm(&self) -> String {
+        let Self {
+            name,
+            parts,
+            batches,
+            ..
+        } = self;
+        let last = parts - 1;
+        let range = format!("$(({batches} * i / {parts}))..$(({batches} * (i + 1) / {parts}))");
+        let threads = "--threads \"${SLURM_CPUS_PER_TASK:-1}\"";
+        let (measure, predict, compare) =
+            (self.measure(&range, "$i"), self.predict(), self.compare());
+        format!(
+            "#!/bin/sh
+# Hands {name} to Slurm in {parts} parts: sh THIS. Add what your cluster asks for to each sbatch, such as --time and --cpus-per-task.
+set -eu
+parts=$(sbatch --parsable --job-name={name} --array=0-{last} <<'END'
+#!/bin/sh
+i=$SLURM_ARRAY_TASK_ID
+exec {measure} {threads}
+END
+)
+predicted=$(sbatch --parsable --job-name={name}-predicted <<'END'
+#!/bin/sh
+exec {predict} {threads}
+END
+)
+sbatch --job-name={name}-compared --dependency=\"afterok:$parts:$predicted\" <<'END'
+#!/bin/sh
+exec {compare} {threads}
+END"
+        )
+    }
+}
