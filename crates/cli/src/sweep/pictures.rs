@@ -31,13 +31,15 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
     let quantities = [
         (
             BANDWIDTHS[0],
-            Quantity::new("*ρ* of 95 % of the power", "cycles/m"),
+            "*ρ* of 95 % of the power",
+            Quantity::new("*ρ*_{95}", "cycles/m"),
         ),
         (
             BANDWIDTHS[1],
-            Quantity::new("*ν* of 95 % of the power", "cycles/slope"),
+            "*ν* of 95 % of the power",
+            Quantity::new("*ν*_{95}", "cycles/slope"),
         ),
-        (SLOPE, Quantity::new("shear slope", "m")),
+        (SLOPE, "shear slope", Quantity::new("shear slope", "m")),
     ];
     let fields: Vec<&str> = found[0]
         .point
@@ -51,7 +53,7 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
     if short(fields[0]) != fields[0] {
         note += &format!(" {}: {}.", short(fields[0]), fields[0]);
     }
-    let figure = |(quantity, y): (&str, Quantity)| {
+    let figure = |(quantity, about, y): (&str, &str, Quantity)| {
         let panel = |(plane, others): &(String, Point)| {
             let at = found
                 .iter()
@@ -69,7 +71,7 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
             panel(plane, others, &found[0].point[0].0, &numbers)
         };
         let curves = Curves {
-            title: format!("{}: {}", spaced(scene), y.name),
+            title: format!("{}: {about}", spaced(scene)),
             note: note.clone(),
             y,
             panels: panels.iter().map(panel).collect(),
