@@ -215,13 +215,14 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: Subject) -> Result<Ver
         quiet: args.quiet,
     };
     write(&mut results, &subject, &taken)?;
-    let all = shots
-        .iter()
-        .flat_map(|shot| shot.planes.iter().map(move |plane| (shot, plane)));
-    // Of a user's scenes those planes count that are shown.
-    let is_shown = |name: &String| subject.planes.is_empty() || subject.planes.contains(name);
-    let all = all.map(|(shot, plane)| (shot, &plane.report));
-    let all: Vec<_> = all.filter(|(_, report)| is_shown(&report.name)).collect();
+    let all = shots.iter().enumerate().flat_map(|(i, shot)| {
+        // Of a user's scenes those planes count that are shown.
+        let shown = subject.planes.get(i);
+        let reports = shot.planes.iter().map(|plane| &plane.report);
+        let reports = reports.filter(move |report| shown.is_none_or(|name| *name == report.name));
+        reports.map(move |report| (shot, report))
+    });
+    let all: Vec<_> = all.collect();
     let of_scenes = shots.iter().map(|shot| (shot.scene.name.as_str(), shot));
     let styled = args.style.iter();
     let styled = styled.map(|path| format!(" --style {}", shell_word(&path.to_string_lossy())));

@@ -10,10 +10,9 @@ use indicatif::ProgressBar;
 use std::hash::{BuildHasher, RandomState};
 use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
-use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
-/// A run that ends before this leaves nothing behind: it is soon made again.
+/// Batches done before this are not kept: they are soon made again.
 const SHORT: Duration = Duration::from_secs(5);
 
 /// How long a measurement may take, and whether others have a part in it.
@@ -42,7 +41,6 @@ pub(crate) fn measured(
         lasting,
         bar: &bar,
         begun: Instant::now(),
-        waiting: Mutex::default(),
         is_late: AtomicBool::default(),
         is_full: AtomicBool::default(),
     };
@@ -70,7 +68,6 @@ pub(crate) fn measured(
         let found = measure_watched(&*source, &scene.planes, &missing, &keeper);
         all = all.merge(found).map_err(Failure::cannot_run)?;
         if keeper.is_late.load(Ordering::Relaxed) {
-            keeper.keep();
             bar.finish_and_clear();
             let done = all.batches().len();
             return Err(Failure::cannot_run(format!(
@@ -96,32 +93,25 @@ struct Keeper<'a> {
     lasting: Lasting,
     bar: &'a ProgressBar,
     begun: Instant,
-    /// Done and not yet kept.
-    waiting: Mutex<Vec<Batch>>,
     is_late: AtomicBool,
     /// Whether no more can be kept.
     is_full: AtomicBool,
 }
 
 impl Keeper<'_> {
-    /// Writes what waits. Where that fails the run goes on without it.
-    fn keep(&self) {
-        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        let batches = std::mem::take(&mut *waiting);
-        drop(waiting);
+    /// Writes a batch. Where that fails the run goes on without it.
+    fn keep(&self, batch: &Batch) {
         if self.is_full.load(Ordering::Relaxed) {
             return;
         }
-        for batch in &batches {
-            if let Err(failure) = self.kept.write(batch) {
-                if !self.is_full.swap(true, Ordering::Relaxed) {
-                    let message = failure.message;
-                    self.bar.suspend(|| {
-                        warn(&format!("{message}: a run that ends early cannot go on"));
-                    });
-                }
-                return;
+        if let Err(failure) = self.kept.write(batch) {
+            if !self.is_full.swap(true, Ordering::Relaxed) {
+                let message = failure.message;
+                self.bar.suspend(|| {
+                    warn(&format!("{message}: a run that ends early cannot go on"));
+                });
             }
+            return;
         }
         interrupt::keeps(
             "interrupted: the batches that are done are kept, and the same command with --resume goes on from them",
@@ -147,12 +137,9 @@ impl Watch for Keeper<'_> {
     }
 
     fn done(&self, batch: &Batch) {
-        let mut waiting = self.waiting.lock().unwrap_or_else(PoisonError::into_inner);
-        waiting.push(batch.clone());
-        drop(waiting);
         let is_eager = self.lasting.resume || self.lasting.until.is_some();
         if is_eager || self.begun.elapsed() > SHORT {
-            self.keep();
+            self.keep(batch);
         }
     }
 }
