@@ -3,12 +3,12 @@
 use crate::failure::Failure;
 use crate::method::{Method, source};
 use crate::results::kept::Kept;
+use crate::warnings::warn;
 use crate::{interrupt, progress};
 use etendue_scene::Scene;
 use etendue_spectrum::{Batch, Measurement, Watch, measure_watched};
 use indicatif::ProgressBar;
 use std::hash::{BuildHasher, RandomState};
-use std::io::Write;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
@@ -24,20 +24,22 @@ pub(crate) struct Lasting {
     pub(crate) until: Option<Instant>,
 }
 
-/// Measures all batches of a scene. Where time is up first, those that are done are kept, and that is said.
+/// Measures all batches of a scene; `None` where another process that shares the work has ended it, which `is_done` tells. Where time is up
+/// first, those that are done are kept, and that is said.
 pub(crate) fn measured(
     scene: &Scene,
     method: Method,
-    kept: &Kept,
+    (kept, is_done): (&Kept, &(dyn Fn() -> bool + Sync)),
     lasting: Lasting,
     quiet: bool,
-) -> Result<Measurement, Failure> {
+) -> Result<Option<Measurement>, Failure> {
     let source = source(scene, method)?;
     let emitted = |batch: u32| source.emitted(batch);
     let lit: Vec<u32> = (0..scene.run.batches).filter(|b| emitted(*b) > 0).collect();
     let bar = progress::photons(lit.iter().map(|b| emitted(*b)).sum(), quiet);
     let keeper = Keeper {
         kept,
+        is_done,
         lasting,
         bar: &bar,
         begun: Instant::now(),
@@ -50,6 +52,11 @@ pub(crate) fn measured(
     }
     loop {
         if lasting.resume {
+            // Then the batches are gone.
+            if is_done() {
+                bar.finish_and_clear();
+                return Ok(None);
+            }
             for path in kept.read(&mut all, &emitted)? {
                 let path = path.display();
                 bar.suspend(|| warn(&format!("{path} is damaged: the batch is measured again")));
@@ -69,7 +76,7 @@ pub(crate) fn measured(
         all = all.merge(found).map_err(Failure::cannot_run)?;
         if keeper.is_late.load(Ordering::Relaxed) {
             bar.finish_and_clear();
-            let done = all.batches().len();
+            let done = kept.count();
             return Err(Failure::cannot_run(format!(
                 "time is up: {done} of {} batches are kept in {}; the same command with --resume goes on from them",
                 lit.len(),
@@ -78,18 +85,13 @@ pub(crate) fn measured(
         }
     }
     bar.finish_and_clear();
-    Ok(all)
-}
-
-/// A line on standard error.
-fn warn(line: &str) {
-    // A reader that has gone changes nothing.
-    let _ = writeln!(std::io::stderr(), "warning: {line}");
+    Ok(Some(all))
 }
 
 /// Keeps batches as they are done.
 struct Keeper<'a> {
     kept: &'a Kept,
+    is_done: &'a (dyn Fn() -> bool + Sync),
     lasting: Lasting,
     bar: &'a ProgressBar,
     begun: Instant,
@@ -133,7 +135,7 @@ impl Watch for Keeper<'_> {
             self.is_late.store(true, Ordering::Relaxed);
             return false;
         }
-        !(self.lasting.resume && self.kept.has(batch))
+        !(self.lasting.resume && (self.kept.has(batch) || (self.is_done)()))
     }
 
     fn done(&self, batch: &Batch) {

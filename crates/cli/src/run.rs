@@ -86,6 +86,11 @@ fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     })
 }
 
+/// Somebody has removed the result that was there a moment ago.
+fn gone(folder: &Path) -> Failure {
+    Failure::cannot_run(format!("the result in {} is gone", folder.display()))
+}
+
 fn stages(
     args: &RunArgs,
     mut scene: Scene,
@@ -103,11 +108,23 @@ fn stages(
         until: args.time.and_then(|time| Instant::now().checked_add(time)),
     };
     let measurement = match args.target_error {
-        None => lasting::measured(&scene, method, &kept, lasting, args.quiet)?,
+        None => {
+            let is_done = || summary_of(place.folder, &scene, method).is_some();
+            lasting::measured(&scene, method, (&kept, &is_done), lasting, args.quiet)?
+        }
         Some(target) => {
             let target = (target, args.photons.photons);
-            target::reached(&mut scene, method, target, args.quiet)?
+            Some(target::reached(&mut scene, method, target, args.quiet)?)
         }
+    };
+    let done = |scene| {
+        let code = finished(place.folder, scene, args)?;
+        // A batch that was under way when another process ended the run.
+        kept.remove();
+        Some(code)
+    };
+    let Some(measurement) = measurement else {
+        return done(&scene).ok_or_else(|| gone(place.folder));
     };
     watch.lap("trace");
     let predictions = predicted(&scene, &theories, method, args.quiet)?;
@@ -123,7 +140,7 @@ fn stages(
         Some(results) => results,
         None => {
             let results = Results::claim_in_turn(place.folder, place.plan)?;
-            if let Some(code) = finished(place.folder, &case.scene, args) {
+            if let Some(code) = done(&case.scene) {
                 return Ok(code);
             }
             results

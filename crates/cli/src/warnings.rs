@@ -8,9 +8,14 @@ use std::io::Write;
 pub(crate) fn tell(scene: &Scene, quiet: bool) {
     let warnings = if quiet { Vec::new() } else { scene.warnings() };
     for warning in warnings {
-        // A reader that has gone changes nothing.
-        let _ = writeln!(std::io::stderr(), "warning: {warning}");
+        warn(&warning);
     }
+}
+
+/// One of them.
+pub(crate) fn warn(warning: &str) {
+    // A reader that has gone changes nothing.
+    let _ = writeln!(std::io::stderr(), "warning: {warning}");
 }
 
 /// Those of the scenes at the points of a sweep, each once, with the first point it is about.
@@ -24,8 +29,7 @@ pub(crate) fn tell_at(points: &[Point], scenes: &[Scene]) {
                 .filter(|c| !c.is_ascii_digit() && *c != '.')
                 .collect();
             if !told.contains(&words) {
-                // A reader that has gone changes nothing.
-                let _ = writeln!(std::io::stderr(), "warning: at {}: {warning}", shown(point));
+                warn(&format!("at {}: {warning}", shown(point)));
                 told.push(words);
             }
         }

@@ -140,3 +140,23 @@ fn batches_of_another_run_are_not_taken() {
         assert!(!batches(path, "parts").is_empty(), "the other may go on");
     }
 }
+
+/// Another process has written the result, and removed the batches, while this one was at one.
+#[test]
+fn what_another_process_ends_is_not_begun_anew() {
+    let folder = folder();
+    let path = folder.path();
+    let mut child = started(path, "parts");
+    while batches(path, "parts").is_empty() {
+        std::thread::sleep(Duration::from_millis(5));
+    }
+    for (name, bytes) in files(&path.join("whole")) {
+        let to = path.join("parts").join(name);
+        fs::create_dir_all(to.parent().unwrap()).unwrap();
+        fs::write(to, bytes).unwrap();
+    }
+    // The process may put its batch there at this very moment.
+    while fs::remove_dir_all(path.join("parts/batches")).is_err() {}
+    assert_eq!(child.wait().unwrap().code(), Some(0));
+    is_whole(path, "parts");
+}

@@ -15,7 +15,7 @@ use etendue_scene::{Scene, read_file};
 use etendue_spectrum::{Batch, Measurement};
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::{Cursor, Read, Write};
+use std::io::{Cursor, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
@@ -53,6 +53,11 @@ impl Kept {
     /// Whether a batch is there.
     pub(crate) fn has(&self, batch: u32) -> bool {
         self.paths().contains_key(&batch)
+    }
+
+    /// How many batches are there.
+    pub(crate) fn count(&self) -> usize {
+        self.paths().len()
     }
 
     /// The file of each batch that is there.
@@ -100,10 +105,12 @@ impl Kept {
             }
             match self.batch(index, emitted(index), &path) {
                 Ok(batch) => all.insert(batch).map_err(Failure::cannot_run)?,
-                Err(_) => {
-                    fs::remove_file(&path).map_err(|e| Failure::write(&path, e))?;
-                    damaged.push(path);
-                }
+                Err(_) => match fs::remove_file(&path) {
+                    Ok(()) => damaged.push(path),
+                    // Another process has removed it.
+                    Err(e) if e.kind() == ErrorKind::NotFound => {}
+                    Err(e) => return Err(Failure::write(&path, e)),
+                },
             }
         }
         Ok(damaged)
