@@ -34,11 +34,17 @@ fn is_whole(folder: &Path, out: &str) {
     assert!(found == whole, "the bytes of {out} are those of one run");
 }
 
-/// The batches that a run has left.
+/// The batches that a run has left, or is about to leave.
 fn batches(folder: &Path, out: &str) -> Vec<PathBuf> {
-    let names = files(&folder.join(out)).into_keys();
-    let names = names.filter(|name| name.ends_with(".batch"));
-    names.map(|name| folder.join(out).join(name)).collect()
+    let below = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten();
+    let keys = below(folder.join(out).join("batches"));
+    let all = keys.flat_map(|key| below(key.path()));
+    let paths = all.map(|entry| entry.path());
+    let mut paths: Vec<PathBuf> = paths
+        .filter(|path| path.extension().is_some_and(|end| end == "batch"))
+        .collect();
+    paths.sort();
+    paths
 }
 
 fn started(folder: &Path, out: &str) -> Child {
