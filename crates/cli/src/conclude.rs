@@ -81,16 +81,14 @@ pub(crate) fn conclude(
     results: Results,
     mut watch: Stopwatch,
 ) -> Result<u8, Failure> {
-    let stage = progress::stage("comparing", ending.quiet);
-    let planes = judged(case)?;
+    let judged = Judged::of(case, ending.quiet)?;
     watch.lap("compare");
-    let inquiries = stage.suspend(|| inquire(case, &planes, ending.quiet))?;
-    stage.set_message("writing results");
-    let summary = Summary::new(case, &planes, inquiries);
+    let stage = progress::stage("writing results", ending.quiet);
     let seconds = watch.seconds("trace");
-    let finished = written(case, ending, results, &summary, &planes, watch)?;
+    let finished = written(case, ending, results, &judged, watch)?;
     stage.finish_and_clear();
     finished.tell_replaced(ending.quiet);
+    let summary = judged.summary;
     if !ending.quiet {
         table::print(&summary, &finished.folder);
         if let Some(outlook) = seconds.and_then(|s| target::outlook(&summary.planes, s)) {
@@ -106,6 +104,25 @@ pub(crate) fn conclude(
         }
     }
     Ok(exit_code(ending.expect, &summary))
+}
+
+/// What a case comes to.
+#[derive(Debug)]
+pub(crate) struct Judged {
+    pub(crate) planes: Vec<PlaneComparison>,
+    pub(crate) summary: Summary,
+}
+
+impl Judged {
+    /// Compares all planes, and looks into those that fail.
+    pub(crate) fn of(case: &Case, quiet: bool) -> Result<Self, Failure> {
+        let stage = progress::stage("comparing", quiet);
+        let planes = judged(case)?;
+        let inquiries = stage.suspend(|| inquire(case, &planes, quiet))?;
+        stage.finish_and_clear();
+        let summary = Summary::new(case, &planes, inquiries);
+        Ok(Self { planes, summary })
+    }
 }
 
 /// What is expected is that photons agree with every exact prediction, and that a first-order chain
@@ -125,6 +142,11 @@ fn exit_code(expect: Option<Expect>, summary: &Summary) -> u8 {
             }
         }
     };
+    code_of(verdict)
+}
+
+/// The exit code that a verdict has.
+pub(crate) fn code_of(verdict: Verdict) -> u8 {
     match verdict {
         Verdict::Pass => 0,
         Verdict::Fail => 1,
@@ -145,12 +167,11 @@ pub(crate) fn judged(case: &Case) -> Result<Vec<PlaneComparison>, Failure> {
 }
 
 /// Writes everything; the summary last.
-fn written(
+pub(crate) fn written(
     case: &Case,
     ending: &Ending<'_>,
     mut results: Results,
-    summary: &Summary,
-    planes: &[PlaneComparison],
+    Judged { planes, summary }: &Judged,
     mut watch: Stopwatch,
 ) -> Result<Finished, Failure> {
     let each = case.predictions.iter().zip(planes);

@@ -4,9 +4,11 @@ use std::path::Path;
 
 /// Why a command stopped: the message for the user and the exit code.
 #[derive(Debug)]
-pub(crate) struct Failure {
-    pub(crate) message: String,
-    pub(crate) code: u8,
+pub struct Failure {
+    /// For the user; a line for each fault.
+    pub message: String,
+    /// The exit code of a command that stops so: 2 for bad input, 3 where it cannot run here.
+    pub code: u8,
 }
 
 /// Exit code of bad input.

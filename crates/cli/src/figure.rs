@@ -13,6 +13,7 @@ mod style;
 mod table1;
 
 use crate::args::FigureArgs;
+use crate::conclude::code_of;
 use crate::failure::Failure;
 use crate::results::sealed::json;
 use crate::results::stored::VERSION;
@@ -106,16 +107,15 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
     on_threads(&args.threads, || {
         let bar = progress::steps("drawing", subjects.len(), "figures", args.quiet);
         let mut worst = Verdict::Pass;
-        for subject in subjects {
+        for subject in &subjects {
             bar.set_message(subject.name.clone());
             let begun = Instant::now();
-            let said = format!(": {}", subject.about);
-            let name = subject.name.clone();
             let verdict = bar.suspend(|| made(args, style, subject))?;
             if !args.quiet {
                 let seconds = begun.elapsed().as_secs_f64();
                 let verdict = crate::table::word(verdict);
-                let line = format!("figure {name}: {verdict}, {seconds:.1} s{said}");
+                let Subject { name, about, .. } = subject;
+                let line = format!("figure {name}: {verdict}, {seconds:.1} s: {about}");
                 bar.suspend(|| say(&line));
             }
             worst = worst.and(verdict);
@@ -125,11 +125,7 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
         if !args.quiet {
             say(&format!("figures in {}", args.out.display()));
         }
-        Ok(match worst {
-            Verdict::Pass => 0,
-            Verdict::Fail => 1,
-            Verdict::Undecided => 4,
-        })
+        Ok(code_of(worst))
     })
 }
 
@@ -189,7 +185,7 @@ struct Judged<'a> {
 }
 
 /// Makes a figure; returns the verdict on all planes of its scenes.
-fn made(args: &FigureArgs, style: Option<Style>, subject: Subject) -> Result<Verdict, Failure> {
+fn made(args: &FigureArgs, style: Option<Style>, subject: &Subject) -> Result<Verdict, Failure> {
     let endings = ["png", "svg", "pdf", "csv", "npz"].map(|end| format!("figure.{end}"));
     let texts = subject.texts.iter().map(|(name, _)| format!("{name}.ron"));
     let plan = Plan {
@@ -214,7 +210,7 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: Subject) -> Result<Ver
         style: style.unwrap_or_default(),
         quiet: args.quiet,
     };
-    write(&mut results, &subject, &taken)?;
+    write(&mut results, subject, &taken)?;
     let all = shots.iter().enumerate().flat_map(|(i, shot)| {
         // Of a user's scenes those planes count that are shown.
         let shown = subject.planes.get(i);

@@ -1,6 +1,8 @@
 //! A measurement that outlives its process: its batches are kept as they are done.
 
+use crate::crew::Led;
 use crate::failure::Failure;
+use crate::job::Job;
 use crate::method::{Method, source};
 use crate::results::kept::Kept;
 use crate::warnings::warn;
@@ -16,12 +18,14 @@ use std::time::{Duration, Instant};
 const SHORT: Duration = Duration::from_secs(5);
 
 /// How long a measurement may take, and whether others have a part in it.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lasting {
+#[derive(Clone, Copy)]
+pub(crate) struct Lasting<'a> {
     /// Goes on from what is kept, and shares the work with others that do.
     pub(crate) resume: bool,
     /// When no more batches are begun.
     pub(crate) until: Option<Instant>,
+    /// Other processes that measure as well.
+    pub(crate) crew: Option<&'a Led<'a>>,
 }
 
 /// Measures all batches of a scene; `None` where another process that shares the work has ended it, which `is_done` tells. Where time is up
@@ -30,7 +34,7 @@ pub(crate) fn measured(
     scene: &Scene,
     method: Method,
     (kept, is_done): (&Kept, &(dyn Fn() -> bool + Sync)),
-    lasting: Lasting,
+    lasting: Lasting<'_>,
     quiet: bool,
 ) -> Result<Option<Measurement>, Failure> {
     let source = source(scene, method)?;
@@ -72,7 +76,13 @@ pub(crate) fn measured(
             let begin = RandomState::new().hash_one(0) % missing.len() as u64;
             missing.rotate_left(usize::try_from(begin).unwrap_or(0));
         }
-        let found = measure_watched(&*source, &scene.planes, &missing, &keeper);
+        let found = match lasting.crew {
+            Some(crew) => {
+                let job = Job::of(scene.clone(), method, Vec::new())?;
+                crew.measure(&job, &*source, &missing, &keeper)?
+            }
+            None => measure_watched(&*source, &scene.planes, &missing, &keeper),
+        };
         all = all.merge(found).map_err(Failure::cannot_run)?;
         if keeper.is_late.load(Ordering::Relaxed) {
             bar.finish_and_clear();
@@ -92,7 +102,7 @@ pub(crate) fn measured(
 struct Keeper<'a> {
     kept: &'a Kept,
     is_done: &'a (dyn Fn() -> bool + Sync),
-    lasting: Lasting,
+    lasting: Lasting<'a>,
     bar: &'a ProgressBar,
     begun: Instant,
     is_late: AtomicBool,
@@ -139,7 +149,12 @@ impl Watch for Keeper<'_> {
     }
 
     fn done(&self, batch: &Batch) {
-        let is_eager = self.lasting.resume || self.lasting.until.is_some();
+        let Lasting {
+            resume,
+            until,
+            crew,
+        } = self.lasting;
+        let is_eager = resume || until.is_some() || crew.is_some();
         if is_eager || self.begun.elapsed() > SHORT {
             self.keep(batch);
         }

@@ -4,7 +4,9 @@ use crate::machine;
 use crate::results::stored::copy_of;
 use crate::results::{Plan, Results};
 use crate::values::{Point, said_at};
-use etendue_scene::{RunFile, Scene, SceneFile, limits, read_below, read_file, resolve};
+use etendue_scene::{
+    RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
+};
 use std::path::{Path, PathBuf};
 
 /// Reads, overrides and resolves the scene named on the command line; `options` are overrides of the command
@@ -25,19 +27,33 @@ pub(crate) fn scene(
     file = file.with_all(&args.set).map_err(refused)?;
     let photons = file.run.photons;
     options(&mut file.run);
-    let set = args.set.iter();
-    let set = set.map(|(path, value)| (path.clone(), format!("--set {path}={value}")));
-    let mut set: Vec<(String, String)> = set.collect();
+    let mut set = named(&args.set);
     if file.run.photons != photons {
         let option = format!("--photons {}", file.run.photons);
         set.push(("run.photons".to_owned(), option));
     }
     let name = path.file_stem().unwrap_or_default().to_string_lossy();
-    resolve(&name, file, folder(args), machine::available_memory()).map_err(|error| {
-        let lines = error.in_text(text, &set);
-        let lines = lines.lines().map(|line| format!("{shown}: {line}"));
-        Failure::of_scene(&error, lines.collect::<Vec<_>>().join("\n"))
-    })
+    let scene = resolve(&name, file, folder(args), machine::available_memory());
+    scene.map_err(|error| self::refused(&error, &shown.to_string(), text, &set))
+}
+
+/// For each field that was set, what has set it.
+pub(crate) fn named(set: &[(String, String)]) -> Vec<(String, String)> {
+    let set = set.iter();
+    set.map(|(path, value)| (path.clone(), format!("--set {path}={value}")))
+        .collect()
+}
+
+/// What is wrong with a scene, a line for each fault: where it is in the text, or what has set it.
+pub(crate) fn refused(
+    error: &SceneError,
+    shown: &str,
+    text: &str,
+    set: &[(String, String)],
+) -> Failure {
+    let lines = error.in_text(text, set);
+    let lines = lines.lines().map(|line| format!("{shown}: {line}"));
+    Failure::of_scene(error, lines.collect::<Vec<_>>().join("\n"))
 }
 
 /// The scene with some fields set to numbers besides.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// How light is measured.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
-pub(crate) enum Method {
+pub enum Method {
     /// Photons from the light, forward
     Photons,
     /// Rays drawn in the window of each plane, traced back to the light

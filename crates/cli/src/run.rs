@@ -1,6 +1,7 @@
 use crate::args::{RunArgs, Save};
 use crate::case::Case;
-use crate::conclude::{Ending, conclude, plan};
+use crate::conclude::{Ending, code_of, conclude, plan};
+use crate::crew::Led;
 use crate::failure::Failure;
 use crate::lasting::{self, Lasting};
 use crate::predict::predicted;
@@ -8,15 +9,21 @@ use crate::results::kept::Kept;
 use crate::results::stored::{check_earlier, summary_of};
 use crate::results::summary::Stopwatch;
 use crate::results::{Plan, Results, SUMMARY};
+use crate::table::word;
 use crate::threads::on_threads;
 use crate::{field, limits, load, method, photons, say, target, warnings};
-use etendue_compare::Applicability;
+use etendue_compare::{Applicability, Verdict};
 use etendue_scene::Scene;
 use std::path::Path;
 use std::time::Instant;
 
 /// `etendue run`: returns the exit code.
 pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
+    run_with(args, None)
+}
+
+/// The same, with other processes that measure as well.
+pub(crate) fn run_with(args: &RunArgs, crew: Option<&Led<'_>>) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
@@ -56,6 +63,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
                 folder: &folder,
                 plan,
                 results,
+                crew,
             },
         )
     })
@@ -67,23 +75,22 @@ struct Place<'a> {
     plan: Plan,
     /// `None` where several processes measure.
     results: Option<Results>,
+    /// Other processes, which this one leads.
+    crew: Option<&'a Led<'a>>,
 }
 
 /// The exit code of a run that is done, whose verdict is told once more.
 fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
-    let verdict = summary["verdict"].as_str()?;
+    let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
     if !args.quiet {
         say(&format!(
-            "verdict: {verdict}; the run is done: {}",
+            "verdict: {}; the run is done: {}",
+            word(verdict),
             folder.display()
         ));
     }
-    Some(match verdict {
-        "pass" => 0,
-        "fail" => 1,
-        _ => 4,
-    })
+    Some(code_of(verdict))
 }
 
 /// Somebody has removed the result that was there a moment ago.
@@ -106,6 +113,7 @@ fn stages(
     let lasting = Lasting {
         resume: args.resume,
         until: args.time.and_then(|time| Instant::now().checked_add(time)),
+        crew: place.crew,
     };
     let measurement = match args.target_error {
         None => {

@@ -11,7 +11,7 @@ pub(crate) fn print(summary: &Summary, folder: &Path) {
     say(&format!("results in {}", folder.display()));
 }
 
-fn text(summary: &Summary) -> String {
+pub(crate) fn text(summary: &Summary) -> String {
     let ledger = summary.ledger_imbalance.map(|imbalance| {
         let imbalance = imbalance.abs();
         format!(", flux accounted for to {imbalance:.0e}")

@@ -1,7 +1,7 @@
 //! What a comparison comes to.
 
 use etendue_scene::Scene;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 /// What the planes of a run are tested by.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -28,7 +28,7 @@ impl Test {
 }
 
 /// The verdict on a plane or a run.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// Measured and predicted agree.

@@ -5,11 +5,12 @@ use crate::results::Results;
 use crate::results::npz::{Npz, azimuths};
 use crate::results::summary::Summary;
 use etendue_compare::PlaneComparison;
+use etendue_field::Complex;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
     IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
 };
-use ndarray::{Array1, Array2};
+use ndarray::{Array1, Array2, Array3};
 use std::io::Cursor;
 
 /// The files of a plane.
@@ -26,15 +27,48 @@ pub(crate) fn write(
     results.write(&format!("{name}/radial.exr"), &radial_exr(summary, plane)?)
 }
 
+/// The slices of a plane, as in `slices.npz`.
+#[derive(Debug)]
+pub struct SliceArrays {
+    /// Radians.
+    pub azimuth: Array1<f64>,
+    /// The measured spectrum, [azimuth, ρ, ν].
+    pub measured: Array3<Complex>,
+    /// The predicted spectrum.
+    pub predicted: Array3<Complex>,
+    /// Standard deviation of |measured − predicted| if the prediction is true.
+    pub sigma: Array3<f64>,
+    /// Cycles per metre.
+    pub rho: Array1<f64>,
+    /// Cycles per unit of u.
+    pub nu: Array1<f64>,
+}
+
+impl SliceArrays {
+    /// Those of a plane.
+    #[must_use]
+    pub fn of(plane: &PlaneComparison) -> Self {
+        let grid = plane.measured.grid;
+        Self {
+            azimuth: azimuths(&grid),
+            measured: plane.measured.full(),
+            predicted: plane.predicted.full(),
+            sigma: grid.unfold_even(plane.sigma.view()),
+            rho: Array1::from(grid.rho.values()),
+            nu: Array1::from(grid.nu.values()),
+        }
+    }
+}
+
 fn slices(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
-    let grid = plane.measured.grid;
+    let arrays = SliceArrays::of(plane);
     Npz::new()
-        .add("azimuth", &azimuths(&grid))?
-        .add("measured", &plane.measured.full())?
-        .add("predicted", &plane.predicted.full())?
-        .add("sigma", &grid.unfold_even(plane.sigma.view()))?
-        .add("rho", &Array1::from(grid.rho.values()))?
-        .add("nu", &Array1::from(grid.nu.values()))?
+        .add("azimuth", &arrays.azimuth)?
+        .add("measured", &arrays.measured)?
+        .add("predicted", &arrays.predicted)?
+        .add("sigma", &arrays.sigma)?
+        .add("rho", &arrays.rho)?
+        .add("nu", &arrays.nu)?
         .bytes()
 }
 

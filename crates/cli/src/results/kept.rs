@@ -71,15 +71,7 @@ impl Kept {
 
     /// Keeps a batch.
     pub(crate) fn write(&self, batch: &Batch) -> Result<(), Failure> {
-        let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
-        let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
-        for (name, bytes) in files(&self.planes, &[batch])? {
-            archive
-                .start_file(name, stored)
-                .map_err(Failure::cannot_run)?;
-            archive.write_all(&bytes).map_err(Failure::cannot_run)?;
-        }
-        let bytes = archive.finish().map_err(Failure::cannot_run)?.into_inner();
+        let bytes = packed(&self.planes, batch)?;
         let put = || {
             fs::create_dir_all(&self.folder)?;
             let mut file = tempfile::NamedTempFile::new_in(&self.folder)?;
@@ -127,20 +119,7 @@ impl Kept {
             photons,
             batches: index..index.saturating_add(1),
         };
-        let open = |name: &str| {
-            let mut archive = ZipArchive::new(Cursor::new(&bytes)).map_err(Failure::bad_input)?;
-            let mut content = Vec::new();
-            let file = archive.by_name(name).map_err(Failure::bad_input)?;
-            // What is inside is stored as it is.
-            let most = bytes.len() as u64;
-            file.take(most)
-                .read_to_end(&mut content)
-                .map_err(Failure::bad_input)?;
-            NpzFile::new(path.join(name), content)
-        };
-        let found = read_files(&open, &held, &self.planes)?;
-        let batch = found.batches().next().cloned();
-        batch.ok_or_else(|| Failure::bad_input("no batch is in it"))
+        unpacked(&bytes, &held, &self.planes)
     }
 
     /// Removes them, and what a process that died has left unfinished.
@@ -151,6 +130,41 @@ impl Kept {
             let _ = fs::remove_dir(above);
         }
     }
+}
+
+/// A batch as the bytes of its file.
+pub(crate) fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for (name, bytes) in files(planes, &[batch])? {
+        archive
+            .start_file(name, stored)
+            .map_err(Failure::cannot_run)?;
+        archive.write_all(&bytes).map_err(Failure::cannot_run)?;
+    }
+    Ok(archive.finish().map_err(Failure::cannot_run)?.into_inner())
+}
+
+/// The batch that `held` names, from the bytes of its file.
+pub(crate) fn unpacked(
+    bytes: &[u8],
+    held: &Held,
+    planes: &[VirtualPlane],
+) -> Result<Batch, Failure> {
+    let open = |name: &str| {
+        let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(Failure::bad_input)?;
+        let mut content = Vec::new();
+        let file = archive.by_name(name).map_err(Failure::bad_input)?;
+        // What is inside is stored as it is.
+        let most = bytes.len() as u64;
+        file.take(most)
+            .read_to_end(&mut content)
+            .map_err(Failure::bad_input)?;
+        NpzFile::new(PathBuf::from(name), content)
+    };
+    let found = read_files(&open, held, planes)?;
+    let batch = found.batches().next().cloned();
+    batch.ok_or_else(|| Failure::bad_input("no batch is in it"))
 }
 
 fn hash_of(bytes: &[u8]) -> String {

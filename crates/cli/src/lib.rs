@@ -1,0 +1,137 @@
+//! The `etendue` command: parses, calls the stages, writes what they give.
+//!
+//! `run` measures a scene, predicts it, compares and draws; `measure`, `predict` and `compare` are its stages
+//! over files; `check` says what a scene says.
+
+mod aimed;
+mod args;
+mod bandwidth;
+mod case;
+mod check;
+mod compare;
+mod conclude;
+mod converge;
+mod crew;
+mod drawing;
+mod export;
+mod failure;
+mod field;
+mod figure;
+mod inquiry;
+mod interrupt;
+mod job;
+mod judge;
+mod lasting;
+mod limits;
+mod load;
+mod machine;
+mod measure;
+mod method;
+mod photons;
+mod pictures;
+mod predict;
+mod progress;
+mod report;
+mod results;
+mod run;
+mod schema;
+mod split;
+mod sweep;
+mod table;
+mod target;
+mod threads;
+mod values;
+mod warnings;
+
+use args::{Cli, Command};
+use clap::Parser;
+pub use crew::{Crew, in_crew};
+use etendue_scene::shown;
+pub use failure::Failure;
+pub use job::{Job, Options, Outcome};
+pub use method::Method;
+pub use results::arrays::SliceArrays;
+use std::ffi::OsString;
+use std::io::Write;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// The program: its exit code.
+#[must_use]
+pub fn main() -> ExitCode {
+    ExitCode::from(command(std::env::args_os()))
+}
+
+/// Does what a command line says, whose first word is the program; returns the exit code.
+///
+/// Signals are those of the command from then on, and a fault of the arguments ends the process.
+pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
+    let command = Cli::parse_from(line).command;
+    let outcome = interrupt::install().and_then(|()| match command {
+        Command::Run(args) => run::run(&args),
+        Command::Measure(args) => measure::measure(&args),
+        Command::Split(args) => split::split(&args),
+        Command::Predict(args) => predict::predict(&args),
+        Command::Compare(args) => compare::compare(&args),
+        Command::Check(args) => check::check(&args),
+        Command::Converge(args) => converge::converge(&args),
+        Command::Figure(args) => figure::figure(&args),
+        Command::Report(args) => report::report(&args),
+        Command::Sweep(args) => sweep::sweep(&args),
+        Command::Bandwidth(args) => bandwidth::bandwidth(&args),
+        Command::Export(args) => export::export(&args),
+        Command::Schema(args) => schema::schema(&args),
+    });
+    ended(outcome, false)
+}
+
+/// The exit code of what a command came to; a failure is told, unless somebody else tells it.
+fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
+    match outcome {
+        Ok(code) => code,
+        Err(failure) => {
+            if !quiet {
+                // A reader that has gone does not change the exit code.
+                let message = printable(&failure.message, MOST_LINES);
+                let _ = writeln!(std::io::stderr(), "error: {message}");
+            }
+            failure.code
+        }
+    }
+}
+
+/// Prints to standard output. A reader that has gone, or a full disk behind it, changes nothing that was
+/// done: the result and the exit code stand.
+pub(crate) fn say(text: &str) {
+    let _ = deliver(text);
+}
+
+/// Prints what a command is for: that it cannot be written is a failure, unless the reader has gone.
+pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
+    let text = printable(text, usize::MAX);
+    match writeln!(std::io::stdout(), "{text}") {
+        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+            Err(Failure::write(Path::new("to standard output"), e))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Lines of an error, and characters of a line.
+const MOST_LINES: usize = 20;
+const LONGEST_LINE: usize = 2000;
+
+/// Text of at most so many lines, in characters that a terminal takes as they are: names of files and what
+/// stands in them come from anywhere.
+fn printable(text: &str, lines: usize) -> String {
+    let mut all = text.split('\n');
+    let shown = all
+        .by_ref()
+        .take(lines)
+        .map(|line| shown(line, LONGEST_LINE));
+    let mut shown: Vec<String> = shown.collect();
+    if all.next().is_some() {
+        shown.push("…".to_owned());
+    }
+    shown.join("\n")
+}

@@ -1,0 +1,71 @@
+//! `etendue-mpi run`: a run whose batches are measured by all processes of an MPI job.
+//!
+//! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
+//!
+//! Rank 0 does what `etendue run` does, measures as well, and hands out batches as other ranks ask for them. Nothing is summed by MPI:
+//! it carries bytes, and the result has those of `etendue run`.
+//!
+//! Why `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and both MPICH and Open MPI are tested there.
+//! `mpi` (rsmpi) generates its bindings by libclang, which the nodes of clusters often lack.
+
+use etendue::{Crew, in_crew};
+use ferrompi::{Communicator, Mpi, Source, Tag, ThreadLevel};
+use std::io::Write;
+use std::process::ExitCode;
+use std::thread::sleep;
+use std::time::Duration;
+
+/// The tag of all messages.
+const TAG: i32 = 0;
+
+/// How long to wait before looking again whether a message has come. Waiting inside MPI would take a core of those that measure.
+const PAUSE: Duration = Duration::from_micros(200);
+
+/// All ranks of the job.
+struct Ranks(Communicator);
+
+impl Crew for Ranks {
+    fn number(&self) -> usize {
+        usize::try_from(self.0.rank()).unwrap_or(0)
+    }
+
+    fn count(&self) -> usize {
+        usize::try_from(self.0.size()).unwrap_or(1)
+    }
+
+    fn send(&self, to: usize, bytes: &[u8]) -> Result<(), String> {
+        let to = i32::try_from(to).map_err(|e| e.to_string())?;
+        self.0.send(bytes, to, TAG).map_err(|e| e.to_string())
+    }
+
+    fn receive(&self) -> Result<(usize, Vec<u8>), String> {
+        let said = |error: ferrompi::Error| error.to_string();
+        let status = loop {
+            match self.0.iprobe::<u8>(Source::Any, TAG).map_err(said)? {
+                Some(status) => break status,
+                None => sleep(PAUSE),
+            }
+        };
+        let Source::Rank(from) = status.source else {
+            return Err("a message of nobody".to_owned());
+        };
+        let mut bytes = vec![0; status.count.unwrap_or(0)];
+        let received = self.0.recv(&mut bytes, from, Tag::Value(TAG));
+        received.map_err(said)?;
+        let from = usize::try_from(from).map_err(|e| e.to_string())?;
+        Ok((from, bytes))
+    }
+}
+
+fn main() -> ExitCode {
+    // Rank 0 sends and receives from a thread of its own, one call at a time.
+    let mpi = match Mpi::init_thread(ThreadLevel::Serialized) {
+        Ok(mpi) => mpi,
+        Err(error) => {
+            let _ = writeln!(std::io::stderr(), "error: MPI does not start: {error}");
+            return ExitCode::from(3);
+        }
+    };
+    let ranks = Ranks(mpi.world());
+    ExitCode::from(in_crew(std::env::args_os(), &ranks))
+}

@@ -1,0 +1,46 @@
+"""Étendue measures the space-angle frequency content of light and compares it with theory.
+
+>>> import etendue
+>>> result = etendue.run("scenes/fig9b.ron", photons=2**20)
+>>> result.verdict
+'pass'
+>>> result["receiver"].slices.measured.shape       # [azimuth, rho, nu]
+(8, 97, 65)
+
+`run` is `measure`, `predict` and `compare` in one. `spectrum` takes rays of your own. Lengths are metres, frequencies are cycles per
+metre (rho) and cycles per unit of slope (nu).
+"""
+
+from __future__ import annotations
+
+from etendue._etendue import CannotRun, SceneError
+from etendue.commands import figure, sweep
+from etendue.rays import Spectrum, spectrum
+from etendue.result import LightField, Plane, Radial, Result, Slices
+from etendue.scene import PlaneInfo, Scene
+from etendue.stages import Measurement, Prediction, check, compare, measure, merge, photons, predict, run
+
+__all__ = [
+    "CannotRun",
+    "LightField",
+    "Measurement",
+    "Plane",
+    "PlaneInfo",
+    "Prediction",
+    "Radial",
+    "Result",
+    "Scene",
+    "SceneError",
+    "Slices",
+    "Spectrum",
+    "check",
+    "compare",
+    "figure",
+    "measure",
+    "merge",
+    "photons",
+    "predict",
+    "run",
+    "spectrum",
+    "sweep",
+]

@@ -1,0 +1,228 @@
+"""What a run comes to."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from etendue import _etendue
+from etendue.scene import Scene
+
+if TYPE_CHECKING:
+    import xarray
+
+Floats = NDArray[np.float64]
+Verdict = Literal["pass", "fail", "undecided"]
+
+
+@dataclass(frozen=True, eq=False)
+class Slices:
+    """Slices of the windowed spectrum, [azimuth, rho, nu], complex. As `slices.npz`."""
+
+    azimuth: Floats
+    """Radians."""
+    rho: Floats
+    """Cycles per metre."""
+    nu: Floats
+    """Cycles per unit of u."""
+    measured: NDArray[np.complex128]
+    predicted: NDArray[np.complex128]
+    sigma: Floats
+    """Standard deviation of |measured − predicted| if the prediction is true."""
+
+
+@dataclass(frozen=True, eq=False)
+class Radial:
+    """The power spectrum over azimuths, [rho, nu]; rho begins below 0 as in `radial.npz`."""
+
+    rho: Floats
+    nu: Floats
+    measured: Floats
+    """Power without the noise of photons: negative where noise has it so."""
+    predicted: Floats
+    sigma: Floats
+    """Standard deviation of measured − predicted if the prediction is true."""
+    sigma_measured: Floats
+    """Standard error of measured."""
+    shot_noise: Floats
+    """What the noise of photons added, and was taken away."""
+
+
+@dataclass(frozen=True, eq=False)
+class LightField:
+    """The windowed light field summed over y and v, [x, u]: means of cells, W m⁻² sr⁻¹ m."""
+
+    x: Floats
+    """Centres of cells, metres."""
+    u: Floats
+    """Centres of cells, slope."""
+    measured: Floats
+    predicted: Floats
+    sigma: Floats
+    """Standard error of measured."""
+
+
+class Plane:
+    """A virtual plane: what is measured, what is predicted, and the verdict. Arrays are memory of Étendue that NumPy has taken over."""
+
+    def __init__(self, outcome: _etendue.Outcome, number: int, report: Mapping[str, Any]) -> None:
+        self._outcome = outcome
+        self._number = number
+        self.report = report
+        """All its numbers, as in `summary.json`."""
+
+    @property
+    def name(self) -> str:
+        """Its name."""
+        return self.report["name"]
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict on it."""
+        return self.report["verdict"]
+
+    @property
+    def p_value(self) -> float | None:
+        """Probability of a disagreement as large as the one seen, if there is none."""
+        return self.report["p_value"]
+
+    @property
+    def parameters(self) -> dict[str, Mapping[str, Any]]:
+        """Distances and sizes as the spectra alone tell them: `measured`, `error`, and `scene`, the scene's own."""
+        return {parameter["name"]: parameter for parameter in self.report["parameters"]}
+
+    @cached_property
+    def slices(self) -> Slices:
+        """Slices of the spectrum."""
+        return Slices(**self._outcome.slices(self._number))
+
+    @cached_property
+    def radial(self) -> Radial:
+        """The power spectrum over azimuths."""
+        return Radial(**self._outcome.radial(self._number))
+
+    @cached_property
+    def light_field(self) -> LightField:
+        """The light field in (x, u)."""
+        return LightField(**self._outcome.light_field(self._number))
+
+    def to_xarray(self) -> xarray.Dataset:
+        """Slices and radial spectrum with their axes and units (needs xarray)."""
+        import xarray
+
+        slices, radial = self.slices, self.radial
+        axes = ("azimuth", "rho", "nu")
+        # The radial spectrum has rho ≥ 0.
+        half = radial.rho.size - radial.measured.shape[0]
+        return xarray.Dataset(
+            {
+                "measured": (axes, slices.measured),
+                "predicted": (axes, slices.predicted),
+                "sigma": (axes, slices.sigma),
+                "power": (axes[1:], radial.measured, {"long_name": "radial power"}),
+                "predicted_power": (axes[1:], radial.predicted),
+                "power_sigma": (axes[1:], radial.sigma),
+            },
+            coords={
+                "azimuth": ("azimuth", slices.azimuth, {"units": "rad"}),
+                "rho": ("rho", slices.rho[half:] if half else slices.rho, {"units": "cycles/m"}),
+                "nu": ("nu", slices.nu, {"units": "cycles/slope"}),
+            },
+            attrs={"plane": self.name, "verdict": self.verdict},
+        )
+
+    def plot(self, ax: Any = None, what: Literal["measured", "predicted"] = "measured") -> Any:
+        """Draws the radial spectrum in dB below its peak on axes of matplotlib; returns them."""
+        if ax is None:
+            import matplotlib.pyplot as plt
+
+            ax = plt.gca()
+        power: Floats = getattr(self.radial, what)
+        level = 10 * np.log10(np.maximum(power, 1e-12 * power.max()) / power.max())
+        image = ax.pcolormesh(self.radial.rho, self.radial.nu, level.T, vmin=-60, vmax=0, shading="nearest")
+        ax.set(xlabel="ρ [cycles/m]", ylabel="ν [cycles/slope]", title=f"{self.name}: {what}")
+        ax.figure.colorbar(image, ax=ax, label="dB")
+        return ax
+
+    def __repr__(self) -> str:
+        return f"<etendue.Plane {self.name}: {self.verdict}>"
+
+
+class Result(Mapping[str, Plane]):
+    """What a run comes to: its planes by their names, and the verdict."""
+
+    def __init__(self, scene: Scene, outcome: _etendue.Outcome) -> None:
+        self.scene = scene
+        self._outcome = outcome
+        self.summary: Mapping[str, Any] = json.loads(outcome.summary())
+        """`summary.json`, without the hashes of files."""
+        reports = enumerate(self.summary["planes"])
+        self._planes = {report["name"]: Plane(outcome, i, report) for i, report in reports}
+
+    @property
+    def verdict(self) -> Verdict:
+        """The verdict on all planes."""
+        return self.summary["verdict"]
+
+    @property
+    def planes(self) -> dict[str, Plane]:
+        """The planes by their names."""
+        return dict(self._planes)
+
+    def __getitem__(self, name: str) -> Plane:
+        if name not in self._planes:
+            raise KeyError(f"no plane {name!r}; there are {', '.join(self._planes)}")
+        return self._planes[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._planes)
+
+    def __len__(self) -> int:
+        return len(self._planes)
+
+    def save(self, folder: str | os.PathLike[str], *, force: bool = False) -> Path:
+        """Writes what `etendue run` writes: pictures, arrays, `report.html` and `summary.json`. Returns the folder.
+
+        Raises `CannotRun` when the folder holds the result of another scene, unless `force`.
+        """
+        return Path(self._outcome.save(folder, force))
+
+    def __str__(self) -> str:
+        return self._outcome.table()
+
+    def __repr__(self) -> str:
+        return f"<etendue.Result of {self.scene.name}: {self.verdict}>"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(_row(plane.report) for plane in self._planes.values())
+        heads = "".join(f"<th>{head}</th>" for head in ("plane", "class", "p", "rel. error", "noise alone", "verdict"))
+        photons = f"{self.summary['photons']:,}".replace(",", "\u202f")
+        return (
+            f"<p><b>{escape(self.scene.name)}: {escape(self.verdict)}</b>, {photons} photons</p>"
+            f"<table><thead><tr>{heads}</tr></thead><tbody>{rows}</tbody></table>"
+        )
+
+
+def _row(report: Mapping[str, Any]) -> str:
+    def share(value: float | None) -> str:
+        return "–" if value is None else f"{100 * value:.3f} %"
+
+    p = report["p_value"]
+    cells = [
+        report["name"],
+        report["class"],
+        "–" if p is None else f"{p:.5f}",
+        share(report["relative_error"]),
+        share(report["noise_limit"]),
+        report["verdict"],
+    ]
+    return "<tr>" + "".join(f"<td>{escape(str(cell))}</td>" for cell in cells) + "</tr>"

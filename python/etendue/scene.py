@@ -1,0 +1,152 @@
+"""Scenes: files, or trees of the same fields."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Literal, Union, cast
+
+from etendue import types
+from etendue._etendue import Job
+
+Method = Literal["photons", "backward"]
+Value = Union[bool, int, float, str, Sequence[float]]
+"""What a field may be set to: a number, numbers, or text as it stands in a scene file, such as "Distance(1.5)"."""
+Source = Union[str, "os.PathLike[str]", types.Scene]
+"""A scene file's path, or a tree of its fields: `types.Scene`, as `etendue schema` describes it."""
+
+
+@dataclass(frozen=True)
+class PlaneInfo:
+    """What a scene says of a virtual plane before anything is measured."""
+
+    name: str
+    """Its name."""
+    prediction: str
+    """What it is held against: "exact", "first-order" or "reference"."""
+    chain: tuple[str, ...]
+    """What happens to light on its way there."""
+    reasons: tuple[str, ...]
+    """What no theory describes, where another tracer takes its place."""
+
+
+class Scene:
+    """A scene that is sound, and how it is measured.
+
+    `set` overrides fields by their paths, as `--set` of the command does: `{"blockers.0.pitch": 0.1}`. A tree may name
+    meshes and pictures in `folder`.
+
+    Raises `SceneError`, whose `faults` lists all that is wrong with it.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        *,
+        set: Mapping[str, Value] | None = None,
+        photons: float | None = None,
+        seed: int | None = None,
+        method: Method = "photons",
+        name: str = "scene",
+        folder: str | os.PathLike[str] = ".",
+    ) -> None:
+        if method not in ("photons", "backward"):
+            raise ValueError(f"method is {method!r}; allowed: 'photons' or 'backward'")
+        fields = [(path, _text(value)) for path, value in (set or {}).items()]
+        count = None if photons is None else _whole(photons)
+        backward = method == "backward"
+        if isinstance(source, (str, os.PathLike)):
+            self._folder = os.fspath(Path(source).absolute().parent)
+            self._job = Job.read(source, fields, count, seed, backward)
+        else:
+            self._folder = os.fspath(Path(folder).absolute())
+            self._job = Job.parse(json.dumps(source), name, self._folder, fields, count, seed, backward)
+        self._method: Method = method
+
+    @property
+    def name(self) -> str:
+        """The name of its file, without its ending."""
+        return self._job.name
+
+    @property
+    def file(self) -> types.Scene:
+        """The tree of its fields, defaults and overrides included."""
+        return cast(types.Scene, json.loads(self._job.json()))
+
+    @property
+    def photons(self) -> int:
+        """Photons that a run emits."""
+        return self._job.photons
+
+    @property
+    def batches(self) -> int:
+        """Batches they are emitted in, each a measurement of its own."""
+        return self._job.batches
+
+    @property
+    def planes(self) -> list[PlaneInfo]:
+        """Its virtual planes."""
+        found = self._job.planes()
+        return [PlaneInfo(name, kind, tuple(chain), tuple(reasons)) for name, kind, chain, reasons in found]
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is probably a mistake, each in a sentence."""
+        return self._job.warnings()
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return _rebuilt, (self._job.json(), self.name, self._folder, self._method)
+
+    def __repr__(self) -> str:
+        names = ", ".join(plane.name for plane in self.planes)
+        return f"<etendue.Scene {self.name}: {self.photons} photons; planes {names}>"
+
+
+def _rebuilt(text: str, name: str, folder: str, method: Method) -> Scene:
+    return Scene(cast(types.Scene, json.loads(text)), name=name, folder=folder, method=method)
+
+
+def as_scene(
+    scene: Scene | Source,
+    set: Mapping[str, Value] | None = None,
+    photons: float | None = None,
+    seed: int | None = None,
+    method: Method = "photons",
+) -> Scene:
+    """The scene itself, or one made of what describes it."""
+    if not isinstance(scene, Scene):
+        return Scene(scene, set=set, photons=photons, seed=seed, method=method)
+    if set is None and photons is None and seed is None:
+        return scene
+    return Scene(
+        scene.file,
+        set=set,
+        photons=photons,
+        seed=seed,
+        method=scene._method,  # pyright: ignore[reportPrivateUsage]
+        name=scene.name,
+        folder=scene._folder,  # pyright: ignore[reportPrivateUsage]
+    )
+
+
+def _whole(photons: float) -> int:
+    if photons != int(photons):
+        raise ValueError(f"photons is {photons}; allowed: a whole number")
+    return int(photons)
+
+
+def _text(value: Value) -> str:
+    """A value as scene files have it."""
+    if isinstance(value, str):
+        return value
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    try:
+        return repr(float(value))  # type: ignore[arg-type]  # numbers of NumPy
+    except TypeError:
+        return "(" + ", ".join(repr(float(number)) for number in value) + ")"

@@ -1,0 +1,259 @@
+//! Scenes, and what is measured and predicted of them.
+
+use crate::live::alive;
+use crate::outcome::Outcome;
+use crate::raised::raised;
+use crate::rays::{Rays, spectrum};
+use etendue::{Failure, Method, Options};
+use etendue_spectrum::Batch;
+use ndarray::Array2;
+use numpy::{PyArray2, PyReadonlyArray1};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// A scene, and how it is measured.
+#[pyclass(frozen, module = "etendue._etendue")]
+pub(crate) struct Job(Arc<etendue::Job>);
+
+/// Some batches of a scene.
+#[pyclass(frozen, module = "etendue._etendue")]
+pub(crate) struct Measurement(etendue_spectrum::Measurement);
+
+/// What a measurement is held against.
+#[pyclass(frozen, module = "etendue._etendue")]
+pub(crate) struct Prediction(Vec<etendue_compare::Prediction>);
+
+fn options(
+    set: Vec<(String, String)>,
+    photons: Option<u64>,
+    seed: Option<u64>,
+    backward: bool,
+) -> Options {
+    let method = if backward {
+        Method::Backward
+    } else {
+        Method::Photons
+    };
+    Options {
+        set,
+        photons,
+        seed,
+        method,
+    }
+}
+
+impl Job {
+    fn of(py: Python<'_>, job: Result<etendue::Job, Failure>) -> PyResult<Self> {
+        let job = job.map_err(|failure| raised(py, failure))?;
+        Ok(Self(Arc::new(job)))
+    }
+}
+
+#[pymethods]
+impl Job {
+    #[staticmethod]
+    fn read(
+        py: Python<'_>,
+        path: PathBuf,
+        set: Vec<(String, String)>,
+        photons: Option<u64>,
+        seed: Option<u64>,
+        backward: bool,
+    ) -> PyResult<Self> {
+        Self::of(
+            py,
+            etendue::Job::read(&path, &options(set, photons, seed, backward)),
+        )
+    }
+
+    #[staticmethod]
+    #[expect(clippy::too_many_arguments, reason = "as many as there are in Python")]
+    fn parse(
+        py: Python<'_>,
+        text: &str,
+        name: &str,
+        folder: PathBuf,
+        set: Vec<(String, String)>,
+        photons: Option<u64>,
+        seed: Option<u64>,
+        backward: bool,
+    ) -> PyResult<Self> {
+        let options = options(set, photons, seed, backward);
+        Self::of(py, etendue::Job::parse(text, name, &folder, &options))
+    }
+
+    #[getter]
+    fn name(&self) -> &str {
+        &self.0.scene().name
+    }
+
+    /// The scene file in JSON, defaults and overrides included.
+    fn json(&self) -> String {
+        serde_json::to_string(&self.0.scene().file).unwrap_or_default()
+    }
+
+    #[getter]
+    fn photons(&self) -> u64 {
+        self.0.scene().run.photons
+    }
+
+    #[getter]
+    fn batches(&self) -> u32 {
+        self.0.scene().run.batches
+    }
+
+    fn warnings(&self) -> Vec<String> {
+        self.0.scene().warnings()
+    }
+
+    /// Of each plane its name, class, steps of its chain, and what no theory describes.
+    fn planes(&self) -> Vec<(String, String, Vec<String>, Vec<String>)> {
+        let scene = self.0.scene();
+        let planes = scene.planes.iter().zip(self.0.theories());
+        let planes = planes.map(|(plane, theory)| {
+            let class = theory.class().to_string();
+            let steps = theory.steps(scene, plane);
+            (plane.name.clone(), class, steps, theory.reasons.clone())
+        });
+        planes.collect()
+    }
+
+    fn measure(
+        &self,
+        py: Python<'_>,
+        batches: Vec<u32>,
+        threads: Option<usize>,
+        progress: Option<Bound<'_, PyAny>>,
+    ) -> PyResult<Measurement> {
+        let job = Arc::clone(&self.0);
+        let found = alive(py, threads, progress.as_ref(), move |live| {
+            job.check_limits()?;
+            job.measure(&batches, live)
+        });
+        found.map(Measurement)
+    }
+
+    fn predict(&self, py: Python<'_>, threads: Option<usize>) -> PyResult<Prediction> {
+        let job = Arc::clone(&self.0);
+        let found = alive(py, threads, None, move |_| {
+            job.check_limits()?;
+            job.predict()
+        });
+        found.map(Prediction)
+    }
+
+    fn compare(
+        &self,
+        py: Python<'_>,
+        measurement: &Measurement,
+        prediction: &Prediction,
+        threads: Option<usize>,
+    ) -> PyResult<Outcome> {
+        let job = Arc::clone(&self.0);
+        let (measurement, predictions) = (measurement.0.clone(), prediction.0.clone());
+        let found = alive(py, threads, None, move |_| {
+            job.compare(measurement, predictions)
+        });
+        found.map(Outcome)
+    }
+
+    /// Photons at a plane: columns x, y, u, v and weight.
+    fn crossings<'py>(
+        &self,
+        py: Python<'py>,
+        batches: Vec<u32>,
+        plane: usize,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let job = Arc::clone(&self.0);
+        let rows = alive(py, None, None, move |_| {
+            let mut rows = Vec::new();
+            for batch in batches {
+                for crossing in job.crossings(batch, plane)? {
+                    let ray = crossing.ray;
+                    rows.extend([ray.x, ray.y, ray.u, ray.v, crossing.weight]);
+                }
+            }
+            let shape = (rows.len() / 5, 5);
+            Array2::from_shape_vec(shape, rows).map_err(|error| Failure {
+                message: error.to_string(),
+                code: 3,
+            })
+        })?;
+        Ok(PyArray2::from_owned_array(py, rows))
+    }
+
+    /// The spectrum of anybody's rays, by the window and the frequencies of the first plane. `batch` has the number of each.
+    #[expect(clippy::too_many_arguments, reason = "as many as there are in Python")]
+    fn spectrum<'py>(
+        &self,
+        py: Python<'py>,
+        columns: [PyReadonlyArray1<'py, f64>; 5],
+        batch: PyReadonlyArray1<'py, u32>,
+        batches: u32,
+        threads: Option<usize>,
+        progress: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let rays = Rays::new(&columns, &batch, batches)?;
+        let job = Arc::clone(&self.0);
+        let found = alive(py, threads, progress.as_ref(), move |live| {
+            spectrum(&rays, &job.scene().planes[0], live)
+        })?;
+        found.arrays(py)
+    }
+
+    /// The batches of a measurement as numbers and bytes.
+    fn packed<'py>(
+        &self,
+        py: Python<'py>,
+        measurement: &Measurement,
+    ) -> PyResult<Vec<(u32, Bound<'py, PyBytes>)>> {
+        let batches = measurement.0.batches();
+        let packed = batches.map(|batch| {
+            let bytes = self.0.packed(batch).map_err(|f| raised(py, f))?;
+            Ok((batch.index, PyBytes::new(py, &bytes)))
+        });
+        packed.collect()
+    }
+
+    fn unpacked(
+        &self,
+        py: Python<'_>,
+        batches: Vec<(u32, Bound<'_, PyBytes>)>,
+    ) -> PyResult<Measurement> {
+        let mut all = etendue_spectrum::Measurement::new(self.0.scene().planes.clone());
+        for (number, bytes) in batches {
+            let batch: Result<Batch, Failure> = self.0.unpacked(number, bytes.as_bytes());
+            let batch = batch.map_err(|failure| raised(py, failure))?;
+            all.insert(batch).map_err(|error| bad(py, &error))?;
+        }
+        Ok(Measurement(all))
+    }
+}
+
+fn bad(py: Python<'_>, error: &dyn std::fmt::Display) -> PyErr {
+    let failure = Failure {
+        message: error.to_string(),
+        code: 2,
+    };
+    raised(py, failure)
+}
+
+#[pymethods]
+impl Measurement {
+    #[getter]
+    fn batches(&self) -> Vec<u32> {
+        self.0.batches().map(|batch| batch.index).collect()
+    }
+
+    #[getter]
+    fn photons(&self) -> u64 {
+        self.0.emitted()
+    }
+
+    fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
+        let merged = self.0.clone().merge(other.0.clone());
+        merged.map(Self).map_err(|error| bad(py, &error))
+    }
+}

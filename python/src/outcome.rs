@@ -1,0 +1,90 @@
+//! What a comparison comes to.
+
+use crate::arrays::Arrays;
+use crate::raised::raised;
+use etendue::SliceArrays;
+use etendue_compare::PlaneComparison;
+use etendue_field::ProjectionGrid;
+use ndarray::Array1;
+use pyo3::exceptions::PyIndexError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::path::PathBuf;
+
+/// A scene whose planes are measured, predicted and compared.
+#[pyclass(frozen, module = "etendue._etendue")]
+pub(crate) struct Outcome(pub(crate) etendue::Outcome);
+
+impl Outcome {
+    fn plane(&self, plane: usize) -> PyResult<&PlaneComparison> {
+        let found = self.0.planes().get(plane);
+        found.ok_or_else(|| PyIndexError::new_err("no such plane"))
+    }
+}
+
+/// The axes of a light field: the centres of its cells along x and along u.
+pub(crate) fn cells(grid: &ProjectionGrid) -> [Array1<f64>; 2] {
+    [grid.half_x, grid.half_u].map(|half| (0..grid.bins).map(|i| grid.center(i, half)).collect())
+}
+
+#[pymethods]
+impl Outcome {
+    fn summary(&self) -> String {
+        String::from_utf8_lossy(&self.0.summary()).into_owned()
+    }
+
+    fn table(&self) -> String {
+        self.0.table()
+    }
+
+    fn slices<'py>(&self, py: Python<'py>, plane: usize) -> PyResult<Bound<'py, PyDict>> {
+        let SliceArrays {
+            azimuth,
+            measured,
+            predicted,
+            sigma,
+            rho,
+            nu,
+        } = SliceArrays::of(self.plane(plane)?);
+        Ok(Arrays::new(py)
+            .add("azimuth", azimuth)?
+            .add("rho", rho)?
+            .add("nu", nu)?
+            .add("measured", measured)?
+            .add("predicted", predicted)?
+            .add("sigma", sigma)?
+            .finish())
+    }
+
+    fn radial<'py>(&self, py: Python<'py>, plane: usize) -> PyResult<Bound<'py, PyDict>> {
+        let plane = self.plane(plane)?;
+        let grid = plane.measured.grid;
+        Ok(Arrays::new(py)
+            .add("rho", Array1::from(grid.rho.values()))?
+            .add("nu", Array1::from(grid.nu.values()))?
+            .add("measured", plane.radial.power.clone())?
+            .add("predicted", plane.predicted_radial.clone())?
+            .add("sigma", plane.radial_sigma.clone())?
+            .add("sigma_measured", plane.radial.sigma.clone())?
+            .add("shot_noise", plane.radial.shot_noise.clone())?
+            .finish())
+    }
+
+    fn light_field<'py>(&self, py: Python<'py>, plane: usize) -> PyResult<Bound<'py, PyDict>> {
+        let found = self.plane(plane)?;
+        let predicted = self.0.predictions()[plane].projection.values.clone();
+        let [x, u] = cells(&found.projection.mean.grid);
+        Ok(Arrays::new(py)
+            .add("x", x)?
+            .add("u", u)?
+            .add("measured", found.projection.mean.values.clone())?
+            .add("predicted", predicted)?
+            .add("sigma", found.projection.standard_error.clone())?
+            .finish())
+    }
+
+    fn save(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<PathBuf> {
+        let saved = py.detach(|| self.0.save(&folder, force));
+        saved.map_err(|failure| raised(py, failure))
+    }
+}

@@ -1,0 +1,32 @@
+//! Failures as exceptions.
+
+use etendue::Failure;
+use pyo3::create_exception;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+
+create_exception!(
+    etendue,
+    SceneError,
+    PyValueError,
+    "A scene, or another input, that is not sound. `faults` lists all that is wrong, each in a sentence."
+);
+create_exception!(
+    etendue,
+    CannotRun,
+    PyRuntimeError,
+    "What was asked for cannot be done here: memory, disk, a folder that holds something else."
+);
+
+/// The exception of a failure. Exit code 2 of the command is bad input.
+pub(crate) fn raised(py: Python<'_>, failure: Failure) -> PyErr {
+    if failure.code != 2 {
+        return CannotRun::new_err(failure.message);
+    }
+    let faults: Vec<String> = failure.message.lines().map(str::to_owned).collect();
+    let error = SceneError::new_err(failure.message);
+    match error.value(py).setattr("faults", faults) {
+        Ok(()) => error,
+        Err(other) => other,
+    }
+}

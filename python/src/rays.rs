@@ -1,0 +1,160 @@
+//! The estimator for anybody's rays.
+
+use crate::arrays::Arrays;
+use crate::live::Live;
+use crate::outcome::cells;
+use etendue::Failure;
+use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
+use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, shear_slope};
+use etendue_spectrum::{CrossPower, RadialPower, Uncertain, estimate, measure_watched};
+use ndarray::Array1;
+use numpy::PyReadonlyArray1;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+/// Rays summed at a time.
+const BLOCK: usize = 4096;
+
+/// Rays of somebody else, in batches.
+pub(crate) struct Rays(Vec<Vec<Crossing>>);
+
+impl Rays {
+    /// Rays with columns x, y, u, v and weight. A weight is multiplied by the number of batches: so the mean over batches is the sum over
+    /// all rays.
+    pub(crate) fn new(
+        columns: &[PyReadonlyArray1<'_, f64>; 5],
+        batch: &PyReadonlyArray1<'_, u32>,
+        batches: u32,
+    ) -> PyResult<Self> {
+        let fault = |what: String| Err(PyValueError::new_err(what));
+        let [x, y, u, v, weight] = columns.each_ref().map(|column| column.as_array());
+        let batch = batch.as_array();
+        let rays = x.len();
+        if [y.len(), u.len(), v.len(), weight.len(), batch.len()] != [rays; 5] {
+            return fault("x, y, u, v, weight and batch must be of one length".to_owned());
+        }
+        let mut all =
+            vec![Vec::with_capacity(rays / (batches.max(1) as usize) + 1); batches as usize];
+        for i in 0..rays {
+            let ray = TwoPlane {
+                x: x[i],
+                y: y[i],
+                u: u[i],
+                v: v[i],
+            };
+            let numbers = [ray.x, ray.y, ray.u, ray.v, weight[i]];
+            if numbers.iter().any(|number| !number.is_finite()) {
+                return fault(format!("ray {i} is {numbers:?}; allowed: finite numbers"));
+            }
+            let Some(own) = all.get_mut(batch[i] as usize) else {
+                return fault(format!(
+                    "batch[{i}] is {}; allowed: 0 to {}",
+                    batch[i],
+                    batches - 1
+                ));
+            };
+            let weight = weight[i] * f64::from(batches);
+            own.push(Crossing { ray, weight });
+        }
+        if let Some(empty) = all.iter().position(Vec::is_empty) {
+            return fault(format!(
+                "batch {empty} of {batches} has no ray; allowed: at least one ray a batch"
+            ));
+        }
+        Ok(Self(all))
+    }
+}
+
+impl PhotonSource for Rays {
+    fn emitted(&self, _batch: u32) -> u64 {
+        // What a batch comes to is its sum.
+        1
+    }
+
+    fn emit(
+        &self,
+        batch: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        for block in self.0[batch as usize].chunks(BLOCK) {
+            record(0, block);
+            progress(block.len() as u64);
+        }
+        Ledger::default()
+    }
+}
+
+/// The spectrum of rays.
+pub(crate) struct Spectrum {
+    slices: estimate::SliceEstimate,
+    radial: RadialPower,
+    projection: estimate::ProjectionEstimate,
+    in_window: u64,
+    /// Slope, and both bandwidths.
+    numbers: [(&'static str, Option<Uncertain>); 3],
+}
+
+/// The spectrum of rays, with errors from the spread between batches.
+pub(crate) fn spectrum(
+    rays: &Rays,
+    plane: &VirtualPlane,
+    live: &Live,
+) -> Result<Spectrum, Failure> {
+    let batches: Vec<u32> = (0..rays.0.len())
+        .filter_map(|i| u32::try_from(i).ok())
+        .collect();
+    let measured = measure_watched(rays, std::slice::from_ref(plane), &batches, live);
+    let few = |error: estimate::TooFewBatches| Failure {
+        message: error.to_string(),
+        code: 2,
+    };
+    let power = CrossPower::new(&measured, 0).map_err(few)?;
+    let grid = &plane.grid;
+    Ok(Spectrum {
+        slices: estimate::slices(&measured, 0).map_err(few)?,
+        radial: power.radial(),
+        projection: estimate::projection(&measured, 0).map_err(few)?,
+        in_window: measured.tally(0).inside,
+        numbers: [
+            ("slope", power.statistic(|p| shear_slope(p, grid))),
+            (
+                "bandwidth_rho",
+                power.statistic(|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
+            ),
+            (
+                "bandwidth_nu",
+                power.statistic(|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
+            ),
+        ],
+    })
+}
+
+impl Spectrum {
+    pub(crate) fn arrays(self, py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {
+        let grid = self.slices.mean.grid;
+        let azimuth = (0..grid.azimuths).map(|k| grid.azimuth(k)).collect();
+        let [x, u] = cells(&self.projection.mean.grid);
+        let sigma = self.slices.variance.mapv(f64::sqrt);
+        let all = Arrays::new(py)
+            .add::<f64, _>("azimuth", azimuth)?
+            .add("rho", Array1::from(grid.rho.values()))?
+            .add("nu", Array1::from(grid.nu.values()))?
+            .add("slices", self.slices.mean.full())?
+            .add("slices_sigma", grid.unfold_even(sigma.view()))?
+            .add("power", self.radial.power)?
+            .add("power_sigma", self.radial.sigma)?
+            .add("shot_noise", self.radial.shot_noise)?
+            .add("x", x)?
+            .add("u", u)?
+            .add("light_field", self.projection.mean.values)?
+            .add("light_field_sigma", self.projection.standard_error)?
+            .finish();
+        all.set_item("in_window", self.in_window)?;
+        for (name, number) in self.numbers {
+            all.set_item(name, number.map(|n| (n.value, n.error)))?;
+        }
+        Ok(all)
+    }
+}

@@ -1,0 +1,210 @@
+"""The package against the command, and against NumPy."""
+
+import json
+import os
+import pickle
+import signal
+import subprocess
+import sys
+import threading
+import time
+from pathlib import Path
+
+import etendue
+import numpy as np
+import pytest
+
+SCENES = Path(__file__).parents[2] / "scenes"
+FIG9B = SCENES / "fig9b.ron"
+
+
+@pytest.fixture(scope="module")
+def result():
+    return etendue.run(FIG9B, photons=2**18, set={"blockers.0.pitch": 0.1})
+
+
+def test_arrays_are_those_of_the_command(result, tmp_path):
+    line = ["run", str(FIG9B), "--photons=2^18", "--set=blockers.0.pitch=0.1", "--quiet", f"--out={tmp_path / 'b'}"]
+    code = subprocess.run([sys.executable, "-m", "etendue", *line], check=False).returncode
+    assert code == {"pass": 0, "fail": 1, "undecided": 4}[result.verdict]
+    folder = result.save(tmp_path / "a")
+    summary = json.loads((folder / "summary.json").read_bytes())
+    for name in ["summary.json", *summary["files"]]:
+        assert (folder / name).read_bytes() == (tmp_path / "b" / name).read_bytes(), name
+    for plane in result.values():
+        stored = np.load(folder / plane.name / "slices.npz")
+        for name in ("measured", "predicted", "sigma", "rho", "nu", "azimuth"):
+            assert getattr(plane.slices, name).tobytes() == stored[name].tobytes(), name
+        stored = np.load(folder / plane.name / "radial.npz")
+        assert plane.radial.measured.tobytes() == stored["power"].tobytes()
+        assert plane.radial.sigma.tobytes() == stored["sigma_predicted"].tobytes()
+
+
+def test_arrays_are_taken_over(result):
+    """NumPy holds the memory that Rust has allocated: the array is a view of it, and is made once."""
+    measured = result["receiver"].slices.measured
+    assert not measured.flags.owndata and "PySliceContainer" in type(measured.base).__name__
+    assert measured is result["receiver"].slices.measured
+    assert measured.flags.writeable and measured.flags.c_contiguous
+
+
+def test_parts_merge_to_the_whole(result):
+    scene = etendue.Scene(FIG9B, photons=2**18, set={"blockers.0.pitch": 0.1})
+    parts = [etendue.measure(scene, batches=range(i, 64, 3)) for i in (2, 0, 1)]
+    parts = [pickle.loads(pickle.dumps(part)) for part in parts]
+    merged = etendue.compare(etendue.merge(parts), etendue.predict(scene))
+    assert merged.summary == result.summary
+    assert merged["receiver"].slices.measured.tobytes() == result["receiver"].slices.measured.tobytes()
+    with pytest.raises(etendue.SceneError, match="batch 0 is in both"):
+        etendue.merge([parts[1], parts[1]])
+    with pytest.raises(ValueError, match="different scenes"):
+        etendue.merge([parts[0], etendue.measure(scene.file | {"run": {"photons": 2**18, "seed": 2}}, batches=[1])])
+
+
+def test_a_damaged_part_is_refused():
+    part = etendue.measure(FIG9B, photons=2**16, batches=[3])
+    whole = pickle.dumps(part)
+    at = whole.index(b"PK\x03\x04")
+    harmed = whole[: at + 9000] + bytes([whole[at + 9000] ^ 255]) + whole[at + 9001 :]
+    with pytest.raises(etendue.SceneError):
+        pickle.loads(harmed)
+
+
+def test_all_faults_at_once():
+    with pytest.raises(etendue.SceneError) as raised:
+        etendue.check(FIG9B, set={"blockers.0.pitch": -1, "run.alpha": 2, "light.center": (0, 0, 0)})
+    assert len(raised.value.faults) == 2
+    assert any("--set blockers.0.pitch=-1: blockers[0].pitch is -1" in fault for fault in raised.value.faults)
+    assert isinstance(raised.value, ValueError)
+    with pytest.raises(etendue.SceneError, match="cannot read"):
+        etendue.check("nowhere.ron")
+
+
+def test_a_tree_is_a_scene():
+    file = etendue.Scene(FIG9B).file
+    file["run"] = {"photons": 2**16}
+    file["planes"] = [{"name": "half", "at": {"Distance": 0.5}}]
+    result = etendue.run(file)
+    assert list(result) == ["half"] and result.verdict == "pass"
+    assert result.summary["photons"] == 2**16
+
+
+def test_own_photons_come_back():
+    """The photons of a plane, given to the estimator as anybody's, have the measured spectrum."""
+    scene = etendue.Scene(FIG9B, photons=2**16)
+    rays = etendue.photons(scene, "receiver")
+    assert rays.shape[1] == 5
+    x, y, u, v, weight = rays.T
+    file = scene.file
+    found = etendue.spectrum(x, y, u, v, weight / 2**16, window=file["window"], frequencies=file["frequencies"])
+    measured = etendue.run(scene)["receiver"].slices.measured
+    # The bound is rounding: the sums are the same in another order.
+    assert np.abs(found.slices - measured).max() < 1e-12 * np.abs(measured).max() + 4e-7 * np.abs(measured).max()
+
+
+def test_errors_are_those_of_chance():
+    """Over seeds, a frequency's distance from the truth is its stated error."""
+    window = {"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}
+    frequencies = {"azimuths": 1, "rho": {"max": 4}, "nu": {"max": 4}}
+    found = []
+    for seed in range(60):
+        x, y, u, v = np.random.default_rng(seed).uniform(-0.5, 0.5, (4, 4000))
+        s = etendue.spectrum(x, y, u, v, window=window, frequencies=frequencies)
+        found.append((s.slices[0, 4, 4].real, s.slices_sigma[0, 4, 4]))
+    values, errors = np.array(found).T
+    # Four standard errors of a standard deviation from 60 values: 4 / sqrt(2 · 59) = 0.37.
+    assert abs(values.std(ddof=1) / np.sqrt((errors**2).mean()) - 1) < 0.37
+    # ∫ of four Hann windows over uniform density is (1/2)⁴; four standard errors of the mean of 60.
+    assert abs(values.mean() - 4000 / 16) < 4 * values.std() / np.sqrt(60)
+
+
+def test_rays_that_cannot_be():
+    window, frequencies = {"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}, {"rho": {"max": 4}, "nu": {"max": 4}}
+    four = [np.zeros(100)] * 4
+    for change, message in [
+        ({"weight": np.ones(99)}, "one length"),
+        ({"weight": np.full(100, np.nan)}, "finite"),
+        ({"batches": 200}, "has no ray"),
+        ({"batches": 1}, "too few"),
+        ({"window": {"x": {"Hann": -1}, "u": {"Hann": 1}}}, "window.x"),
+    ]:
+        with pytest.raises(ValueError, match=message):
+            etendue.spectrum(*four, **{"window": window, "frequencies": frequencies, **change})
+
+
+def test_an_interrupt_ends_a_billion_photons():
+    code = (
+        "import etendue, sys, time\n"
+        "def told(n):\n"
+        "    if n and not told.said: print('on', flush=True); told.said = True\n"
+        "told.said = False\n"
+        "try: etendue.run(sys.argv[1], photons=2**30, progress=told)\n"
+        "except KeyboardInterrupt: print('off', flush=True)\n"
+        "import os; time.sleep(0.3); a = os.times(); time.sleep(0.5); b = os.times(); print(b.user - a.user)\n"
+    )
+    with subprocess.Popen([sys.executable, "-c", code, FIG9B], stdout=subprocess.PIPE, text=True) as run:
+        assert run.stdout.readline() == "on\n"
+        time.sleep(0.5)
+        begun = time.perf_counter()
+        run.send_signal(signal.SIGINT)
+        assert run.stdout.readline() == "off\n"
+        seconds = time.perf_counter() - begun
+        # And nothing goes on in the background.
+        assert float(run.stdout.readline()) < 0.1
+    print(f"interrupted after {1000 * seconds:.0f} ms")
+    assert seconds < 1  # a busy machine; the figure is printed
+
+
+def test_other_threads_go_on():
+    counted = 0
+    thread = threading.Thread(target=etendue.run, args=(FIG9B,), kwargs={"photons": 2**21})
+    thread.start()
+    while thread.is_alive():
+        counted += 1
+        time.sleep(0.01)
+    assert counted > 3
+
+
+def test_progress_and_pictures(result):
+    told = []
+    etendue.measure(FIG9B, photons=2**16, progress=told.append)
+    assert told[-1] == 2**16
+    html = result._repr_html_()
+    assert "<table>" in html and "receiver" in html and "<script" not in html
+    assert "verdict" in str(result) and "pass" in repr(result["light"])
+    plane = result["receiver"]
+    data = plane.to_xarray()
+    assert data.measured.dims == ("azimuth", "rho", "nu") and data.rho.units == "cycles/m"
+    assert data.power.shape == (data.rho.size, data.nu.size)
+    import matplotlib
+
+    matplotlib.use("Agg")
+    assert plane.plot().get_xlabel().startswith("ρ")
+    with pytest.raises(KeyError, match="there are light"):
+        result["nowhere"]
+
+
+def test_commands_as_functions(tmp_path):
+    table = etendue.sweep(FIG9B, {"blockers.0.pitch": [0.1, 0.2]}, photons=2**14, out=tmp_path / "sweep")
+    assert set(table["blockers.0.pitch"]) == {0.1, 0.2} and "receiver" in table["plane"]
+    picture = etendue.figure([etendue.Scene(FIG9B, photons=2**14)], out=tmp_path / "figure")
+    assert picture.suffix == ".png" and picture.stat().st_size > 10_000
+    with pytest.raises(etendue.SceneError):
+        etendue.sweep(FIG9B, {"blockers.0.pitch": [-1, 0.2]}, out=tmp_path / "none")
+
+
+def test_types_are_those_of_the_schema(tmp_path):
+    here = Path(__file__).parents[1]
+    out = tmp_path / "types.py"
+    schema = here.parent / "docs" / "scene.schema.json"
+    subprocess.run([sys.executable, here / "write_types.py", schema, out], check=True)
+    assert out.read_text() == (here / "etendue" / "types.py").read_text()
+
+
+def test_a_result_of_another_scene_stays(result, tmp_path):
+    result.save(tmp_path / "a")
+    result.save(tmp_path / "a")
+    other = etendue.run(FIG9B, photons=2**14)
+    with pytest.raises(etendue.CannotRun, match="another scene"):
+        other.save(tmp_path / "a")
+    assert os.listdir(tmp_path) == ["a"]

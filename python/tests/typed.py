@@ -1,0 +1,17 @@
+"""What pyright must accept: a scene and its results, with all types."""
+
+import etendue
+from etendue import types
+
+light: types.Light = {"Rectangle": {"center": [0, 0, 0], "size": [0.2, 0.2]}}
+scene: types.Scene = {
+    "light": light,
+    "path": {"direction": [0, 0, 1], "x_axis": [1, 0, 0], "visits": []},
+    "planes": [{"name": "far", "at": {"Distance": 2}}],
+    "window": {"x": {"Hann": 0.5}, "u": {"Hann": 0.5}},
+    "frequencies": {"rho": {"max": 8}, "nu": {"max": 16}},
+}
+result = etendue.run(scene, photons=1e5, set={"run.seed": 3})
+slope: float = result["far"].report["slope"]["measured"]
+power = result["far"].radial.measured.max()
+shape: tuple[int, ...] = result["far"].slices.measured.shape
