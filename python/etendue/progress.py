@@ -26,9 +26,15 @@ def told(progress: Progress, total: int, unit: str) -> Generator[Callable[[int],
         yield lambda done: bar.update(done - bar.n)
 
 
+def _is_notebook() -> bool:
+    ipython = sys.modules.get("IPython")
+    shell: Any = ipython.get_ipython() if ipython else None
+    return getattr(shell, "kernel", None) is not None
+
+
 def _bar(progress: bool | None, total: int, unit: str) -> Any:
     if progress is None:
-        progress = sys.stderr.isatty() or "ipykernel" in sys.modules
+        progress = sys.stderr.isatty() or _is_notebook()
     if not progress:
         return None
     try:

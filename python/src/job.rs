@@ -185,7 +185,6 @@ impl Job {
     }
 
     /// The spectrum of anybody's rays, by the window and the frequencies of the first plane. `batch` has the number of each.
-    #[expect(clippy::too_many_arguments, reason = "as many as there are in Python")]
     fn spectrum<'py>(
         &self,
         py: Python<'py>,

@@ -1,0 +1,50 @@
+"""What the book says of the package happens; the notebook and the example run."""
+
+import contextlib
+import io
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+
+
+def test_the_page_of_the_book(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    blocks = re.findall(r"```(python|text)\n(.*?)```", (ROOT / "docs/package.md").read_text(), re.DOTALL)
+    assert len(blocks) > 8
+    names, said = {}, ""
+    for kind, text in blocks:
+        if kind == "python":
+            out = io.StringIO()
+            with contextlib.redirect_stdout(out):
+                exec(text, names)
+            said = out.getvalue()
+        else:
+            pattern = re.escape(text.strip()).replace("…", ".*")
+            assert re.fullmatch(pattern, said.strip()), said
+
+
+def test_the_notebook(tmp_path):
+    nbclient = pytest.importorskip("nbclient")
+    import nbformat
+
+    notebook = nbformat.read(ROOT / "docs/notebook.ipynb", as_version=4)
+    nbclient.NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(ROOT)}}).execute()
+    outputs = [output for cell in notebook.cells for output in cell.get("outputs", [])]
+    assert any("image/png" in output.get("data", {}) for output in outputs)
+    assert any("<table>" in output.get("data", {}).get("text/html", "") for output in outputs)
+
+
+def test_dask_merges_to_the_same_bytes(tmp_path):
+    pytest.importorskip("distributed")
+    scene = ROOT / "scenes/fig9b.ron"
+    # Processes of Dask import the package as this one does.
+    subprocess.run([sys.executable, ROOT / "python/examples/dask_parts.py", scene, tmp_path / "a"], check=True, env=os.environ)
+    line = ["run", scene, "--photons=2^20", "--quiet", "--out", tmp_path / "b"]
+    subprocess.run([sys.executable, "-m", "etendue", *line], check=False)
+    assert (tmp_path / "a/summary.json").read_bytes() == (tmp_path / "b/summary.json").read_bytes()
