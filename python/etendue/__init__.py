@@ -5,7 +5,7 @@
 >>> result.verdict
 'pass'
 >>> result["receiver"].slices.measured.shape       # [azimuth, rho, nu]
-(8, 97, 65)
+(8, 33, 65)
 
 `run` is `measure`, `predict` and `compare` in one. `spectrum` takes rays of your own. Lengths are metres, frequencies are cycles per
 metre (rho) and cycles per unit of slope (nu).
@@ -18,12 +18,13 @@ from etendue.commands import figure, sweep
 from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.scene import PlaneInfo, Scene
-from etendue.stages import Measurement, Prediction, check, compare, measure, merge, photons, predict, run
+from etendue.stages import Measurement, Photons, Prediction, check, compare, measure, merge, photons, predict, run
 
 __all__ = [
     "CannotRun",
     "LightField",
     "Measurement",
+    "Photons",
     "Plane",
     "PlaneInfo",
     "Prediction",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from dataclasses import dataclass
 from typing import Any
 
@@ -30,24 +31,31 @@ class Spectrum:
     slices_sigma: Floats
     """Standard error of |slices|, from the spread between batches."""
     power: Floats
-    """Power over azimuths, [rho, nu], without the noise of the rays."""
+    """The mean of |slices|² over azimuths, [rho, nu] with rho ≥ 0, less `shot_noise`. Where there is only noise it may be negative."""
     power_sigma: Floats
-    """Its standard error."""
+    """Its standard error, by the jackknife: up to √2 too large where noise is above the signal."""
     shot_noise: Floats
     """What the noise of the rays added, and was taken away."""
     x: Floats
+    """Centres of the cells of the light field, metres."""
     u: Floats
+    """Centres of its cells, slope."""
     light_field: Floats
     """The windowed light field summed over y and v, [x, u]."""
     light_field_sigma: Floats
+    """Its standard error."""
     in_window: int
     """Rays inside the window."""
     slope: tuple[float, float] | None
-    """Shear slope of the power in metres, and its error."""
+    """Shear slope of the power, Σ power·rho·nu / Σ power·rho², in metres, and its error; `None` where no ray is in the window. The error is by the
+    jackknife, and up to √2 too large where most frequencies hold noise. So it is with the bandwidths."""
     bandwidth_rho: tuple[float, float] | None
     """95 % bandwidth along rho, and its error."""
     bandwidth_nu: tuple[float, float] | None
     """95 % bandwidth along nu, and its error."""
+
+    def __repr__(self) -> str:
+        return f"<etendue.Spectrum {self.slices.shape}: {self.in_window} rays in the window, slope {self.slope}>"
 
 
 def spectrum(
@@ -70,26 +78,57 @@ def spectrum(
     `weight` is what a ray carries, 1 unless given: for radiance, flux times (1 + u² + v²)².
 
     `window` is a profile for each coordinate, such as `{"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}`: y and v are as x and u unless given.
-    `frequencies` are `{"rho": {"max": 12}, "nu": {"max": 24}}`, with `"azimuths"` if not 8.
+    0.5 is the half-width: cos²(π t / 2h) on |t| < h. Others are `{"Box": h}` and `{"Gaussian": {"width": w, "cut": h}}`.
+    `frequencies` are `{"rho": {"max": 12}, "nu": {"max": 24}}`, with `"azimuths"` if not 8. Their spacing is 1/(2h) unless `"spacing"` is
+    given, and `max` is rounded up to a multiple of it.
 
     Errors come from the spread between `batches` groups of rays. Ray i is in group i modulo `batches`, which is right where rays
-    are independent of each other. Where they are not (nets, paths that share a vertex), `batch` gives the group of each: groups
-    must be independent.
+    are independent of each other. Where they are not (nets, paths that share a vertex), `batch` gives the group of each, a whole
+    number: groups must be independent.
+
+    Returns a `Spectrum`. Raises `ValueError` where arrays do not fit together, and `SceneError` for a window or frequencies that cannot be.
     """
-    columns = [np.ascontiguousarray(column, dtype=np.float64) for column in (x, y, u, v)]
+    columns = [_column(name, column) for name, column in (("x", x), ("y", y), ("u", u), ("v", v))]
     rays = columns[0].size
-    carried = np.ones(rays) if weight is None else np.ascontiguousarray(weight, dtype=np.float64)
-    if batch is None:
-        group = np.arange(rays, dtype=np.uint32) % np.uint32(batches)
-    else:
-        group = np.ascontiguousarray(batch, dtype=np.uint32)
-        batches = int(group.max(initial=0)) + 1
+    columns.append(np.ones(rays) if weight is None else _column("weight", weight))
+    for name, column in zip(("y", "u", "v", "weight"), columns[1:]):
+        if column.size != rays:
+            raise ValueError(f"{name} has {column.size} numbers and x {rays}; allowed: one of each for a ray")
+    group, batches = _groups(rays, batch, batches)
     plane = Scene(_around(window, frequencies), name="rays")
     with told(progress, rays, "rays") as tell:
         found: dict[str, Any] = plane._job.spectrum(  # pyright: ignore[reportPrivateUsage]
-            [*columns, carried], group, batches, threads, tell
+            columns, group, batches, threads, tell
         )
+    if not np.isfinite(found["power"]).all():
+        raise ValueError("the power of these weights is beyond the largest number; allowed: weights below 1e100 or so")
+    if found["in_window"] == 0:
+        warnings.warn("no ray is inside the window: the spectrum is zero", stacklevel=2)
     return Spectrum(**found)
+
+
+def _column(name: str, numbers: ArrayLike) -> Floats:
+    column = np.asarray(numbers)
+    if column.ndim != 1 or column.dtype.kind not in "buif":
+        raise ValueError(f"{name} is {column.dtype} of shape {column.shape}; allowed: real numbers of shape (N,)")
+    return np.ascontiguousarray(column, dtype=np.float64)
+
+
+def _groups(rays: int, batch: ArrayLike | None, batches: int) -> tuple[NDArray[np.uint32], int]:
+    """The group of each ray, and how many there are."""
+    if batch is None:
+        if not 2 <= batches <= rays:
+            raise ValueError(f"batches is {batches} for {rays} rays; allowed: 2 to one a ray")
+        return np.arange(rays, dtype=np.uint32) % np.uint32(batches), batches
+    numbers = np.asarray(batch)
+    if numbers.shape != (rays,) or numbers.dtype.kind not in "biu":
+        what = f"{numbers.dtype} of shape {numbers.shape}"
+        raise ValueError(f"batch is {what}; allowed: a whole number for each of {rays} rays")
+    # Any numbers will do: a group is told by its rank among them.
+    names, group = np.unique(numbers, return_inverse=True)
+    if names.size < 2:
+        raise ValueError(f"batch has {names.size} different numbers; allowed: 2 or more")
+    return group.astype(np.uint32), names.size
 
 
 def _around(window: types.Window, frequencies: types.Frequencies) -> types.Scene:

@@ -57,6 +57,7 @@ class Scene:
             raise ValueError(f"method is {method!r}; allowed: 'photons' or 'backward'")
         fields = [(path, _text(value)) for path, value in (set or {}).items()]
         count = None if photons is None else _whole(photons)
+        seed = None if seed is None else _seed(seed)
         backward = method == "backward"
         if isinstance(source, (str, os.PathLike)):
             self._folder = os.fspath(Path(source).absolute().parent)
@@ -133,9 +134,15 @@ def as_scene(
 
 
 def _whole(photons: float) -> int:
-    if photons != int(photons):
-        raise ValueError(f"photons is {photons}; allowed: a whole number")
+    if isinstance(photons, str) or not 0 < photons < 2**63 or photons != int(photons):
+        raise ValueError(f"photons is {photons!r}; allowed: a whole number above 0, such as 1e6 or 2**20")
     return int(photons)
+
+
+def _seed(seed: int) -> int:
+    if not 0 <= seed < 2**64 or seed != int(seed):
+        raise ValueError(f"seed is {seed!r}; allowed: a whole number, 0 or above")
+    return int(seed)
 
 
 def _text(value: Value) -> str:
@@ -145,7 +152,8 @@ def _text(value: Value) -> str:
     if isinstance(value, bool):
         return "true" if value else "false"
     if isinstance(value, (int, float)):
-        return repr(value)
+        # Numbers of NumPy are written in another way.
+        return repr(float(value)) if isinstance(value, float) else repr(int(value))
     try:
         return repr(float(value))  # type: ignore[arg-type]  # numbers of NumPy
     except TypeError:

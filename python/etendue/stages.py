@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,9 +72,9 @@ def measure(
 ) -> Measurement:
     """Traces photons of a scene: all its batches, or those of these numbers. Other threads of Python go on meanwhile."""
     scene = as_scene(scene, set, photons, seed, method)
-    numbers = list(range(scene.batches)) if batches is None else sorted({int(number) for number in batches})
-    if numbers and not 0 <= numbers[0] <= numbers[-1] < scene.batches:
-        raise ValueError(f"batches are {numbers[0]} to {numbers[-1]}; allowed: 0 to {scene.batches - 1}")
+    numbers = _batches(scene, batches)
+    if threads is not None and threads < 1:
+        raise ValueError(f"threads is {threads}; allowed: 1 or more")
     with told(progress, scene.photons * len(numbers) // scene.batches, "photons") as tell:
         raw = scene._job.measure(numbers, threads, tell)  # pyright: ignore[reportPrivateUsage]
     return Measurement(scene, raw)
@@ -93,6 +94,8 @@ def merge(measurements: Iterable[Measurement]) -> Measurement:
     Raises `SceneError` when a batch is in two of them, or they are of different planes, and `ValueError` when they are of different scenes.
     """
     parts = list(measurements)
+    if not all(isinstance(part, Measurement) for part in parts):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise TypeError("what is merged are measurements, as `measure` returns them")
     if not parts:
         raise ValueError("there is nothing to merge")
     first = parts[0]
@@ -106,6 +109,8 @@ def merge(measurements: Iterable[Measurement]) -> Measurement:
 
 def compare(measurement: Measurement, prediction: Prediction | None = None, *, threads: int | None = None) -> Result:
     """The verdict on a measurement. Its scene is predicted if no prediction is given."""
+    if not isinstance(measurement, Measurement):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise TypeError(f"a measurement is compared, not {type(measurement).__name__}: `measure` returns one, and `run` does all")
     scene = measurement.scene
     if prediction is None:
         prediction = predict(scene, threads=threads)
@@ -131,20 +136,62 @@ def run(
 ) -> Result:
     """Measures a scene, predicts it and compares. Nothing is written: `Result.save` does.
 
-    The same bytes as `etendue run`, on any number of threads. Ctrl-C stops it within a tenth of a second.
+    `scene` is the path of a scene file, a tree of its fields (`etendue.types.Scene`), or a `Scene`.
+    `set` overrides fields by their paths, as `{"blockers.0.pitch": 0.1}`; vectors are sequences, and text is as in a scene file: "Distance(1.5)".
+    `photons` and `seed` are instead of the scene's. Noise falls with photons, most of all for powers of two.
+    `method` is "photons", sent from the light, or "backward", rays traced from each window back to it.
+    `threads` is one for each core unless said; the result does not depend on it.
+    `progress` is whether a bar is shown, or a function that is told how many photons are done.
+
+    The same bytes as `etendue run`. Ctrl-C stops it within a tenth of a second. Raises `SceneError` with all faults of the scene, and
+    `CannotRun` where memory does not do.
     """
     scene = as_scene(scene, set, photons, seed, method)
     return compare(measure(scene, threads=threads, progress=progress), threads=threads)
 
 
+@dataclass(frozen=True, eq=False)
+class Photons:
+    """Photons that cross a plane."""
+
+    rays: NDArray[np.float64]
+    """[N, 5]: x, y in metres, u, v, and weight."""
+    batch: NDArray[np.uint32]
+    """The batch of each, [N]: batches are independent of each other, and the photons of one are not."""
+    emitted: int
+    """Photons emitted, those included that do not come to the plane. The sum of weight times window over this number is the integral of
+    the windowed radiance."""
+
+
 def photons(
-    scene: Scene | Source, plane: str, *, batches: Iterable[int] | None = None, **options: float
-) -> NDArray[np.float64]:
-    """The photons that cross a plane, [N, 5]: x, y in metres, u, v, and weight. The mean of weight times window over all photons emitted is
-    the integral of the windowed radiance."""
-    scene = as_scene(scene, **options)  # type: ignore[arg-type]
+    scene: Scene | Source,
+    plane: str,
+    *,
+    batches: Iterable[int] | None = None,
+    set: Mapping[str, Value] | None = None,
+    photons: float | None = None,
+    seed: int | None = None,
+) -> Photons:
+    """The photons of a scene that cross one of its planes, inside its window and outside."""
+    scene = as_scene(scene, set, photons, seed)
     names = [known.name for known in scene.planes]
     if plane not in names:
         raise KeyError(f"no plane {plane!r}; there are {', '.join(names)}")
-    numbers = list(range(scene.batches)) if batches is None else list(batches)
-    return scene._job.crossings(numbers, names.index(plane))  # pyright: ignore[reportPrivateUsage]
+    numbers = _batches(scene, batches)
+    job = scene._job  # pyright: ignore[reportPrivateUsage]
+    each = [job.crossings([number], names.index(plane)) for number in numbers]
+    batch = np.repeat(np.array(numbers, dtype=np.uint32), [len(rays) for rays in each])
+    rays = np.concatenate(each) if each else np.zeros((0, 5))
+    return Photons(rays, batch, sum(job.emitted(number) for number in numbers))
+
+
+def _batches(scene: Scene, batches: Iterable[int] | None) -> list[int]:
+    if batches is None:
+        return list(range(scene.batches))
+    try:
+        numbers = sorted({int(number) for number in batches})
+    except TypeError:
+        raise TypeError(f"batches is {batches!r}; allowed: their numbers, such as range(8)") from None
+    if numbers and not 0 <= numbers[0] <= numbers[-1] < scene.batches:
+        raise ValueError(f"batches are {numbers[0]} to {numbers[-1]}; allowed: 0 to {scene.batches - 1}")
+    return numbers

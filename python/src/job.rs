@@ -104,6 +104,11 @@ impl Job {
         self.0.scene().run.batches
     }
 
+    fn emitted(&self, py: Python<'_>, batch: u32) -> PyResult<u64> {
+        let emitted = self.0.emitted(batch);
+        emitted.map_err(|failure| raised(py, failure))
+    }
+
     fn warnings(&self) -> Vec<String> {
         self.0.scene().warnings()
     }

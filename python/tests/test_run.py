@@ -76,6 +76,10 @@ def test_all_faults_at_once():
     assert len(raised.value.faults) == 2
     assert any("--set blockers.0.pitch=-1: blockers[0].pitch is -1" in fault for fault in raised.value.faults)
     assert isinstance(raised.value, ValueError)
+    for wrong in ({"photons": -1}, {"photons": 1.5}, {"seed": -1}):
+        with pytest.raises(ValueError, match="allowed: a whole number"):
+            etendue.Scene(FIG9B, **wrong)
+    assert etendue.Scene(FIG9B, set={"blockers.0.pitch": np.float64(0.125)}).file["blockers"][0]["JitteredSquares"]["pitch"] == 0.125
     with pytest.raises(etendue.SceneError, match="cannot read"):
         etendue.check("nowhere.ron")
 
@@ -92,14 +96,20 @@ def test_a_tree_is_a_scene():
 def test_own_photons_come_back():
     """The photons of a plane, given to the estimator as anybody's, have the measured spectrum."""
     scene = etendue.Scene(FIG9B, photons=2**16)
-    rays = etendue.photons(scene, "receiver")
-    assert rays.shape[1] == 5
-    x, y, u, v, weight = rays.T
+    light = etendue.photons(scene, "receiver")
+    assert light.rays.shape == (light.batch.size, 5) and light.emitted == 2**16
+    x, y, u, v, weight = light.rays.T
     file = scene.file
-    found = etendue.spectrum(x, y, u, v, weight / 2**16, window=file["window"], frequencies=file["frequencies"])
-    measured = etendue.run(scene)["receiver"].slices.measured
-    # The bound is rounding: the sums are the same in another order.
-    assert np.abs(found.slices - measured).max() < 1e-12 * np.abs(measured).max() + 4e-7 * np.abs(measured).max()
+    own = {"window": file["window"], "frequencies": file["frequencies"], "batch": light.batch}
+    found = etendue.spectrum(x, y, u, v, weight / 2**16, **own)
+    slices = etendue.run(scene)["receiver"].slices
+    # The transform is exact to 2e-7 of the sum of weights, twice.
+    assert np.abs(found.slices - slices.measured).max() < 4e-7 * np.abs(slices.measured).max()
+    # Errors are from the same batches by the same estimator.
+    assert np.allclose(found.slices_sigma, slices.sigma, rtol=1e-4)
+    # Groups may have any numbers.
+    renamed = etendue.spectrum(x, y, u, v, weight / 2**16, **(own | {"batch": light.batch.astype(np.int64) * 2**40 - 7}))
+    assert np.array_equal(renamed.slices_sigma, found.slices_sigma)
 
 
 def test_errors_are_those_of_chance():
@@ -122,10 +132,13 @@ def test_rays_that_cannot_be():
     window, frequencies = {"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}, {"rho": {"max": 4}, "nu": {"max": 4}}
     four = [np.zeros(100)] * 4
     for change, message in [
-        ({"weight": np.ones(99)}, "one length"),
+        ({"weight": np.ones(99)}, "weight has 99 numbers and x 100"),
         ({"weight": np.full(100, np.nan)}, "finite"),
-        ({"batches": 200}, "has no ray"),
-        ({"batches": 1}, "too few"),
+        ({"weight": np.full(100, 1e200)}, "largest number"),
+        ({"batches": 200}, "batches is 200 for 100 rays"),
+        ({"batches": 1}, "batches is 1"),
+        ({"batch": np.full(100, 0.5)}, "a whole number for each of 100"),
+        ({"batch": np.full(100, 2**31)}, "1 different"),
         ({"window": {"x": {"Hann": -1}, "u": {"Hann": 1}}}, "window.x"),
     ]:
         with pytest.raises(ValueError, match=message):

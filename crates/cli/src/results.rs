@@ -18,6 +18,7 @@ pub(crate) mod stored;
 pub(crate) mod summary;
 
 use crate::failure::Failure;
+use crate::warnings::warn;
 use crate::{interrupt, say};
 use etendue_scene::read_file;
 use lock::Lock;
@@ -25,7 +26,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// The index of a comparison.
 pub(crate) const SUMMARY: &str = "summary.json";
@@ -48,6 +49,9 @@ pub(crate) const MOST_INDEX: u64 = 1 << 26;
 /// Where new files wait.
 const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
+
+/// How long another process may hold a folder before that is said.
+const PATIENCE: Duration = Duration::from_secs(3);
 
 /// What a command is going to write, and what it reads.
 #[derive(Clone, Debug)]
@@ -130,9 +134,14 @@ impl Results {
 
     /// The same, but waits while another process writes there.
     pub(crate) fn claim_in_turn(folder: &Path, plan: Plan) -> Result<Self, Failure> {
+        let mut begun = Some(Instant::now());
         loop {
             match Self::claim(folder, plan.clone()) {
                 Err(failure) if failure.message.ends_with(lock::BUSY) => {
+                    // Those that share a run wait for each other for a moment, and say nothing.
+                    if begun.take_if(|begun| begun.elapsed() > PATIENCE).is_some() {
+                        warn(&format!("{}: waiting for it to end", failure.message));
+                    }
                     std::thread::sleep(Duration::from_millis(100));
                 }
                 ended => return ended,
