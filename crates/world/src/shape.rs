@@ -1,0 +1,96 @@
+use crate::light::Emission;
+use glam::{DAffine3, DVec2, DVec3};
+use std::sync::Arc;
+
+/// A surface with one material.
+#[derive(Clone, Debug)]
+pub struct Shape {
+    /// What the file calls it.
+    pub name: String,
+    /// In coordinates of its own.
+    pub geometry: Geometry,
+    /// From its own coordinates to those of the world. Spheres and cylinders are scaled alike along all axes, cylinders by another factor along Z.
+    pub to_world: DAffine3,
+    /// Whether its front is the other side than [`Geometry`] says.
+    pub is_flipped: bool,
+    /// The number of its material.
+    pub material: usize,
+    /// What it emits on its front, W m⁻² sr⁻¹; `None` for none.
+    pub emission: Option<Emission>,
+}
+
+/// Where a surface is, with its front and its texture coordinates (u, v).
+#[derive(Clone, Debug)]
+pub enum Geometry {
+    /// z = 0, x and y from −1 to 1. Front: Z. (u, v) = ((x + 1)/2, (y + 1)/2).
+    Rectangle,
+    /// z = 0, x² + y² ≤ 1. Front: Z. u is the radius, v the azimuth over 2π from X to Y.
+    Disc,
+    /// x² + y² + z² = 1. Front: outside. u is the azimuth over 2π from X to Y, v the angle to Z over π.
+    Sphere,
+    /// x² + y² = 1, z from 0 to 1, open at both ends. Front: outside. u is the azimuth over 2π from X to Y, v is z.
+    Cylinder,
+    /// Triangles, which several shapes may share.
+    Mesh(Arc<Triangles>),
+}
+
+/// Triangles with shared vertices.
+///
+/// Corners run counterclockwise seen from the front. Valid by construction: corners are among the vertices, and there are as many normals and
+/// texture coordinates as vertices.
+#[derive(Clone, Debug)]
+pub struct Triangles {
+    vertices: Vec<DVec3>,
+    corners: Vec<[u32; 3]>,
+    normals: Option<Vec<DVec3>>,
+    uvs: Option<Vec<DVec2>>,
+}
+
+impl Triangles {
+    /// `None` unless corners are among the vertices and lengths agree. Normals of any length but zero are taken; with none, triangles are flat.
+    #[must_use]
+    pub fn new(
+        vertices: Vec<DVec3>,
+        corners: Vec<[u32; 3]>,
+        normals: Option<Vec<DVec3>>,
+        uvs: Option<Vec<DVec2>>,
+    ) -> Option<Self> {
+        let count = vertices.len();
+        let agrees = |length: Option<usize>| length.is_none_or(|length| length == count);
+        let fits = agrees(normals.as_ref().map(Vec::len)) && agrees(uvs.as_ref().map(Vec::len));
+        let within = corners
+            .iter()
+            .flatten()
+            .all(|corner| (*corner as usize) < count);
+        (fits && within).then_some(Self {
+            vertices,
+            corners,
+            normals,
+            uvs,
+        })
+    }
+
+    /// Places of the vertices.
+    #[must_use]
+    pub fn vertices(&self) -> &[DVec3] {
+        &self.vertices
+    }
+
+    /// The vertices of each triangle.
+    #[must_use]
+    pub fn corners(&self) -> &[[u32; 3]] {
+        &self.corners
+    }
+
+    /// Normals at the vertices, for shading.
+    #[must_use]
+    pub fn normals(&self) -> Option<&[DVec3]> {
+        self.normals.as_deref()
+    }
+
+    /// Texture coordinates of the vertices.
+    #[must_use]
+    pub fn uvs(&self) -> Option<&[DVec2]> {
+        self.uvs.as_deref()
+    }
+}

@@ -1,0 +1,176 @@
+use etendue_field::Raster;
+use glam::{DAffine2, DVec2};
+use std::sync::Arc;
+
+/// A number that may vary over a surface, by its texture coordinates (u, v).
+#[derive(Clone, Debug)]
+pub enum Texture {
+    /// The same everywhere.
+    Constant(f64),
+    /// Squares of half a unit, by turns: the first number where (u, v) mod 1 are both below ½ or both above.
+    Checkerboard {
+        /// From the surface's (u, v) to the board's.
+        to_uv: DAffine2,
+        /// Both numbers.
+        values: [f64; 2],
+    },
+    /// A picture.
+    Bitmap(Bitmap),
+}
+
+/// A picture over the unit square of texture coordinates: u to the right and v down from the first pixel, which is at the top left.
+#[derive(Clone, Debug)]
+pub struct Bitmap {
+    /// From the surface's (u, v) to the picture's.
+    pub to_uv: DAffine2,
+    /// Its pixels.
+    pub pixels: Arc<Raster>,
+    /// What is beyond its edges.
+    pub wrap: Wrap,
+    /// What is between centres of pixels.
+    pub filter: Filter,
+}
+
+/// What a picture shows beyond its edges.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Wrap {
+    /// Itself again.
+    Repeat,
+    /// Itself mirrored, by turns.
+    Mirror,
+    /// The nearest pixel of the edge.
+    Clamp,
+}
+
+/// What a picture shows between centres of pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Filter {
+    /// Bilinear interpolation.
+    Bilinear,
+    /// The nearest pixel.
+    Nearest,
+}
+
+impl Texture {
+    /// Its value at texture coordinates of the surface.
+    #[must_use]
+    pub fn value(&self, uv: DVec2) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Checkerboard { to_uv, values } => {
+                let at = to_uv.transform_point2(uv);
+                let is_low = |x: f64| x - x.floor() < 0.5;
+                values[usize::from(is_low(at.x) != is_low(at.y))]
+            }
+            Self::Bitmap(bitmap) => bitmap.value(uv),
+        }
+    }
+
+    /// Its largest value.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        match self {
+            Self::Constant(value) => *value,
+            Self::Checkerboard { values, .. } => values[0].max(values[1]),
+            Self::Bitmap(bitmap) => bitmap.pixels.values().iter().copied().fold(0.0, f64::max),
+        }
+    }
+}
+
+impl Bitmap {
+    fn value(&self, uv: DVec2) -> f64 {
+        let [w, h] = [self.pixels.width(), self.pixels.height()];
+        let at = self.to_uv.transform_point2(uv) * DVec2::new(w as f64, h as f64);
+        let pixel = |x: i64, y: i64| {
+            let (x, y) = (self.wrap.index(x, w), self.wrap.index(y, h));
+            self.pixels.values()[y * w + x]
+        };
+        match self.filter {
+            Filter::Nearest => pixel(whole(at.x), whole(at.y)),
+            Filter::Bilinear => {
+                let at = at - 0.5;
+                let (x, y) = (whole(at.x), whole(at.y));
+                let share = at - at.floor();
+                let row = |y| pixel(x, y) * (1.0 - share.x) + pixel(x + 1, y) * share.x;
+                row(y) * (1.0 - share.y) + row(y + 1) * share.y
+            }
+        }
+    }
+}
+
+/// The number of a pixel; texture coordinates far away have the last there are.
+#[expect(clippy::cast_possible_truncation, reason = "brought into range before")]
+fn whole(x: f64) -> i64 {
+    x.floor().clamp(-1e15, 1e15) as i64
+}
+
+impl Wrap {
+    fn index(self, i: i64, count: usize) -> usize {
+        let n = i64::try_from(count).unwrap_or(i64::MAX);
+        let inside = match self {
+            Self::Repeat => i.rem_euclid(n),
+            Self::Clamp => i.clamp(0, n - 1),
+            Self::Mirror => {
+                let twice = i.rem_euclid(2 * n);
+                twice.min(2 * n - 1 - twice)
+            }
+        };
+        usize::try_from(inside).unwrap_or_default()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pictures_go_on_beyond_their_edges() {
+        let pixels = Arc::new(Raster::new(3, 1, vec![1.0, 2.0, 4.0]).unwrap());
+        let at = |wrap, filter, u| {
+            let (to_uv, pixels) = (DAffine2::IDENTITY, Arc::clone(&pixels));
+            let bitmap = Bitmap {
+                to_uv,
+                pixels,
+                wrap,
+                filter,
+            };
+            Texture::Bitmap(bitmap).value(DVec2::new(u / 3.0, 0.5))
+        };
+        for (wrap, u, nearest) in [
+            (Wrap::Repeat, 3.5, 1.0),
+            (Wrap::Repeat, -0.5, 4.0),
+            (Wrap::Mirror, 3.5, 4.0),
+            (Wrap::Mirror, -1.5, 2.0),
+            (Wrap::Clamp, 7.5, 4.0),
+            (Wrap::Clamp, -7.5, 1.0),
+        ] {
+            // Rounding of u / 3.
+            assert!(
+                (at(wrap, Filter::Nearest, u) - nearest).abs() < 1e-12,
+                "{wrap:?} {u}"
+            );
+        }
+        assert!((at(Wrap::Clamp, Filter::Bilinear, 1.0) - 1.5).abs() < 1e-12);
+        assert!((at(Wrap::Repeat, Filter::Bilinear, 3.0) - 2.5).abs() < 1e-12);
+    }
+
+    #[test]
+    fn checkerboards_begin_with_the_first_number() {
+        let board = Texture::Checkerboard {
+            to_uv: DAffine2::IDENTITY,
+            values: [0.4, 0.2],
+        };
+        for (u, v, value) in [
+            (0.1, 0.1, 0.4),
+            (0.6, 0.1, 0.2),
+            (0.6, 0.9, 0.4),
+            (-0.1, 0.2, 0.2),
+        ] {
+            // The very number.
+            assert!(
+                (board.value(DVec2::new(u, v)) - value).abs() < 1e-300,
+                "({u}, {v})"
+            );
+        }
+    }
+}
