@@ -99,12 +99,10 @@ def merge(measurements: Iterable[Measurement]) -> Measurement:
     if not parts:
         raise ValueError("there is nothing to merge")
     first = parts[0]
-    whole = first._raw  # pyright: ignore[reportPrivateUsage]
-    for part in parts[1:]:
-        if part.scene.file != first.scene.file:
-            raise ValueError("the parts are of different scenes, seeds or numbers of photons")
-        whole = whole.merged(part._raw)  # pyright: ignore[reportPrivateUsage]
-    return Measurement(first.scene, whole)
+    if any(part.scene.file != first.scene.file for part in parts):
+        raise ValueError("the parts are of different scenes, seeds or numbers of photons")
+    raw = [part._raw for part in parts]  # pyright: ignore[reportPrivateUsage]
+    return Measurement(first.scene, raw[0].merged(raw[1:]))
 
 
 def compare(measurement: Measurement, prediction: Prediction | None = None, *, threads: int | None = None) -> Result:
@@ -179,10 +177,8 @@ def photons(
         raise KeyError(f"no plane {plane!r}; there are {', '.join(names)}")
     numbers = _batches(scene, batches)
     job = scene._job  # pyright: ignore[reportPrivateUsage]
-    each = [job.crossings([number], names.index(plane)) for number in numbers]
-    batch = np.repeat(np.array(numbers, dtype=np.uint32), [len(rays) for rays in each])
-    rays = np.concatenate(each) if each else np.zeros((0, 5))
-    return Photons(rays, batch, sum(job.emitted(number) for number in numbers))
+    rays, counts, emitted = job.crossings(numbers, names.index(plane))
+    return Photons(rays, np.repeat(np.array(numbers, dtype=np.uint32), counts), sum(emitted))
 
 
 def _batches(scene: Scene, batches: Iterable[int] | None) -> list[int]:

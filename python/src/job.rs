@@ -5,7 +5,8 @@ use crate::outcome::Outcome;
 use crate::raised::raised;
 use crate::rays::{Rays, spectrum};
 use etendue::{Failure, Method, Options};
-use etendue_spectrum::Batch;
+use etendue_field::Crossing;
+use etendue_spectrum::{Batch, Watch};
 use ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -104,11 +105,6 @@ impl Job {
         self.0.scene().run.batches
     }
 
-    fn emitted(&self, py: Python<'_>, batch: u32) -> PyResult<u64> {
-        let emitted = self.0.emitted(batch);
-        emitted.map_err(|failure| raised(py, failure))
-    }
-
     fn warnings(&self) -> Vec<String> {
         self.0.scene().warnings()
     }
@@ -164,29 +160,34 @@ impl Job {
         found.map(Outcome)
     }
 
-    /// Photons at a plane: columns x, y, u, v and weight.
+    /// Photons at a plane, with columns x, y, u, v and weight, in the order of their batches; of each batch how many there are, and how
+    /// many were emitted.
+    #[expect(clippy::type_complexity, reason = "a tuple of Python")]
     fn crossings<'py>(
         &self,
         py: Python<'py>,
         batches: Vec<u32>,
         plane: usize,
-    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+    ) -> PyResult<(Bound<'py, PyArray2<f64>>, Vec<usize>, Vec<u64>)> {
         let job = Arc::clone(&self.0);
-        let rows = alive(py, None, None, move |_| {
+        let (rows, counts, emitted) = alive(py, None, None, move |live| {
+            let source = job.source()?;
             let mut rows = Vec::new();
-            for batch in batches {
-                for crossing in job.crossings(batch, plane)? {
-                    let ray = crossing.ray;
-                    rows.extend([ray.x, ray.y, ray.u, ray.v, crossing.weight]);
-                }
+            let mut counts = Vec::new();
+            for batch in &batches {
+                let before = rows.len();
+                let mut record = |at: usize, crossings: &[Crossing]| {
+                    for Crossing { ray, weight } in crossings.iter().filter(|_| at == plane) {
+                        rows.push([ray.x, ray.y, ray.u, ray.v, *weight]);
+                    }
+                };
+                source.emit(*batch, &mut record, &|photons| live.traced(photons));
+                counts.push(rows.len() - before);
             }
-            let shape = (rows.len() / 5, 5);
-            Array2::from_shape_vec(shape, rows).map_err(|error| Failure {
-                message: error.to_string(),
-                code: 3,
-            })
+            let emitted: Vec<u64> = batches.iter().map(|batch| source.emitted(*batch)).collect();
+            Ok((Array2::from(rows), counts, emitted))
         })?;
-        Ok(PyArray2::from_owned_array(py, rows))
+        Ok((PyArray2::from_owned_array(py, rows), counts, emitted))
     }
 
     /// The spectrum of anybody's rays, by the window and the frequencies of the first plane. `batch` has the number of each.
@@ -226,9 +227,10 @@ impl Job {
         py: Python<'_>,
         batches: Vec<(u32, Bound<'_, PyBytes>)>,
     ) -> PyResult<Measurement> {
+        let source = self.0.source().map_err(|failure| raised(py, failure))?;
         let mut all = etendue_spectrum::Measurement::new(self.0.scene().planes.clone());
         for (number, bytes) in batches {
-            let batch: Result<Batch, Failure> = self.0.unpacked(number, bytes.as_bytes());
+            let batch: Result<Batch, Failure> = self.0.unpacked(&*source, number, bytes.as_bytes());
             let batch = batch.map_err(|failure| raised(py, failure))?;
             all.insert(batch).map_err(|error| bad(py, &error))?;
         }
@@ -256,8 +258,12 @@ impl Measurement {
         self.0.emitted()
     }
 
-    fn merged(&self, py: Python<'_>, other: &Self) -> PyResult<Self> {
-        let merged = self.0.clone().merge(other.0.clone());
+    /// This and others in one.
+    fn merged(&self, py: Python<'_>, others: Vec<Bound<'_, Self>>) -> PyResult<Self> {
+        let others = others.iter().map(|other| other.get().0.clone());
+        let merged = others
+            .into_iter()
+            .try_fold(self.0.clone(), |all, other| all.merge(other));
         merged.map(Self).map_err(|error| bad(py, &error))
     }
 }

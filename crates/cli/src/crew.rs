@@ -63,8 +63,7 @@ pub fn in_crew(line: impl IntoIterator<Item = OsString>, crew: &dyn Crew) -> u8 
             Command::Run(args) if args.target_error.is_none() => args,
             _ => {
                 let message = "only `run`, without --target-error, is for several processes";
-                let code = ended(Err(Failure::bad_input(message)), !leads);
-                return code;
+                return ended(Err(Failure::bad_input(message)), !leads);
             }
         },
         Err(error) => {
@@ -115,7 +114,7 @@ impl Led<'_> {
         };
         let planes = &job.scene().planes;
         let (own, others) = thread::scope(|scope| {
-            let others = scope.spawn(|| self.serve(job, &left));
+            let others = scope.spawn(|| self.serve(job, source, &left));
             let own = measure_watched(source, planes, batches, &left);
             (own, others.join())
         });
@@ -129,7 +128,12 @@ impl Led<'_> {
     }
 
     /// Answers whoever asks, until all have been told that there is no more.
-    fn serve(&self, job: &Job, left: &Left<'_>) -> Result<Vec<Batch>, Failure> {
+    fn serve(
+        &self,
+        job: &Job,
+        source: &dyn PhotonSource,
+        left: &Left<'_>,
+    ) -> Result<Vec<Batch>, Failure> {
         let mut found = Vec::new();
         let mut abreast = vec![1; self.crew.count()];
         while held(&self.dismissed).len() + 1 < self.crew.count() {
@@ -152,7 +156,7 @@ impl Led<'_> {
                     for (number, length) in batches {
                         let (own, rest) = bytes.split_at_checked(length).unwrap_or_default();
                         bytes = rest;
-                        let batch = job.unpacked(number, own)?;
+                        let batch = job.unpacked(source, number, own)?;
                         left.watch.traced(batch.emitted);
                         left.watch.done(&batch);
                         found.push(batch);

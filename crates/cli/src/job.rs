@@ -12,7 +12,7 @@ use crate::results::summary::Stopwatch;
 use crate::results::{Results, SUMMARY};
 use crate::{limits, load, machine};
 use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict};
-use etendue_field::{Crossing, PhotonSource};
+use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{Batch, Measurement, Watch, measure_watched};
 use std::collections::BTreeMap;
@@ -110,29 +110,6 @@ impl Job {
         source(&self.scene, self.method)
     }
 
-    /// Photons that a batch has.
-    ///
-    /// # Errors
-    /// When the method finds no light.
-    pub fn emitted(&self, batch: u32) -> Result<u64, Failure> {
-        Ok(self.source()?.emitted(batch))
-    }
-
-    /// The photons of a batch that cross plane `plane`, in their order.
-    ///
-    /// # Errors
-    /// When the method finds no light.
-    pub fn crossings(&self, batch: u32, plane: usize) -> Result<Vec<Crossing>, Failure> {
-        let mut all = Vec::new();
-        let mut record = |at: usize, crossings: &[Crossing]| {
-            if at == plane {
-                all.extend_from_slice(crossings);
-            }
-        };
-        self.source()?.emit(batch, &mut record, &|_| {});
-        Ok(all)
-    }
-
     /// A batch as bytes, for another process.
     ///
     /// # Errors
@@ -141,15 +118,20 @@ impl Job {
         kept::packed(&self.scene.planes, batch)
     }
 
-    /// The batch of that number in bytes of [`Self::packed`].
+    /// The batch of that number in bytes of [`Self::packed`], as `source` would have emitted it.
     ///
     /// # Errors
     /// When they are not of this scene, seed and number of photons.
-    pub fn unpacked(&self, number: u32, bytes: &[u8]) -> Result<Batch, Failure> {
+    pub fn unpacked(
+        &self,
+        source: &dyn PhotonSource,
+        number: u32,
+        bytes: &[u8],
+    ) -> Result<Batch, Failure> {
         let held = Held {
             seed: self.scene.run.seed,
             method: self.method,
-            photons: self.emitted(number)?,
+            photons: source.emitted(number),
             batches: number..number.saturating_add(1),
         };
         kept::unpacked(bytes, &held, &self.scene.planes)
