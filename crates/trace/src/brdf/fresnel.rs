@@ -4,7 +4,8 @@ use etendue_field::Fresnel;
 
 /// At an angle of incidence with this cosine, 0 to 1.
 #[inline]
-pub(super) fn reflected_share(fresnel: &Fresnel, cosine: f64) -> f64 {
+#[must_use]
+pub fn reflected_share(fresnel: &Fresnel, cosine: f64) -> f64 {
     match *fresnel {
         Fresnel::White => 1.0,
         Fresnel::Dielectric { index } => dielectric(index, cosine),

@@ -12,7 +12,7 @@ mod phong;
 mod tests;
 
 use etendue_field::{Brdf, Lobe};
-use fresnel::reflected_share;
+pub use fresnel::reflected_share;
 use glam::DVec3;
 use microfacet::{Distribution, Microfacets};
 

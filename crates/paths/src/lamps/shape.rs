@@ -1,0 +1,58 @@
+use super::{Incoming, emitted, way};
+use crate::space::{Hit, Space};
+use etendue_world::Texture;
+use glam::DVec3;
+
+/// A shape that shines, of which places are drawn evenly over its area.
+#[derive(Debug)]
+pub(super) struct Surface {
+    shape: usize,
+    emission: Texture,
+    /// The areas of its pieces, summed up to each.
+    summed: Vec<f64>,
+}
+
+impl Surface {
+    pub(super) fn new(shape: usize, areas: &[f64], emission: Texture) -> Self {
+        let sum = |sum: &mut f64, area: &f64| {
+            *sum += area;
+            Some(*sum)
+        };
+        let summed = areas.iter().scan(0.0, sum).collect();
+        Self {
+            shape,
+            emission,
+            summed,
+        }
+    }
+
+    fn area(&self) -> f64 {
+        self.summed.last().copied().unwrap_or_default()
+    }
+
+    pub(super) fn sample(&self, space: &Space, at: DVec3, [a, b, c]: [f64; 3]) -> Option<Incoming> {
+        let wanted = c * self.area();
+        let piece = self.summed.partition_point(|sum| *sum <= wanted);
+        let piece = piece.min(self.summed.len().checked_sub(1)?);
+        let (place, normal, uv) = space.placed(self.shape).sample(piece, [a, b]);
+        let (toward, distance) = way(at, place);
+        let density = self.density(distance, normal.dot(toward));
+        let radiance = emitted(&self.emission, uv, normal, -toward);
+        (radiance > 0.0 && density.is_finite()).then(|| Incoming {
+            toward,
+            distance,
+            weight: radiance / density,
+            density: Some(density),
+        })
+    }
+
+    /// Per solid angle, of a place at a distance, seen at an angle of this cosine.
+    fn density(&self, distance: f64, cosine: f64) -> f64 {
+        distance * distance / (cosine.abs() * self.area())
+    }
+
+    pub(super) fn of_hit(&self, along: DVec3, hit: &Hit) -> (f64, f64) {
+        let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
+        (radiance, self.density(hit.distance, hit.normal.dot(along)))
+    }
+}

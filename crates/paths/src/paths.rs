@@ -1,0 +1,122 @@
+use crate::lamps::Lamps;
+use crate::numbers::Numbers;
+use crate::scatter::{Bounce, Scatter};
+use crate::space::{Hit, Ray, Space};
+use etendue_world::World;
+use glam::DVec3;
+
+/// Paths of light through a world, followed back from where they are seen.
+///
+/// At each surface light is looked for in two ways, at the lights and where the material sends the path on, and both are weighted by what the other
+/// would have found (Veach and Guibas 1995, *Optimally combining sampling techniques*, the balance heuristic).
+#[derive(Debug)]
+pub struct Paths {
+    pub(crate) space: Space,
+    lamps: Lamps,
+    materials: Vec<Scatter>,
+    of_shape: Vec<usize>,
+    depth: u32,
+    hides_sources: bool,
+}
+
+/// From this surface on a path goes on only as often as it carries light.
+const ROULETTE: u32 = 6;
+
+/// A path between hall of mirrors without an end is given up here; what it still carries is below rounding of a picture.
+const LONGEST: u32 = 10_000;
+
+impl Paths {
+    /// The paths of a world whose shapes name materials that exist.
+    #[must_use]
+    pub fn new(world: &World) -> Self {
+        let space = Space::new(world);
+        Self {
+            lamps: Lamps::new(world, &space),
+            space,
+            materials: world.materials.iter().map(Scatter::from).collect(),
+            of_shape: world.shapes.iter().map(|shape| shape.material).collect(),
+            depth: world.depth.unwrap_or(LONGEST).min(LONGEST),
+            hides_sources: world.hides_sources,
+        }
+    }
+
+    /// The radiance that comes to the beginning of a ray, at distances that are seen: one path, whose mean over all numbers it is.
+    pub(crate) fn radiance(&self, mut ray: Ray, seen: [f64; 2], numbers: &mut Numbers) -> f64 {
+        let (mut sum, mut weight) = (0.0, 1.0);
+        // Density of the last direction; `None` where no light was looked for.
+        let mut last: Option<f64> = None;
+        for met in 0..=self.depth {
+            let hit = self
+                .space
+                .first(&ray, if met == 0 { seen } else { [0.0, f64::INFINITY] });
+            if met > 0 || !self.hides_sources {
+                sum += weight * self.emitted(&ray, hit.as_ref(), last);
+            }
+            let Some(hit) = hit.filter(|_| met < self.depth) else {
+                break;
+            };
+            let scatter = &self.materials[self.of_shape[hit.shape]];
+            let wo = hit.frame.transpose() * -ray.along;
+            if !scatter.is_smooth() {
+                sum += weight * self.looked_for(&hit, scatter, wo, numbers.draw());
+            }
+            let Some(bounce) = scatter.sample(hit.uv, wo, numbers.draw()) else {
+                break;
+            };
+            weight *= bounce.weight;
+            let [survives] = numbers.draw();
+            if met + 1 >= ROULETTE {
+                let share = weight.min(0.95);
+                if survives >= share {
+                    break;
+                }
+                weight /= share;
+            }
+            ray = onward(&hit, &bounce);
+            last = bounce.density;
+        }
+        sum
+    }
+
+    /// What lights send along a ray that meets them, weighted against looking for them.
+    fn emitted(&self, ray: &Ray, hit: Option<&Hit>, last: Option<f64>) -> f64 {
+        let balanced = |(radiance, looked): (f64, f64)| match last {
+            Some(last) => radiance * last / (last + looked),
+            None => radiance,
+        };
+        match hit {
+            Some(hit) => balanced(self.lamps.of_hit(ray.from, ray.along, hit)),
+            None => self.lamps.of_sky(ray.along).map(balanced).sum(),
+        }
+    }
+
+    /// Light that is looked for at the lights.
+    fn looked_for(&self, hit: &Hit, scatter: &Scatter, wo: DVec3, random: [f64; 4]) -> f64 {
+        let Some(light) = self.lamps.sample(&self.space, hit.position, random) else {
+            return 0.0;
+        };
+        let wi = hit.frame.transpose() * light.toward;
+        let value = scatter.value(hit.uv, wi, wo);
+        if value <= 0.0 {
+            return 0.0;
+        }
+        let ray = Ray {
+            from: hit.position,
+            along: light.toward,
+        };
+        if !self.space.is_free(&ray, light.distance) {
+            return 0.0;
+        }
+        let share = light.density.map_or(1.0, |looked| {
+            looked / (looked + scatter.density(hit.uv, wi, wo))
+        });
+        value * light.weight * share
+    }
+}
+
+fn onward(hit: &Hit, bounce: &Bounce) -> Ray {
+    Ray {
+        from: hit.position,
+        along: (hit.frame * bounce.wi).normalize(),
+    }
+}

@@ -1,0 +1,78 @@
+use crate::numbers::Numbers;
+use crate::paths::Paths;
+use crate::space::Ray;
+use etendue_world::Camera;
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// What a camera sees, W m⁻² sr⁻¹: rows from the top, each from the left.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Picture {
+    /// Pixels in a row, and rows.
+    pub size: [usize; 2],
+    /// The mean radiance over each pixel.
+    pub mean: Vec<f64>,
+    /// Variance of that mean, estimated from the samples.
+    pub variance: Vec<f64>,
+}
+
+impl Paths {
+    /// What a camera sees, with `samples` paths for each pixel; `progress` is told how many pixels are done. Pixels are a function of seed and number.
+    #[must_use]
+    pub fn picture(
+        &self,
+        camera: &Camera,
+        samples: u32,
+        seed: u64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Picture {
+        let [w, h] = camera.size;
+        let row = |row: usize| {
+            let pixels = (0..w).map(|column| self.pixel(camera, [column, row], samples, seed));
+            let pixels: Vec<[f64; 2]> = pixels.collect();
+            progress(w as u64);
+            pixels
+        };
+        let pixels: Vec<[f64; 2]> = (0..h).into_par_iter().flat_map_iter(row).collect();
+        Picture {
+            size: camera.size,
+            mean: pixels.iter().map(|pixel| pixel[0]).collect(),
+            variance: pixels.iter().map(|pixel| pixel[1]).collect(),
+        }
+    }
+
+    /// Mean and variance of the mean of a pixel.
+    fn pixel(
+        &self,
+        camera: &Camera,
+        [column, row]: [usize; 2],
+        samples: u32,
+        seed: u64,
+    ) -> [f64; 2] {
+        let number = (row * camera.size[0] + column) as u64;
+        let (mut mean, mut squares) = (0.0, 0.0);
+        for sample in 0..samples {
+            let mut numbers = Numbers::new(seed, number * u64::from(samples) + u64::from(sample));
+            let radiance = self.seen(camera, [column as f64, row as f64], &mut numbers);
+            // Welford 1962: no digits are lost.
+            let off = radiance - mean;
+            mean += off / f64::from(sample + 1);
+            squares += off * (radiance - mean);
+        }
+        let count = f64::from(samples);
+        [mean, squares / (count * (count - 1.0).max(1.0))]
+    }
+
+    /// One path to somewhere in a pixel.
+    fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut Numbers) -> f64 {
+        let [x, y, a, b] = numbers.draw();
+        let (sin, cos) = libm::sincos(TAU * b);
+        let radius = a.sqrt();
+        let look = camera.look([pixel[0] + x, pixel[1] + y], [radius * cos, radius * sin]);
+        let ray = Ray {
+            from: look.from,
+            along: look.along,
+        };
+        self.radiance(ray, look.seen, numbers)
+    }
+}

@@ -1,0 +1,192 @@
+//! Each material: its value over the density of its samples is their weight, its density has integral one less what is absorbed below, and the
+//! weights' mean is the integral of its value.
+
+use super::*;
+use etendue_field::random::{Stream, unit, words};
+use etendue_world::{Distribution, Plastic};
+
+fn constant(value: f64) -> Texture {
+    Texture::Constant(value)
+}
+
+fn rough(distribution: Distribution, alpha: [f64; 2]) -> Option<Roughness> {
+    Some(Roughness {
+        distribution,
+        alpha: alpha.map(constant),
+    })
+}
+
+fn glass(index: f64, roughness: Option<Roughness>) -> Material {
+    let [reflectance, transmittance] = [constant(1.0), constant(1.0)];
+    Material::Dielectric(Dielectric {
+        index,
+        reflectance,
+        transmittance,
+        roughness,
+        is_thin: false,
+    })
+}
+
+fn materials() -> Vec<(&'static str, Material)> {
+    let metal = |roughness| {
+        Material::Conductor(Conductor {
+            index: Some([0.2, 3.9]),
+            reflectance: constant(0.9),
+            roughness,
+        })
+    };
+    let plastic = |roughness| {
+        Material::Plastic(Plastic {
+            index: 1.5,
+            diffuse: constant(0.4),
+            specular: constant(0.8),
+            is_nonlinear: true,
+            roughness,
+        })
+    };
+    let diffuse = || Material::Diffuse {
+        reflectance: constant(0.7),
+    };
+    vec![
+        ("diffuse", diffuse()),
+        ("ggx", metal(rough(Distribution::Ggx, [0.3, 0.1]))),
+        ("beckmann", metal(rough(Distribution::Beckmann, [0.2, 0.4]))),
+        ("glass", glass(1.5, rough(Distribution::Ggx, [0.3, 0.3]))),
+        (
+            "rough glass",
+            glass(1.3, rough(Distribution::Beckmann, [0.5, 0.2])),
+        ),
+        ("plastic", plastic(rough(Distribution::Ggx, [0.2, 0.2]))),
+        ("smooth plastic", plastic(None)),
+        (
+            "phong",
+            Material::Phong {
+                diffuse: constant(0.3),
+                specular: constant(0.5),
+                exponent: constant(20.0),
+            },
+        ),
+        (
+            "two sides",
+            Material::TwoSided(Box::new([
+                diffuse(),
+                metal(rough(Distribution::Ggx, [0.3, 0.3])),
+            ])),
+        ),
+        (
+            "blend",
+            Material::Blend {
+                weight: constant(0.3),
+                of: Box::new([diffuse(), glass(1.5, rough(Distribution::Ggx, [0.4, 0.4]))]),
+            },
+        ),
+        (
+            "mask",
+            Material::Mask {
+                opacity: constant(0.4),
+                of: Box::new(diffuse()),
+            },
+        ),
+    ]
+}
+
+fn numbers(i: u32) -> [f64; 3] {
+    let [a, b, c, _] = words(7, Stream::Backward, u64::from(i), 0).map(unit);
+    [a, b, c]
+}
+
+fn directions() -> [DVec3; 3] {
+    [(0.3, 0.2, 1.0), (-0.9, 0.5, 0.4), (0.2, -0.6, -0.8)]
+        .map(|(x, y, z)| DVec3::new(x, y, z).normalize())
+}
+
+/// A direction over the whole sphere.
+fn anywhere([a, b, _]: [f64; 3]) -> DVec3 {
+    let (z, (sin, cos)) = (2.0 * a - 1.0, libm::sincos(2.0 * PI * b));
+    let radius = (1.0 - z * z).sqrt();
+    DVec3::new(radius * cos, radius * sin, z)
+}
+
+#[test]
+fn samples_follow_value_and_density() {
+    const COUNT: u32 = 400_000;
+    for (name, material) in materials() {
+        let scatter = Scatter::from(&material);
+        for wo in directions() {
+            let (mut sampled, mut shining, mut squares) = (0.0, 0.0, 0.0);
+            let (mut plain, mut density) = (0.0, 0.0);
+            for i in 0..COUNT {
+                if let Some(bounce) = scatter.sample(DVec2::ZERO, wo, numbers(i))
+                    && let Some(of) = bounce.density
+                {
+                    assert!(
+                        (scatter.density(DVec2::ZERO, bounce.wi, wo) / of - 1.0).abs() < 1e-9,
+                        "{name}"
+                    );
+                    sampled += bounce.weight;
+                    squares += bounce.weight.powi(2);
+                    shining += 1.0;
+                }
+                let wi = anywhere(numbers(i));
+                plain += scatter.value(DVec2::ZERO, wi, wo) * 4.0 * PI;
+                density += scatter.density(DVec2::ZERO, wi, wo) * 4.0 * PI;
+            }
+            let count = f64::from(COUNT);
+            let [sampled, plain, density, shining] =
+                [sampled, plain, density, shining].map(|x| x / count);
+            assert!(squares / count < 30.0, "{name}: weights are bounded");
+            // Of random numbers, 4·10⁵ of them.
+            assert!(
+                (sampled - plain).abs() < 0.015 * (1.0 + plain),
+                "{name} {wo}: {sampled} {plain}"
+            );
+            // What is drawn below the front, or was the coat's, carries nothing and is part of the density.
+            assert!(
+                density < 1.015 && density > shining - 0.015,
+                "{name} {wo}: {density} {shining}"
+            );
+        }
+    }
+}
+
+#[test]
+fn light_goes_both_ways() {
+    // BSDFs are the same for both directions exchanged, where radiance is counted over squared indices.
+    let pairs = (0..300).map(|i| (anywhere(numbers(2 * i)), anywhere(numbers(2 * i + 1))));
+    for (wi, wo) in pairs {
+        for (name, material) in materials() {
+            let index = match name {
+                "glass" => 1.5,
+                "rough glass" => 1.3,
+                "blend" => continue,
+                _ => 1.0,
+            };
+            let scatter = Scatter::from(&material);
+            let there = scatter.value(DVec2::ZERO, wi, wo) / wi.z.abs();
+            let back = scatter.value(DVec2::ZERO, wo, wi) / wo.z.abs();
+            let squared = |z: f64| if z > 0.0 { 1.0 } else { index * index };
+            // Rounding.
+            let close =
+                (there * squared(wi.z) - back * squared(wo.z)).abs() < 1e-9 * (1.0 + there.abs());
+            assert!(close, "{name}: {there} {back}");
+        }
+    }
+}
+
+#[test]
+fn smooth_glass_keeps_all_light() {
+    let scatter = Scatter::from(&glass(1.5, None));
+    for wo in directions() {
+        for c in [0.001, 0.999] {
+            let bounce = scatter.sample(DVec2::ZERO, wo, [0.5, 0.5, c]).unwrap();
+            let index: f64 = match (wo.z > 0.0, bounce.wi.z > 0.0) {
+                (true, false) => 1.5,
+                (false, true) => 1.0 / 1.5,
+                _ => 1.0,
+            };
+            // Snell, and radiance over the squared index.
+            assert!((bounce.weight * index * index - 1.0).abs() < 1e-12);
+            assert!((bounce.wi.truncate() * index + wo.truncate()).length() < 1e-12);
+        }
+    }
+}

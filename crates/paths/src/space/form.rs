@@ -1,0 +1,181 @@
+//! Geometries in coordinates of their own.
+
+use super::mesh::Mesh;
+use glam::{DAffine3, DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
+
+/// A geometry, ready to be met.
+#[derive(Debug)]
+pub(crate) enum Form {
+    Rectangle,
+    Disc,
+    Sphere,
+    Cylinder,
+    Mesh(Arc<Mesh>),
+}
+
+/// A place of a geometry, in its coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Local {
+    /// Of any length.
+    pub(crate) normal: DVec3,
+    /// The normal for shading.
+    pub(crate) shading: DVec3,
+    pub(crate) uv: DVec2,
+    /// The way in which u grows.
+    pub(crate) along_u: DVec3,
+}
+
+impl Form {
+    /// Corners of a box around it.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = DVec3> + use<> {
+        let [low, high] = match self {
+            Self::Rectangle | Self::Disc => {
+                [DVec3::new(-1.0, -1.0, 0.0), DVec3::new(1.0, 1.0, 0.0)]
+            }
+            Self::Sphere => [DVec3::NEG_ONE, DVec3::ONE],
+            Self::Cylinder => [DVec3::new(-1.0, -1.0, 0.0), DVec3::ONE],
+            Self::Mesh(mesh) => mesh.bounds(),
+        };
+        let pick = move |i: usize, axis: usize| {
+            if i >> axis & 1 == 0 {
+                low[axis]
+            } else {
+                high[axis]
+            }
+        };
+        (0..8).map(move |i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)))
+    }
+
+    /// The first place on a ray, strictly within bounds. `along` has unit length.
+    pub(crate) fn first(
+        &self,
+        start: DVec3,
+        along: DVec3,
+        [from, until]: [f64; 2],
+    ) -> Option<(f64, Local)> {
+        let within = |at: f64| at > from && at < until;
+        match self {
+            Self::Rectangle | Self::Disc => {
+                let at = -start.z / along.z;
+                let place = (start + at * along).truncate();
+                let is_on = match self {
+                    Self::Disc => place.length_squared() <= 1.0,
+                    _ => place.abs().max_element() <= 1.0,
+                };
+                (within(at) && is_on).then(|| (at, self.flat(place)))
+            }
+            Self::Sphere => {
+                let at = roots(start, along, DVec3::ONE)?
+                    .into_iter()
+                    .find(|at| within(*at))?;
+                Some((at, ball(start + at * along)))
+            }
+            Self::Cylinder => {
+                let on = |at: f64| (0.0..=1.0).contains(&(start.z + at * along.z));
+                let both = roots(start, along, DVec3::new(1.0, 1.0, 0.0))?;
+                let at = both.into_iter().find(|at| within(*at) && on(*at))?;
+                Some((at, tube(start + at * along)))
+            }
+            Self::Mesh(mesh) => mesh.first(start, along, [from, until]),
+        }
+    }
+
+    fn flat(&self, place: DVec2) -> Local {
+        let (uv, along_u) = match self {
+            Self::Disc => {
+                let uv = DVec2::new(place.length(), turn(place));
+                (uv, place.extend(0.0).try_normalize().unwrap_or(DVec3::X))
+            }
+            _ => (0.5 * (place + 1.0), DVec3::X),
+        };
+        let normal = DVec3::Z;
+        Local {
+            normal,
+            shading: normal,
+            uv,
+            along_u,
+        }
+    }
+
+    /// The areas of its pieces once placed: triangles, or the whole. Spheres and cylinders are scaled as [`etendue_world::Shape`] says.
+    pub(crate) fn areas(&self, to_world: &DAffine3) -> Vec<f64> {
+        let [x, y, z] = [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| to_world.transform_vector3(axis));
+        let whole = match self {
+            Self::Rectangle => 4.0 * x.cross(y).length(),
+            Self::Disc => PI * x.cross(y).length(),
+            Self::Sphere => 4.0 * PI * x.length_squared(),
+            Self::Cylinder => TAU * x.length() * z.length(),
+            Self::Mesh(mesh) => return mesh.areas(to_world).collect(),
+        };
+        vec![whole]
+    }
+
+    /// A place drawn evenly over the area of a piece.
+    pub(crate) fn sample(&self, piece: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
+        let (sin, cos) = libm::sincos(TAU * b);
+        match self {
+            Self::Rectangle => {
+                let place = 2.0 * DVec2::new(a, b) - 1.0;
+                (place.extend(0.0), self.flat(place))
+            }
+            Self::Disc => {
+                let place = a.sqrt() * DVec2::new(cos, sin);
+                (place.extend(0.0), self.flat(place))
+            }
+            Self::Sphere => {
+                let z = 1.0 - 2.0 * a;
+                let radius = (1.0 - z * z).max(0.0).sqrt();
+                let place = DVec3::new(radius * cos, radius * sin, z);
+                (place, ball(place))
+            }
+            Self::Cylinder => {
+                let place = DVec3::new(cos, sin, a);
+                (place, tube(place))
+            }
+            Self::Mesh(mesh) => mesh.sample(piece, [a, b]),
+        }
+    }
+}
+
+/// Where the squares of coordinates, weighted, add up to 1 on a ray.
+fn roots(start: DVec3, along: DVec3, weights: DVec3) -> Option<[f64; 2]> {
+    let a = (weights * along).dot(along);
+    // From the point of the line that is nearest to the axis or the middle: digits are kept far away.
+    let middle = -(weights * start).dot(along) / a;
+    let nearest = start + middle * along;
+    let left = 1.0 - (weights * nearest).dot(nearest);
+    // Along the axis of a cylinder a is 0, and nothing is met.
+    let half = (left / a).sqrt();
+    (half.is_finite() && left >= 0.0).then_some([middle - half, middle + half])
+}
+
+/// The azimuth over 2π, 0 to 1.
+fn turn(place: DVec2) -> f64 {
+    let turn = libm::atan2(place.y, place.x) / TAU;
+    if turn < 0.0 { turn + 1.0 } else { turn }
+}
+
+fn ball(place: DVec3) -> Local {
+    let uv = DVec2::new(
+        turn(place.truncate()),
+        libm::acos(place.z.clamp(-1.0, 1.0)) / PI,
+    );
+    round(place, uv)
+}
+
+fn tube(place: DVec3) -> Local {
+    let uv = DVec2::new(turn(place.truncate()), place.z);
+    round(place.with_z(0.0), uv)
+}
+
+fn round(normal: DVec3, uv: DVec2) -> Local {
+    let along_u = DVec3::new(-normal.y, normal.x, 0.0);
+    Local {
+        normal,
+        shading: normal,
+        uv,
+        along_u,
+    }
+}

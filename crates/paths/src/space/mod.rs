@@ -1,0 +1,215 @@
+//! Surfaces in space: what a ray meets first, and whether a way is clear.
+
+mod form;
+mod mesh;
+
+use etendue_scene::Hierarchy;
+use etendue_world::{Geometry, Shape, Triangles, World};
+use form::{Form, Local};
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+use mesh::Mesh;
+use std::sync::Arc;
+
+/// A ray; distances along it are in lengths of `along`, which is 1 long.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Ray {
+    pub(crate) from: DVec3,
+    pub(crate) along: DVec3,
+}
+
+impl Ray {
+    pub(crate) fn at(&self, distance: f64) -> DVec3 {
+        self.from + distance * self.along
+    }
+}
+
+/// What a ray meets.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Hit {
+    pub(crate) distance: f64,
+    pub(crate) position: DVec3,
+    /// The number of the shape.
+    pub(crate) shape: usize,
+    /// Normal of the surface on its front.
+    pub(crate) normal: DVec3,
+    /// The frame that materials scatter in, from its coordinates to those of the world. Its Z is the normal, interpolated on smooth meshes; X is along u.
+    pub(crate) frame: DMat3,
+    pub(crate) uv: DVec2,
+}
+
+/// All surfaces of a world.
+#[derive(Debug)]
+pub(crate) struct Space {
+    placed: Vec<Placed>,
+    hierarchy: Hierarchy,
+    /// No nearer hit counts: it is the surface that the ray begins on.
+    nearest: f64,
+}
+
+/// A surface where it is.
+#[derive(Debug)]
+pub(crate) struct Placed {
+    pub(crate) form: Form,
+    pub(crate) to_world: DAffine3,
+    to_local: DAffine3,
+    /// −1 if the front is turned: by the file, or by a transform that mirrors.
+    side: f64,
+}
+
+/// Hits nearer than this share of the world's size are the surface itself: f64 places points by some 10⁻¹⁵ of it, and roots of quadratics by 10⁻¹².
+const NEAREST: f64 = 1e-9;
+
+impl Space {
+    pub(crate) fn new(world: &World) -> Self {
+        let mut meshes: Vec<(*const Triangles, Arc<Mesh>)> = Vec::new();
+        let placed: Vec<Placed> = world
+            .shapes
+            .iter()
+            .map(|shape| Placed::new(shape, &mut meshes))
+            .collect();
+        let bounds: Vec<[DVec3; 2]> = placed.iter().map(Placed::bounds).collect();
+        let all = bounds
+            .iter()
+            .copied()
+            .reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
+        let [low, high] = all.unwrap_or_default();
+        let cameras = world
+            .cameras
+            .iter()
+            .map(|camera| camera.to_world.translation.abs().max_element());
+        let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
+        Self {
+            hierarchy: Hierarchy::new(placed.len(), farthest, |i| bounds[i]),
+            placed,
+            nearest: NEAREST * farthest,
+        }
+    }
+
+    pub(crate) fn placed(&self, shape: usize) -> &Placed {
+        &self.placed[shape]
+    }
+
+    /// What a ray meets first, at distances within bounds.
+    pub(crate) fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
+        let from = from.max(self.nearest);
+        let mut first: Option<(f64, usize, Local)> = None;
+        self.hierarchy
+            .along(ray.from, ray.along, [from, until], |i| {
+                let shape = self.hierarchy.order()[i] as usize;
+                let end = first.map_or(until, |(at, ..)| at);
+                if let Some((at, local)) = self.placed[shape].first(ray, [from, end]) {
+                    first = Some((at, shape, local));
+                }
+                first.map_or(until, |(at, ..)| at)
+            });
+        let (distance, shape, local) = first?;
+        Some(self.placed[shape].hit(ray, distance, shape, &local))
+    }
+
+    /// Where a ray meets one shape first, whatever else is in its way.
+    pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
+        let (distance, local) = self.placed[shape].first(ray, within)?;
+        Some(self.placed[shape].hit(ray, distance, shape, &local))
+    }
+
+    /// Whether a ray meets nothing before a distance.
+    pub(crate) fn is_free(&self, ray: &Ray, distance: f64) -> bool {
+        let until = distance - self.nearest;
+        let mut met = false;
+        self.hierarchy
+            .along(ray.from, ray.along, [self.nearest, until], |i| {
+                let shape = self.hierarchy.order()[i] as usize;
+                met = met
+                    || self.placed[shape]
+                        .first(ray, [self.nearest, until])
+                        .is_some();
+                // Then nothing matters any more.
+                if met { f64::NEG_INFINITY } else { until }
+            });
+        !met
+    }
+}
+
+impl Placed {
+    fn new(shape: &Shape, meshes: &mut Vec<(*const Triangles, Arc<Mesh>)>) -> Self {
+        let form = match &shape.geometry {
+            Geometry::Rectangle => Form::Rectangle,
+            Geometry::Disc => Form::Disc,
+            Geometry::Sphere => Form::Sphere,
+            Geometry::Cylinder => Form::Cylinder,
+            Geometry::Mesh(triangles) => {
+                let known = meshes.iter().find(|(of, _)| *of == Arc::as_ptr(triangles));
+                let mesh = known.map(|(_, mesh)| Arc::clone(mesh)).unwrap_or_else(|| {
+                    let mesh = Arc::new(Mesh::new(Arc::clone(triangles)));
+                    meshes.push((Arc::as_ptr(triangles), Arc::clone(&mesh)));
+                    mesh
+                });
+                Form::Mesh(mesh)
+            }
+        };
+        // A mesh's normals follow its corners, which a mirror turns; those of the others point as they do.
+        let is_mirrored =
+            matches!(form, Form::Mesh(_)) && shape.to_world.matrix3.determinant() < 0.0;
+        let side = if shape.is_flipped { -1.0 } else { 1.0 };
+        Self {
+            form,
+            to_world: shape.to_world,
+            to_local: shape.to_world.inverse(),
+            side: if is_mirrored { -side } else { side },
+        }
+    }
+
+    fn bounds(&self) -> [DVec3; 2] {
+        let corners = self.form.corners();
+        let world = corners.map(|corner| self.to_world.transform_point3(corner));
+        let start = [DVec3::splat(f64::INFINITY), DVec3::splat(f64::NEG_INFINITY)];
+        world.fold(start, |[low, high], corner| {
+            [low.min(corner), high.max(corner)]
+        })
+    }
+
+    fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<(f64, Local)> {
+        let start = self.to_local.transform_point3(ray.from);
+        let along = self.to_local.transform_vector3(ray.along);
+        let scale = along.length();
+        let (at, local) = self
+            .form
+            .first(start, along / scale, [from * scale, until * scale])?;
+        Some((at / scale, local))
+    }
+
+    fn hit(&self, ray: &Ray, distance: f64, shape: usize, local: &Local) -> Hit {
+        let turned = self.to_local.matrix3.transpose();
+        let normal = self.side * (turned * local.normal).normalize();
+        let shading = self.side * (turned * local.shading).normalize();
+        Hit {
+            distance,
+            position: ray.at(distance),
+            shape,
+            normal,
+            frame: frame(shading, self.to_world.transform_vector3(local.along_u)),
+            uv: local.uv,
+        }
+    }
+
+    /// A place of a piece of the surface, drawn evenly over its area, its normal and texture coordinates.
+    pub(crate) fn sample(&self, piece: usize, random: [f64; 2]) -> (DVec3, DVec3, DVec2) {
+        let (place, local) = self.form.sample(piece, random);
+        let normal = self.side * (self.to_local.matrix3.transpose() * local.normal).normalize();
+        (self.to_world.transform_point3(place), normal, local.uv)
+    }
+
+    /// The areas of its pieces in the world: triangles, or the whole.
+    pub(crate) fn areas(&self) -> Vec<f64> {
+        self.form.areas(&self.to_world)
+    }
+}
+
+/// A frame about a normal, with X along a direction as far as it is across.
+fn frame(normal: DVec3, along: DVec3) -> DMat3 {
+    let across = along - along.dot(normal) * normal;
+    let x = across
+        .try_normalize()
+        .unwrap_or_else(|| normal.any_orthonormal_vector());
+    DMat3::from_cols(x, normal.cross(x), normal)
+}

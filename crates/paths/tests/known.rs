@@ -1,0 +1,291 @@
+//! Pictures of one pixel whose radiance is known.
+
+use etendue_field::Raster;
+use etendue_paths::Paths;
+use etendue_world::{
+    Camera, Dielectric, Geometry, Lens, Light, Material, Projection, Shape, SkyMap, Texture,
+    Triangles, World,
+};
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// A narrow camera at a place that looks at another.
+fn camera(from: DVec3, at: DVec3) -> Camera {
+    let along = (at - from).normalize();
+    let left = along.any_orthonormal_vector();
+    let turned = DMat3::from_cols(left, along.cross(left), along);
+    Camera {
+        name: "camera".to_owned(),
+        to_world: DAffine3::from_mat3_translation(turned, from),
+        size: [1, 1],
+        projection: Projection::Perspective {
+            half_width: 1e-6,
+            shift: [0.0; 2],
+            lens: None,
+        },
+        clip: [1e-3, 1e6],
+    }
+}
+
+fn shape(geometry: Geometry, to_world: DAffine3, material: usize, emission: Option<f64>) -> Shape {
+    Shape {
+        name: String::new(),
+        geometry,
+        to_world,
+        is_flipped: false,
+        material,
+        emission: emission.map(Texture::Constant),
+    }
+}
+
+fn diffuse(reflectance: f64) -> Material {
+    Material::Diffuse {
+        reflectance: Texture::Constant(reflectance),
+    }
+}
+
+fn scaled(scale: f64, z: f64) -> DAffine3 {
+    DAffine3::from_scale_rotation_translation(
+        DVec3::splat(scale),
+        DQuat::IDENTITY,
+        DVec3::new(0.0, 0.0, z),
+    )
+}
+
+/// A floor in z = 0 that reflects half, and what else there is.
+fn floor(more: Vec<Shape>, lights: Vec<Light>) -> World {
+    let mut shapes = vec![shape(Geometry::Rectangle, scaled(10.0, 0.0), 0, None)];
+    shapes.extend(more);
+    World {
+        shapes,
+        materials: vec![diffuse(0.5), diffuse(0.0)],
+        lights,
+        ..World::default()
+    }
+}
+
+/// The radiance of one pixel, with its standard error.
+fn seen(world: &World, from: DVec3, at: DVec3, samples: u32) -> (f64, f64) {
+    let picture = Paths::new(world).picture(&camera(from, at), samples, 3, &|_| {});
+    (picture.mean[0], picture.variance[0].sqrt())
+}
+
+/// Within five standard errors, or rounding where all paths find the same; and the error is small.
+fn assert_seen(world: &World, from: DVec3, at: DVec3, expected: f64) {
+    let (mean, error) = seen(world, from, at, 20_000);
+    assert!(
+        (mean - expected).abs() < 5.0 * error + 1e-9 * expected,
+        "{mean} ± {error}, not {expected}"
+    );
+    assert!(error < 0.02 * expected, "{mean} ± {error}");
+}
+
+const ASIDE: DVec3 = DVec3::new(1.0, 0.5, 1.0);
+
+#[test]
+fn a_closed_sphere_gathers_light() {
+    let mut inside = shape(Geometry::Sphere, scaled(2.0, 0.0), 0, Some(1.0));
+    inside.is_flipped = true;
+    let mut world = World {
+        shapes: vec![inside],
+        materials: vec![diffuse(0.5)],
+        ..World::default()
+    };
+    let at = DVec3::new(0.1, 0.2, -1.9);
+    // 1 + ½ + ¼ + …, to the depth that is asked for.
+    for (depth, expected) in [
+        (None, 2.0),
+        (Some(0), 1.0),
+        (Some(1), 1.5),
+        (Some(3), 1.875),
+    ] {
+        world.depth = depth;
+        assert_seen(&world, DVec3::ZERO, at, expected);
+    }
+    world.depth = None;
+    world.hides_sources = true;
+    assert_seen(&world, DVec3::ZERO, at, 1.0);
+}
+
+#[test]
+fn lights_shine_by_their_units() {
+    let point = Light::Point {
+        position: DVec3::new(0.0, 1.0, 2.0),
+        intensity: 3.0,
+    };
+    assert_seen(
+        &floor(vec![], vec![point]),
+        ASIDE,
+        DVec3::ZERO,
+        0.5 / PI * 3.0 * 2.0 / 5_f64.powf(1.5),
+    );
+    let direction = DVec3::new(0.6, 0.0, -0.8);
+    let sun = Light::Directional {
+        direction,
+        irradiance: 2.0,
+    };
+    assert_seen(
+        &floor(vec![], vec![sun]),
+        ASIDE,
+        DVec3::ZERO,
+        0.5 / PI * 2.0 * 0.8,
+    );
+    assert_seen(
+        &floor(vec![], vec![Light::Constant { radiance: 0.7 }]),
+        ASIDE,
+        DVec3::ZERO,
+        0.35,
+    );
+    // Half-way between full intensity and none.
+    let down = DAffine3::from_mat3_translation(
+        DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
+        DVec3::new(0.0, 0.0, 1.0),
+    );
+    let spot = Light::Spot {
+        to_world: down,
+        intensity: 4.0,
+        beam: 0.3,
+        cutoff: 0.5,
+    };
+    let there = DVec3::new(0.4_f64.tan(), 0.0, 0.0);
+    assert_seen(
+        &floor(vec![], vec![spot]),
+        ASIDE,
+        there,
+        0.5 / PI * 2.0 * 0.4_f64.cos().powi(3),
+    );
+}
+
+#[test]
+fn surfaces_shine_by_their_area() {
+    let turned = |height: f64, scale: f64| {
+        scaled(scale, height)
+            * DAffine3::from_mat3(DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)))
+    };
+    // A disc and a sphere above a point of the floor.
+    let disc = shape(Geometry::Disc, turned(2.0, 0.5), 1, Some(6.0));
+    assert_seen(
+        &floor(vec![disc], vec![]),
+        ASIDE,
+        DVec3::ZERO,
+        0.5 * 6.0 * 0.25 / 4.25,
+    );
+    let sphere = shape(Geometry::Sphere, scaled(0.5, 2.0), 1, Some(6.0));
+    assert_seen(
+        &floor(vec![sphere], vec![]),
+        ASIDE,
+        DVec3::ZERO,
+        0.5 * 6.0 * 0.25 / 4.0,
+    );
+    // A square as a rectangle and as two triangles; it shines on its front alone.
+    let square = Triangles::new(
+        vec![
+            DVec3::new(-1.0, -1.0, 0.0),
+            DVec3::new(1.0, -1.0, 0.0),
+            DVec3::new(1.0, 1.0, 0.0),
+            DVec3::new(-1.0, 1.0, 0.0),
+        ],
+        vec![[0, 1, 2], [0, 2, 3]],
+        None,
+        None,
+    );
+    let mesh = Geometry::Mesh(Arc::new(square.unwrap()));
+    // The form factor of a square of side 1 at height 2 over its middle: four corners of ½ by ½ (Howell, factor B-3).
+    let x = 0.25_f64;
+    let factor =
+        4.0 / (2.0 * PI) * 2.0 * x / (1.0 + x * x).sqrt() * (x / (1.0 + x * x).sqrt()).atan();
+    for geometry in [Geometry::Rectangle, mesh] {
+        let square = shape(geometry.clone(), turned(2.0, 0.5), 1, Some(6.0));
+        assert_seen(
+            &floor(vec![square], vec![]),
+            ASIDE,
+            DVec3::ZERO,
+            0.5 * 6.0 * factor,
+        );
+        let away = shape(geometry, scaled(0.5, 2.0), 1, Some(6.0));
+        let (mean, _) = seen(&floor(vec![away], vec![]), ASIDE, DVec3::ZERO, 1000);
+        assert!(mean.abs() < 1e-300, "{mean}");
+    }
+}
+
+#[test]
+fn glass_keeps_the_light_around_it() {
+    let glass = Dielectric {
+        index: 1.5,
+        reflectance: Texture::Constant(1.0),
+        transmittance: Texture::Constant(1.0),
+        roughness: None,
+        is_thin: false,
+    };
+    let ball = shape(Geometry::Sphere, scaled(1.0, 0.0), 0, None);
+    let sky = vec![Light::Constant { radiance: 0.8 }];
+    let world = World {
+        shapes: vec![ball],
+        materials: vec![Material::Dielectric(glass)],
+        lights: sky,
+        ..World::default()
+    };
+    assert_seen(
+        &world,
+        DVec3::new(0.0, 3.0, 0.0),
+        DVec3::new(0.3, 0.0, 0.4),
+        0.8,
+    );
+}
+
+#[test]
+fn a_sky_is_where_its_pixels_are() {
+    let mut values = vec![0.0; 64 * 32];
+    // Column 16 of 64 is a quarter turn from −Z to X, row 8 of 32 at 45° from Y.
+    values[8 * 64 + 16] = 100.0;
+    let map = Arc::new(Raster::new(64, 32, values).unwrap());
+    let sky = |to_world| {
+        Light::Sky(SkyMap {
+            to_world,
+            radiance: Arc::clone(&map),
+        })
+    };
+    let [turn, down] = [16.5_f64 / 64.0 * 2.0 * PI, 8.5 / 32.0 * PI];
+    let toward = DVec3::new(
+        down.sin() * turn.sin(),
+        down.cos(),
+        -down.sin() * turn.cos(),
+    );
+    // Interpolation makes a tent of it, as large as one pixel.
+    let solid = 2.0 * PI / 64.0 * PI / 32.0 * down.sin();
+    for turned in [
+        DMat3::from_rotation_x(1.0),
+        DMat3::from_rotation_z(0.3) * DMat3::from_rotation_x(1.2),
+    ] {
+        let world = floor(vec![], vec![sky(turned)]);
+        let expected = 0.5 / PI * 100.0 * solid * (turned * toward).z;
+        assert!(expected > 0.0, "it is above the floor");
+        let (mean, error) = seen(&world, ASIDE, DVec3::ZERO, 20_000);
+        // The tent is not quite even over latitude.
+        assert!(
+            (mean / expected - 1.0).abs() < 0.003 + 5.0 * error / expected,
+            "{mean} ± {error}, not {expected}"
+        );
+    }
+}
+
+#[test]
+fn lenses_focus() {
+    let mut of = camera(DVec3::ZERO, DVec3::Z);
+    of.projection = Projection::Perspective {
+        half_width: 0.5,
+        shift: [0.0; 2],
+        lens: Some(Lens {
+            radius: 0.1,
+            focus: 4.0,
+        }),
+    };
+    let through = |lens| {
+        let look = of.look([0.8, 0.3], lens);
+        look.from + look.along * (4.0 / look.along.dot(DVec3::Z))
+    };
+    let middle = through([0.0, 0.0]);
+    assert!((through([0.6, -0.7]) - middle).length() < 1e-12);
+    assert!(middle.truncate().length() > 0.1);
+}
