@@ -6,12 +6,15 @@
 //! binary data when a property is declared twice, and fills memory for an element without properties. The tests
 //! keep both as independent readers of sound files.
 
+mod detailed;
 mod error;
 mod obj;
 mod paraboloid;
 mod ply;
 mod star;
 mod text;
+
+pub use detailed::DetailedMesh;
 
 use crate::fault::Fault;
 use error::fault;

@@ -18,21 +18,75 @@ const MOST: usize = 1 << 27;
 /// taken for what a file can hold, not for what its header claims.
 const MOST_PER_BYTE: usize = 1032;
 
+/// A picture: grey, or red, green and blue.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Channels {
+    /// Pixels in a row.
+    pub width: usize,
+    /// Rows.
+    pub height: usize,
+    /// One number for each pixel, or three one after the other.
+    pub values: Vec<f64>,
+    /// 1 or 3.
+    pub count: usize,
+    /// Levels of a file with full at 1, which have a transfer curve; else they are in proportion to light.
+    pub are_levels: bool,
+}
+
+impl Channels {
+    /// One number for each pixel.
+    ///
+    /// # Errors
+    /// A picture without pixels.
+    pub fn raster(&self, number: impl Fn([f64; 3]) -> f64) -> Result<Raster, Fault> {
+        let values = match self.count {
+            1 => self.values.iter().map(|v| number([*v; 3])).collect(),
+            _ => {
+                let pixels = self.values.chunks_exact(3);
+                pixels.map(|p| number([p[0], p[1], p[2]])).collect()
+            }
+        };
+        raster(self.width, self.height, values)
+    }
+
+    fn luminance(&self) -> Result<Raster, Fault> {
+        match self.count {
+            1 => raster(self.width, self.height, self.values.clone()),
+            _ => self.raster(weigh),
+        }
+    }
+}
+
 /// Reads the bytes of a picture, its format told by the extension of `file` in any case.
 ///
 /// OpenEXR: the first layer with channels R, G and B, whose luminance it is, or Y; all its data window. PNG: grey or colour of 8 or 16 bits, its
 /// levels as they are with full at 1: no transfer curve is undone; alpha is passed over.
 pub(crate) fn parse(file: &Path, bytes: &[u8], extensions: &[&str]) -> Result<Raster, Fault> {
-    let extension = file.extension().unwrap_or_default().to_string_lossy();
-    let extension = extension.to_ascii_lowercase();
+    let extension = extension(file);
     if !extensions.contains(&extension.as_str()) {
         let shown = format!("{extension:?}");
         return Err(fault("the extension", shown, extensions.join(", ")));
     }
-    match extension.as_str() {
+    read_channels(file, bytes)?.luminance()
+}
+
+/// Reads the bytes of an OpenEXR or a PNG file, told apart by the extension of `file` in any case.
+///
+/// OpenEXR: the first layer with channels R, G and B, or Y; all its data window. PNG: grey or colour of 8 or 16 bits. Alpha is passed over.
+///
+/// # Errors
+/// A damaged file, or one that is larger than it should be.
+pub fn read_channels(file: &Path, bytes: &[u8]) -> Result<Channels, Fault> {
+    match extension(file).as_str() {
         "png" => png(bytes),
-        _ => exr(bytes),
+        "exr" => exr(bytes),
+        other => Err(fault("the extension", format!("{other:?}"), "exr, png")),
     }
+}
+
+fn extension(file: &Path) -> String {
+    let extension = file.extension().unwrap_or_default().to_string_lossy();
+    extension.to_ascii_lowercase()
 }
 
 fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<String>) -> Fault {
@@ -63,7 +117,7 @@ fn raster(width: usize, height: usize, values: Vec<f64>) -> Result<Raster, Fault
         .ok_or_else(|| fault("the size", format!("{width} × {height}"), allowed))
 }
 
-fn exr(bytes: &[u8]) -> Result<Raster, Fault> {
+fn exr(bytes: &[u8]) -> Result<Channels, Fault> {
     let unsound = |error: exr::error::Error| {
         fault(
             "the file",
@@ -90,8 +144,14 @@ fn exr(bytes: &[u8]) -> Result<Raster, Fault> {
         list.map(|channel| channel.name.to_string()).collect()
     };
     for layer in &image.layer_data {
-        if let Some(values) = luminance(&layer.channel_data) {
-            return raster(layer.size.0, layer.size.1, values);
+        if let Some((count, values)) = colours(&layer.channel_data) {
+            return Ok(Channels {
+                width: layer.size.0,
+                height: layer.size.1,
+                values,
+                count,
+                are_levels: false,
+            });
         }
     }
     let found: Vec<String> = image
@@ -106,20 +166,20 @@ fn exr(bytes: &[u8]) -> Result<Raster, Fault> {
     ))
 }
 
-/// The luminance of a layer; `None` without the channels for it.
-fn luminance(channels: &AnyChannels<FlatSamples>) -> Option<Vec<f64>> {
+/// How many numbers a pixel of a layer has, and all of them; `None` without the channels for it.
+fn colours(channels: &AnyChannels<FlatSamples>) -> Option<(usize, Vec<f64>)> {
     let channel = |name: &str| {
         let mut list = channels.list.iter();
-        let found = list.find(|channel| channel.name.eq(name))?;
-        let values = found.sample_data.values_as_f32().map(f64::from);
-        Some(values.collect::<Vec<f64>>())
+        list.find(|channel| channel.name.eq(name))
     };
     let Some(((red, green), blue)) = channel("R").zip(channel("G")).zip(channel("B")) else {
-        return channel("Y");
+        let grey = channel("Y")?.sample_data.values_as_f32();
+        return Some((1, grey.map(f64::from).collect()));
     };
-    let pixels = red.iter().zip(&green).zip(&blue);
-    let weighted = pixels.map(|((r, g), b)| weigh([*r, *g, *b]));
-    Some(weighted.collect())
+    let [red, green, blue] = [red, green, blue].map(|c| c.sample_data.values_as_f32());
+    let pixels = red.zip(green).zip(blue);
+    let values = pixels.flat_map(|((r, g), b)| [r, g, b].map(f64::from));
+    Some((3, values.collect()))
 }
 
 fn weigh(rgb: [f64; 3]) -> f64 {
@@ -127,7 +187,7 @@ fn weigh(rgb: [f64; 3]) -> f64 {
     LUMINANCE[0] * r + LUMINANCE[1] * g + LUMINANCE[2] * b
 }
 
-fn png(bytes: &[u8]) -> Result<Raster, Fault> {
+fn png(bytes: &[u8]) -> Result<Channels, Fault> {
     let unsound = |error: png::DecodingError| {
         fault("the file", format!("damaged ({error})"), "a PNG picture")
     };
@@ -153,17 +213,20 @@ fn png(bytes: &[u8]) -> Result<Raster, Fault> {
         }
         _ => buffer.iter().map(|b| f64::from(*b) / 255.0).collect(),
     };
-    let values = match frame.color_type {
-        png::ColorType::Grayscale => levels,
-        png::ColorType::GrayscaleAlpha => levels.chunks_exact(2).map(|p| p[0]).collect(),
-        png::ColorType::Rgba => levels
-            .chunks_exact(4)
-            .map(|p| weigh([p[0], p[1], p[2]]))
-            .collect(),
-        _ => levels
-            .chunks_exact(3)
-            .map(|p| weigh([p[0], p[1], p[2]]))
-            .collect(),
+    let (count, values) = match frame.color_type {
+        png::ColorType::Grayscale => (1, levels),
+        png::ColorType::GrayscaleAlpha => (1, levels.chunks_exact(2).map(|p| p[0]).collect()),
+        png::ColorType::Rgba => {
+            let pixels = levels.chunks_exact(4);
+            (3, pixels.flat_map(|p| [p[0], p[1], p[2]]).collect())
+        }
+        _ => (3, levels),
     };
-    raster(width, height, values)
+    Ok(Channels {
+        width,
+        height,
+        values,
+        count,
+        are_levels: true,
+    })
 }

@@ -1,5 +1,7 @@
 //! OBJ files (Wavefront, Advanced Visualizer manual, appendix B1): vertices and faces.
 
+pub(super) mod detailed;
+
 use super::error::fault;
 use super::text::{Lines, Words, number, quoted};
 use super::{Mesh, check_coordinate, fan};
@@ -31,8 +33,7 @@ const PASSED_OVER: [&[u8]; 19] = [
 ];
 
 pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
-    // Windows editors begin UTF-8 files with a mark.
-    let bytes = bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes);
+    let bytes = without_mark(bytes);
     let vertices = vertices(bytes)?;
     if vertices.is_empty() {
         return Err(fault("vertices (`v` lines)", 0, "at least 3"));
@@ -43,6 +44,11 @@ pub(super) fn read(bytes: &[u8]) -> Result<Mesh, Fault> {
         return Err(fault("faces (`f` lines)", 0, "at least 1"));
     }
     Mesh::new(vertices, triangles)
+}
+
+/// Windows editors begin UTF-8 files with a mark.
+fn without_mark(bytes: &[u8]) -> &[u8] {
+    bytes.strip_prefix(b"\xef\xbb\xbf").unwrap_or(bytes)
 }
 
 /// Statements with the number of their first line: comments cut, continued lines joined.

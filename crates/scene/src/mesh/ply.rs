@@ -1,6 +1,7 @@
 //! PLY files (Turk, The PLY Polygon File Format, 1994): vertices and faces.
 
 mod body;
+pub(super) mod detailed;
 mod header;
 
 use super::error::fault;

@@ -1,0 +1,71 @@
+use etendue_scene::read_file;
+use std::cell::Cell;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Most bytes that one import reads or unpacks, all files together.
+const MOST_BYTES: u64 = 4 << 30;
+
+/// The files that a scene may name: all below one folder, links followed.
+#[derive(Debug)]
+pub(crate) struct Files {
+    root: PathBuf,
+    left: Cell<u64>,
+}
+
+impl Files {
+    /// Files below `root`.
+    pub(crate) fn below(root: &Path) -> io::Result<Self> {
+        let root = match root.as_os_str() {
+            empty if empty.is_empty() => Path::new("."),
+            _ => root,
+        };
+        Ok(Self {
+            root: root.canonicalize()?,
+            left: Cell::new(MOST_BYTES),
+        })
+    }
+
+    /// The path of the file or folder `name`, looked for from one folder after the other.
+    ///
+    /// It may be written with `..`: what counts is where it leads.
+    pub(crate) fn find(&self, folders: &[PathBuf], name: &str) -> Result<PathBuf, String> {
+        let mut is_outside = false;
+        for folder in folders {
+            // An absolute name replaces the folder.
+            let Ok(path) = folder.join(name).canonicalize() else {
+                continue;
+            };
+            if path.starts_with(&self.root) {
+                return Ok(path);
+            }
+            is_outside = true;
+        }
+        Err(if is_outside {
+            "leads out of the folder that a scene may read from, links followed".to_owned()
+        } else {
+            "is not found".to_owned()
+        })
+    }
+
+    /// The bytes of a file that [`Self::find`] gave.
+    pub(crate) fn read(&self, path: &Path) -> Result<Vec<u8>, String> {
+        let bytes = read_file(path, self.left.get()).map_err(|error| error.to_string())?;
+        self.spend(bytes.len() as u64)?;
+        Ok(bytes)
+    }
+
+    /// How many bytes may still be read or unpacked.
+    pub(crate) fn left(&self) -> u64 {
+        self.left.get()
+    }
+
+    /// Counts bytes that are unpacked.
+    pub(crate) fn spend(&self, bytes: u64) -> Result<(), String> {
+        let left = self.left.get().checked_sub(bytes);
+        self.left.set(left.unwrap_or_default());
+        left.map(|_| ()).ok_or_else(|| {
+            format!("is too much: at most {MOST_BYTES} bytes are read for one scene")
+        })
+    }
+}

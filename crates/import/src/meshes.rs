@@ -1,0 +1,109 @@
+//! Meshes of any scene, as a world has them.
+
+use etendue_scene::DetailedMesh;
+use etendue_world::Triangles;
+use glam::{DMat3, DVec2, DVec3};
+
+/// A mesh on its way to [`Triangles`].
+#[derive(Debug)]
+pub(crate) struct Parts {
+    pub(crate) vertices: Vec<DVec3>,
+    pub(crate) corners: Vec<[u32; 3]>,
+    pub(crate) normals: Option<Vec<DVec3>>,
+    pub(crate) uvs: Option<Vec<DVec2>>,
+}
+
+impl From<DetailedMesh> for Parts {
+    fn from(mesh: DetailedMesh) -> Self {
+        Self {
+            vertices: mesh.vertices,
+            corners: mesh.triangles,
+            normals: mesh.normals,
+            uvs: mesh.uvs,
+        }
+    }
+}
+
+impl Parts {
+    /// Drops triangles without an area, which no ray meets.
+    pub(crate) fn drop_empty(&mut self) {
+        let vertices = &self.vertices;
+        self.corners
+            .retain(|corners| across(vertices, *corners) != DVec3::ZERO);
+    }
+
+    /// Normals at the vertices: those of the triangles around, weighed with their angles there (Thürmer and Wüthrich 1998).
+    ///
+    /// Angles are those after `linear`, under which the mesh is placed.
+    pub(crate) fn smooth(&mut self, linear: DMat3) {
+        let placed: Vec<DVec3> = self.vertices.iter().map(|v| linear * *v).collect();
+        let mut sums = vec![DVec3::ZERO; placed.len()];
+        for corners in &self.corners {
+            let normal = across(&placed, *corners).normalize_or_zero();
+            for k in 0..3 {
+                let [a, b, c] = [k, (k + 1) % 3, (k + 2) % 3].map(|i| placed[corners[i] as usize]);
+                sums[corners[k] as usize] += normal * angle(b - a, c - a);
+            }
+        }
+        // What the inverse transpose makes the sums of. A mirror turns the normals of triangles over, and is undone.
+        let sign = 1.0_f64.copysign(linear.determinant());
+        let back = linear.transpose() * sign;
+        let normals = sums
+            .into_iter()
+            .map(|sum| (back * sum).normalize_or(DVec3::X));
+        self.normals = Some(normals.collect());
+    }
+
+    /// Turns triangles over that face away from their normals: the normals say where the front is.
+    pub(crate) fn face_normals(&mut self) {
+        let Some(normals) = &self.normals else {
+            return;
+        };
+        for corners in &mut self.corners {
+            let mean: DVec3 = corners.iter().map(|i| normals[*i as usize]).sum();
+            if across(&self.vertices, *corners).dot(mean) < 0.0 {
+                corners.swap(1, 2);
+            }
+        }
+    }
+
+    /// Puts the normal of a triangle where a vertex of it has none; whether that was so anywhere.
+    pub(crate) fn mend_normals(&mut self) -> bool {
+        let Some(normals) = &mut self.normals else {
+            return false;
+        };
+        let mut mended = false;
+        for corners in &self.corners {
+            for corner in corners {
+                let normal = &mut normals[*corner as usize];
+                if normal.length_squared() < f64::MIN_POSITIVE {
+                    *normal = across(&self.vertices, *corners);
+                    mended = true;
+                }
+            }
+        }
+        // Those of no triangle.
+        for normal in normals {
+            *normal = normal.normalize_or(DVec3::X);
+        }
+        mended
+    }
+
+    /// The triangles; `None` if there are none, or something does not fit.
+    pub(crate) fn finish(self) -> Option<Triangles> {
+        if self.corners.is_empty() {
+            return None;
+        }
+        Triangles::new(self.vertices, self.corners, self.normals, self.uvs)
+    }
+}
+
+/// The normal of a triangle, twice its area long.
+fn across(vertices: &[DVec3], corners: [u32; 3]) -> DVec3 {
+    let [a, b, c] = corners.map(|i| vertices[i as usize]);
+    (b - a).cross(c - a)
+}
+
+fn angle(a: DVec3, b: DVec3) -> f64 {
+    libm::atan2(a.cross(b).length(), a.dot(b))
+}

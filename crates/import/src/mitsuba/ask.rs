@@ -1,0 +1,170 @@
+//! Asking objects for their properties, which marks them as read.
+
+use super::object::{Kind, Object, Property, Value};
+use super::reader::Reader;
+use super::xml::unknown;
+use crate::report::quoted;
+use glam::{DAffine3, DVec3};
+
+impl<'a> Reader<'a> {
+    /// The property of this name. Of objects with one name the last counts, as in Mitsuba.
+    pub(super) fn property(&self, object: &'a Object, name: &str) -> Option<&'a Property> {
+        let mut all = object.properties.iter();
+        let found = all.rfind(|property| property.name == name)?;
+        found.is_read.set(true);
+        Some(found)
+    }
+
+    pub(super) fn has(&self, object: &Object, name: &str) -> bool {
+        object.properties.iter().any(|p| p.name == name)
+    }
+
+    /// The value of a property, as `read` takes it; `None` if it is not there, or a cause was given.
+    fn ask<T>(
+        &self,
+        object: &'a Object,
+        name: &str,
+        allowed: &str,
+        read: impl Fn(&'a Value) -> Option<T>,
+    ) -> Option<T> {
+        let property = self.property(object, name)?;
+        let value = read(&property.value);
+        if value.is_none() && !matches!(property.value, Value::Broken) {
+            let noun = property.value.noun();
+            let message = format!("{name} is {noun}; allowed: {allowed}");
+            self.report.cause(&property.place, message);
+        }
+        value
+    }
+
+    pub(super) fn number(&self, object: &'a Object, name: &str) -> Option<f64> {
+        self.ask(object, name, "a number", |value| match value {
+            Value::Number(value) => Some(*value),
+            Value::Whole(value) => Some(*value as f64),
+            _ => None,
+        })
+    }
+
+    /// A number in a range; else a cause that says the range.
+    pub(super) fn number_within(
+        &self,
+        object: &'a Object,
+        name: &str,
+        allowed: &str,
+        is_allowed: impl Fn(f64) -> bool,
+    ) -> Option<f64> {
+        let value = self.number(object, name)?;
+        if is_allowed(value) {
+            return Some(value);
+        }
+        let place = self.place_of(object, name);
+        let message = format!("{name} is {value}; allowed: {allowed}");
+        self.report.cause(place, message);
+        None
+    }
+
+    pub(super) fn whole(&self, object: &'a Object, name: &str) -> Option<i64> {
+        self.ask(object, name, "an integer", |value| match value {
+            Value::Whole(value) => Some(*value),
+            _ => None,
+        })
+    }
+
+    pub(super) fn truth(&self, object: &'a Object, name: &str) -> bool {
+        let found = self.ask(object, name, "a boolean", |value| match value {
+            Value::Truth(value) => Some(*value),
+            _ => None,
+        });
+        found.unwrap_or(false)
+    }
+
+    pub(super) fn text(&self, object: &'a Object, name: &str) -> Option<&'a str> {
+        self.ask(object, name, "a string", |value| match value {
+            Value::Text(value) => Some(value.as_str()),
+            _ => None,
+        })
+    }
+
+    pub(super) fn vector(&self, object: &'a Object, name: &str) -> Option<DVec3> {
+        self.ask(object, name, "a point or a vector", |value| match value {
+            Value::Vector(value) => Some(*value),
+            _ => None,
+        })
+    }
+
+    pub(super) fn transform(&self, object: &'a Object, name: &str) -> Option<DAffine3> {
+        self.ask(object, name, "a transform", |value| match value {
+            Value::Transform(value) => Some(*value),
+            _ => None,
+        })
+    }
+
+    /// Where a property is, or its object.
+    pub(super) fn place_of(&self, object: &'a Object, name: &str) -> &'a crate::report::Place {
+        let mut all = object.properties.iter();
+        let found = all.rfind(|property| property.name == name);
+        found.map_or(&object.place, |property| &property.place)
+    }
+
+    /// The object that a property is, or refers to; a reference without an object is a cause.
+    pub(super) fn object_of(&self, property: &'a Property) -> Option<&'a Object> {
+        let at = match &property.value {
+            Value::Object(at) => *at,
+            Value::Reference(id) => match self.ids.get(id) {
+                Some(at) => *at,
+                None => {
+                    if !property.is_read.replace(true) {
+                        self.report.cause(&property.place, unknown(id));
+                    }
+                    return None;
+                }
+            },
+            _ => return None,
+        };
+        self.objects.get(at)
+    }
+
+    /// All objects of a kind within an object, with their properties, in the order of the file.
+    pub(super) fn children(
+        &self,
+        object: &'a Object,
+        kind: Kind,
+    ) -> Vec<(&'a Property, &'a Object)> {
+        let mut found = Vec::new();
+        for property in &object.properties {
+            if let Some(child) = self.object_of(property)
+                && child.kind == kind
+            {
+                property.is_read.set(true);
+                child.is_used.set(true);
+                found.push((property, child));
+            }
+        }
+        found
+    }
+
+    /// The one object of a kind, if there is one; more are a cause.
+    pub(super) fn child(&self, object: &'a Object, kind: Kind) -> Option<&'a Object> {
+        let found = self.children(object, kind);
+        if let Some((second, _)) = found.get(1) {
+            let (name, plugin) = (kind.name(), quoted(&object.plugin));
+            let message = format!("a second {name} in {plugin}; allowed: one");
+            self.report.cause(&second.place, message);
+        }
+        found.first().map(|(_, child)| *child)
+    }
+
+    /// Passes over a property that changes nothing about light.
+    pub(super) fn skip(&self, object: &'a Object, names: &[&str]) {
+        for name in names {
+            self.property(object, name);
+        }
+    }
+
+    /// The number of an object.
+    pub(super) fn index(&self, object: &Object) -> Option<usize> {
+        self.objects
+            .iter()
+            .position(|known| std::ptr::eq(known, object))
+    }
+}

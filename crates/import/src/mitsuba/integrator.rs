@@ -1,0 +1,72 @@
+//! How far light is followed.
+
+use super::object::{Kind, Object};
+use super::reader::Reader;
+use crate::report::quoted;
+
+/// Integrators within one another, such as moment and aov.
+const DEEPEST: usize = 8;
+
+impl<'a> Reader<'a> {
+    /// What the integrator says of the depth; all the rest is how Mitsuba computes.
+    pub(super) fn integrator(&mut self, scene: &'a Object) {
+        let Some(mut object) = self.child(scene, Kind::Integrator) else {
+            return;
+        };
+        for _ in 0..DEEPEST {
+            object.is_used.set(true);
+            match object.plugin.as_str() {
+                "moment" | "aov" => match self.child(object, Kind::Integrator) {
+                    Some(nested) => object = nested,
+                    None => return self.note_depth(object),
+                },
+                "direct" => {
+                    self.world.depth = Some(1);
+                    return self.hide(object);
+                }
+                "path" | "volpath" | "volpathmis" | "ptracer" | "prb" | "prbvolpath" => {
+                    self.world.depth = self.depth(object);
+                    return self.hide(object);
+                }
+                _ => return self.note_depth(object),
+            }
+        }
+    }
+
+    fn hide(&mut self, object: &'a Object) {
+        self.world.hides_sources = self.truth(object, "hide_emitters");
+    }
+
+    fn note_depth(&self, object: &'a Object) {
+        let message = format!(
+            "integrator {} is left out: light is followed without an end",
+            quoted(&object.plugin)
+        );
+        self.report.note(&object.place, message);
+    }
+
+    /// Mitsuba counts the edges of a path: one shows sources alone, 2 adds direct light.
+    fn depth(&self, object: &'a Object) -> Option<u32> {
+        match self.whole(object, "max_depth")? {
+            -1 => None,
+            // Nothing at all is shown with 0; a world has no such depth.
+            0 => {
+                self.report.cause(
+                    self.place_of(object, "max_depth"),
+                    "max_depth is 0, which shows nothing; allowed: -1, or from 1 on",
+                );
+                None
+            }
+            depth => {
+                let less = depth.checked_sub(1).map(u32::try_from);
+                let Some(Ok(less)) = less else {
+                    let message = format!("max_depth is {depth}; allowed: -1, or from 1 on");
+                    self.report
+                        .cause(self.place_of(object, "max_depth"), message);
+                    return None;
+                };
+                Some(less)
+            }
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Emitters that are no surfaces.
+
+use super::mesh::z_of;
+use super::object::Object;
+use super::reader::Reader;
+use etendue_field::Raster;
+use etendue_world::{Light, SkyMap};
+use glam::{DAffine3, DMat3, DVec3};
+use std::sync::Arc;
+
+/// Plugins that are lights of a world.
+const ALLOWED: &str = "point, spot, directional, constant, envmap; area within a shape";
+
+/// Half the angle of a spot, degrees, if nothing is said.
+const CUTOFF: f64 = 20.0;
+
+/// How far a transform may be from one that keeps lengths and angles: it is a product of rounded numbers.
+const RIGID: f64 = 1e-3;
+
+impl<'a> Reader<'a> {
+    pub(super) fn light(&mut self, object: &'a Object) {
+        object.is_used.set(true);
+        // How Mitsuba draws lights.
+        self.skip(object, &["sampling_weight"]);
+        let light = match object.plugin.as_str() {
+            "point" => self.point(object),
+            "spot" => self.spot(object),
+            "directional" => self.directional(object),
+            "constant" => self
+                .strength(object, "radiance")
+                .map(|radiance| Light::Constant { radiance }),
+            "envmap" => self.sky(object),
+            _ => {
+                self.unsupported(object, ALLOWED);
+                None
+            }
+        };
+        self.world.lights.extend(light);
+    }
+
+    fn point(&mut self, object: &'a Object) -> Option<Light> {
+        let position = self.either(object, "position", |map| Some(map.translation));
+        let intensity = self.strength(object, "intensity");
+        Some(Light::Point {
+            position: position?.unwrap_or(DVec3::ZERO),
+            intensity: intensity?,
+        })
+    }
+
+    fn directional(&mut self, object: &'a Object) -> Option<Light> {
+        let direction = self.either(object, "direction", z_of);
+        let irradiance = self.strength(object, "irradiance");
+        let direction = direction?.unwrap_or(DVec3::Z).try_normalize();
+        if direction.is_none() {
+            self.report.cause(&object.place, "a direction of no length");
+        }
+        Some(Light::Directional {
+            direction: direction?,
+            irradiance: irradiance?,
+        })
+    }
+
+    /// A vector, or what a transform makes of it; not both. The outer `None` is after a cause.
+    #[expect(
+        clippy::option_option,
+        reason = "neither is there; the outer none is a cause"
+    )]
+    fn either(
+        &self,
+        object: &'a Object,
+        name: &str,
+        of: impl Fn(DAffine3) -> Option<DVec3>,
+    ) -> Option<Option<DVec3>> {
+        match [name, "to_world"].map(|name| self.has(object, name)) {
+            [true, true] => {
+                let message = format!("{name} beside to_world; allowed: one of both");
+                self.report.cause(&object.place, message);
+                None
+            }
+            [true, false] => self.vector(object, name).map(Some),
+            [false, true] => {
+                let found = of(self.transform(object, "to_world")?);
+                if found.is_none() {
+                    self.report
+                        .cause(&object.place, "to_world leaves no direction");
+                }
+                found.map(Some)
+            }
+            [false, false] => Some(None),
+        }
+    }
+
+    fn spot(&mut self, object: &'a Object) -> Option<Light> {
+        if self.property(object, "texture").is_some() {
+            let message = "texture of a spot is not supported";
+            self.report.cause(self.place_of(object, "texture"), message);
+        }
+        let intensity = self.strength(object, "intensity");
+        let angle = |name| {
+            self.number_within(object, name, "0 to 90 degrees", |a| {
+                (0.0..90.0).contains(&a)
+            })
+        };
+        let has = |name| self.has(object, name);
+        let cutoff = if has("cutoff_angle") {
+            angle("cutoff_angle")
+        } else {
+            Some(CUTOFF)
+        };
+        let beam = if has("beam_width") {
+            angle("beam_width")
+        } else {
+            cutoff.map(|cutoff| cutoff * 0.75)
+        };
+        let rigid = self.rigid(object);
+        let (cutoff, beam) = (cutoff?, beam?);
+        if beam >= cutoff {
+            let message = format!("beam_width is {beam}; allowed: below cutoff_angle, {cutoff}");
+            self.report.cause(&object.place, message);
+            return None;
+        }
+        Some(Light::Spot {
+            to_world: rigid?,
+            intensity: intensity?,
+            beam: beam.to_radians(),
+            cutoff: cutoff.to_radians(),
+        })
+    }
+
+    fn sky(&mut self, object: &'a Object) -> Option<Light> {
+        // How Mitsuba draws directions.
+        self.skip(object, &["mis_compensation"]);
+        let scale = match self.has(object, "scale") {
+            true => self.number_within(object, "scale", "from 0 on", |s| s >= 0.0),
+            false => Some(1.0),
+        };
+        let to_world = self.rigid(object);
+        let pixels = self.picture(object, false)?;
+        let (scale, to_world) = (scale?, to_world?);
+        if pixels.values().iter().any(|v| *v < 0.0) {
+            self.report
+                .cause(&object.place, "pixels below 0; allowed: from 0 on");
+            return None;
+        }
+        let values = pixels.values().iter().map(|v| v * scale).collect();
+        let radiance = Raster::new(pixels.width(), pixels.height(), values)?;
+        Some(Light::Sky(SkyMap {
+            to_world: to_world.matrix3,
+            radiance: Arc::new(radiance),
+        }))
+    }
+
+    /// `to_world`, which must keep lengths and angles. `None` after a cause.
+    pub(super) fn rigid(&self, object: &'a Object) -> Option<DAffine3> {
+        if !self.has(object, "to_world") {
+            return Some(DAffine3::IDENTITY);
+        }
+        let map = self.transform(object, "to_world")?;
+        let gram = map.matrix3.transpose() * map.matrix3;
+        if gram.abs_diff_eq(DMat3::IDENTITY, RIGID) {
+            return Some(map);
+        }
+        let message = "to_world scales or shears; allowed: turning, moving and mirroring";
+        self.report
+            .cause(self.place_of(object, "to_world"), message);
+        None
+    }
+}

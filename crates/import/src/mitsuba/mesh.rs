@@ -1,0 +1,197 @@
+//! Shapes that are meshes.
+
+use super::object::Object;
+use super::reader::Reader;
+use super::{cube, serialized};
+use crate::meshes::Parts;
+use crate::report::quoted;
+use etendue_scene::DetailedMesh;
+use etendue_world::Triangles;
+use glam::{DAffine3, DMat3, DVec3};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// What a mesh is read from and how, so that shapes may share it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct MeshKey {
+    path: PathBuf,
+    number: u32,
+    is_flat: bool,
+    is_flipped: bool,
+    /// Smooth normals are made for the shape as placed.
+    linear: Option<[u64; 9]>,
+}
+
+/// A mesh of a shape.
+pub(super) struct Mesh {
+    pub(super) triangles: Arc<Triangles>,
+    /// Whether its front is the other side.
+    pub(super) is_flipped: bool,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn cube(&self, object: &'a Object) -> Option<Mesh> {
+        let triangles = cube::parts().finish()?;
+        Some(Mesh {
+            triangles: Arc::new(triangles),
+            is_flipped: self.truth(object, "flip_normals"),
+        })
+    }
+
+    /// An OBJ, PLY or serialized mesh.
+    pub(super) fn mesh(&mut self, object: &'a Object, to_world: DAffine3) -> Option<Mesh> {
+        let flips = self.truth(object, "flip_normals");
+        let is_flat = self.truth(object, "face_normals");
+        let is_obj = object.plugin == "obj";
+        let flips_uv = match object.plugin.as_str() {
+            "serialized" => false,
+            // Mitsuba's default turns textures of OBJ files over.
+            _ if !self.has(object, "flip_tex_coords") => is_obj,
+            _ => self.truth(object, "flip_tex_coords"),
+        };
+        let number = self.shape_index(object)?;
+        let name = self.file_name(object)?;
+        let key = MeshKey {
+            path: self.mesh_path(object, name)?,
+            number,
+            is_flat,
+            is_flipped: flips_uv,
+            linear: (!is_flat).then(|| bits(to_world.matrix3)),
+        };
+        let is_new = !self.meshes.contains_key(&key);
+        let (triangles, is_made) = self.triangles(object, &key, to_world, is_new);
+        let triangles = match triangles {
+            Ok(triangles) => triangles,
+            Err(error) => {
+                self.unread(object, name, &error);
+                return None;
+            }
+        };
+        // Mitsuba makes normals of placed triangles, which a mirror turns over; normals of the file it maps as normals.
+        let is_mirrored = to_world.matrix3.determinant() < 0.0;
+        Some(Mesh {
+            triangles,
+            is_flipped: flips != (is_mirrored && is_made),
+        })
+    }
+
+    fn shape_index(&self, object: &'a Object) -> Option<u32> {
+        if object.plugin != "serialized" || !self.has(object, "shape_index") {
+            return Some(0);
+        }
+        let value = self.whole(object, "shape_index")?;
+        let number = u32::try_from(value);
+        if number.is_err() {
+            let message = format!("shape_index is {value}; allowed: from 0 on");
+            self.report
+                .cause(self.place_of(object, "shape_index"), message);
+        }
+        number.ok()
+    }
+
+    fn mesh_path(&self, object: &'a Object, name: &str) -> Option<PathBuf> {
+        let found = self.files.find(&object.folders, name);
+        let path = found
+            .map_err(|error| self.unread(object, name, &error))
+            .ok()?;
+        let extension = path.extension().unwrap_or_default().to_string_lossy();
+        let extension = extension.to_ascii_lowercase();
+        if object.plugin != "serialized" && extension != object.plugin {
+            let error = format!("has extension {}", quoted(&extension));
+            self.unread(object, name, &error);
+            return None;
+        }
+        Some(path)
+    }
+
+    /// The triangles of a mesh, and whether their normals were made of them.
+    fn triangles(
+        &mut self,
+        object: &'a Object,
+        key: &MeshKey,
+        to_world: DAffine3,
+        is_new: bool,
+    ) -> (Result<Arc<Triangles>, String>, bool) {
+        // A mesh with normals of its own is one for all places.
+        let everywhere = MeshKey {
+            linear: None,
+            is_flat: false,
+            ..key.clone()
+        };
+        if !key.is_flat
+            && let Some(known) = self.meshes.get(&everywhere)
+        {
+            return (known.clone(), false);
+        }
+        if !is_new && let Some(known) = self.meshes.get(key) {
+            return (known.clone(), true);
+        }
+        let read = self.parts(key);
+        let has_normals = !key.is_flat && read.as_ref().is_ok_and(|p| p.normals.is_some());
+        let made = read.and_then(|parts| self.finish(object, parts, key, to_world.matrix3));
+        let key = if has_normals { everywhere } else { key.clone() };
+        self.meshes.insert(key, made.clone());
+        (made, !has_normals)
+    }
+
+    fn parts(&mut self, key: &MeshKey) -> Result<Parts, String> {
+        let bytes = self.mesh_bytes(&key.path)?;
+        let is_packed = key
+            .path
+            .extension()
+            .is_none_or(|e| !e.eq_ignore_ascii_case("obj") && !e.eq_ignore_ascii_case("ply"));
+        match is_packed {
+            true => serialized::read(&bytes, key.number, self.files),
+            false => DetailedMesh::parse(&key.path, &bytes)
+                .map(Parts::from)
+                .map_err(|fault| format!("is no sound mesh: {fault}")),
+        }
+    }
+
+    fn mesh_bytes(&mut self, path: &Path) -> Result<Arc<[u8]>, String> {
+        if let Some(known) = self.packed.get(path) {
+            return known.clone();
+        }
+        let read = self.files.read(path).map(Arc::from);
+        self.packed.insert(path.to_owned(), read.clone());
+        read
+    }
+
+    fn finish(
+        &self,
+        object: &'a Object,
+        mut parts: Parts,
+        key: &MeshKey,
+        linear: DMat3,
+    ) -> Result<Arc<Triangles>, String> {
+        parts.drop_empty();
+        if key.is_flipped {
+            for uv in parts.uvs.iter_mut().flatten() {
+                uv.y = 1.0 - uv.y;
+            }
+        }
+        match (key.is_flat, &parts.normals) {
+            (true, _) => parts.normals = None,
+            (false, None) => parts.smooth(linear),
+            (false, Some(_)) => {
+                parts.face_normals();
+                if parts.mend_normals() {
+                    let message = "approximated: vertices without a normal have that of a triangle";
+                    self.report.note(&object.place, message);
+                }
+            }
+        }
+        let made = parts.finish().map(Arc::new);
+        made.ok_or_else(|| "has no triangle with an area".to_owned())
+    }
+}
+
+fn bits(linear: DMat3) -> [u64; 9] {
+    // −0 is 0.
+    linear.to_cols_array().map(|v| (v + 0.0).to_bits())
+}
+
+/// The direction that a map takes Z to; `None` for a map without one.
+pub(super) fn z_of(map: DAffine3) -> Option<DVec3> {
+    map.matrix3.z_axis.try_normalize()
+}

@@ -1,0 +1,99 @@
+//! Values of `$parameters`.
+
+use crate::report::quoted;
+use std::collections::BTreeMap;
+
+/// Most bytes that substitution may make of a file, all values together: a default may hold others, and grow without end.
+const MOST_BYTES: usize = 16 << 20;
+
+/// Parameters by their name, set from outside or by `<default>`.
+#[derive(Debug, Default)]
+pub(super) struct Parameters {
+    values: BTreeMap<String, Parameter>,
+    made: usize,
+}
+
+#[derive(Debug)]
+struct Parameter {
+    value: String,
+    /// Whether it must be met in the file.
+    is_set: bool,
+    is_used: bool,
+}
+
+impl Parameters {
+    /// Those set from outside.
+    pub(super) fn new(set: &[(String, String)]) -> Self {
+        let values = set.iter().map(|(name, value)| {
+            let parameter = Parameter {
+                value: value.clone(),
+                is_set: true,
+                is_used: false,
+            };
+            (name.clone(), parameter)
+        });
+        Self {
+            values: values.collect(),
+            made: 0,
+        }
+    }
+
+    /// A value where there is none yet.
+    pub(super) fn default(&mut self, name: &str, value: &str) {
+        self.values
+            .entry(name.to_owned())
+            .or_insert_with(|| Parameter {
+                value: value.to_owned(),
+                is_set: false,
+                is_used: false,
+            });
+    }
+
+    /// Names that were set from outside and stand nowhere in the file.
+    pub(super) fn unused(&self) -> impl Iterator<Item = &str> {
+        let all = self.values.iter();
+        all.filter(|(_, p)| p.is_set && !p.is_used)
+            .map(|(name, _)| name.as_str())
+    }
+
+    /// The text with values put in. `\$` is a dollar sign. Of several names that fit, the longest is meant.
+    pub(super) fn substitute(&mut self, text: &str) -> Result<String, String> {
+        let mut made = String::new();
+        let mut rest = text;
+        while let Some(at) = rest.find('$') {
+            let (before, after) = rest.split_at(at);
+            let after = &after[1..];
+            if let Some(before) = before.strip_suffix('\\') {
+                made.push_str(before);
+                made.push('$');
+                rest = after;
+                continue;
+            }
+            made.push_str(before);
+            let name = self.longest(after).ok_or_else(|| undefined(after))?;
+            rest = &after[name.len()..];
+            if let Some(parameter) = self.values.get_mut(&name) {
+                parameter.is_used = true;
+                self.made += parameter.value.len();
+                made.push_str(&parameter.value);
+            }
+            if self.made > MOST_BYTES {
+                return Err(format!("parameters make more than {MOST_BYTES} bytes"));
+            }
+        }
+        made.push_str(rest);
+        Ok(made)
+    }
+
+    fn longest(&self, text: &str) -> Option<String> {
+        let fits = self.values.keys().filter(|name| text.starts_with(*name));
+        fits.max_by_key(|name| name.len()).cloned()
+    }
+}
+
+fn undefined(after: &str) -> String {
+    let is_name = |c: char| c.is_ascii_alphanumeric() || c == '_';
+    let end = after.find(|c| !is_name(c)).unwrap_or(after.len());
+    let name = quoted(&after[..end]);
+    format!("parameter {name} has no value: neither a <default> before it nor one from outside")
+}

@@ -1,0 +1,115 @@
+use super::mesh::MeshKey;
+use super::object::{Kind, Object};
+use crate::Color;
+use crate::files::Files;
+use crate::pictures::Pictures;
+use crate::report::{Report, quoted};
+use etendue_world::{Triangles, World};
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Most shapes of a world: instances may repeat what a group holds.
+pub(super) const MOST_SHAPES: usize = 1 << 20;
+
+/// Makes a world of objects.
+pub(super) struct Reader<'a> {
+    pub(super) objects: &'a [Object],
+    pub(super) ids: &'a HashMap<String, usize>,
+    pub(super) files: &'a Files,
+    pub(super) report: &'a Report,
+    pub(super) color: Color,
+    pub(super) world: World,
+    pub(super) pictures: Pictures,
+    /// Bytes of mesh files that hold several meshes.
+    pub(super) packed: HashMap<PathBuf, Result<Arc<[u8]>, String>>,
+    pub(super) meshes: HashMap<MeshKey, Result<Arc<Triangles>, String>>,
+    /// The material of each bsdf; `None` if it is no sound one.
+    pub(super) materials: HashMap<usize, Option<usize>>,
+    /// The numbers of the two default materials: of surfaces, and of those that shine.
+    pub(super) defaults: [Option<usize>; 2],
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(
+        objects: &'a [Object],
+        ids: &'a HashMap<String, usize>,
+        files: &'a Files,
+        report: &'a Report,
+        color: Color,
+    ) -> Self {
+        Self {
+            objects,
+            ids,
+            files,
+            report,
+            color,
+            world: World::default(),
+            pictures: Pictures::default(),
+            packed: HashMap::new(),
+            meshes: HashMap::new(),
+            materials: HashMap::new(),
+            defaults: [None; 2],
+        }
+    }
+
+    /// The world of the scene, which is the first object.
+    pub(super) fn world(mut self) -> World {
+        let scene = &self.objects[0];
+        scene.is_used.set(true);
+        self.integrator(scene);
+        self.sensors(scene);
+        for (_, light) in self.children(scene, Kind::Emitter) {
+            self.light(light);
+        }
+        for (_, shape) in self.children(scene, Kind::Shape) {
+            self.top_shape(shape);
+        }
+        self.definitions(scene);
+        self.refuse_media();
+        self.world
+    }
+
+    /// Materials, textures and the like, which others refer to. They are read where they are used.
+    fn definitions(&self, scene: &'a Object) {
+        for property in &scene.properties {
+            if let Some(object) = self.object_of(property)
+                && matches!(object.kind, Kind::Bsdf | Kind::Texture | Kind::Film)
+            {
+                property.is_read.set(true);
+            }
+        }
+    }
+
+    /// Light in a scene with media goes other ways than a world knows.
+    fn refuse_media(&self) {
+        for object in self.objects {
+            let is_shapes = self.objects[object.parent].kind != Kind::Medium;
+            if matches!(object.kind, Kind::Medium | Kind::Volume) && is_shapes {
+                let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
+                let message = format!("{kind} {plugin}: participating media are not supported");
+                self.report.cause(&object.place, message);
+                self.drop_all(object);
+            }
+        }
+    }
+
+    /// The object and all within it are passed over: a message has been given.
+    pub(super) fn drop_all(&self, object: &'a Object) {
+        object.is_used.set(true);
+        for property in &object.properties {
+            property.is_read.set(true);
+            if let super::object::Value::Object(at) = property.value {
+                self.drop_all(&self.objects[at]);
+            }
+        }
+    }
+
+    /// A plugin that a world has nothing for.
+    pub(super) fn unsupported(&self, object: &'a Object, allowed: &str) {
+        let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
+        let message = format!("{kind} {plugin} is not supported; allowed: {allowed}");
+        self.report.cause(&object.place, message);
+        self.drop_all(object);
+    }
+}

@@ -1,0 +1,257 @@
+//! Sensors, as cameras.
+
+use super::object::{Kind, Object, Property};
+use super::reader::Reader;
+use crate::report::quoted;
+use etendue_world::{Camera, Lens, Projection};
+use glam::{DAffine3, DVec3};
+
+/// Plugins that are cameras of a world.
+const ALLOWED: &str = "perspective, thinlens, orthographic";
+
+/// Pixels of a film, if nothing is said.
+const SIZE: [usize; 2] = [768, 576];
+
+/// Most pixels across or down.
+const MOST: i64 = 1 << 16;
+
+/// Diagonal of a frame of 35 mm film, mm, to which focal lengths refer.
+const DIAGONAL: f64 = 43.266_615_305_567_87;
+
+impl<'a> Reader<'a> {
+    pub(super) fn sensors(&mut self, scene: &'a Object) {
+        let all = self.children(scene, Kind::Sensor);
+        let is_known = |sensor: &Object| ALLOWED.split(", ").any(|known| known == sensor.plugin);
+        let knows_any = all.iter().any(|(_, sensor)| is_known(sensor));
+        for (_, sensor) in all {
+            if is_known(sensor) {
+                let camera = self.camera(sensor);
+                self.world.cameras.extend(camera);
+            } else if knows_any {
+                let plugin = quoted(&sensor.plugin);
+                let message = format!("sensor {plugin} is left out; allowed: {ALLOWED}");
+                self.report.note(&sensor.place, message);
+                self.drop_all(sensor);
+            } else {
+                self.unsupported(sensor, ALLOWED);
+            }
+        }
+    }
+
+    fn camera(&mut self, object: &'a Object) -> Option<Camera> {
+        let size = self.film(object);
+        self.sampler(object);
+        // When the shutter is open: nothing moves.
+        self.skip(object, &["shutter_open", "shutter_close"]);
+        let clip = self.clip(object);
+        let (to_world, projection, clip) = match object.plugin.as_str() {
+            "orthographic" => {
+                let (to_world, stretch) = self.orthographic(object)?;
+                // Mitsuba stretches where rays begin, not how long they are.
+                let [near, far] = clip?;
+                let clip = [near * stretch, near * stretch + far - near];
+                (to_world, Projection::Orthographic, clip)
+            }
+            plugin => {
+                let projection = self.perspective(object, size?, clip?, plugin == "thinlens");
+                (self.rigid(object)?, projection?, clip?)
+            }
+        };
+        Some(Camera {
+            name: object.id.clone().unwrap_or_default(),
+            to_world,
+            size: size?,
+            projection,
+            clip,
+        })
+    }
+
+    fn clip(&self, object: &'a Object) -> Option<[f64; 2]> {
+        let near = self.number(object, "near_clip").unwrap_or(1e-2);
+        let far = self.number(object, "far_clip").unwrap_or(1e4);
+        if 0.0 < near && near < far {
+            return Some([near, far]);
+        }
+        let message = format!("clip planes at {near} and {far}; allowed: 0 < near < far");
+        self.report.cause(&object.place, message);
+        None
+    }
+
+    fn perspective(
+        &mut self,
+        object: &'a Object,
+        size: [usize; 2],
+        [_, far]: [f64; 2],
+        is_lens: bool,
+    ) -> Option<Projection> {
+        let half_width = self.half_width(object, size);
+        let shift = ["principal_point_offset_x", "principal_point_offset_y"].map(|name| {
+            if is_lens || !self.has(object, name) {
+                return 0.0;
+            }
+            // Mitsuba moves the place that is looked up, not the picture.
+            -self.number(object, name).unwrap_or_default()
+        });
+        let lens = if is_lens {
+            let radius = self.number_within(object, "aperture_radius", "from 0 on", |r| r >= 0.0);
+            if !self.has(object, "aperture_radius") {
+                self.report
+                    .cause(&object.place, "thinlens without aperture_radius");
+            }
+            let focus = match self.has(object, "focus_distance") {
+                true => self.number_within(object, "focus_distance", "above 0", |f| f > 0.0),
+                false => Some(far),
+            };
+            let radius = radius?;
+            let focus = focus?;
+            (radius > 0.0).then_some(Lens { radius, focus })
+        } else {
+            // Without a lens all is in focus.
+            self.skip(object, &["focus_distance"]);
+            None
+        };
+        Some(Projection::Perspective {
+            half_width: half_width?,
+            shift,
+            lens,
+        })
+    }
+
+    /// Half the width of the picture at distance 1.
+    fn half_width(&self, object: &'a Object, [width, height]: [usize; 2]) -> Option<f64> {
+        let aspect = width as f64 / height as f64;
+        let diagonal = |tangent: f64| tangent / (1.0 + 1.0 / (aspect * aspect)).sqrt();
+        if !self.has(object, "fov") {
+            return self
+                .focal_length(object)
+                .map(|length| diagonal(DIAGONAL / 2.0 / length));
+        }
+        if self.has(object, "focal_length") {
+            let message = "focal_length beside fov; allowed: one of both";
+            self.report
+                .cause(self.place_of(object, "focal_length"), message);
+        }
+        let axis = self.choice(
+            object,
+            "fov_axis",
+            &[
+                ("x", 'x'),
+                ("y", 'y'),
+                ("diagonal", 'd'),
+                ("smaller", if aspect > 1.0 { 'y' } else { 'x' }),
+                ("larger", if aspect > 1.0 { 'x' } else { 'y' }),
+            ],
+        );
+        let is_angle = |fov: f64| 0.0 < fov && fov < 180.0;
+        let fov = self.number_within(object, "fov", "between 0 and 180 degrees", is_angle)?;
+        let tangent = libm::tan(fov.to_radians() / 2.0);
+        Some(match axis? {
+            'x' => tangent,
+            'y' => tangent * aspect,
+            _ => diagonal(tangent),
+        })
+    }
+
+    /// In millimetres, of a film of 35 mm.
+    fn focal_length(&self, object: &'a Object) -> Option<f64> {
+        if !self.has(object, "focal_length") {
+            return Some(50.0);
+        }
+        let text = self.text(object, "focal_length")?;
+        let number = text.strip_suffix("mm").unwrap_or(text);
+        match super::value::number(number) {
+            Ok(length) if length > 0.0 => Some(length),
+            _ => {
+                let message = format!("focal_length is {}; allowed: such as 50mm", quoted(text));
+                self.report
+                    .cause(self.place_of(object, "focal_length"), message);
+                None
+            }
+        }
+    }
+
+    /// The placement with Z of unit length, and how long Z was.
+    fn orthographic(&self, object: &'a Object) -> Option<(DAffine3, f64)> {
+        if !self.has(object, "to_world") {
+            return Some((DAffine3::IDENTITY, 1.0));
+        }
+        let mut map = self.transform(object, "to_world")?;
+        let stretch = map.matrix3.z_axis.length();
+        let [x, y, z] = [0, 1, 2].map(|i| map.matrix3.col(i).normalize_or_zero());
+        let lengths = [map.matrix3.x_axis.length(), map.matrix3.y_axis.length()];
+        let is_square = [x.dot(y), y.dot(z), z.dot(x)]
+            .iter()
+            .all(|c| c.abs() < 1e-3);
+        let is_even = (lengths[0] - lengths[1]).abs() <= 1e-3 * lengths[0];
+        if !is_square || !is_even || [x, y, z].contains(&DVec3::ZERO) {
+            let message = "to_world shears, or scales x and y by different factors";
+            self.report
+                .cause(self.place_of(object, "to_world"), message);
+            return None;
+        }
+        map.matrix3.z_axis = z;
+        Some((map, stretch))
+    }
+
+    /// Pixels across and down.
+    fn film(&self, object: &'a Object) -> Option<[usize; 2]> {
+        let Some(film) = self.child(object, Kind::Film) else {
+            return Some(SIZE);
+        };
+        let size = ["width", "height"].map(|name| self.pixels(film, name));
+        for (name, whole) in [("crop_width", 0), ("crop_height", 1)] {
+            let cropped = self.whole(film, name);
+            if cropped.is_some_and(|c| size[whole].is_some_and(|s| usize::try_from(c) != Ok(s))) {
+                self.refuse_crop(film, name);
+            }
+        }
+        for name in ["crop_offset_x", "crop_offset_y"] {
+            if self.whole(film, name).is_some_and(|offset| offset != 0) {
+                self.refuse_crop(film, name);
+            }
+        }
+        for (_, filter) in self.children(film, Kind::Rfilter) {
+            if filter.plugin != "box" {
+                let plugin = quoted(&filter.plugin);
+                let message = format!("rfilter {plugin} is approximated by the box filter");
+                self.report.note(&filter.place, message);
+            }
+            self.drop_all(filter);
+        }
+        if self.children(film, Kind::Rfilter).is_empty() {
+            let message = "rfilter `gaussian`, the default, is approximated by the box filter";
+            self.report.note(&film.place, message);
+        }
+        let [width, height] = size;
+        Some([width?, height?])
+    }
+
+    fn refuse_crop(&self, film: &'a Object, name: &str) {
+        let message = format!("{name}: parts of a film are not supported");
+        self.report.cause(self.place_of(film, name), message);
+    }
+
+    fn pixels(&self, film: &'a Object, name: &str) -> Option<usize> {
+        if !self.has(film, name) {
+            return Some(SIZE[usize::from(name == "height")]);
+        }
+        let value = self.whole(film, name)?;
+        if (1..=MOST).contains(&value) {
+            return usize::try_from(value).ok();
+        }
+        let message = format!("{name} is {value}; allowed: 1 to {MOST}");
+        self.report.cause(self.place_of(film, name), message);
+        None
+    }
+
+    /// How Mitsuba draws its samples is of no use here.
+    fn sampler(&self, object: &'a Object) {
+        let samplers: Vec<(&Property, &Object)> = self.children(object, Kind::Sampler);
+        for (_, sampler) in samplers {
+            let plugin = quoted(&sampler.plugin);
+            self.report
+                .note(&sampler.place, format!("sampler {plugin} is left out"));
+            self.drop_all(sampler);
+        }
+    }
+}

@@ -1,0 +1,177 @@
+//! Mitsuba's own mesh files, versions 3 and 4: several meshes, each packed by zlib.
+
+use crate::files::Files;
+use crate::meshes::Parts;
+use flate2::read::ZlibDecoder;
+use glam::{DVec2, DVec3};
+use std::io::Read;
+
+const MAGIC: u16 = 0x041c;
+const HAS_NORMALS: u32 = 0x1;
+const HAS_UVS: u32 = 0x2;
+const HAS_COLORS: u32 = 0x8;
+const IS_DOUBLE: u32 = 0x2000;
+/// Bytes of a name; it is passed over.
+const LONGEST_NAME: u64 = 1 << 16;
+/// The largest coordinate, as in other meshes.
+const LARGEST: f64 = 1e9;
+/// Bytes that zlib makes of one at most.
+const MOST_PER_BYTE: u64 = 1032;
+
+/// The mesh of this number, from 0.
+pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<Parts, String> {
+    let (version, start) = find(bytes, number)?;
+    let packed = bytes.get(start..).ok_or("has a mesh beyond its end")?;
+    let most = files.left().min(packed.len() as u64 * MOST_PER_BYTE);
+    let mut stream = Stream {
+        inner: ZlibDecoder::new(packed).take(most),
+        most,
+    };
+    let parts = stream.mesh(version)?;
+    files.spend(most - stream.inner.limit())?;
+    Ok(parts)
+}
+
+/// The version of the file, and where the packed mesh begins.
+fn find(bytes: &[u8], number: u32) -> Result<(u16, usize), String> {
+    let version = head(bytes, 0)?;
+    if number == 0 {
+        return Ok((version, 4));
+    }
+    let (table, count) = bytes
+        .split_last_chunk::<4>()
+        .map(|(table, count)| (table, u32::from_le_bytes(*count)))
+        .ok_or("ends before its table of meshes")?;
+    if number >= count {
+        return Err(format!(
+            "has {count} meshes; shape_index {number} is none of them"
+        ));
+    }
+    let size = if version >= 4 { 8 } else { 4 };
+    let back = (count - number) as usize;
+    let at = back
+        .checked_mul(size)
+        .and_then(|back| table.len().checked_sub(back))
+        .ok_or("ends before its table of meshes")?;
+    let mut offset = [0; 8];
+    offset[..size].copy_from_slice(&table[at..at + size]);
+    let offset = usize::try_from(u64::from_le_bytes(offset)).unwrap_or(usize::MAX);
+    head(bytes, offset)?;
+    Ok((version, offset.saturating_add(4)))
+}
+
+/// The version, where a mesh begins.
+fn head(bytes: &[u8], at: usize) -> Result<u16, String> {
+    let Some([a, b, c, d]) = bytes.get(at..).and_then(|rest| rest.first_chunk::<4>()) else {
+        return Err("ends before a mesh".to_owned());
+    };
+    match (u16::from_le_bytes([*a, *b]), u16::from_le_bytes([*c, *d])) {
+        (MAGIC, version @ 3..=4) => Ok(version),
+        (MAGIC, version) => Err(format!("is of version {version}; allowed: 3, 4")),
+        _ => Err("is no file of serialized meshes".to_owned()),
+    }
+}
+
+/// What is unpacked, from the front.
+struct Stream<R> {
+    inner: std::io::Take<R>,
+    most: u64,
+}
+
+impl<R: Read> Stream<R> {
+    fn mesh(&mut self, version: u16) -> Result<Parts, String> {
+        let flags = u32::from_le_bytes(self.some()?);
+        if version >= 4 {
+            self.name()?;
+        }
+        let vertices = self.count()?;
+        let triangles = self.count()?;
+        let is_double = flags & IS_DOUBLE != 0;
+        let vertex: Vec<[f64; 3]> = self.rows(vertices, is_double)?;
+        let normals: Option<Vec<[f64; 3]>> = (flags & HAS_NORMALS != 0)
+            .then(|| self.rows(vertices, is_double))
+            .transpose()?;
+        let uvs: Option<Vec<[f64; 2]>> = (flags & HAS_UVS != 0)
+            .then(|| self.rows(vertices, is_double))
+            .transpose()?;
+        if flags & HAS_COLORS != 0 {
+            let _colors: Vec<[f64; 3]> = self.rows(vertices, is_double)?;
+        }
+        Ok(Parts {
+            vertices: vertex.into_iter().map(DVec3::from).collect(),
+            corners: self.corners(triangles, vertices)?,
+            normals: normals.map(|all| all.into_iter().map(DVec3::from).collect()),
+            uvs: uvs.map(|all| all.into_iter().map(DVec2::from).collect()),
+        })
+    }
+
+    fn some<const N: usize>(&mut self) -> Result<[u8; N], String> {
+        let mut bytes = [0; N];
+        let read = self.inner.read_exact(&mut bytes);
+        read.map_err(|error| format!("is damaged, or ends early ({error})"))?;
+        Ok(bytes)
+    }
+
+    fn name(&mut self) -> Result<(), String> {
+        for _ in 0..LONGEST_NAME {
+            if self.some()? == [0] {
+                return Ok(());
+            }
+        }
+        Err(format!("has a name of more than {LONGEST_NAME} bytes"))
+    }
+
+    /// A number of vertices or triangles, of which each takes more than a byte.
+    fn count(&mut self) -> Result<u64, String> {
+        let count = u64::from_le_bytes(self.some()?);
+        if count <= self.most && u32::try_from(count).is_ok() {
+            Ok(count)
+        } else {
+            Err(format!(
+                "announces {count} vertices or triangles, more than it can hold"
+            ))
+        }
+    }
+
+    /// Rows of numbers. Memory grows as they are read: the count is not to be trusted.
+    fn rows<const N: usize>(
+        &mut self,
+        count: u64,
+        is_double: bool,
+    ) -> Result<Vec<[f64; N]>, String> {
+        let mut rows = Vec::new();
+        for i in 0..count {
+            let mut row = [0.0; N];
+            for value in &mut row {
+                *value = match is_double {
+                    true => f64::from_le_bytes(self.some()?),
+                    false => f32::from_le_bytes(self.some()?).into(),
+                };
+                if !(value.abs() <= LARGEST) {
+                    return Err(format!(
+                        "has {value} at vertex {i}; allowed: up to {LARGEST}"
+                    ));
+                }
+            }
+            rows.push(row);
+        }
+        Ok(rows)
+    }
+
+    fn corners(&mut self, count: u64, vertices: u64) -> Result<Vec<[u32; 3]>, String> {
+        let mut corners = Vec::new();
+        for i in 0..count {
+            let mut triangle = [0; 3];
+            for corner in &mut triangle {
+                *corner = u32::from_le_bytes(self.some()?);
+                if u64::from(*corner) >= vertices {
+                    return Err(format!(
+                        "names vertex {corner} of {vertices} in triangle {i}"
+                    ));
+                }
+            }
+            corners.push(triangle);
+        }
+        Ok(corners)
+    }
+}

@@ -1,0 +1,201 @@
+//! Shapes, groups of them and instances.
+
+use super::mesh::Mesh;
+use super::object::{Kind, Object};
+use super::reader::{MOST_SHAPES, Reader};
+use super::transform::frame;
+use crate::report::quoted;
+use etendue_world::{Geometry, Shape};
+use glam::{DAffine3, DMat3, DVec3};
+
+/// Plugins that are shapes of a world.
+const ALLOWED: &str =
+    "rectangle, disk, sphere, cylinder, cube, obj, ply, serialized, shapegroup, instance";
+
+/// By how much of its length an axis of a sphere may differ from the others: transforms are products of rounded numbers.
+const ALIKE: f64 = 1e-4;
+
+impl<'a> Reader<'a> {
+    /// A shape of the scene itself.
+    pub(super) fn top_shape(&mut self, object: &'a Object) {
+        match object.plugin.as_str() {
+            // Instances show what groups hold.
+            "shapegroup" => {}
+            "instance" => self.instance(object),
+            _ => self.shape(object, DAffine3::IDENTITY, false),
+        }
+    }
+
+    fn instance(&mut self, object: &'a Object) {
+        let to_world = self.to_world(object);
+        let groups = self.children(object, Kind::Shape);
+        let [(_, group)] = groups[..] else {
+            let message = "an instance of another number of shapegroups; allowed: one";
+            return self.report.cause(&object.place, message);
+        };
+        if group.plugin != "shapegroup" {
+            let message = format!(
+                "an instance of {}; allowed: shapegroup",
+                quoted(&group.plugin)
+            );
+            return self.report.cause(&object.place, message);
+        }
+        for (_, shape) in self.children(group, Kind::Shape) {
+            if matches!(shape.plugin.as_str(), "shapegroup" | "instance") {
+                let message = format!("{} within a shapegroup", quoted(&shape.plugin));
+                self.report.cause(&shape.place, message);
+            } else {
+                self.shape(shape, to_world, true);
+            }
+        }
+    }
+
+    /// Adds one shape, placed by its own transform and then by `outer`.
+    fn shape(&mut self, object: &'a Object, outer: DAffine3, is_instance: bool) {
+        if self.world.shapes.len() >= MOST_SHAPES {
+            if !self.report.has_causes() {
+                let message = format!("more than {MOST_SHAPES} shapes, with all instances");
+                self.report.cause(&object.place, message);
+            }
+            return;
+        }
+        object.is_used.set(true);
+        let own = self.to_world(object);
+        let placed = self.geometry(object, own);
+        let emission = self.shape_emission(object, is_instance);
+        let material = match self.child(object, Kind::Bsdf) {
+            Some(bsdf) => self.material(bsdf),
+            None => Some(self.default_material(emission.is_some())),
+        };
+        // How Mitsuba finds outlines, for derivatives.
+        self.skip(object, &["silhouette_sampling_weight"]);
+        let Some(((geometry, placement, is_flipped), material)) = placed.zip(material) else {
+            return;
+        };
+        let to_world = outer * placement;
+        if !self.is_sound(object, &geometry, to_world) {
+            return;
+        }
+        self.world.shapes.push(Shape {
+            name: object.id.clone().unwrap_or_default(),
+            geometry,
+            to_world,
+            is_flipped,
+            material,
+            emission,
+        });
+    }
+
+    fn to_world(&self, object: &'a Object) -> DAffine3 {
+        let found = self.transform(object, "to_world");
+        found.unwrap_or(DAffine3::IDENTITY)
+    }
+
+    /// The geometry, how it is placed, and whether its front is the other side.
+    fn geometry(
+        &mut self,
+        object: &'a Object,
+        own: DAffine3,
+    ) -> Option<(Geometry, DAffine3, bool)> {
+        let meshed = |mesh: Mesh| (Geometry::Mesh(mesh.triangles), own, mesh.is_flipped);
+        match object.plugin.as_str() {
+            "rectangle" => Some((Geometry::Rectangle, own, self.flips(object))),
+            "disk" => Some((Geometry::Disc, own, self.flips(object))),
+            "sphere" => self.sphere(object, own),
+            "cylinder" => self.cylinder(object, own),
+            "cube" => self.cube(object).map(meshed),
+            "obj" | "ply" | "serialized" => self.mesh(object, own).map(meshed),
+            _ => {
+                self.unsupported(object, ALLOWED);
+                None
+            }
+        }
+    }
+
+    fn flips(&self, object: &'a Object) -> bool {
+        self.truth(object, "flip_normals")
+    }
+
+    fn sphere(&self, object: &'a Object, own: DAffine3) -> Option<(Geometry, DAffine3, bool)> {
+        let center = self.vector_or(object, "center", DVec3::ZERO);
+        let radius = self.radius(object)?;
+        let placed =
+            own * DAffine3::from_translation(center?) * DAffine3::from_scale(DVec3::splat(radius));
+        // A mirror turns the normals of Mitsuba's spheres inwards, but not those of its cylinders.
+        let is_mirrored = own.matrix3.determinant() < 0.0;
+        Some((Geometry::Sphere, placed, self.flips(object) != is_mirrored))
+    }
+
+    fn cylinder(&self, object: &'a Object, own: DAffine3) -> Option<(Geometry, DAffine3, bool)> {
+        let p0 = self.vector_or(object, "p0", DVec3::ZERO);
+        let p1 = self.vector_or(object, "p1", DVec3::Z);
+        let radius = self.radius(object)?;
+        let (p0, axis) = (p0?, p1? - p0?);
+        let Some(along) = axis.try_normalize() else {
+            self.report.cause(&object.place, "p0 and p1 are the same");
+            return None;
+        };
+        let scale = DVec3::new(radius, radius, axis.length());
+        let linear = frame(along) * DMat3::from_diagonal(scale);
+        let placed = own * DAffine3::from_mat3_translation(linear, p0);
+        Some((Geometry::Cylinder, placed, self.flips(object)))
+    }
+
+    fn radius(&self, object: &'a Object) -> Option<f64> {
+        match self.has(object, "radius") {
+            true => self.number_within(object, "radius", "a number above 0", |r| r > 0.0),
+            false => Some(1.0),
+        }
+    }
+
+    fn vector_or(&self, object: &'a Object, name: &str, default: DVec3) -> Option<DVec3> {
+        match self.has(object, name) {
+            true => self.vector(object, name),
+            false => Some(default),
+        }
+    }
+
+    /// Whether a shape can be placed like this; else a cause.
+    fn is_sound(&self, object: &'a Object, geometry: &Geometry, to_world: DAffine3) -> bool {
+        let [x, y, z] = [0, 1, 2].map(|i| to_world.matrix3.col(i));
+        let alike = |a: DVec3, b: DVec3| (a.length() - b.length()).abs() <= ALIKE * a.length();
+        let across = |a: DVec3, b: DVec3| a.dot(b).abs() <= ALIKE * a.length() * b.length();
+        let is_square = across(x, y) && across(y, z) && across(z, x);
+        let fits = match geometry {
+            Geometry::Sphere => alike(x, y) && alike(y, z) && is_square,
+            Geometry::Cylinder => alike(x, y) && is_square,
+            _ => true,
+        };
+        let is_regular = to_world.is_finite() && to_world.matrix3.determinant().abs() > 0.0;
+        if fits && is_regular {
+            return true;
+        }
+        let plugin = &object.plugin;
+        let message = match is_regular {
+            false => format!("a {plugin} that is scaled to nothing, or without bounds"),
+            true => format!("a {plugin} with shear, or not scaled alike along its axes"),
+        };
+        self.report
+            .cause(self.place_of(object, "to_world"), message);
+        false
+    }
+
+    fn shape_emission(
+        &mut self,
+        object: &'a Object,
+        is_instance: bool,
+    ) -> Option<etendue_world::Emission> {
+        let emitter = self.child(object, Kind::Emitter)?;
+        if emitter.plugin != "area" {
+            self.unsupported(emitter, "area, within a shape");
+            return None;
+        }
+        if is_instance {
+            self.report
+                .cause(&emitter.place, "an emitter within a shapegroup");
+        }
+        // How Mitsuba draws lights.
+        self.skip(emitter, &["sampling_weight"]);
+        self.emission(emitter, "radiance")
+    }
+}

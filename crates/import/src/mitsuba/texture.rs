@@ -1,0 +1,260 @@
+//! Numbers that may vary over a surface: values, spectra and textures.
+
+use super::object::{Kind, Object, Property, Value};
+use super::reader::Reader;
+use crate::Color;
+use crate::report::quoted;
+use crate::spectrum::{Role, from_xyz, rgb};
+use etendue_world::{Bitmap, Filter, Texture, Wrap};
+use glam::{DAffine2, DAffine3, DMat2, DVec2};
+
+/// Plugins that textures may be.
+const ALLOWED: &str = "bitmap, checkerboard, uniform, srgb, rawconstant, d65";
+
+impl<'a> Reader<'a> {
+    /// The texture of a property, or a constant where it is not there. `None` after a cause.
+    pub(super) fn texture_or(
+        &mut self,
+        object: &'a Object,
+        name: &str,
+        role: Role,
+        default: f64,
+    ) -> Option<Texture> {
+        match self.property(object, name) {
+            None => Some(Texture::Constant(default)),
+            Some(property) => self.texture(property, role),
+        }
+    }
+
+    /// As [`Self::texture_or`], for shares of light: below 0 nothing is reflected.
+    pub(super) fn reflectance(
+        &mut self,
+        object: &'a Object,
+        name: &str,
+        default: f64,
+    ) -> Option<Texture> {
+        let texture = self.texture_or(object, name, Role::Reflectance, default)?;
+        self.not_negative(object, name, texture)
+    }
+
+    /// A light's strength, which is one number for all of it.
+    pub(super) fn strength(&mut self, object: &'a Object, name: &str) -> Option<f64> {
+        let texture = self.emission(object, name)?;
+        match texture {
+            Texture::Constant(value) => Some(value),
+            _ => {
+                let message = format!("{name} is a picture; allowed: one value");
+                self.report.cause(self.place_of(object, name), message);
+                None
+            }
+        }
+    }
+
+    /// What shines.
+    pub(super) fn emission(&mut self, object: &'a Object, name: &str) -> Option<Texture> {
+        let texture = self.texture_or(object, name, Role::Emission, 1.0)?;
+        self.not_negative(object, name, texture)
+    }
+
+    fn not_negative(&self, object: &'a Object, name: &str, texture: Texture) -> Option<Texture> {
+        let lowest = match &texture {
+            Texture::Constant(value) => *value,
+            Texture::Checkerboard { values, .. } => values[0].min(values[1]),
+            Texture::Bitmap(bitmap) => {
+                let values = bitmap.pixels.values().iter().copied();
+                values.fold(f64::INFINITY, f64::min)
+            }
+        };
+        if lowest >= 0.0 {
+            return Some(texture);
+        }
+        let message = format!("{name} goes down to {lowest}; allowed: from 0 on");
+        self.report.cause(self.place_of(object, name), message);
+        None
+    }
+
+    fn texture(&mut self, property: &'a Property, role: Role) -> Option<Texture> {
+        if let Some(object) = self.object_of(property) {
+            object.is_used.set(true);
+            return self.texture_of(object, role);
+        }
+        let constant = match &property.value {
+            Value::Number(value) => *value,
+            Value::Whole(value) => *value as f64,
+            Value::Color(color) => self.color.of(*color),
+            Value::Uniform(value) => self.uniform(*value, role),
+            Value::Spectrum(samples) => self.color.of(rgb(samples, role)),
+            Value::Broken | Value::Reference(_) => return None,
+            other => {
+                let message = format!(
+                    "{} is {}; allowed: a number, a colour, a spectrum or a texture",
+                    property.name,
+                    other.noun()
+                );
+                self.report.cause(&property.place, message);
+                return None;
+            }
+        };
+        Some(Texture::Constant(constant))
+    }
+
+    /// A spectrum of one number.
+    fn uniform(&self, value: f64, role: Role) -> f64 {
+        match (self.color, role) {
+            (Color::Luminance, _) | (_, Role::Reflectance | Role::Number) => value,
+            (_, Role::Emission) => value * self.color.of(from_xyz([1.0; 3])),
+        }
+    }
+
+    fn texture_of(&mut self, object: &'a Object, role: Role) -> Option<Texture> {
+        if object.kind != Kind::Texture {
+            let message = format!("{} in place of a texture", object.kind.name());
+            self.report.cause(&object.place, message);
+            return None;
+        }
+        match object.plugin.as_str() {
+            "bitmap" => self.bitmap(object),
+            "checkerboard" => self.checkerboard(object, role),
+            "uniform" => Some(Texture::Constant(
+                self.number(object, "value").unwrap_or(1.0),
+            )),
+            "srgb" => self.colored(object, "color"),
+            "rawconstant" => self.raw_constant(object),
+            "d65" => {
+                let scale = self.number(object, "scale").unwrap_or(1.0);
+                match self.colored(object, "color")? {
+                    Texture::Constant(value) => Some(Texture::Constant(scale * value)),
+                    _ => None,
+                }
+            }
+            _ => {
+                self.unsupported(object, ALLOWED);
+                None
+            }
+        }
+    }
+
+    fn colored(&self, object: &'a Object, name: &str) -> Option<Texture> {
+        let value = match self.property(object, name) {
+            None => 1.0,
+            Some(property) => match property.value {
+                Value::Color(color) => self.color.of(color),
+                Value::Number(value) => value,
+                _ => {
+                    let noun = property.value.noun();
+                    let message = format!("{name} is {noun}; allowed: a colour");
+                    self.report.cause(&property.place, message);
+                    return None;
+                }
+            },
+        };
+        Some(Texture::Constant(value))
+    }
+
+    fn raw_constant(&self, object: &'a Object) -> Option<Texture> {
+        match self.property(object, "value").map(|p| &p.value) {
+            Some(Value::Vector(v)) => Some(Texture::Constant(self.color.of(v.to_array()))),
+            _ => self.number(object, "value").map(Texture::Constant),
+        }
+    }
+
+    fn checkerboard(&mut self, object: &'a Object, role: Role) -> Option<Texture> {
+        let first = self.texture_or(object, "color0", role, 0.4);
+        let second = self.texture_or(object, "color1", role, 0.2);
+        let to_uv = self.to_uv(object);
+        let (Texture::Constant(first), Texture::Constant(second)) = (first?, second?) else {
+            let message = "a checkerboard of textures; allowed: two values";
+            self.report.cause(&object.place, message);
+            return None;
+        };
+        Some(Texture::Checkerboard {
+            to_uv,
+            values: [first, second],
+        })
+    }
+
+    fn bitmap(&mut self, object: &'a Object) -> Option<Texture> {
+        let to_uv = self.to_uv(object);
+        let raw = self.truth(object, "raw");
+        // How Mitsuba keeps pixels.
+        self.skip(object, &["format", "accel"]);
+        let filter = self.choice(
+            object,
+            "filter_type",
+            &[("bilinear", Filter::Bilinear), ("nearest", Filter::Nearest)],
+        );
+        let wrap = self.choice(
+            object,
+            "wrap_mode",
+            &[
+                ("repeat", Wrap::Repeat),
+                ("mirror", Wrap::Mirror),
+                ("clamp", Wrap::Clamp),
+            ],
+        );
+        let pixels = self.picture(object, raw);
+        Some(Texture::Bitmap(Bitmap {
+            to_uv,
+            pixels: pixels?,
+            wrap: wrap?,
+            filter: filter?,
+        }))
+    }
+
+    /// The picture that `filename` names.
+    pub(super) fn picture(
+        &mut self,
+        object: &'a Object,
+        raw: bool,
+    ) -> Option<std::sync::Arc<etendue_field::Raster>> {
+        let name = self.file_name(object)?;
+        let found = self.files.find(&object.folders, name);
+        let read = found.and_then(|path| self.pictures.read(self.files, &path, self.color, raw));
+        read.map_err(|error| self.unread(object, name, &error)).ok()
+    }
+
+    /// The name of the file that an object asks for.
+    pub(super) fn file_name(&self, object: &'a Object) -> Option<&'a str> {
+        if !self.has(object, "filename") {
+            let message = format!("{} without filename", quoted(&object.plugin));
+            self.report.cause(&object.place, message);
+        }
+        self.text(object, "filename")
+    }
+
+    /// A file that cannot be used.
+    pub(super) fn unread(&self, object: &'a Object, name: &str, error: &str) {
+        let message = format!("file {} {error}", quoted(name));
+        self.report
+            .cause(self.place_of(object, "filename"), message);
+    }
+
+    /// One of several words; the first where none is given. `None` after a cause.
+    pub(super) fn choice<T: Copy>(
+        &self,
+        object: &'a Object,
+        name: &str,
+        allowed: &[(&str, T)],
+    ) -> Option<T> {
+        if !self.has(object, name) {
+            return allowed.first().map(|(_, value)| *value);
+        }
+        let word = self.text(object, name)?.to_ascii_lowercase();
+        let found = allowed.iter().find(|(known, _)| *known == word);
+        if found.is_none() {
+            let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
+            let message = format!("{name} is {}; allowed: {}", quoted(&word), words.join(", "));
+            self.report.cause(self.place_of(object, name), message);
+        }
+        found.map(|(_, value)| *value)
+    }
+
+    fn to_uv(&self, object: &'a Object) -> DAffine2 {
+        let map = self
+            .transform(object, "to_uv")
+            .unwrap_or(DAffine3::IDENTITY);
+        let [x, y] = [map.matrix3.x_axis, map.matrix3.y_axis];
+        let linear = DMat2::from_cols(DVec2::new(x.x, x.y), DVec2::new(y.x, y.y));
+        DAffine2::from_mat2_translation(linear, map.translation.truncate())
+    }
+}

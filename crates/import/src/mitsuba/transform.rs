@@ -1,0 +1,115 @@
+//! The elements of a transform. Each is applied after those before it.
+
+use super::value;
+use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+
+/// The attributes of an element, after substitution.
+pub(super) type Attributes = Vec<(String, String)>;
+
+/// The map of one element; `Err` is what is wrong.
+pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, String> {
+    match name {
+        "translate" => {
+            allow(attributes, &["x", "y", "z", "value"])?;
+            Ok(DAffine3::from_translation(vector(attributes, 0.0)?))
+        }
+        "scale" => {
+            allow(attributes, &["x", "y", "z", "value"])?;
+            Ok(DAffine3::from_scale(vector(attributes, 1.0)?))
+        }
+        "rotate" => {
+            allow(attributes, &["x", "y", "z", "value", "angle"])?;
+            let axis = vector(attributes, 0.0)?;
+            let angle = value::number(required(attributes, "angle")?)?.to_radians();
+            rotation(axis, angle).ok_or_else(|| "an axis of no length".to_owned())
+        }
+        "lookat" => {
+            allow(attributes, &["origin", "target", "up"])?;
+            let origin = value::vector(required(attributes, "origin")?)?;
+            let target = value::vector(required(attributes, "target")?)?;
+            let up = find(attributes, "up").map_or(Ok(DVec3::ZERO), value::vector)?;
+            look_at(origin, target, up)
+                .ok_or_else(|| "no direction to look in, or up is along it".to_owned())
+        }
+        "matrix" => {
+            allow(attributes, &["value"])?;
+            matrix(&value::numbers(required(attributes, "value")?)?)
+        }
+        _ => Err(format!("<{name}> is no part of a transform")),
+    }
+}
+
+/// From coordinates whose Z is the way to `target` and whose Y is up.
+fn look_at(origin: DVec3, target: DVec3, up: DVec3) -> Option<DAffine3> {
+    let along = (target - origin).try_normalize()?;
+    let up = match up {
+        DVec3::ZERO => frame(along).x_axis,
+        _ => up,
+    };
+    let left = up.cross(along).try_normalize()?;
+    let linear = DMat3::from_cols(left, along.cross(left), along);
+    Some(DAffine3::from_mat3_translation(linear, origin))
+}
+
+/// The frame about a unit vector that Mitsuba takes (Duff et al. 2017).
+pub(super) fn frame(z: DVec3) -> DMat3 {
+    let sign = 1.0_f64.copysign(z.z);
+    let a = -1.0 / (sign + z.z);
+    let b = z.x * z.y * a;
+    let s = DVec3::new(z.x * z.x * a * sign + 1.0, sign * b, -sign * z.x);
+    let t = DVec3::new(b, z.y * z.y * a + sign, -z.y);
+    DMat3::from_cols(s, t, z)
+}
+
+fn rotation(axis: DVec3, angle: f64) -> Option<DAffine3> {
+    let (sin, cos) = libm::sincos(angle / 2.0);
+    let vector = axis.try_normalize()? * sin;
+    let turn = DQuat::from_xyzw(vector.x, vector.y, vector.z, cos);
+    Some(DAffine3::from_quat(turn.normalize()))
+}
+
+/// 16 numbers, or the 9 of the linear part, row by row.
+fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
+    let matrix = if let Ok(all) = <[f64; 16]>::try_from(numbers) {
+        DMat4::from_cols_array(&all).transpose()
+    } else if let Ok(linear) = <[f64; 9]>::try_from(numbers) {
+        DMat4::from_mat3(DMat3::from_cols_array(&linear).transpose())
+    } else {
+        return Err(format!("{} numbers; allowed: 9 or 16", numbers.len()));
+    };
+    if matrix.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
+        return Err("the last row is not 0 0 0 1".to_owned());
+    }
+    Ok(DAffine3::from_mat4(matrix))
+}
+
+fn vector(attributes: &Attributes, default: f64) -> Result<DVec3, String> {
+    let each = ["x", "y", "z"].map(|axis| find(attributes, axis));
+    if let Some(text) = find(attributes, "value") {
+        if each.iter().any(Option::is_some) {
+            return Err("value beside x, y or z".to_owned());
+        }
+        return value::triple(text).map(DVec3::from);
+    }
+    let [x, y, z] = each.map(|text| text.map_or(Ok(default), value::number));
+    Ok(DVec3::new(x?, y?, z?))
+}
+
+pub(super) fn find<'a>(attributes: &'a Attributes, name: &str) -> Option<&'a str> {
+    let mut all = attributes.iter();
+    all.find(|(known, _)| known == name)
+        .map(|(_, value)| value.as_str())
+}
+
+pub(super) fn required<'a>(attributes: &'a Attributes, name: &str) -> Result<&'a str, String> {
+    find(attributes, name).ok_or_else(|| format!("no attribute {name}"))
+}
+
+/// Refuses attributes that are not among these.
+pub(super) fn allow(attributes: &Attributes, names: &[&str]) -> Result<(), String> {
+    let mut all = attributes.iter();
+    match all.find(|(name, _)| !names.contains(&name.as_str())) {
+        None => Ok(()),
+        Some((name, _)) => Err(format!("attribute {name}; allowed: {}", names.join(", "))),
+    }
+}

@@ -1,0 +1,452 @@
+//! From XML to objects: parameters are put in, files are included, names are upgraded.
+
+use super::object::{Kind, Object, Property, Value};
+use super::parameters::Parameters;
+use super::transform::{Attributes, allow, find, required, step};
+use super::{upgrade, value};
+use crate::files::Files;
+use crate::report::{Place, Report, quoted};
+use glam::DAffine3;
+use roxmltree::{Document, Node};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+/// Files included in one another.
+const MOST_INCLUDED: usize = 15;
+/// Elements within one another.
+const DEEPEST: usize = 64;
+/// Elements of all files together.
+const MOST_ELEMENTS: usize = 1 << 21;
+
+/// What the files of a scene hold.
+pub(super) struct Tree<'a> {
+    /// The scene is the first.
+    pub(super) objects: Vec<Object>,
+    /// Objects by their id.
+    pub(super) ids: HashMap<String, usize>,
+    parameters: Parameters,
+    files: &'a Files,
+    report: &'a Report,
+    /// Files that are being read, the innermost last.
+    open: Vec<PathBuf>,
+    elements: usize,
+}
+
+/// A file that is being read.
+struct Source {
+    name: Rc<str>,
+    /// Where it looks for files: its own folders, those of the file that includes it.
+    folders: Rc<[PathBuf]>,
+    /// Before version 2.
+    is_old: bool,
+    cursor: Cursor,
+}
+
+/// Counts lines and columns of places that follow one another.
+struct Cursor {
+    text: Rc<str>,
+    offset: usize,
+    line: usize,
+    column: usize,
+}
+
+impl Cursor {
+    fn place(&mut self, offset: usize, file: &Rc<str>) -> Place {
+        // Elements are met in the order of the text, so all of it is counted once.
+        if let Some(passed) = self.text.get(self.offset..offset) {
+            for c in passed.chars() {
+                if c == '\n' {
+                    (self.line, self.column) = (self.line + 1, 1);
+                } else {
+                    self.column += 1;
+                }
+            }
+            self.offset = offset;
+        }
+        Place {
+            file: Rc::clone(file),
+            line: self.line,
+            column: self.column,
+        }
+    }
+}
+
+impl<'a> Tree<'a> {
+    pub(super) fn new(files: &'a Files, report: &'a Report, set: &[(String, String)]) -> Self {
+        Self {
+            objects: Vec::new(),
+            ids: HashMap::new(),
+            parameters: Parameters::new(set),
+            files,
+            report,
+            open: Vec::new(),
+            elements: 0,
+        }
+    }
+
+    /// Reads the file of the scene.
+    pub(super) fn read(&mut self, text: &str, name: &str, path: &Path) {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        self.open.push(path.to_owned());
+        self.file(text, name, Rc::from([folder]), None);
+        for name in self.parameters.unused() {
+            let message = format!("no `${name}` in the scene, which is set");
+            self.report.cause(&Place::whole("parameters"), message);
+        }
+    }
+
+    /// Reads a file: the scene, or one that is included in the object `parent`.
+    fn file(&mut self, text: &str, name: &str, folders: Rc<[PathBuf]>, parent: Option<usize>) {
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let name: Rc<str> = name.into();
+        let document = match Document::parse(text) {
+            Ok(document) => document,
+            Err(error) => {
+                let at = error.pos();
+                let place = Place {
+                    file: name,
+                    line: at.row as usize,
+                    column: at.col as usize,
+                };
+                return self.report.cause(&place, format!("no XML: {error}"));
+            }
+        };
+        let root = document.root_element();
+        let mut source = Source {
+            name,
+            folders,
+            is_old: false,
+            cursor: Cursor {
+                text: text.into(),
+                offset: 0,
+                line: 1,
+                column: 1,
+            },
+        };
+        let place = source.cursor.place(root.range().start, &source.name);
+        match root.attribute("version").map(version) {
+            Some(Some(major)) => source.is_old = major < 2,
+            Some(None) => self.report.cause(&place, "the version is no number"),
+            None => self.report.cause(&place, "no attribute version"),
+        }
+        match parent {
+            // What a scene holds becomes part of what includes it.
+            Some(parent) if root.tag_name().name() == "scene" => {
+                self.children(root, parent, &mut source, 1);
+            }
+            Some(parent) => self.element(root, parent, &mut source, 1),
+            None if root.tag_name().name() == "scene" => {
+                self.object(root, Kind::Scene, &Vec::new(), place, 0, &mut source, 0);
+            }
+            None => self.report.cause(&place, "the root is no <scene>"),
+        }
+    }
+
+    fn children(&mut self, node: Node<'_, '_>, at: usize, source: &mut Source, depth: usize) {
+        for child in node.children().filter(Node::is_element) {
+            self.element(child, at, source, depth);
+        }
+    }
+
+    /// One element within the object `parent`.
+    fn element(&mut self, node: Node<'_, '_>, parent: usize, source: &mut Source, depth: usize) {
+        let place = source.cursor.place(node.range().start, &source.name);
+        self.elements += 1;
+        if self.elements > MOST_ELEMENTS || depth > DEEPEST {
+            // Said once, not for each that follows.
+            if self.elements <= MOST_ELEMENTS || self.elements == MOST_ELEMENTS + 1 {
+                let most = format!("at most {MOST_ELEMENTS} elements, {DEEPEST} in one another");
+                self.report
+                    .cause(&place, format!("too many elements: {most}"));
+            }
+            return;
+        }
+        let done = self.attributes(node).and_then(|attributes| {
+            let name = node.tag_name().name();
+            match Kind::of(name, find(&attributes, "type").is_some()) {
+                Some(kind) => {
+                    let is_root = depth == 1 && node.has_attribute("version");
+                    let version: &[&str] = if is_root { &["version"] } else { &[] };
+                    allow(&attributes, &[&["type", "id", "name"], version].concat())?;
+                    required(&attributes, "type")?;
+                    self.object(
+                        node,
+                        kind,
+                        &attributes,
+                        place.clone(),
+                        parent,
+                        source,
+                        depth,
+                    );
+                    Ok(())
+                }
+                None => self.other(node, &attributes, &place, parent, source),
+            }
+        });
+        if let Err(message) = done {
+            let name = node.tag_name().name();
+            self.report.cause(&place, format!("<{name}>: {message}"));
+        }
+    }
+
+    /// The attributes with parameters put in.
+    fn attributes(&mut self, node: Node<'_, '_>) -> Result<Attributes, String> {
+        let mut made = Vec::new();
+        for attribute in node.attributes() {
+            let value = self.parameters.substitute(attribute.value())?;
+            made.push((attribute.name().to_owned(), value));
+        }
+        Ok(made)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "an element and where it stands")]
+    fn object(
+        &mut self,
+        node: Node<'_, '_>,
+        kind: Kind,
+        attributes: &Attributes,
+        place: Place,
+        parent: usize,
+        source: &mut Source,
+        depth: usize,
+    ) {
+        let at = self.objects.len();
+        let id = find(attributes, "id").map(str::to_owned);
+        let name = find(attributes, "name").unwrap_or_default().to_owned();
+        self.objects.push(Object {
+            kind,
+            plugin: find(attributes, "type").unwrap_or("scene").to_owned(),
+            id: id.clone(),
+            place: place.clone(),
+            folders: Rc::clone(&source.folders),
+            properties: Vec::new(),
+            parent,
+            is_used: false.into(),
+        });
+        if let Some(id) = id {
+            self.name(id, at, &place);
+        }
+        if at != parent {
+            self.add(parent, name, Value::Object(at), &place, source);
+        }
+        self.children(node, at, source, depth + 1);
+        self.objects[at].folders = Rc::clone(&source.folders);
+        if source.is_old {
+            upgrade::upgrade(&mut self.objects[at]);
+        }
+    }
+
+    fn name(&mut self, id: String, at: usize, place: &Place) {
+        match self.ids.get(&id) {
+            None => {
+                self.ids.insert(id, at);
+            }
+            Some(first) => {
+                let line = self.objects[*first].place.line;
+                let message = format!("id {} is in line {line} already", quoted(&id));
+                self.report.cause(place, message);
+            }
+        }
+    }
+
+    fn add(&mut self, at: usize, name: String, value: Value, place: &Place, source: &Source) {
+        let name = match source.is_old {
+            true => upgrade::underscored(&name),
+            false => name,
+        };
+        let properties = &mut self.objects[at].properties;
+        let is_value = !matches!(value, Value::Object(_) | Value::Reference(_));
+        if is_value && properties.iter().rev().take(1000).any(|p| p.name == name) {
+            let message = format!("property {} is there twice", quoted(&name));
+            self.report.cause(place, message);
+        }
+        properties.push(Property {
+            name,
+            value,
+            place: place.clone(),
+            is_read: false.into(),
+        });
+    }
+
+    /// An element that is no object.
+    fn other(
+        &mut self,
+        node: Node<'_, '_>,
+        attributes: &Attributes,
+        place: &Place,
+        parent: usize,
+        source: &mut Source,
+    ) -> Result<(), String> {
+        match node.tag_name().name() {
+            "default" => {
+                allow(attributes, &["name", "value"])?;
+                let name = required(attributes, "name")?;
+                if name.is_empty() {
+                    return Err("an empty name".to_owned());
+                }
+                self.parameters
+                    .default(name, required(attributes, "value")?);
+                Ok(())
+            }
+            "include" => self.include(attributes, parent, source),
+            "path" => self.search(attributes, parent, source),
+            "alias" => {
+                allow(attributes, &["id", "as"])?;
+                let id = required(attributes, "id")?;
+                let at = *self.ids.get(id).ok_or_else(|| unknown(id))?;
+                self.name(required(attributes, "as")?.to_owned(), at, place);
+                Ok(())
+            }
+            "ref" => {
+                allow(attributes, &["name", "id"])?;
+                let id = required(attributes, "id")?.to_owned();
+                let name = find(attributes, "name").unwrap_or_default().to_owned();
+                self.add(parent, name, Value::Reference(id), place, source);
+                Ok(())
+            }
+            element => {
+                let value = self.value(node, element, attributes, source);
+                let name = find(attributes, "name").unwrap_or_default().to_owned();
+                // Where the value is unsound the property is there all the same: one cause is enough.
+                let (value, fault) = match value {
+                    Ok(value) => (value, None),
+                    Err(fault) => (Value::Broken, Some(fault)),
+                };
+                self.add(parent, name, value, place, source);
+                fault.map_or(Ok(()), Err)
+            }
+        }
+    }
+
+    /// The value of a property.
+    fn value(
+        &mut self,
+        node: Node<'_, '_>,
+        element: &str,
+        attributes: &Attributes,
+        source: &Source,
+    ) -> Result<Value, String> {
+        required(attributes, "name")?;
+        if element == "transform" {
+            allow(attributes, &["name"])?;
+            return self.transform(node).map(Value::Transform);
+        }
+        if let Some(child) = node.children().find(Node::is_element) {
+            let name = child.tag_name().name();
+            return Err(format!("<{name}> within a property"));
+        }
+        match element {
+            "point" | "vector" => allow(attributes, &["name", "value", "x", "y", "z"])?,
+            "spectrum" => allow(attributes, &["name", "value", "filename"])?,
+            _ => allow(attributes, &["name", "value"])?,
+        }
+        let text = || required(attributes, "value");
+        Ok(match element {
+            "float" => Value::Number(value::number(text()?)?),
+            "integer" => Value::Whole(value::whole(text()?)?),
+            "boolean" => Value::Truth(value::truth(text()?)?),
+            "string" => Value::Text(text()?.to_owned()),
+            "rgb" => Value::Color(value::triple(text()?)?),
+            "spectrum" => match (find(attributes, "value"), find(attributes, "filename")) {
+                (Some(text), None) => value::spectrum(text)?,
+                (None, Some(file)) => self.spectrum(file, source)?,
+                _ => return Err("not one of value and filename".to_owned()),
+            },
+            "point" | "vector" => match find(attributes, "value") {
+                Some(text) => Value::Vector(value::triple(text)?.into()),
+                None => {
+                    let [x, y, z] = ["x", "y", "z"]
+                        .map(|axis| required(attributes, axis).and_then(value::number));
+                    Value::Vector([x?, y?, z?].into())
+                }
+            },
+            _ => return Err("no element of a scene".to_owned()),
+        })
+    }
+
+    fn transform(&mut self, node: Node<'_, '_>) -> Result<DAffine3, String> {
+        let mut made = DAffine3::IDENTITY;
+        for child in node.children().filter(Node::is_element) {
+            self.elements += 1;
+            let name = child.tag_name().name();
+            let attributes = self.attributes(child)?;
+            let step = match name {
+                "lookAt" => step("lookat", &attributes),
+                _ => step(name, &attributes),
+            };
+            made = step.map_err(|error| format!("<{name}>: {error}"))? * made;
+        }
+        match made.is_finite() {
+            true => Ok(made),
+            false => Err("numbers beyond all bounds".to_owned()),
+        }
+    }
+
+    fn spectrum(&self, file: &str, source: &Source) -> Result<Value, String> {
+        let read = || {
+            let path = self.files.find(&source.folders, file)?;
+            let bytes = self.files.read(&path)?;
+            let text = String::from_utf8(bytes).map_err(|_| "is no text".to_owned())?;
+            value::spectrum_file(&text)
+        };
+        read().map_err(|error| format!("file {}: {error}", quoted(file)))
+    }
+
+    /// Adds a folder to look for files in, before those known.
+    fn search(
+        &mut self,
+        attributes: &Attributes,
+        parent: usize,
+        source: &mut Source,
+    ) -> Result<(), String> {
+        allow(attributes, &["value"])?;
+        if parent != 0 {
+            return Err("not in the scene itself".to_owned());
+        }
+        let name = required(attributes, "value")?;
+        let found = self.files.find(&source.folders, name);
+        let folder = found.map_err(|error| format!("folder {} {error}", quoted(name)))?;
+        if source.folders.len() > DEEPEST {
+            return Err(format!("more than {DEEPEST} folders"));
+        }
+        let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
+        source.folders = folders.collect();
+        Ok(())
+    }
+
+    fn include(
+        &mut self,
+        attributes: &Attributes,
+        parent: usize,
+        source: &Source,
+    ) -> Result<(), String> {
+        allow(attributes, &["filename", "name"])?;
+        let name = required(attributes, "filename")?;
+        let told = |error: String| format!("file {} {error}", quoted(name));
+        let path = self.files.find(&source.folders, name).map_err(told)?;
+        if self.open.contains(&path) {
+            return Err(told("includes itself".to_owned()));
+        }
+        if self.open.len() > MOST_INCLUDED {
+            return Err(format!("more than {MOST_INCLUDED} files in one another"));
+        }
+        let bytes = self.files.read(&path).map_err(told)?;
+        let text = String::from_utf8(bytes).map_err(|_| told("is no UTF-8".to_owned()))?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
+        self.open.push(path);
+        self.file(&text, name, folders.collect(), Some(parent));
+        self.open.pop();
+        Ok(())
+    }
+}
+
+pub(super) fn unknown(id: &str) -> String {
+    format!("no object has id {}", quoted(id))
+}
+
+/// The first number of a version such as 3.0.0.
+fn version(text: &str) -> Option<u32> {
+    text.trim().split('.').next()?.parse().ok()
+}

@@ -1,0 +1,74 @@
+use etendue_world::World;
+use std::fmt;
+use std::path::Path;
+
+/// A word on a place of a file.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Note {
+    /// The file, as the scene names it.
+    pub file: String,
+    /// Its line, from 1; 0 for the file as a whole.
+    pub line: usize,
+    /// Column in characters, from 1.
+    pub column: usize,
+    /// What is there.
+    pub message: String,
+}
+
+impl fmt::Display for Note {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self {
+            file,
+            line,
+            column,
+            message,
+        } = self;
+        match line {
+            0 => write!(f, "{file}: {message}"),
+            _ => write!(f, "{file}:{line}:{column}: {message}"),
+        }
+    }
+}
+
+/// A scene that has been read.
+#[derive(Clone, Debug)]
+pub struct Imported {
+    /// The world.
+    pub world: World,
+    /// All that was dropped or approximated, in the order of reading.
+    pub notes: Vec<Note>,
+}
+
+/// Why a scene is not read: all causes at once.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused {
+    /// At least one, in the order of reading.
+    pub causes: Vec<Note>,
+}
+
+impl Refused {
+    /// One cause for a file as a whole.
+    pub(crate) fn because(file: &Path, message: impl Into<String>) -> Self {
+        let cause = Note {
+            file: file.display().to_string(),
+            line: 0,
+            column: 0,
+            message: message.into(),
+        };
+        Self {
+            causes: vec![cause],
+        }
+    }
+}
+
+impl fmt::Display for Refused {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, cause) in self.causes.iter().enumerate() {
+            let end = if i == 0 { "" } else { "\n" };
+            write!(f, "{end}{cause}")?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Refused {}

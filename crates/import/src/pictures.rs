@@ -1,0 +1,92 @@
+//! Pictures of any scene: one number for each pixel.
+
+mod hdr;
+mod jpeg;
+
+use crate::{Color, files::Files};
+use etendue_field::Raster;
+use etendue_scene::{Channels, read_channels};
+use std::collections::HashMap;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Most numbers in a picture, as in those of the scene crate.
+const MOST: usize = 1 << 27;
+
+/// Most numbers in a byte of a file; a block of 64 numbers takes more than half a bit in any JPEG file that shows something.
+const MOST_PER_BYTE: usize = 1032;
+
+/// Pictures that have been read, each once.
+#[derive(Debug, Default)]
+pub(crate) struct Pictures {
+    known: HashMap<(PathBuf, bool), Result<Arc<Raster>, String>>,
+}
+
+impl Pictures {
+    /// The picture at a path. Levels are sRGB and become linear, unless they are `raw`.
+    pub(crate) fn read(
+        &mut self,
+        files: &Files,
+        path: &Path,
+        color: Color,
+        raw: bool,
+    ) -> Result<Arc<Raster>, String> {
+        let key = (path.to_owned(), raw);
+        if let Some(known) = self.known.get(&key) {
+            return known.clone();
+        }
+        let read = read(files, path, color, raw).map(Arc::new);
+        self.known.insert(key, read.clone());
+        read
+    }
+}
+
+fn read(files: &Files, path: &Path, color: Color, raw: bool) -> Result<Raster, String> {
+    let bytes = files.read(path)?;
+    let channels = channels(path, &bytes)?;
+    if !channels.values.iter().all(|v| v.is_finite()) {
+        return Err("has pixels that are not finite".to_owned());
+    }
+    let is_curved = channels.are_levels && !raw;
+    let linear = |v: f64| if is_curved { linear(v) } else { v };
+    let grey = channels.count == 1;
+    // Three equal numbers have a luminance that rounding moves off them.
+    let number = |rgb: [f64; 3]| match grey {
+        true => linear(rgb[0]),
+        false => color.of(rgb.map(linear)),
+    };
+    channels.raster(number).map_err(|fault| fault.to_string())
+}
+
+fn channels(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
+    let extension = path.extension().unwrap_or_default().to_string_lossy();
+    match extension.to_ascii_lowercase().as_str() {
+        "jpg" | "jpeg" => jpeg::read(bytes),
+        "hdr" | "rgbe" => hdr::read(bytes),
+        "png" | "exr" => read_channels(path, bytes).map_err(|fault| fault.to_string()),
+        other => Err(format!(
+            "has extension {other:?}; allowed: exr, hdr, jpg, png"
+        )),
+    }
+}
+
+/// A level of sRGB in proportion to light (IEC 61966-2-1).
+fn linear(level: f64) -> f64 {
+    if level <= 0.04045 {
+        level / 12.92
+    } else {
+        libm::pow((level + 0.055) / 1.055, 2.4)
+    }
+}
+
+/// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.
+fn check_size(width: usize, height: usize, length: usize) -> Result<(), String> {
+    let most = MOST.min(length.saturating_mul(MOST_PER_BYTE));
+    let numbers = width.checked_mul(height).and_then(|n| n.checked_mul(3));
+    match numbers {
+        Some(1..) if numbers <= Some(most) => Ok(()),
+        _ => Err(format!(
+            "has {width} × {height} pixels; allowed: as many as {length} bytes can hold, and at most {MOST} numbers"
+        )),
+    }
+}

@@ -1,0 +1,93 @@
+//! Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): red, green and blue with one exponent.
+
+use super::check_size;
+use etendue_scene::Channels;
+
+/// Most lines of a header.
+const MOST_LINES: usize = 1000;
+
+pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
+    let mut rest = bytes;
+    if !line(&mut rest).is_some_and(|first| first.starts_with(b"#?")) {
+        return Err("does not begin with #?".to_owned());
+    }
+    for _ in 0..MOST_LINES {
+        match line(&mut rest) {
+            Some(b"") => break,
+            Some(text) if text.starts_with(b"FORMAT=") && text != b"FORMAT=32-bit_rle_rgbe" => {
+                return Err("is not in format 32-bit_rle_rgbe".to_owned());
+            }
+            Some(_) => {}
+            None => return Err("ends in its header".to_owned()),
+        }
+    }
+    let (width, height) = line(&mut rest)
+        .and_then(size)
+        .ok_or("has no size of the kind -Y height +X width")?;
+    check_size(width, height, bytes.len())?;
+    let mut values = Vec::new();
+    for _ in 0..height {
+        for [r, g, b, e] in row(&mut rest, width).ok_or("ends before its last pixel")? {
+            let unit = libm::ldexp(1.0, i32::from(e) - 136);
+            let scale = if e == 0 { 0.0 } else { unit };
+            values.extend([r, g, b].map(|v| f64::from(v) * scale));
+        }
+    }
+    Ok(Channels {
+        width,
+        height,
+        values,
+        count: 3,
+        are_levels: false,
+    })
+}
+
+fn line<'a>(rest: &mut &'a [u8]) -> Option<&'a [u8]> {
+    let end = rest.iter().position(|b| *b == b'\n')?;
+    let (line, after) = rest.split_at(end);
+    *rest = &after[1..];
+    Some(line.trim_ascii_end())
+}
+
+fn size(line: &[u8]) -> Option<(usize, usize)> {
+    let words: Vec<&str> = str::from_utf8(line).ok()?.split_whitespace().collect();
+    let ["-Y", height, "+X", width] = words[..] else {
+        return None;
+    };
+    Some((width.parse().ok()?, height.parse().ok()?))
+}
+
+/// The pixels of a row: in runs by channel, or one after the other.
+fn row(rest: &mut &[u8], width: usize) -> Option<Vec<[u8; 4]>> {
+    let in_runs = rest.len() >= 4
+        && rest[..2] == [2, 2]
+        && (8..0x8000).contains(&width)
+        && usize::from(rest[2]) * 256 + usize::from(rest[3]) == width;
+    if !in_runs {
+        let (row, after) = rest.split_at_checked(width.checked_mul(4)?)?;
+        *rest = after;
+        return Some(
+            row.chunks_exact(4)
+                .map(|p| [p[0], p[1], p[2], p[3]])
+                .collect(),
+        );
+    }
+    *rest = &rest[4..];
+    let mut pixels = vec![[0; 4]; width];
+    for channel in 0..4 {
+        let mut at = 0;
+        while at < width {
+            let (count, after) = rest.split_first()?;
+            let is_run = *count > 128;
+            let length = usize::from(if is_run { *count - 128 } else { *count });
+            let (data, after) = after.split_at_checked(if is_run { 1 } else { length })?;
+            let target = pixels.get_mut(at..at + length).filter(|t| !t.is_empty())?;
+            for (i, pixel) in target.iter_mut().enumerate() {
+                pixel[channel] = data[if is_run { 0 } else { i }];
+            }
+            *rest = after;
+            at += length;
+        }
+    }
+    Some(pixels)
+}

@@ -1,0 +1,28 @@
+//! JPEG pictures.
+
+use super::check_size;
+use etendue_scene::Channels;
+use zune_core::bytestream::ZCursor;
+use zune_core::colorspace::ColorSpace;
+use zune_core::options::DecoderOptions;
+use zune_jpeg::JpegDecoder;
+
+pub(super) fn read(bytes: &[u8]) -> Result<Channels, String> {
+    let damaged = |error: zune_jpeg::errors::DecodeErrors| format!("is damaged ({error})");
+    let options = DecoderOptions::default().jpeg_set_out_colorspace(ColorSpace::RGB);
+    let mut decoder = JpegDecoder::new_with_options(ZCursor::new(bytes), options);
+    decoder.decode_headers().map_err(damaged)?;
+    let (width, height) = decoder.dimensions().ok_or("has no size")?;
+    check_size(width, height, bytes.len())?;
+    let levels = decoder.decode().map_err(damaged)?;
+    if levels.len() != 3 * width * height {
+        return Err("has another number of pixels than its header says".to_owned());
+    }
+    Ok(Channels {
+        width,
+        height,
+        values: levels.iter().map(|v| f64::from(*v) / 255.0).collect(),
+        count: 3,
+        are_levels: true,
+    })
+}

@@ -1,0 +1,102 @@
+use crate::note::{Imported, Note, Refused};
+use etendue_world::World;
+use std::cell::{Cell, RefCell};
+use std::rc::Rc;
+
+/// Causes that are kept; there may be as many as elements in a file.
+const MOST_CAUSES: usize = 1000;
+
+/// Bytes of a value in a message.
+const LONGEST: usize = 60;
+
+/// A place in a file.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    /// The file, as the scene names it.
+    pub(crate) file: Rc<str>,
+    /// From 1; 0 for the file as a whole.
+    pub(crate) line: usize,
+    /// In characters, from 1.
+    pub(crate) column: usize,
+}
+
+impl Place {
+    /// A file as a whole.
+    pub(crate) fn whole(file: &str) -> Self {
+        let (line, column) = (0, 0);
+        Self {
+            file: file.into(),
+            line,
+            column,
+        }
+    }
+
+    fn note(&self, message: String) -> Note {
+        Note {
+            file: self.file.to_string(),
+            line: self.line,
+            column: self.column,
+            message,
+        }
+    }
+}
+
+/// What is found while a scene is read: causes to refuse it, and notes.
+#[derive(Debug, Default)]
+pub(crate) struct Report {
+    causes: RefCell<Vec<Note>>,
+    notes: RefCell<Vec<Note>>,
+    more: Cell<usize>,
+}
+
+impl Report {
+    /// The scene cannot be read, because of this too.
+    pub(crate) fn cause(&self, place: &Place, message: impl Into<String>) {
+        let mut causes = self.causes.borrow_mut();
+        if causes.len() < MOST_CAUSES {
+            causes.push(place.note(message.into()));
+        } else {
+            self.more.set(self.more.get() + 1);
+        }
+    }
+
+    /// This is dropped or approximated.
+    pub(crate) fn note(&self, place: &Place, message: impl Into<String>) {
+        self.notes.borrow_mut().push(place.note(message.into()));
+    }
+
+    /// Whether the scene cannot be read.
+    pub(crate) fn has_causes(&self) -> bool {
+        !self.causes.borrow().is_empty()
+    }
+
+    /// The world, or all causes.
+    pub(crate) fn finish(self, world: World) -> Result<Imported, Refused> {
+        let mut causes = self.causes.into_inner();
+        if let (Some(last), more @ 1..) = (causes.last().cloned(), self.more.get()) {
+            let message = format!("and {more} causes more");
+            causes.push(Note {
+                line: 0,
+                column: 0,
+                message,
+                ..last
+            });
+        }
+        if causes.is_empty() {
+            let notes = self.notes.into_inner();
+            Ok(Imported { world, notes })
+        } else {
+            Err(Refused { causes })
+        }
+    }
+}
+
+/// A value of the file for a message.
+pub(crate) fn quoted(value: &str) -> String {
+    let mut end = value.len().min(LONGEST);
+    while !value.is_char_boundary(end) {
+        end -= 1;
+    }
+    let more = if end < value.len() { "..." } else { "" };
+    format!("`{}{more}`", value[..end].escape_debug())
+}

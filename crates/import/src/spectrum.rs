@@ -1,0 +1,79 @@
+use crate::cie::{COUNT, D65, FIRST, LAST, OBSERVER};
+
+/// Wavelengths at which a spectrum is summed.
+const STEPS: u32 = 1000;
+/// With it a spectrum of 1 has luminance 1.
+const PER_OBSERVER: f64 = 1.0 / 106.750_259_399_414_06;
+/// With it the power of D65 has luminance 1.
+const PER_D65: f64 = 1.0 / 98.997_417_518_762_55;
+
+/// What a spectrum stands for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Role {
+    /// A share of light, 0 to 1.
+    Reflectance,
+    /// Any number, such as an index of refraction.
+    Number,
+    /// Light.
+    Emission,
+}
+
+/// Linear sRGB of a spectrum: pairs of a wavelength, nm, in rising order, and a value. See [`Color`](crate::Color).
+pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
+    let mut xyz = [0.0; 3];
+    let mut next = 0;
+    for step in 0..STEPS {
+        let wavelength = FIRST + f64::from(step) / f64::from(STEPS - 1) * (LAST - FIRST);
+        while next < samples.len() && samples[next][0] <= wavelength {
+            next += 1;
+        }
+        let Some(value) = between(samples, next, wavelength) else {
+            continue;
+        };
+        let lit = match role {
+            Role::Emission => value,
+            _ => value * at(&D65, wavelength) * PER_D65,
+        };
+        for (sum, observer) in xyz.iter_mut().zip(&OBSERVER) {
+            *sum += at(observer, wavelength) * lit;
+        }
+    }
+    let scale = (LAST - FIRST) * PER_OBSERVER / f64::from(STEPS);
+    let most = if role == Role::Reflectance {
+        1.0
+    } else {
+        f64::INFINITY
+    };
+    from_xyz(xyz.map(|sum| sum * scale)).map(|v| v.clamp(0.0, most))
+}
+
+/// Linear sRGB of CIE XYZ, with Mitsuba's digits.
+pub(crate) fn from_xyz([x, y, z]: [f64; 3]) -> [f64; 3] {
+    [
+        3.240_479 * x - 1.537_150 * y - 0.498_535 * z,
+        -0.969_256 * x + 1.875_991 * y + 0.041_556 * z,
+        0.055_648 * x - 0.204_043 * y + 1.057_311 * z,
+    ]
+}
+
+/// The value at a wavelength before sample `next`; `None` beyond the ends.
+fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
+    let [w0, v0] = *samples.get(next.checked_sub(1)?)?;
+    match samples.get(next) {
+        Some([w1, v1]) => Some(v0 + (wavelength - w0) / (w1 - w0) * (v1 - v0)),
+        // The last wavelength is still inside; no number equals it but itself.
+        None => (wavelength <= w0).then_some(v0),
+    }
+}
+
+fn at(table: &[f64; COUNT], wavelength: f64) -> f64 {
+    let place = (wavelength - FIRST) / (LAST - FIRST) * (COUNT - 1) as f64;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "wavelengths are within the table"
+    )]
+    let index = (place as usize).min(COUNT - 2);
+    let share = place - index as f64;
+    table[index] * (1.0 - share) + table[index + 1] * share
+}

@@ -1,0 +1,53 @@
+use super::error::fault;
+use super::{check_coordinate, obj, ply, text};
+use crate::fault::Fault;
+use glam::{DVec2, DVec3};
+use std::path::Path;
+
+/// A mesh file with what belongs to shading: normals and texture coordinates of its vertices.
+///
+/// Corners are among the vertices, and there are as many normals and texture coordinates as vertices; all are finite. Triangles of no area are
+/// still there. Corners at one place with another normal or other texture coordinates are vertices of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct DetailedMesh {
+    /// Places, within ±10⁹.
+    pub vertices: Vec<DVec3>,
+    /// The vertices of each triangle.
+    pub triangles: Vec<[u32; 3]>,
+    /// Normals as the file has them, of any length; zero at vertices where it has none.
+    pub normals: Option<Vec<DVec3>>,
+    /// Texture coordinates as the file has them; zero at vertices where it has none.
+    pub uvs: Option<Vec<DVec2>>,
+}
+
+impl DetailedMesh {
+    /// Reads the bytes of an OBJ or a PLY file as [`Mesh::parse`](super::Mesh::parse) does, with its normals (OBJ: `vn`; PLY: nx, ny and nz) and its texture
+    /// coordinates (OBJ: `vt`; PLY: u and v, s and t, or `texture_u` and `texture_v`).
+    ///
+    /// # Errors
+    /// The first fault found.
+    pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
+        let extension = file.extension().unwrap_or_default().to_string_lossy();
+        match extension.to_ascii_lowercase().as_str() {
+            "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
+            "obj" => obj::detailed::read(bytes),
+            "ply" => ply::detailed::read(bytes),
+            _ => Err(fault(
+                "the extension",
+                text::quoted(extension.as_bytes()),
+                "obj, ply",
+            )),
+        }
+    }
+}
+
+/// Requires numbers within the range of coordinates.
+pub(super) fn check<const N: usize>(
+    values: [f64; N],
+    place: impl Fn(usize) -> String,
+) -> Result<[f64; N], Fault> {
+    for (i, value) in values.into_iter().enumerate() {
+        check_coordinate(value, || place(i))?;
+    }
+    Ok(values)
+}

@@ -1,0 +1,113 @@
+//! OBJ files with their normals and texture coordinates.
+
+use super::super::detailed::{DetailedMesh, check};
+use super::super::error::fault;
+use super::super::fan;
+use super::super::text::{Words, number, quoted};
+use super::{corner, place, statements, vertices, without_mark};
+use crate::fault::Fault;
+use glam::{DVec2, DVec3};
+use std::collections::HashMap;
+
+/// The place, the texture coordinates and the normal of a corner, by their numbers in the file.
+type Key = (u32, Option<u32>, Option<u32>);
+
+pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
+    let bytes = without_mark(bytes);
+    let places = vertices(bytes)?;
+    if places.is_empty() {
+        return Err(fault("vertices (`v` lines)", 0, "at least 3"));
+    }
+    let uvs: Vec<[f64; 2]> = rows(bytes, b"vt")?;
+    let normals: Vec<[f64; 3]> = rows(bytes, b"vn")?;
+    let (keys, triangles) = faces(bytes, [places.len(), uvs.len(), normals.len()])?;
+    if triangles.is_empty() {
+        return Err(fault("faces (`f` lines)", 0, "at least 1"));
+    }
+    let uv = |i: Option<u32>| i.map_or(DVec2::ZERO, |i| uvs[i as usize].into());
+    let normal = |i: Option<u32>| i.map_or(DVec3::ZERO, |i| normals[i as usize].into());
+    let has = |any: bool| any.then_some(());
+    Ok(DetailedMesh {
+        vertices: keys.iter().map(|key| places[key.0 as usize]).collect(),
+        triangles,
+        normals: has(keys.iter().any(|key| key.2.is_some()))
+            .map(|()| keys.iter().map(|key| normal(key.2)).collect()),
+        uvs: has(keys.iter().any(|key| key.1.is_some()))
+            .map(|()| keys.iter().map(|key| uv(key.1)).collect()),
+    })
+}
+
+/// The numbers of all lines that begin with a word. Of texture coordinates the second may be left out.
+fn rows<const N: usize>(bytes: &[u8], word: &[u8]) -> Result<Vec<[f64; N]>, Fault> {
+    let mut rows = Vec::new();
+    for (line, statement) in statements(bytes) {
+        let mut words = Words(&statement);
+        if words.next() != Some(word) {
+            continue;
+        }
+        let name = String::from_utf8_lossy(word);
+        let what = |i: usize| place(line, &format!("number {} of {name}", i + 1));
+        let mut values = [0.0; N];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = match words.next() {
+                Some(word) => {
+                    number(word).ok_or_else(|| fault(what(i), quoted(word), "a number"))?
+                }
+                None if N == 2 && i == 1 => 0.0,
+                None => return Err(fault(what(i), "missing", "a number")),
+            };
+        }
+        rows.push(check(values, what)?);
+    }
+    Ok(rows)
+}
+
+/// All different corners, and triangles of them.
+fn faces(bytes: &[u8], counts: [usize; 3]) -> Result<(Vec<Key>, Vec<[u32; 3]>), Fault> {
+    let mut known: HashMap<Key, u32> = HashMap::new();
+    let (mut keys, mut triangles, mut corners) = (Vec::new(), Vec::new(), Vec::new());
+    let (mut before, mut face) = ([0; 3], 0);
+    for (line, statement) in statements(bytes) {
+        let mut words = Words(&statement);
+        match words.next() {
+            Some(b"v") => before[0] += 1,
+            Some(b"vt") => before[1] += 1,
+            Some(b"vn") => before[2] += 1,
+            Some(b"f") => {
+                face += 1;
+                corners.clear();
+                for word in words {
+                    let key = key(word, before, counts).map_err(|(value, allowed)| {
+                        let what = format!("face {face}, corner {}", corners.len() + 1);
+                        fault(place(line, &what), value, allowed)
+                    })?;
+                    // As many different corners as a u32 counts do not fit into a file that fits into memory.
+                    let next = u32::try_from(keys.len()).unwrap_or(u32::MAX);
+                    let index = *known.entry(key).or_insert(next);
+                    if index == next {
+                        keys.push(key);
+                    }
+                    corners.push(index);
+                }
+                if corners.len() < 3 {
+                    let what = format!("face {face}, number of corners");
+                    return Err(fault(place(line, &what), corners.len(), "at least 3"));
+                }
+                triangles.extend(fan(&corners));
+            }
+            _ => {}
+        }
+    }
+    Ok((keys, triangles))
+}
+
+/// A corner such as `7`, `7/3`, `7//5` or `-1/-1/-1`. A fault is a value and what is allowed.
+fn key(word: &[u8], before: [usize; 3], counts: [usize; 3]) -> Result<Key, (String, String)> {
+    let first = corner(word, before[0], counts[0])?;
+    let mut others = word.split(|b| *b == b'/').skip(1);
+    let mut other = |i: usize| match others.next() {
+        None | Some(b"") => Ok(None),
+        Some(part) => corner(part, before[i], counts[i]).map(Some),
+    };
+    Ok((first, other(1)?, other(2)?))
+}

@@ -1,0 +1,70 @@
+//! PLY files with the normals and texture coordinates of their vertices.
+
+use super::super::detailed::{DetailedMesh, check};
+use super::super::fan;
+use super::body::Body;
+use super::header::{Element, Header};
+use super::{axes, face, list, vertex};
+use crate::fault::Fault;
+use glam::{DVec2, DVec3};
+
+/// Names of texture coordinates.
+const UVS: [[&str; 2]; 3] = [["u", "v"], ["s", "t"], ["texture_u", "texture_v"]];
+
+pub(in super::super) fn read(bytes: &[u8]) -> Result<DetailedMesh, Fault> {
+    let (header, data) = Header::read(bytes)?;
+    let element = header.element("vertex")?;
+    let axes = axes(element)?;
+    let normal = columns(element, ["nx", "ny", "nz"]);
+    let uv = UVS.iter().find_map(|names| columns(element, *names));
+    let list = list(header.element("face")?)?;
+    let count = element.count;
+    let mut mesh = DetailedMesh {
+        vertices: Vec::new(),
+        triangles: Vec::new(),
+        normals: normal.map(|_| Vec::new()),
+        uvs: uv.map(|_| Vec::new()),
+    };
+    let mut corners = Vec::new();
+    let mut body = Body::new(data, header.encoding);
+    for element in &header.elements {
+        body.rows(element, |row, values| {
+            match element.name.as_str() {
+                "vertex" => {
+                    mesh.vertices
+                        .push(vertex(row, axes.map(|axis| values[axis][0]))?);
+                    if let Some((normals, columns)) = mesh.normals.as_mut().zip(normal) {
+                        let found = columns.map(|column| values[column][0]);
+                        let place = |i: usize| row.place(["nx", "ny", "nz"][i]);
+                        normals.push(DVec3::from(check(found, place)?));
+                    }
+                    if let Some((uvs, columns)) = mesh.uvs.as_mut().zip(uv) {
+                        let found = columns.map(|column| values[column][0]);
+                        let place = |i: usize| row.place(["u", "v"][i]);
+                        uvs.push(DVec2::from(check(found, place)?));
+                    }
+                }
+                "face" => {
+                    face(row, &values[list], count, &mut corners)?;
+                    mesh.triangles.extend(fan(&corners));
+                }
+                _ => {}
+            }
+            Ok(())
+        })?;
+    }
+    body.end()?;
+    Ok(mesh)
+}
+
+/// Where among the properties these are; `None` unless all are there, as single numbers.
+fn columns<const N: usize>(element: &Element, names: [&str; N]) -> Option<[usize; N]> {
+    let found = names.map(|name| {
+        let mut properties = element.properties.iter();
+        properties.position(|p| p.name == name && p.length.is_none())
+    });
+    found
+        .iter()
+        .all(Option::is_some)
+        .then(|| found.map(Option::unwrap_or_default))
+}
