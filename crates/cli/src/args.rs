@@ -7,6 +7,10 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
+mod world;
+
+pub(crate) use world::{CameraArgs, ImportArgs, RenderArgs, WorldArgs};
+
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]
 #[command(
@@ -53,6 +57,10 @@ pub(crate) enum Command {
     Bandwidth(BandwidthArgs),
     /// Write a scene for another program, which then can be asked for the same light field.
     Export(ExportArgs),
+    /// Read a scene of Mitsuba 3, and say what it holds and what is left out.
+    Import(ImportArgs),
+    /// Render what a camera of such a scene sees, with errors: by paths that end at any light.
+    Render(RenderArgs),
     /// Print the JSON schema of scene files, or what it says as a page: each field with its range, default and an example.
     Schema(SchemaArgs),
 }

@@ -31,6 +31,7 @@ mod photons;
 mod pictures;
 mod predict;
 mod progress;
+mod render;
 mod report;
 mod results;
 mod run;
@@ -42,6 +43,7 @@ mod target;
 mod threads;
 mod values;
 mod warnings;
+mod world;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -80,6 +82,8 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Export(args) => export::export(&args),
+        Command::Import(args) => world::report(&args),
+        Command::Render(args) => render::render(&args),
         Command::Schema(args) => schema::schema(&args),
     });
     ended(outcome, false)

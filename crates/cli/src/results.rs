@@ -8,6 +8,7 @@ pub(crate) mod arrays;
 pub(crate) mod batches;
 mod claim;
 mod commit;
+pub(crate) mod exr;
 pub(crate) mod kept;
 mod lock;
 pub(crate) mod npz;
@@ -40,6 +41,8 @@ pub(crate) const EXPORT: &str = "export.json";
 pub(crate) const FIGURE: &str = "figure.json";
 /// The index of `etendue sweep`.
 pub(crate) const SWEEP: &str = "sweep.json";
+/// The index of a folder with a picture.
+pub(crate) const PICTURE: &str = "picture.json";
 /// Seconds of a comparison: beside the index, since they are never the same twice.
 pub(crate) const TIMING: &str = "timing.json";
 
@@ -243,7 +246,16 @@ impl Results {
 
     /// The index whose files have begun to move.
     fn ready_index(&self) -> Option<&'static str> {
-        let mut indices = [SUMMARY, MEASUREMENT, PREDICTION, EXPORT, SWEEP, FIGURE].into_iter();
+        let mut indices = [
+            SUMMARY,
+            MEASUREMENT,
+            PREDICTION,
+            EXPORT,
+            SWEEP,
+            FIGURE,
+            PICTURE,
+        ]
+        .into_iter();
         indices.find(|index| listed(&self.ready(index)).is_some())
     }
 }

@@ -43,13 +43,58 @@ fn picture(
             pixels.extend(color(column, row));
         }
     }
-    let mut bytes = Vec::new();
-    let mut encoder = png::Encoder::new(&mut bytes, width, height);
-    encoder.set_color(png::ColorType::Rgb);
-    encoder.set_depth(png::BitDepth::Eight);
-    let mut writer = encoder.write_header()?;
-    writer.write_image_data(&pixels)?;
-    writer.finish()?;
+    let bytes = encoded(width, height, png::ColorType::Rgb, &pixels)?;
     let text = base64::engine::general_purpose::STANDARD.encode(bytes);
     Ok(Some(format!("data:image/png;base64,{text}")))
+}
+
+fn encoded(
+    width: u32,
+    height: u32,
+    color: png::ColorType,
+    pixels: &[u8],
+) -> Result<Vec<u8>, Error> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, width, height);
+    encoder.set_color(color);
+    encoder.set_depth(png::BitDepth::Eight);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(pixels)?;
+    writer.finish()?;
+    Ok(bytes)
+}
+
+/// A photograph as a grey PNG: radiance in rows from the top, with the transfer curve of sRGB (IEC 61966-2-1). The brightest hundredth of the pixels
+/// is white.
+///
+/// # Errors
+/// When there are no pixels, more than a PNG holds, or not as many as numbers.
+pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u8>, Error> {
+    let (Ok(w), Ok(h)) = (u32::try_from(width), u32::try_from(height)) else {
+        return Err(Error::Size(u32::MAX, u32::MAX));
+    };
+    let mut sorted: Vec<f64> = radiance.iter().copied().filter(|x| x.is_finite()).collect();
+    sorted.sort_unstable_by(f64::total_cmp);
+    let white = sorted
+        .get(sorted.len() - sorted.len().div_ceil(100))
+        .copied();
+    let white = white.filter(|white| *white > 0.0).unwrap_or(1.0);
+    let grey: Vec<u8> = radiance.iter().map(|x| level(x / white)).collect();
+    encoded(w, h, png::ColorType::Grayscale, &grey)
+}
+
+/// The level of a share of white, 0 to 255.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped to 0..=255"
+)]
+fn level(linear: f64) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let curved = if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
+    };
+    (255.0 * curved).round() as u8
 }

@@ -9,7 +9,8 @@
 //! * [`plate()`]: pictures in rows and columns;
 //! * [`section()`]: that cut alone;
 //! * [`curves()`]: curves and measured points, panel beside panel;
-//! * [`stacked()`]: several of these on one page.
+//! * [`stacked()`]: several of these on one page;
+//! * [`photograph()`]: what a camera sees.
 //!
 //! Arrays are [x, y] with both axes ascending; pictures put x to the right and y upwards.
 //!
@@ -60,6 +61,7 @@ pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
 pub use figure::{Error, Figure, stacked};
 pub use grid::{Guide, Picture};
+pub use image::photograph;
 pub use plate::{Bars, Plate, PlateRow, plate};
 pub use section::{PlaneMark, Section, Segment, SegmentKind, section};
 pub use strip::{Column, Strip, strip};

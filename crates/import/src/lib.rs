@@ -1,4 +1,4 @@
-//! Scenes of other programs, read as a [`World`].
+//! Scenes of other programs, read as a [`World`](etendue_world::World).
 //!
 //! So far Mitsuba 3's XML. What a world cannot hold is a cause, and the scene is refused with all of them at once; what makes little difference,
 //! or is approximated, is a note. Nothing is dropped in silence.

@@ -25,6 +25,13 @@ impl From<DetailedMesh> for Parts {
 }
 
 impl Parts {
+    /// About how much memory it takes.
+    pub(crate) fn bytes(&self) -> u64 {
+        let vertex = size_of::<[DVec3; 2]>() + size_of::<DVec2>();
+        let all = self.vertices.len() * vertex + size_of_val(self.corners.as_slice());
+        all as u64
+    }
+
     /// Drops triangles without an area, which no ray meets.
     pub(crate) fn drop_empty(&mut self) {
         let vertices = &self.vertices;

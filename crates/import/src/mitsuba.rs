@@ -5,6 +5,7 @@
 
 mod ask;
 mod cube;
+mod include;
 mod index;
 mod integrator;
 mod leftover;
@@ -12,12 +13,15 @@ mod light;
 mod material;
 mod mesh;
 mod metals;
+mod nested;
 mod object;
 mod parameters;
+mod property;
 mod reader;
 mod sensor;
 mod serialized;
 mod shape;
+mod source;
 mod texture;
 mod transform;
 mod upgrade;

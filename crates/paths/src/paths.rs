@@ -40,15 +40,20 @@ impl Paths {
         }
     }
 
-    /// The radiance that comes to the beginning of a ray, at distances that are seen: one path, whose mean over all numbers it is.
-    pub(crate) fn radiance(&self, mut ray: Ray, seen: [f64; 2], numbers: &mut Numbers) -> f64 {
+    /// The radiance that comes to the beginning of a ray, at distances that are seen: one path, whose mean over all numbers it is. `before` surfaces are
+    /// between there and the camera.
+    pub(crate) fn radiance(
+        &self,
+        mut ray: Ray,
+        mut seen: [f64; 2],
+        before: u32,
+        numbers: &mut Numbers,
+    ) -> f64 {
         let (mut sum, mut weight) = (0.0, 1.0);
         // Density of the last direction; `None` where no light was looked for.
         let mut last: Option<f64> = None;
-        for met in 0..=self.depth {
-            let hit = self
-                .space
-                .first(&ray, if met == 0 { seen } else { [0.0, f64::INFINITY] });
+        for met in before..=self.depth {
+            let hit = self.space.first(&ray, seen);
             if met > 0 || !self.hides_sources {
                 sum += weight * self.emitted(&ray, hit.as_ref(), last);
             }
@@ -65,7 +70,7 @@ impl Paths {
             };
             weight *= bounce.weight;
             let [survives] = numbers.draw();
-            if met + 1 >= ROULETTE {
+            if met + 1 >= before + ROULETTE {
                 let share = weight.min(0.95);
                 if survives >= share {
                     break;
@@ -73,6 +78,7 @@ impl Paths {
                 weight /= share;
             }
             ray = onward(&hit, &bounce);
+            seen = [0.0, f64::INFINITY];
             last = bounce.density;
         }
         sum

@@ -73,6 +73,6 @@ impl Paths {
             from: look.from,
             along: look.along,
         };
-        self.radiance(ray, look.seen, numbers)
+        self.radiance(ray, look.seen, 0, numbers)
     }
 }

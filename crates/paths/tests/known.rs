@@ -237,7 +237,7 @@ fn glass_keeps_the_light_around_it() {
 #[test]
 fn a_sky_is_where_its_pixels_are() {
     let mut values = vec![0.0; 64 * 32];
-    // Column 16 of 64 is a quarter turn from −Z to X, row 8 of 32 at 45° from Y.
+    // Column 16 of 64 is a quarter turn from −Z to X, row 8 of 0 to 31 at 46° from Y.
     values[8 * 64 + 16] = 100.0;
     let map = Arc::new(Raster::new(64, 32, values).unwrap());
     let sky = |to_world| {
@@ -246,14 +246,14 @@ fn a_sky_is_where_its_pixels_are() {
             radiance: Arc::clone(&map),
         })
     };
-    let [turn, down] = [16.5_f64 / 64.0 * 2.0 * PI, 8.5 / 32.0 * PI];
+    let [turn, down] = [16.5_f64 / 64.0 * 2.0 * PI, 8.0_f64 / 31.0 * PI];
     let toward = DVec3::new(
         down.sin() * turn.sin(),
         down.cos(),
         -down.sin() * turn.cos(),
     );
     // Interpolation makes a tent of it, as large as one pixel.
-    let solid = 2.0 * PI / 64.0 * PI / 32.0 * down.sin();
+    let solid = 2.0 * PI / 64.0 * PI / 31.0 * down.sin();
     for turned in [
         DMat3::from_rotation_x(1.0),
         DMat3::from_rotation_z(0.3) * DMat3::from_rotation_x(1.2),

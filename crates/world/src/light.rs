@@ -43,7 +43,8 @@ pub enum Light {
 /// Radiance from far away, by direction: pixels over longitude and latitude, bilinear between their centres.
 ///
 /// In coordinates of the map, Y is up. With `w` columns and `h` rows, light from (x, y, z) is at column w · atan2(x, −z) / 2π, which goes round, and
-/// at row h · acos(y) / π. The centre of the first pixel is at column ½ and row ½.
+/// at row ½ + (h − 1) · acos(y) / π. The centre of the first pixel is at column ½ and row ½: so those of the first row are at the upper pole, of the last at
+/// the lower one, and columns are apart by 2π / w. Mitsuba 3 has it so.
 #[derive(Clone, Debug)]
 pub struct SkyMap {
     /// Rotates directions of the map to those of the world.

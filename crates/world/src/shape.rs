@@ -9,7 +9,7 @@ pub struct Shape {
     pub name: String,
     /// In coordinates of its own.
     pub geometry: Geometry,
-    /// From its own coordinates to those of the world. Spheres and cylinders are scaled alike along all axes, cylinders by another factor along Z.
+    /// From its own coordinates to those of the world. Normals are mapped as such, by the inverse transpose: a mirror leaves the front where it is. Spheres and cylinders are scaled alike along all axes, cylinders by another factor along Z.
     pub to_world: DAffine3,
     /// Whether its front is the other side than [`Geometry`] says.
     pub is_flipped: bool,

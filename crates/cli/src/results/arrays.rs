@@ -2,16 +2,12 @@
 
 use crate::failure::Failure;
 use crate::results::Results;
+use crate::results::exr::{Part, exr};
 use crate::results::npz::{Npz, azimuths};
 use crate::results::summary::Summary;
 use etendue_compare::PlaneComparison;
 use etendue_field::Complex;
-use exr::prelude::{
-    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
-    IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
-};
 use ndarray::{Array1, Array2, Array3};
-use std::io::Cursor;
 
 /// The files of a plane.
 pub(crate) const NAMES: [&str; 3] = ["slices.npz", "radial.npz", "radial.exr"];
@@ -105,7 +101,7 @@ pub(crate) fn z(
     z
 }
 
-/// Four parts of one channel Y each; ρ to the right, ν upwards.
+/// Four parts; ρ to the right, ν upwards.
 fn radial_exr(summary: &Summary, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let power = &plane.radial.power;
     let difference = power - &plane.predicted_radial;
@@ -116,41 +112,25 @@ fn radial_exr(summary: &Summary, plane: &PlaneComparison) -> Result<Vec<u8>, Fai
         ("z", &radial_z(plane)),
     ];
     let (width, height) = power.dim();
-    let layers = parts.map(|(name, values)| {
-        let mut attributes = LayerAttributes::named(name);
-        attributes.other.extend([provenance(summary, plane)]);
+    let parts = parts.map(|(name, values)| {
         let pixels = (0..height)
             .rev()
             .flat_map(|j| (0..width).map(move |i| (i, j)));
         #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
         let samples = pixels.map(|at| values[at] as f32).collect();
-        let channel = AnyChannel::new("Y", FlatSamples::F32(samples));
-        let channels = AnyChannels::sort(std::iter::once(channel).collect());
-        Layer::new(
-            (width, height),
-            attributes,
-            Encoding::FAST_LOSSLESS,
-            channels,
-        )
+        Part { name, samples }
     });
-    let image = Image::from_layers(
-        ImageAttributes::new(IntegerBounds::from_dimensions((width, height))),
-        Vec::from(layers),
-    );
-    let mut bytes = Cursor::new(Vec::new());
-    image
-        .write()
-        // In parallel, the order of the chunks would be left to chance.
-        .non_parallel()
-        .to_buffered(&mut bytes)
-        .map_err(Failure::cannot_run)?;
-    Ok(bytes.into_inner())
+    exr(
+        [width, height],
+        Vec::from(parts),
+        &provenance(summary, plane),
+    )
 }
 
-/// What the arrays were made from: one attribute, since the order of several would be left to chance.
-fn provenance(summary: &Summary, plane: &PlaneComparison) -> (Text, AttributeValue) {
+/// What the arrays were made from.
+fn provenance(summary: &Summary, plane: &PlaneComparison) -> serde_json::Value {
     let grid = plane.measured.grid;
-    let text = serde_json::json!({
+    serde_json::json!({
         "scene": summary.scene,
         "scene_hash": summary.scene_hash,
         "plane": plane.report.name,
@@ -159,15 +139,5 @@ fn provenance(summary: &Summary, plane: &PlaneComparison) -> (Text, AttributeVal
         "photons": summary.photons,
         "rho_max": grid.rho.max(),
         "nu_max": grid.nu.max(),
-    });
-    // EXR holds Latin-1: what is not ASCII is written as JSON escapes.
-    let mut ascii = String::new();
-    for unit in text.to_string().encode_utf16() {
-        match u8::try_from(unit).ok().filter(u8::is_ascii) {
-            Some(byte) => ascii.push(char::from(byte)),
-            None => ascii.push_str(&format!("\\u{unit:04x}")),
-        }
-    }
-    let text = Text::new_or_panic(ascii);
-    (Text::new_or_panic("provenance"), AttributeValue::Text(text))
+    })
 }

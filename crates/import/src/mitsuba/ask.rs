@@ -106,18 +106,26 @@ impl<'a> Reader<'a> {
         found.map_or(&object.place, |property| &property.place)
     }
 
-    /// The object that a property is, or refers to; a reference without an object is a cause.
+    /// A cause for each reference to no object.
+    pub(super) fn refuse_unknown(&self) {
+        for property in self.objects.iter().flat_map(|object| &object.properties) {
+            if let Value::Reference(id) = &property.value
+                && !self.ids.contains_key(id)
+            {
+                property.is_read.set(true);
+                self.report.cause(&property.place, unknown(id));
+            }
+        }
+    }
+
+    /// The object that a property is, or refers to.
     pub(super) fn object_of(&self, property: &'a Property) -> Option<&'a Object> {
         let at = match &property.value {
             Value::Object(at) => *at,
             Value::Reference(id) => match self.ids.get(id) {
                 Some(at) => *at,
-                None => {
-                    if !property.is_read.replace(true) {
-                        self.report.cause(&property.place, unknown(id));
-                    }
-                    return None;
-                }
+                // A cause has been given.
+                None => return None,
             },
             _ => return None,
         };
@@ -152,19 +160,5 @@ impl<'a> Reader<'a> {
             self.report.cause(&second.place, message);
         }
         found.first().map(|(_, child)| *child)
-    }
-
-    /// Passes over a property that changes nothing about light.
-    pub(super) fn skip(&self, object: &'a Object, names: &[&str]) {
-        for name in names {
-            self.property(object, name);
-        }
-    }
-
-    /// The number of an object.
-    pub(super) fn index(&self, object: &Object) -> Option<usize> {
-        self.objects
-            .iter()
-            .position(|known| std::ptr::eq(known, object))
     }
 }

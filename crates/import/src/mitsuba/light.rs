@@ -3,9 +3,10 @@
 use super::mesh::z_of;
 use super::object::Object;
 use super::reader::Reader;
+use super::transform::is_rigid;
 use etendue_field::Raster;
 use etendue_world::{Light, SkyMap};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
 /// Plugins that are lights of a world.
@@ -14,14 +15,9 @@ const ALLOWED: &str = "point, spot, directional, constant, envmap; area within a
 /// Half the angle of a spot, degrees, if nothing is said.
 const CUTOFF: f64 = 20.0;
 
-/// How far a transform may be from one that keeps lengths and angles: it is a product of rounded numbers.
-const RIGID: f64 = 1e-3;
-
 impl<'a> Reader<'a> {
     pub(super) fn light(&mut self, object: &'a Object) {
         object.is_used.set(true);
-        // How Mitsuba draws lights.
-        self.skip(object, &["sampling_weight"]);
         let light = match object.plugin.as_str() {
             "point" => self.point(object),
             "spot" => self.spot(object),
@@ -35,7 +31,10 @@ impl<'a> Reader<'a> {
                 None
             }
         };
-        self.world.lights.extend(light);
+        match light {
+            Some(light) => self.world.lights.push(light),
+            None => self.lost(object),
+        }
     }
 
     fn point(&mut self, object: &'a Object) -> Option<Light> {
@@ -128,8 +127,6 @@ impl<'a> Reader<'a> {
     }
 
     fn sky(&mut self, object: &'a Object) -> Option<Light> {
-        // How Mitsuba draws directions.
-        self.skip(object, &["mis_compensation"]);
         let scale = match self.has(object, "scale") {
             true => self.number_within(object, "scale", "from 0 on", |s| s >= 0.0),
             false => Some(1.0),
@@ -142,6 +139,10 @@ impl<'a> Reader<'a> {
                 .cause(&object.place, "pixels below 0; allowed: from 0 on");
             return None;
         }
+        let bytes = size_of_val(pixels.values()) as u64;
+        let fits = self.files.spend(bytes);
+        fits.map_err(|error| self.report.cause(&object.place, error))
+            .ok()?;
         let values = pixels.values().iter().map(|v| v * scale).collect();
         let radiance = Raster::new(pixels.width(), pixels.height(), values)?;
         Some(Light::Sky(SkyMap {
@@ -156,8 +157,7 @@ impl<'a> Reader<'a> {
             return Some(DAffine3::IDENTITY);
         }
         let map = self.transform(object, "to_world")?;
-        let gram = map.matrix3.transpose() * map.matrix3;
-        if gram.abs_diff_eq(DMat3::IDENTITY, RIGID) {
+        if is_rigid(map) {
             return Some(map);
         }
         let message = "to_world scales or shears; allowed: turning, moving and mirroring";

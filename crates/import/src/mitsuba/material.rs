@@ -1,8 +1,9 @@
 //! Materials: `bsdf` elements.
 
 use super::metals;
-use super::object::{Kind, Object};
+use super::object::Object;
 use super::reader::Reader;
+use super::texture::as_number;
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness, Texture};
@@ -10,13 +11,16 @@ use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roug
 /// Materials within one another.
 const DEEPEST: usize = 8;
 
+/// Materials of a world, with those within one another.
+const MOST: usize = 1 << 20;
+
 /// Plugins that are materials of a world.
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null, bumpmap, normalmap";
 
 impl<'a> Reader<'a> {
     /// The number of a material; `None` after a cause.
     pub(super) fn material(&mut self, object: &'a Object) -> Option<usize> {
-        let at = self.index(object)?;
+        let at = object.number;
         if let Some(known) = self.materials.get(&at) {
             return *known;
         }
@@ -42,8 +46,17 @@ impl<'a> Reader<'a> {
         self.world.materials.len() - 1
     }
 
-    fn make_material(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+    pub(super) fn make_material(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
         object.is_used.set(true);
+        self.made_materials += 1;
+        if self.made_materials > MOST {
+            // References may repeat what is within one another.
+            if self.made_materials == MOST + 1 {
+                let message = format!("more than {MOST} bsdfs, with all that are repeated");
+                self.report.cause(&object.place, message);
+            }
+            return None;
+        }
         if depth > DEEPEST {
             let message = format!("more than {DEEPEST} bsdfs in one another, or one in itself");
             self.report.cause(&object.place, message);
@@ -195,8 +208,6 @@ impl<'a> Reader<'a> {
                 ("ggx", Distribution::Ggx),
             ],
         );
-        // How Mitsuba draws directions.
-        self.skip(object, &["sample_visible"]);
         let both = ["alpha_u", "alpha_v"].map(|name| self.has(object, name));
         let alpha = match both {
             [false, false] => {
@@ -222,92 +233,10 @@ impl<'a> Reader<'a> {
     fn alpha(&mut self, object: &'a Object, name: &str) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Number, 0.1)?;
         if texture.largest() > 0.0 {
-            return Some(texture);
+            return Some(as_number(texture));
         }
         let message = format!("{name} is nowhere above 0");
         self.report.cause(self.place_of(object, name), message);
-        None
-    }
-
-    fn two_sided(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
-        let sides = self.nested(object, depth);
-        self.skip(object, &["allow_transmission"]);
-        let both = match <[Material; 2]>::try_from(sides?) {
-            Ok(both) => both,
-            Err(mut rest) => match (rest.pop(), rest.pop()) {
-                (Some(one), None) => [one.clone(), one],
-                _ => return self.wrong_number(object, "one or two"),
-            },
-        };
-        if both.iter().any(lets_through) {
-            let message = "twosided around a bsdf that lets light through";
-            self.report.cause(&object.place, message);
-            return None;
-        }
-        Some(Material::TwoSided(Box::new(both)))
-    }
-
-    fn mask(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
-        let opacity = self.reflectance(object, "opacity", 0.5);
-        let mut of = self.nested(object, depth)?;
-        match (of.pop(), of.pop()) {
-            (Some(of), None) => Some(Material::Mask {
-                opacity: opacity?,
-                of: Box::new(of),
-            }),
-            _ => self.wrong_number(object, "one"),
-        }
-    }
-
-    fn blend(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
-        if !self.has(object, "weight") {
-            self.report.cause(&object.place, "blendbsdf without weight");
-        }
-        let weight = self.reflectance(object, "weight", 0.5);
-        match <[Material; 2]>::try_from(self.nested(object, depth)?) {
-            Ok(of) => Some(Material::Blend {
-                weight: weight?,
-                of: Box::new(of),
-            }),
-            Err(_) => self.wrong_number(object, "two"),
-        }
-    }
-
-    /// What is below a bump map or a normal map.
-    fn without_map(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
-        let message = format!(
-            "approximated: {} is left out, the surface is smooth",
-            object.plugin
-        );
-        self.report.note(&object.place, message);
-        for (_, texture) in self.children(object, Kind::Texture) {
-            self.drop_all(texture);
-        }
-        let of_the_map = ["scale", "flip_invalid_normals", "use_shadowing_function"];
-        self.skip(object, &of_the_map);
-        let mut of = self.nested(object, depth)?;
-        match (of.pop(), of.pop()) {
-            (Some(of), None) => Some(of),
-            _ => self.wrong_number(object, "one"),
-        }
-    }
-
-    /// All bsdfs within; `None` after a cause.
-    fn nested(&mut self, object: &'a Object, depth: usize) -> Option<Vec<Material>> {
-        let within = self.children(object, Kind::Bsdf);
-        // All are read, so that all causes are found.
-        let all: Vec<Option<Material>> = within
-            .into_iter()
-            .take(3)
-            .map(|(_, bsdf)| self.make_material(bsdf, depth + 1))
-            .collect();
-        all.into_iter().collect()
-    }
-
-    fn wrong_number(&self, object: &'a Object, allowed: &str) -> Option<Material> {
-        let plugin = &object.plugin;
-        let message = format!("{plugin} with another number of bsdfs; allowed: {allowed}");
-        self.report.cause(&object.place, message);
         None
     }
 }
@@ -315,13 +244,5 @@ impl<'a> Reader<'a> {
 fn black() -> Material {
     Material::Diffuse {
         reflectance: Texture::Constant(0.0),
-    }
-}
-
-fn lets_through(material: &Material) -> bool {
-    match material {
-        Material::Dielectric(_) | Material::Mask { .. } => true,
-        Material::Blend { of, .. } => of.iter().any(lets_through),
-        _ => false,
     }
 }

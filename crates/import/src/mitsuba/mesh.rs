@@ -164,6 +164,8 @@ impl<'a> Reader<'a> {
         key: &MeshKey,
         linear: DMat3,
     ) -> Result<Arc<Triangles>, String> {
+        // Shapes that share a file may have meshes of their own.
+        self.files.spend(parts.bytes())?;
         parts.drop_empty();
         if key.is_flipped {
             for uv in parts.uvs.iter_mut().flatten() {

@@ -8,6 +8,8 @@ use std::rc::Rc;
 #[derive(Debug)]
 pub(super) struct Object {
     pub(super) kind: Kind,
+    /// Its number among all objects.
+    pub(super) number: usize,
     /// The name of the plugin.
     pub(super) plugin: String,
     pub(super) id: Option<String>,

@@ -26,6 +26,8 @@ pub(super) struct Reader<'a> {
     pub(super) meshes: HashMap<MeshKey, Result<Arc<Triangles>, String>>,
     /// The material of each bsdf; `None` if it is no sound one.
     pub(super) materials: HashMap<usize, Option<usize>>,
+    /// Materials, with those within one another.
+    pub(super) made_materials: usize,
     /// The numbers of the two default materials: of surfaces, and of those that shine.
     pub(super) defaults: [Option<usize>; 2],
 }
@@ -49,6 +51,7 @@ impl<'a> Reader<'a> {
             packed: HashMap::new(),
             meshes: HashMap::new(),
             materials: HashMap::new(),
+            made_materials: 0,
             defaults: [None; 2],
         }
     }
@@ -57,10 +60,15 @@ impl<'a> Reader<'a> {
     pub(super) fn world(mut self) -> World {
         let scene = &self.objects[0];
         scene.is_used.set(true);
+        self.refuse_unknown();
         self.integrator(scene);
         self.sensors(scene);
         for (_, light) in self.children(scene, Kind::Emitter) {
-            self.light(light);
+            // Shapes refer to area lights.
+            match light.plugin == "area" {
+                true => light.is_used.set(false),
+                false => self.light(light),
+            }
         }
         for (_, shape) in self.children(scene, Kind::Shape) {
             self.top_shape(shape);
@@ -84,8 +92,9 @@ impl<'a> Reader<'a> {
     /// Light in a scene with media goes other ways than a world knows.
     fn refuse_media(&self) {
         for object in self.objects {
-            let is_shapes = self.objects[object.parent].kind != Kind::Medium;
-            if matches!(object.kind, Kind::Medium | Kind::Volume) && is_shapes {
+            // What is within a medium goes with it.
+            let is_outermost = self.objects[object.parent].kind != Kind::Medium;
+            if matches!(object.kind, Kind::Medium | Kind::Volume) && is_outermost {
                 let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
                 let message = format!("{kind} {plugin}: participating media are not supported");
                 self.report.cause(&object.place, message);
@@ -102,6 +111,15 @@ impl<'a> Reader<'a> {
             if let super::object::Value::Object(at) = property.value {
                 self.drop_all(&self.objects[at]);
             }
+        }
+    }
+
+    /// An object of which nothing came. A cause has been given already; if not, this is one.
+    pub(super) fn lost(&self, object: &'a Object) {
+        if !self.report.has_causes() {
+            let (kind, plugin) = (object.kind.name(), quoted(&object.plugin));
+            let message = format!("{kind} {plugin} is not understood");
+            self.report.cause(&object.place, message);
         }
     }
 

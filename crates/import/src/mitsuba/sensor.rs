@@ -26,7 +26,10 @@ impl<'a> Reader<'a> {
         for (_, sensor) in all {
             if is_known(sensor) {
                 let camera = self.camera(sensor);
-                self.world.cameras.extend(camera);
+                match camera {
+                    Some(camera) => self.world.cameras.push(camera),
+                    None => self.lost(sensor),
+                }
             } else if knows_any {
                 let plugin = quoted(&sensor.plugin);
                 let message = format!("sensor {plugin} is left out; allowed: {ALLOWED}");
@@ -41,8 +44,6 @@ impl<'a> Reader<'a> {
     fn camera(&mut self, object: &'a Object) -> Option<Camera> {
         let size = self.film(object);
         self.sampler(object);
-        // When the shutter is open: nothing moves.
-        self.skip(object, &["shutter_open", "shutter_close"]);
         let clip = self.clip(object);
         let (to_world, projection, clip) = match object.plugin.as_str() {
             "orthographic" => {
@@ -106,8 +107,6 @@ impl<'a> Reader<'a> {
             let focus = focus?;
             (radius > 0.0).then_some(Lens { radius, focus })
         } else {
-            // Without a lens all is in focus.
-            self.skip(object, &["focus_distance"]);
             None
         };
         Some(Projection::Perspective {

@@ -147,7 +147,7 @@ impl<R: Read> Stream<R> {
                     true => f64::from_le_bytes(self.some()?),
                     false => f32::from_le_bytes(self.some()?).into(),
                 };
-                if !(value.abs() <= LARGEST) {
+                if value.is_nan() || value.abs() > LARGEST {
                     return Err(format!(
                         "has {value} at vertex {i}; allowed: up to {LARGEST}"
                     ));

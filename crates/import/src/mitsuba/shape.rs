@@ -67,10 +67,8 @@ impl<'a> Reader<'a> {
             Some(bsdf) => self.material(bsdf),
             None => Some(self.default_material(emission.is_some())),
         };
-        // How Mitsuba finds outlines, for derivatives.
-        self.skip(object, &["silhouette_sampling_weight"]);
         let Some(((geometry, placement, is_flipped), material)) = placed.zip(material) else {
-            return;
+            return self.lost(object);
         };
         let to_world = outer * placement;
         if !self.is_sound(object, &geometry, to_world) {
@@ -194,8 +192,6 @@ impl<'a> Reader<'a> {
             self.report
                 .cause(&emitter.place, "an emitter within a shapegroup");
         }
-        // How Mitsuba draws lights.
-        self.skip(emitter, &["sampling_weight"]);
         self.emission(emitter, "radiance")
     }
 }

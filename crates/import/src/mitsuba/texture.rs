@@ -176,8 +176,6 @@ impl<'a> Reader<'a> {
     fn bitmap(&mut self, object: &'a Object) -> Option<Texture> {
         let to_uv = self.to_uv(object);
         let raw = self.truth(object, "raw");
-        // How Mitsuba keeps pixels.
-        self.skip(object, &["format", "accel"]);
         let filter = self.choice(
             object,
             "filter_type",
@@ -256,5 +254,16 @@ impl<'a> Reader<'a> {
         let [x, y] = [map.matrix3.x_axis, map.matrix3.y_axis];
         let linear = DMat2::from_cols(DVec2::new(x.x, x.y), DVec2::new(y.x, y.y));
         DAffine2::from_mat2_translation(linear, map.translation.truncate())
+    }
+}
+
+/// A texture that is asked for a number and not for a colour. Mitsuba 3.9.1 then takes a checkerboard's values the other way round.
+pub(super) fn as_number(texture: Texture) -> Texture {
+    match texture {
+        Texture::Checkerboard { to_uv, values } => Texture::Checkerboard {
+            to_uv,
+            values: [values[1], values[0]],
+        },
+        other => other,
     }
 }

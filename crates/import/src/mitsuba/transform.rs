@@ -1,10 +1,13 @@
 //! The elements of a transform. Each is applied after those before it.
 
 use super::value;
-use glam::{DAffine3, DMat3, DMat4, DQuat, DVec3};
+use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 
 /// The attributes of an element, after substitution.
 pub(super) type Attributes = Vec<(String, String)>;
+
+/// How far a transform may be from one that keeps lengths and angles: it is a product of rounded numbers.
+const RIGID: f64 = 1e-3;
 
 /// The map of one element; `Err` is what is wrong.
 pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, String> {
@@ -21,7 +24,10 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
             allow(attributes, &["x", "y", "z", "value", "angle"])?;
             let axis = vector(attributes, 0.0)?;
             let angle = value::number(required(attributes, "angle")?)?.to_radians();
-            rotation(axis, angle).ok_or_else(|| "an axis of no length".to_owned())
+            if axis == DVec3::ZERO {
+                return Err("an axis of no length".to_owned());
+            }
+            Ok(rotation(axis, angle))
         }
         "lookat" => {
             allow(attributes, &["origin", "target", "up"])?;
@@ -61,11 +67,22 @@ pub(super) fn frame(z: DVec3) -> DMat3 {
     DMat3::from_cols(s, t, z)
 }
 
-fn rotation(axis: DVec3, angle: f64) -> Option<DAffine3> {
-    let (sin, cos) = libm::sincos(angle / 2.0);
-    let vector = axis.try_normalize()? * sin;
-    let turn = DQuat::from_xyzw(vector.x, vector.y, vector.z, cos);
-    Some(DAffine3::from_quat(turn.normalize()))
+/// The rotation about a unit axis (Rodrigues). The axis is taken as it is, as in Mitsuba 3.9: with another length it is no rotation.
+fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
+    let (sin, cos) = libm::sincos(angle);
+    let column =
+        |unit: DVec3| cos * unit + (1.0 - cos) * axis.dot(unit) * axis + sin * axis.cross(unit);
+    DAffine3::from_mat3(DMat3::from_cols(
+        column(DVec3::X),
+        column(DVec3::Y),
+        column(DVec3::Z),
+    ))
+}
+
+/// Whether a map keeps lengths and angles, but for what few digits leave.
+pub(super) fn is_rigid(map: DAffine3) -> bool {
+    let gram = map.matrix3.transpose() * map.matrix3;
+    gram.abs_diff_eq(DMat3::IDENTITY, RIGID)
 }
 
 /// 16 numbers, or the 9 of the linear part, row by row.
@@ -77,7 +94,7 @@ fn matrix(numbers: &[f64]) -> Result<DAffine3, String> {
     } else {
         return Err(format!("{} numbers; allowed: 9 or 16", numbers.len()));
     };
-    if matrix.row(3).to_array() != [0.0, 0.0, 0.0, 1.0] {
+    if matrix.row(3) != DVec4::W {
         return Err("the last row is not 0 0 0 1".to_owned());
     }
     Ok(DAffine3::from_mat4(matrix))

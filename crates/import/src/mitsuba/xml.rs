@@ -2,18 +2,17 @@
 
 use super::object::{Kind, Object, Property, Value};
 use super::parameters::Parameters;
-use super::transform::{Attributes, allow, find, required, step};
-use super::{upgrade, value};
+use super::property::VALUES;
+use super::source::{Cursor, Source};
+use super::transform::{Attributes, allow, find, required};
+use super::upgrade;
 use crate::files::Files;
 use crate::report::{Place, Report, quoted};
-use glam::DAffine3;
 use roxmltree::{Document, Node};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
-/// Files included in one another.
-const MOST_INCLUDED: usize = 15;
 /// Elements within one another.
 const DEEPEST: usize = 64;
 /// Elements of all files together.
@@ -26,50 +25,11 @@ pub(super) struct Tree<'a> {
     /// Objects by their id.
     pub(super) ids: HashMap<String, usize>,
     parameters: Parameters,
-    files: &'a Files,
-    report: &'a Report,
+    pub(super) files: &'a Files,
+    pub(super) report: &'a Report,
     /// Files that are being read, the innermost last.
-    open: Vec<PathBuf>,
-    elements: usize,
-}
-
-/// A file that is being read.
-struct Source {
-    name: Rc<str>,
-    /// Where it looks for files: its own folders, those of the file that includes it.
-    folders: Rc<[PathBuf]>,
-    /// Before version 2.
-    is_old: bool,
-    cursor: Cursor,
-}
-
-/// Counts lines and columns of places that follow one another.
-struct Cursor {
-    text: Rc<str>,
-    offset: usize,
-    line: usize,
-    column: usize,
-}
-
-impl Cursor {
-    fn place(&mut self, offset: usize, file: &Rc<str>) -> Place {
-        // Elements are met in the order of the text, so all of it is counted once.
-        if let Some(passed) = self.text.get(self.offset..offset) {
-            for c in passed.chars() {
-                if c == '\n' {
-                    (self.line, self.column) = (self.line + 1, 1);
-                } else {
-                    self.column += 1;
-                }
-            }
-            self.offset = offset;
-        }
-        Place {
-            file: Rc::clone(file),
-            line: self.line,
-            column: self.column,
-        }
-    }
+    pub(super) open: Vec<PathBuf>,
+    pub(super) elements: usize,
 }
 
 impl<'a> Tree<'a> {
@@ -96,8 +56,14 @@ impl<'a> Tree<'a> {
         }
     }
 
-    /// Reads a file: the scene, or one that is included in the object `parent`.
-    fn file(&mut self, text: &str, name: &str, folders: Rc<[PathBuf]>, parent: Option<usize>) {
+    /// Reads a file: the scene, or one that is included in an object, at a depth.
+    pub(super) fn file(
+        &mut self,
+        text: &str,
+        name: &str,
+        folders: Rc<[PathBuf]>,
+        parent: Option<(usize, usize)>,
+    ) {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let name: Rc<str> = name.into();
         let document = match Document::parse(text) {
@@ -132,10 +98,10 @@ impl<'a> Tree<'a> {
         }
         match parent {
             // What a scene holds becomes part of what includes it.
-            Some(parent) if root.tag_name().name() == "scene" => {
-                self.children(root, parent, &mut source, 1);
+            Some((parent, depth)) if root.tag_name().name() == "scene" => {
+                self.children(root, parent, &mut source, depth);
             }
-            Some(parent) => self.element(root, parent, &mut source, 1),
+            Some((parent, depth)) => self.element(root, parent, &mut source, depth),
             None if root.tag_name().name() == "scene" => {
                 self.object(root, Kind::Scene, &Vec::new(), place, 0, &mut source, 0);
             }
@@ -166,7 +132,8 @@ impl<'a> Tree<'a> {
             let name = node.tag_name().name();
             match Kind::of(name, find(&attributes, "type").is_some()) {
                 Some(kind) => {
-                    let is_root = depth == 1 && node.has_attribute("version");
+                    // The root of an included file.
+                    let is_root = node.parent_element().is_none();
                     let version: &[&str] = if is_root { &["version"] } else { &[] };
                     allow(&attributes, &[&["type", "id", "name"], version].concat())?;
                     required(&attributes, "type")?;
@@ -181,7 +148,7 @@ impl<'a> Tree<'a> {
                     );
                     Ok(())
                 }
-                None => self.other(node, &attributes, &place, parent, source),
+                None => self.other(node, &attributes, &place, parent, source, depth),
             }
         });
         if let Err(message) = done {
@@ -191,7 +158,7 @@ impl<'a> Tree<'a> {
     }
 
     /// The attributes with parameters put in.
-    fn attributes(&mut self, node: Node<'_, '_>) -> Result<Attributes, String> {
+    pub(super) fn attributes(&mut self, node: Node<'_, '_>) -> Result<Attributes, String> {
         let mut made = Vec::new();
         for attribute in node.attributes() {
             let value = self.parameters.substitute(attribute.value())?;
@@ -216,6 +183,7 @@ impl<'a> Tree<'a> {
         let name = find(attributes, "name").unwrap_or_default().to_owned();
         self.objects.push(Object {
             kind,
+            number: at,
             plugin: find(attributes, "type").unwrap_or("scene").to_owned(),
             id: id.clone(),
             place: place.clone(),
@@ -277,6 +245,7 @@ impl<'a> Tree<'a> {
         place: &Place,
         parent: usize,
         source: &mut Source,
+        depth: usize,
     ) -> Result<(), String> {
         match node.tag_name().name() {
             "default" => {
@@ -289,7 +258,7 @@ impl<'a> Tree<'a> {
                     .default(name, required(attributes, "value")?);
                 Ok(())
             }
-            "include" => self.include(attributes, parent, source),
+            "include" => self.include(attributes, parent, source, depth),
             "path" => self.search(attributes, parent, source),
             "alias" => {
                 allow(attributes, &["id", "as"])?;
@@ -305,7 +274,9 @@ impl<'a> Tree<'a> {
                 self.add(parent, name, Value::Reference(id), place, source);
                 Ok(())
             }
+            element if !VALUES.contains(&element) => Err("no element of a scene".to_owned()),
             element => {
+                required(attributes, "name")?;
                 let value = self.value(node, element, attributes, source);
                 let name = find(attributes, "name").unwrap_or_default().to_owned();
                 // Where the value is unsound the property is there all the same: one cause is enough.
@@ -317,128 +288,6 @@ impl<'a> Tree<'a> {
                 fault.map_or(Ok(()), Err)
             }
         }
-    }
-
-    /// The value of a property.
-    fn value(
-        &mut self,
-        node: Node<'_, '_>,
-        element: &str,
-        attributes: &Attributes,
-        source: &Source,
-    ) -> Result<Value, String> {
-        required(attributes, "name")?;
-        if element == "transform" {
-            allow(attributes, &["name"])?;
-            return self.transform(node).map(Value::Transform);
-        }
-        if let Some(child) = node.children().find(Node::is_element) {
-            let name = child.tag_name().name();
-            return Err(format!("<{name}> within a property"));
-        }
-        match element {
-            "point" | "vector" => allow(attributes, &["name", "value", "x", "y", "z"])?,
-            "spectrum" => allow(attributes, &["name", "value", "filename"])?,
-            _ => allow(attributes, &["name", "value"])?,
-        }
-        let text = || required(attributes, "value");
-        Ok(match element {
-            "float" => Value::Number(value::number(text()?)?),
-            "integer" => Value::Whole(value::whole(text()?)?),
-            "boolean" => Value::Truth(value::truth(text()?)?),
-            "string" => Value::Text(text()?.to_owned()),
-            "rgb" => Value::Color(value::triple(text()?)?),
-            "spectrum" => match (find(attributes, "value"), find(attributes, "filename")) {
-                (Some(text), None) => value::spectrum(text)?,
-                (None, Some(file)) => self.spectrum(file, source)?,
-                _ => return Err("not one of value and filename".to_owned()),
-            },
-            "point" | "vector" => match find(attributes, "value") {
-                Some(text) => Value::Vector(value::triple(text)?.into()),
-                None => {
-                    let [x, y, z] = ["x", "y", "z"]
-                        .map(|axis| required(attributes, axis).and_then(value::number));
-                    Value::Vector([x?, y?, z?].into())
-                }
-            },
-            _ => return Err("no element of a scene".to_owned()),
-        })
-    }
-
-    fn transform(&mut self, node: Node<'_, '_>) -> Result<DAffine3, String> {
-        let mut made = DAffine3::IDENTITY;
-        for child in node.children().filter(Node::is_element) {
-            self.elements += 1;
-            let name = child.tag_name().name();
-            let attributes = self.attributes(child)?;
-            let step = match name {
-                "lookAt" => step("lookat", &attributes),
-                _ => step(name, &attributes),
-            };
-            made = step.map_err(|error| format!("<{name}>: {error}"))? * made;
-        }
-        match made.is_finite() {
-            true => Ok(made),
-            false => Err("numbers beyond all bounds".to_owned()),
-        }
-    }
-
-    fn spectrum(&self, file: &str, source: &Source) -> Result<Value, String> {
-        let read = || {
-            let path = self.files.find(&source.folders, file)?;
-            let bytes = self.files.read(&path)?;
-            let text = String::from_utf8(bytes).map_err(|_| "is no text".to_owned())?;
-            value::spectrum_file(&text)
-        };
-        read().map_err(|error| format!("file {}: {error}", quoted(file)))
-    }
-
-    /// Adds a folder to look for files in, before those known.
-    fn search(
-        &mut self,
-        attributes: &Attributes,
-        parent: usize,
-        source: &mut Source,
-    ) -> Result<(), String> {
-        allow(attributes, &["value"])?;
-        if parent != 0 {
-            return Err("not in the scene itself".to_owned());
-        }
-        let name = required(attributes, "value")?;
-        let found = self.files.find(&source.folders, name);
-        let folder = found.map_err(|error| format!("folder {} {error}", quoted(name)))?;
-        if source.folders.len() > DEEPEST {
-            return Err(format!("more than {DEEPEST} folders"));
-        }
-        let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
-        source.folders = folders.collect();
-        Ok(())
-    }
-
-    fn include(
-        &mut self,
-        attributes: &Attributes,
-        parent: usize,
-        source: &Source,
-    ) -> Result<(), String> {
-        allow(attributes, &["filename", "name"])?;
-        let name = required(attributes, "filename")?;
-        let told = |error: String| format!("file {} {error}", quoted(name));
-        let path = self.files.find(&source.folders, name).map_err(told)?;
-        if self.open.contains(&path) {
-            return Err(told("includes itself".to_owned()));
-        }
-        if self.open.len() > MOST_INCLUDED {
-            return Err(format!("more than {MOST_INCLUDED} files in one another"));
-        }
-        let bytes = self.files.read(&path).map_err(told)?;
-        let text = String::from_utf8(bytes).map_err(|_| told("is no UTF-8".to_owned()))?;
-        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
-        let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
-        self.open.push(path);
-        self.file(&text, name, folders.collect(), Some(parent));
-        self.open.pop();
-        Ok(())
     }
 }
 

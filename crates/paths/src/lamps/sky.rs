@@ -27,8 +27,7 @@ impl Sky {
         let summed = (0..w * h).map(|i| {
             let row = i / w;
             // The solid angle of a pixel, but for a factor.
-            let edge = |row: usize| libm::cos(PI * row as f64 / h as f64);
-            sum += around(pixels, i % w, row) * (edge(row) - edge(row + 1));
+            sum += around(pixels, i % w, row) * (edge(row, h) - edge(row + 1, h));
             sum
         });
         let summed = summed.collect();
@@ -76,7 +75,7 @@ impl Map {
         let down = libm::atan2(libm::hypot(v.x, v.z), v.y) / PI;
         [
             turn * self.map.radiance.width() as f64,
-            down * self.map.radiance.height() as f64,
+            0.5 + down * (self.map.radiance.height() - 1) as f64,
         ]
     }
 
@@ -96,8 +95,7 @@ impl Map {
         } else {
             self.summed[pixel - 1]
         };
-        let edge = |row: usize| libm::cos(PI * row as f64 / h as f64);
-        let solid = TAU / w as f64 * (edge(row) - edge(row + 1));
+        let solid = TAU / w as f64 * (edge(row, h) - edge(row + 1, h));
         (self.summed[pixel] - before) / (all * solid)
     }
 
@@ -108,13 +106,18 @@ impl Map {
             .summed
             .partition_point(|sum| *sum <= wanted)
             .min(w * h - 1);
-        let edge = |row: usize| libm::cos(PI * row as f64 / h as f64);
-        let (top, bottom) = (edge(pixel / w), edge(pixel / w + 1));
+        let (top, bottom) = (edge(pixel / w, h), edge(pixel / w + 1, h));
         let turn = ((pixel % w) as f64 + a) / w as f64;
         // About Z, with the turn from −Z to X of the map: (x, y, z) of the map are (sin, up, −cos).
         let around = sphere(top + b * (bottom - top), TAU * turn);
         self.map.to_world * DVec3::new(around.y, around.z, -around.x)
     }
+}
+
+/// The cosine of the angle from the pole at the upper edge of a row of `count`; the first and the last row are half as high.
+fn edge(row: usize, count: usize) -> f64 {
+    let steps = (count - 1).max(1) as f64;
+    libm::cos(PI * ((row as f64 - 0.5) / steps).clamp(0.0, 1.0))
 }
 
 /// The light of a pixel and its neighbours, which interpolation carries into it.

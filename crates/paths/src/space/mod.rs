@@ -52,7 +52,7 @@ pub(crate) struct Placed {
     pub(crate) form: Form,
     pub(crate) to_world: DAffine3,
     to_local: DAffine3,
-    /// −1 if the front is turned: by the file, or by a transform that mirrors.
+    /// −1 if the front is turned.
     side: f64,
 }
 
@@ -147,15 +147,11 @@ impl Placed {
                 Form::Mesh(mesh)
             }
         };
-        // A mesh's normals follow its corners, which a mirror turns; those of the others point as they do.
-        let is_mirrored =
-            matches!(form, Form::Mesh(_)) && shape.to_world.matrix3.determinant() < 0.0;
-        let side = if shape.is_flipped { -1.0 } else { 1.0 };
         Self {
             form,
             to_world: shape.to_world,
             to_local: shape.to_world.inverse(),
-            side: if is_mirrored { -side } else { side },
+            side: if shape.is_flipped { -1.0 } else { 1.0 },
         }
     }
 

@@ -1,0 +1,99 @@
+//! What a camera of a scene sees.
+
+use crate::args::RenderArgs;
+use crate::failure::Failure;
+use crate::results::exr::{Part, exr};
+use crate::results::npz::Npz;
+use crate::results::sealed::json;
+use crate::results::stored::VERSION;
+use crate::results::{PICTURE, Plan, Results};
+use crate::threads::on_threads;
+use crate::{progress, say, world};
+use etendue_paths::{Paths, Picture};
+use ndarray::Array2;
+use serde_json::{Value, json as tree_of};
+use std::path::Path;
+
+const FILES: [&str; 3] = ["picture.exr", "picture.npz", "picture.png"];
+
+/// `etendue render`: returns the exit code.
+pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
+    let imported = world::load(&args.scene)?;
+    let camera = world::camera(&imported.world, &args.camera)?;
+    let name = args.scene.path.file_stem().unwrap_or_default();
+    let folder = args
+        .out
+        .clone()
+        .unwrap_or_else(|| Path::new("out").join(name));
+    let plan = Plan {
+        index: PICTURE,
+        files: FILES.map(str::to_owned).to_vec(),
+        inputs: vec![args.scene.path.clone()],
+        force: args.force.force,
+    };
+    let mut results = Results::claim(&folder, plan)?;
+    let picture = on_threads(&args.threads, || {
+        let paths = Paths::new(&imported.world);
+        let pixels = camera.size[0] * camera.size[1];
+        let bar = progress::steps("rendering", pixels, "pixels", args.quiet);
+        let picture = paths.picture(&camera, args.samples, args.seed, &|done| bar.inc(done));
+        bar.finish_and_clear();
+        Ok(picture)
+    })?;
+    let made_from = tree_of!({
+        "scene": args.scene.path.file_name().map(|name| name.to_string_lossy()),
+        "camera": camera.name,
+        "depth": imported.world.depth,
+        "hides_sources": imported.world.hides_sources,
+        "size": camera.size,
+        "samples": args.samples,
+        "seed": args.seed,
+        "version": VERSION,
+    });
+    write(&mut results, &picture, &made_from)?;
+    let finished = results.finish(|files| {
+        let mut index = made_from.clone();
+        index["files"] = tree_of!(files);
+        json(&index)
+    })?;
+    finished.tell_replaced(args.quiet);
+    if !args.quiet {
+        for note in &imported.notes {
+            say(&format!("note: {note}"));
+        }
+        say(&format!(
+            "{} × {} pixels in {}",
+            camera.size[0],
+            camera.size[1],
+            folder.display()
+        ));
+    }
+    Ok(0)
+}
+
+/// Radiance and its standard error, for programs; and a picture to look at.
+fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<(), Failure> {
+    let [w, h] = picture.size;
+    let errors: Vec<f64> = picture
+        .variance
+        .iter()
+        .map(|variance| variance.sqrt())
+        .collect();
+    let part = |name, values: &[f64]| {
+        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        let samples = values.iter().map(|x| *x as f32).collect();
+        Part { name, samples }
+    };
+    let parts = vec![part("radiance", &picture.mean), part("error", &errors)];
+    results.write(FILES[0], &exr([w, h], parts, made_from)?)?;
+    let rows = |values: &[f64]| {
+        Array2::from_shape_vec((h, w), values.to_vec()).map_err(Failure::cannot_run)
+    };
+    let mut npz = Npz::new();
+    npz = npz
+        .add("radiance", &rows(&picture.mean)?)?
+        .add("error", &rows(&errors)?)?;
+    results.write(FILES[1], &npz.bytes()?)?;
+    let png = etendue_figures::photograph([w, h], &picture.mean).map_err(Failure::cannot_run)?;
+    results.write(FILES[2], &png)
+}

@@ -1,0 +1,62 @@
+//! OpenEXR files: parts of one channel Y each, with what they were made from.
+
+use crate::failure::Failure;
+use exr::prelude::{
+    AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
+    IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
+};
+use serde_json::Value;
+use std::io::Cursor;
+
+/// One part of a file: rows from the top, each from the left.
+#[derive(Debug)]
+pub(crate) struct Part {
+    pub(crate) name: &'static str,
+    pub(crate) samples: Vec<f32>,
+}
+
+/// The bytes of a file; `provenance` is an attribute of each part.
+pub(crate) fn exr(
+    [width, height]: [usize; 2],
+    parts: Vec<Part>,
+    provenance: &Value,
+) -> Result<Vec<u8>, Failure> {
+    let layers = parts.into_iter().map(|Part { name, samples }| {
+        let mut attributes = LayerAttributes::named(name);
+        attributes.other.extend([attribute(provenance)]);
+        let channel = AnyChannel::new("Y", FlatSamples::F32(samples));
+        let channels = AnyChannels::sort(std::iter::once(channel).collect());
+        Layer::new(
+            (width, height),
+            attributes,
+            Encoding::FAST_LOSSLESS,
+            channels,
+        )
+    });
+    let image = Image::from_layers(
+        ImageAttributes::new(IntegerBounds::from_dimensions((width, height))),
+        layers.collect::<Vec<_>>(),
+    );
+    let mut bytes = Cursor::new(Vec::new());
+    image
+        .write()
+        // In parallel, the order of the chunks would be left to chance.
+        .non_parallel()
+        .to_buffered(&mut bytes)
+        .map_err(Failure::cannot_run)?;
+    Ok(bytes.into_inner())
+}
+
+/// One attribute, since the order of several would be left to chance.
+fn attribute(provenance: &Value) -> (Text, AttributeValue) {
+    // EXR holds Latin-1: what is not ASCII is written as JSON escapes.
+    let mut ascii = String::new();
+    for unit in provenance.to_string().encode_utf16() {
+        match u8::try_from(unit).ok().filter(u8::is_ascii) {
+            Some(byte) => ascii.push(char::from(byte)),
+            None => ascii.push_str(&format!("\\u{unit:04x}")),
+        }
+    }
+    let text = Text::new_or_panic(ascii);
+    (Text::new_or_panic("provenance"), AttributeValue::Text(text))
+}

@@ -1,0 +1,111 @@
+//! Scenes of other programs, as commands take them.
+
+use crate::args::{CameraArgs, ImportArgs, WorldArgs};
+use crate::deliver;
+use crate::failure::Failure;
+use crate::table::aligned;
+use etendue_import::{Imported, import};
+use etendue_world::{Camera, Geometry, Light, Projection, World};
+
+/// Reads the scene named on the command line; causes for which it is refused come all together.
+pub(crate) fn load(args: &WorldArgs) -> Result<Imported, Failure> {
+    let mut imported = import(&args.path, &args.options()).map_err(Failure::bad_input)?;
+    if args.depth.is_some() {
+        imported.world.depth = args.depth;
+    }
+    Ok(imported)
+}
+
+/// The camera that is asked for, or the first, with the size that is asked for.
+pub(crate) fn camera(world: &World, args: &CameraArgs) -> Result<Camera, Failure> {
+    let is_meant = |camera: &&Camera| args.name.as_ref().is_none_or(|name| *name == camera.name);
+    let camera = world.cameras.iter().find(is_meant).ok_or_else(|| {
+        let names: Vec<&str> = world
+            .cameras
+            .iter()
+            .map(|camera| camera.name.as_str())
+            .collect();
+        Failure::bad_input(match &args.name {
+            Some(name) if !names.is_empty() => {
+                format!("--camera {name}; allowed: {}", names.join(", "))
+            }
+            _ => "the scene has no camera".to_owned(),
+        })
+    })?;
+    Ok(Camera {
+        size: args.size.unwrap_or(camera.size),
+        ..camera.clone()
+    })
+}
+
+/// `etendue import`: returns the exit code.
+pub(crate) fn report(args: &ImportArgs) -> Result<u8, Failure> {
+    let Imported { world, notes, .. } = load(&args.scene)?;
+    let mut lines = aligned(rows(&world));
+    lines.extend(world.cameras.iter().map(of_camera));
+    lines.push(match world.depth {
+        Some(depth) => format!("light meets at most {depth} surfaces"),
+        None => "light meets any number of surfaces".to_owned(),
+    });
+    lines.extend(notes.iter().map(|note| format!("note: {note}")));
+    deliver(&lines.join("\n"))?;
+    Ok(0)
+}
+
+/// What there is of each kind, and how many.
+fn rows(world: &World) -> Vec<Vec<String>> {
+    let mut counts: Vec<(&str, usize)> = Vec::new();
+    let mut count = |kind, by| match counts.iter_mut().find(|(known, _)| *known == kind) {
+        Some((_, count)) => *count += by,
+        None => counts.push((kind, by)),
+    };
+    for shape in &world.shapes {
+        match &shape.geometry {
+            Geometry::Rectangle => count("rectangles", 1),
+            Geometry::Disc => count("discs", 1),
+            Geometry::Sphere => count("spheres", 1),
+            Geometry::Cylinder => count("cylinders", 1),
+            Geometry::Mesh(mesh) => {
+                count("meshes", 1);
+                count("triangles", mesh.corners().len());
+            }
+        }
+        if shape.emission.is_some() {
+            count("area lights", 1);
+        }
+    }
+    for light in &world.lights {
+        let kind = match light {
+            Light::Point { .. } => "point lights",
+            Light::Spot { .. } => "spotlights",
+            Light::Directional { .. } => "directional lights",
+            Light::Constant { .. } => "constant environments",
+            Light::Sky(_) => "environment maps",
+        };
+        count(kind, 1);
+    }
+    count("materials", world.materials.len());
+    counts
+        .iter()
+        .map(|(kind, count)| vec![count.to_string(), (*kind).to_owned()])
+        .collect()
+}
+
+fn of_camera(camera: &Camera) -> String {
+    let Camera {
+        name, size: [w, h], ..
+    } = camera;
+    let kind = match camera.projection {
+        Projection::Perspective {
+            half_width, lens, ..
+        } => {
+            let angle = 2.0 * libm::atan(half_width).to_degrees();
+            let lens = lens.map_or(String::new(), |lens| {
+                format!(", lens of radius {} focused at {}", lens.radius, lens.focus)
+            });
+            format!("perspective, {angle:.4}° wide{lens}")
+        }
+        Projection::Orthographic => "orthographic".to_owned(),
+    };
+    format!("camera {name}: {w} × {h} pixels, {kind}")
+}

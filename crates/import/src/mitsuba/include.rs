@@ -1,0 +1,63 @@
+//! Other files of a scene: where they are looked for, and those that are included.
+
+use super::source::Source;
+use super::transform::{Attributes, allow, required};
+use super::xml::Tree;
+use crate::report::quoted;
+use std::path::Path;
+
+/// Files included in one another.
+const MOST_INCLUDED: usize = 15;
+/// Folders to look for files in.
+const MOST_FOLDERS: usize = 64;
+
+impl Tree<'_> {
+    /// Adds a folder to look for files in, before those known.
+    pub(super) fn search(
+        &mut self,
+        attributes: &Attributes,
+        parent: usize,
+        source: &mut Source,
+    ) -> Result<(), String> {
+        allow(attributes, &["value"])?;
+        if parent != 0 {
+            return Err("not in the scene itself".to_owned());
+        }
+        let name = required(attributes, "value")?;
+        let found = self.files.find(&source.folders, name);
+        let folder = found.map_err(|error| format!("folder {} {error}", quoted(name)))?;
+        if source.folders.len() > MOST_FOLDERS {
+            return Err(format!("more than {MOST_FOLDERS} folders"));
+        }
+        let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
+        source.folders = folders.collect();
+        Ok(())
+    }
+
+    pub(super) fn include(
+        &mut self,
+        attributes: &Attributes,
+        parent: usize,
+        source: &Source,
+        depth: usize,
+    ) -> Result<(), String> {
+        allow(attributes, &["filename", "name"])?;
+        let name = required(attributes, "filename")?;
+        let told = |error: String| format!("file {} {error}", quoted(name));
+        let path = self.files.find(&source.folders, name).map_err(told)?;
+        if self.open.contains(&path) {
+            return Err(told("includes itself".to_owned()));
+        }
+        if self.open.len() > MOST_INCLUDED {
+            return Err(format!("more than {MOST_INCLUDED} files in one another"));
+        }
+        let bytes = self.files.read(&path).map_err(told)?;
+        let text = String::from_utf8(bytes).map_err(|_| told("is no UTF-8".to_owned()))?;
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let folders = std::iter::once(folder).chain(source.folders.iter().cloned());
+        self.open.push(path);
+        self.file(&text, name, folders.collect(), Some((parent, depth + 1)));
+        self.open.pop();
+        Ok(())
+    }
+}

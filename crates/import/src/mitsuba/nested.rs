@@ -1,0 +1,95 @@
+//! Materials that hold others.
+
+use super::object::{Kind, Object};
+use super::reader::Reader;
+use super::texture::as_number;
+use etendue_world::Material;
+
+impl<'a> Reader<'a> {
+    pub(super) fn two_sided(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+        let sides = self.nested(object, depth);
+        let both = match <[Material; 2]>::try_from(sides?) {
+            Ok(both) => both,
+            Err(mut rest) => match (rest.pop(), rest.pop()) {
+                (Some(one), None) => [one.clone(), one],
+                _ => return self.wrong_number(object, "one or two"),
+            },
+        };
+        if both.iter().any(lets_through) {
+            let message = "twosided around a bsdf that lets light through";
+            self.report.cause(&object.place, message);
+            return None;
+        }
+        Some(Material::TwoSided(Box::new(both)))
+    }
+
+    pub(super) fn mask(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+        let opacity = self.reflectance(object, "opacity", 0.5);
+        let mut of = self.nested(object, depth)?;
+        match (of.pop(), of.pop()) {
+            (Some(of), None) => Some(Material::Mask {
+                opacity: as_number(opacity?),
+                of: Box::new(of),
+            }),
+            _ => self.wrong_number(object, "one"),
+        }
+    }
+
+    pub(super) fn blend(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+        if !self.has(object, "weight") {
+            self.report.cause(&object.place, "blendbsdf without weight");
+        }
+        let weight = self.reflectance(object, "weight", 0.5);
+        match <[Material; 2]>::try_from(self.nested(object, depth)?) {
+            Ok(of) => Some(Material::Blend {
+                weight: as_number(weight?),
+                of: Box::new(of),
+            }),
+            Err(_) => self.wrong_number(object, "two"),
+        }
+    }
+
+    /// What is below a bump map or a normal map.
+    pub(super) fn without_map(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
+        let message = format!(
+            "approximated: {} is left out, the surface is smooth",
+            object.plugin
+        );
+        self.report.note(&object.place, message);
+        for (_, texture) in self.children(object, Kind::Texture) {
+            self.drop_all(texture);
+        }
+        let mut of = self.nested(object, depth)?;
+        match (of.pop(), of.pop()) {
+            (Some(of), None) => Some(of),
+            _ => self.wrong_number(object, "one"),
+        }
+    }
+
+    /// All bsdfs within; `None` after a cause.
+    fn nested(&mut self, object: &'a Object, depth: usize) -> Option<Vec<Material>> {
+        let within = self.children(object, Kind::Bsdf);
+        // All are read, so that all causes are found.
+        let all: Vec<Option<Material>> = within
+            .into_iter()
+            .take(3)
+            .map(|(_, bsdf)| self.make_material(bsdf, depth + 1))
+            .collect();
+        all.into_iter().collect()
+    }
+
+    fn wrong_number(&self, object: &'a Object, allowed: &str) -> Option<Material> {
+        let plugin = &object.plugin;
+        let message = format!("{plugin} with another number of bsdfs; allowed: {allowed}");
+        self.report.cause(&object.place, message);
+        None
+    }
+}
+
+fn lets_through(material: &Material) -> bool {
+    match material {
+        Material::Dielectric(_) | Material::Mask { .. } => true,
+        Material::Blend { of, .. } => of.iter().any(lets_through),
+        _ => false,
+    }
+}

@@ -1,0 +1,105 @@
+//! Elements that are values of properties.
+
+use super::object::Value;
+use super::source::Source;
+use super::transform::{Attributes, allow, find, is_rigid, required, step};
+use super::value;
+use super::xml::Tree;
+use crate::report::quoted;
+use glam::DAffine3;
+use roxmltree::Node;
+
+/// Their names.
+pub(super) const VALUES: [&str; 9] = [
+    "boolean",
+    "float",
+    "integer",
+    "point",
+    "rgb",
+    "spectrum",
+    "string",
+    "transform",
+    "vector",
+];
+
+impl Tree<'_> {
+    /// The value of a property.
+    pub(super) fn value(
+        &mut self,
+        node: Node<'_, '_>,
+        element: &str,
+        attributes: &Attributes,
+        source: &mut Source,
+    ) -> Result<Value, String> {
+        if element == "transform" {
+            allow(attributes, &["name"])?;
+            return self.transform(node, source).map(Value::Transform);
+        }
+        if let Some(child) = node.children().find(Node::is_element) {
+            let name = child.tag_name().name();
+            return Err(format!("<{name}> within a property"));
+        }
+        match element {
+            "point" | "vector" => allow(attributes, &["name", "value", "x", "y", "z"])?,
+            "spectrum" => allow(attributes, &["name", "value", "filename"])?,
+            _ => allow(attributes, &["name", "value"])?,
+        }
+        let text = || required(attributes, "value");
+        Ok(match element {
+            "float" => Value::Number(value::number(text()?)?),
+            "integer" => Value::Whole(value::whole(text()?)?),
+            "boolean" => Value::Truth(value::truth(text()?)?),
+            "string" => Value::Text(text()?.to_owned()),
+            "rgb" => Value::Color(value::triple(text()?)?),
+            "spectrum" => match (find(attributes, "value"), find(attributes, "filename")) {
+                (Some(text), None) => value::spectrum(text)?,
+                (None, Some(file)) => self.spectrum(file, source)?,
+                _ => return Err("not one of value and filename".to_owned()),
+            },
+            "point" | "vector" => match find(attributes, "value") {
+                Some(text) => Value::Vector(value::triple(text)?.into()),
+                None => {
+                    let [x, y, z] = ["x", "y", "z"]
+                        .map(|axis| required(attributes, axis).and_then(value::number));
+                    Value::Vector([x?, y?, z?].into())
+                }
+            },
+            _ => return Err("no element of a scene".to_owned()),
+        })
+    }
+
+    fn transform(&mut self, node: Node<'_, '_>, source: &mut Source) -> Result<DAffine3, String> {
+        let mut made = DAffine3::IDENTITY;
+        for child in node.children().filter(Node::is_element) {
+            self.elements += 1;
+            let name = child.tag_name().name();
+            let attributes = self.attributes(child)?;
+            let step = match name {
+                "lookAt" => step("lookat", &attributes),
+                _ => step(name, &attributes),
+            };
+            let step = step.map_err(|error| format!("<{name}>: {error}"))?;
+            if name == "rotate" && !is_rigid(step) {
+                let place = source.cursor.place(child.range().start, &source.name);
+                let message =
+                    "an axis whose length is not 1: no rotation, but what Mitsuba 3.9 takes it for";
+                self.report.note(&place, message);
+            }
+            made = step * made;
+        }
+        match made.is_finite() {
+            true => Ok(made),
+            false => Err("numbers beyond all bounds".to_owned()),
+        }
+    }
+
+    fn spectrum(&self, file: &str, source: &Source) -> Result<Value, String> {
+        let read = || {
+            let path = self.files.find(&source.folders, file)?;
+            let bytes = self.files.read(&path)?;
+            let text = String::from_utf8(bytes).map_err(|_| "is no text".to_owned())?;
+            value::spectrum_file(&text)
+        };
+        read().map_err(|error| format!("file {}: {error}", quoted(file)))
+    }
+}

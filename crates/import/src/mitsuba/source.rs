@@ -1,0 +1,42 @@
+use crate::report::Place;
+use std::path::PathBuf;
+use std::rc::Rc;
+
+/// A file that is being read.
+pub(super) struct Source {
+    pub(super) name: Rc<str>,
+    /// Where it looks for files: its own folders, those of the file that includes it.
+    pub(super) folders: Rc<[PathBuf]>,
+    /// Before version 2.
+    pub(super) is_old: bool,
+    pub(super) cursor: Cursor,
+}
+
+/// Counts lines and columns of places that follow one another.
+pub(super) struct Cursor {
+    pub(super) text: Rc<str>,
+    pub(super) offset: usize,
+    pub(super) line: usize,
+    pub(super) column: usize,
+}
+
+impl Cursor {
+    pub(super) fn place(&mut self, offset: usize, file: &Rc<str>) -> Place {
+        // Elements are met in the order of the text, so all of it is counted once.
+        if let Some(passed) = self.text.get(self.offset..offset) {
+            for c in passed.chars() {
+                if c == '\n' {
+                    (self.line, self.column) = (self.line + 1, 1);
+                } else {
+                    self.column += 1;
+                }
+            }
+            self.offset = offset;
+        }
+        Place {
+            file: Rc::clone(file),
+            line: self.line,
+            column: self.column,
+        }
+    }
+}

@@ -1,0 +1,206 @@
+//! Numbers of colours, spectra and pictures, against Mitsuba 3.9.1: `llvm_ad_mono` for luminance, `scalar_rgb` for channels.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use common::{assert_close, folder, read_in};
+use etendue_import::Color;
+use etendue_world::{Light, Material, Texture};
+use glam::DVec2;
+use std::path::Path;
+
+const ALL: [Color; 4] = [Color::Luminance, Color::Red, Color::Green, Color::Blue];
+
+fn reflectance(property: &str, folder: &Path, color: Color) -> Texture {
+    let inside = format!("<shape type=\"sphere\"><bsdf type=\"diffuse\">{property}</bsdf></shape>");
+    let mut world = read_in(&inside, folder, color).unwrap().world;
+    match world.materials.remove(0) {
+        Material::Diffuse { reflectance } => reflectance,
+        other => panic!("{other:?}"),
+    }
+}
+
+fn radiance(property: &str, color: Color) -> f64 {
+    let inside = format!("<emitter type=\"constant\">{property}</emitter>");
+    let files = folder(&[]);
+    let world = read_in(&inside, files.path(), color).unwrap().world;
+    match world.lights[0] {
+        Light::Constant { radiance } => radiance,
+        ref other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn colours_become_one_number() {
+    let rgb = "<rgb name=\"radiance\" value=\"0.2, 0.5 0.9\"/>";
+    assert_close(
+        &ALL.map(|c| radiance(rgb, c)),
+        &[0.465_066, 0.2, 0.5, 0.9],
+        5e-7,
+    );
+    let grey = "<rgb name=\"radiance\" value=\"3\"/>";
+    assert_close(&ALL.map(|c| radiance(grey, c)), &[3.0; 4], 1e-12);
+    let number = "<float name=\"radiance\" value=\"3\"/>";
+    assert_close(&ALL.map(|c| radiance(number, c)), &[3.0; 4], 0.0);
+    // A spectrum of equal power is no grey for a light in sRGB.
+    let uniform = "<spectrum name=\"radiance\" value=\"2\"/>";
+    let expected = [2.0, 2.409_59, 1.896_58, 1.817_83];
+    assert_close(&ALL.map(|c| radiance(uniform, c)), &expected, 1e-5);
+    assert_close(&[radiance("", Color::Red)], &[1.0], 0.0);
+    let d65 =
+        "<spectrum name=\"radiance\" type=\"d65\"><float name=\"scale\" value=\"2\"/></spectrum>";
+    assert_close(&[radiance(d65, Color::Luminance)], &[2.0], 0.0);
+}
+
+#[test]
+fn spectra_are_weighed_as_in_mitsuba() {
+    let files = folder(&[]);
+    for (samples, reflected, emitted) in [
+        ("400:0.3, 500:0.5, 600:0.1", 0.279_840_65, 0.263_115_05),
+        (
+            "400:0.3 500:0.5 650:0.1 700:0.5",
+            0.342_733_29,
+            0.335_311_65,
+        ),
+        ("300:0.5, 900:0.5", 0.499_446_12, 0.499_999_79),
+        ("450:0.5, 500:0.5", 0.047_989_49, 0.042_399_55),
+        ("400:0, 500:8, 600:15.6, 700:18.4", 1.0, 12.367_386),
+    ] {
+        let spectrum = |name: &str| format!("<spectrum name=\"{name}\" value=\"{samples}\"/>");
+        let found = reflectance(&spectrum("reflectance"), files.path(), Color::Luminance);
+        assert_close(&[found.largest()], &[reflected], 3e-7);
+        let found = radiance(&spectrum("radiance"), Color::Luminance);
+        assert_close(&[found], &[emitted], 3e-6);
+    }
+    let spectrum = "<spectrum name=\"reflectance\" value=\"400:0.3, 500:0.5, 650:0.1, 700:0.5\"/>";
+    let found = ALL.map(|c| reflectance(spectrum, files.path(), c).largest());
+    assert_close(&found[1..], &[0.119_805, 0.401_9, 0.413_351], 1e-6);
+    let spectrum = "<spectrum name=\"radiance\" value=\"400:0.3, 500:0.5, 650:0.1, 700:0.5\"/>";
+    let found = ALL.map(|c| radiance(spectrum, c));
+    assert_close(&found[1..], &[0.169_93, 0.380_616, 0.373_723], 1e-6);
+}
+
+#[test]
+fn spectra_are_read_from_files() {
+    let files = folder(&[("s.spd", b"# nm value\n300 0.5\n900 0.5 # end\n")]);
+    let file = "<spectrum name=\"reflectance\" filename=\"s.spd\"/>";
+    let found = reflectance(file, files.path(), Color::Luminance);
+    assert_close(&[found.largest()], &[0.499_446_12], 3e-7);
+    for (value, what) in [
+        ("500:1, 400:1", "not in rising order"),
+        ("500:1", "at least two"),
+        ("0.1, 0.2", "no pair"),
+    ] {
+        let spectrum = format!(
+            "<emitter type=\"constant\"><spectrum name=\"radiance\" value=\"{value}\"/></emitter>"
+        );
+        assert!(common::causes(&spectrum)[0].contains(what));
+    }
+    let black = "<emitter type=\"constant\"><spectrum name=\"radiance\" type=\"blackbody\"><float name=\"temperature\" value=\"3000\"/></spectrum></emitter>";
+    assert!(common::causes(black)[0].contains("texture `blackbody` is not supported"));
+}
+
+#[test]
+fn conductors_have_indices_of_refraction() {
+    for (inside, expected) in [
+        (
+            "<string name=\"material\" value=\"Au\"/>",
+            Some([0.402_895, 2.668_84]),
+        ),
+        (
+            "<string name=\"material\" value=\"Al\"/>",
+            Some([1.019_75, 6.794_42]),
+        ),
+        (
+            "<rgb name=\"eta\" value=\"0.2 0.4 0.8\"/><rgb name=\"k\" value=\"3 2 1.5\"/>",
+            Some([0.386_333, 2.176_59]),
+        ),
+        (
+            "<spectrum name=\"eta\" value=\"400:0.3, 500:0.5, 600:0.1\"/>",
+            Some([0.279_841, 1.0]),
+        ),
+        ("<string name=\"material\" value=\"none\"/>", None),
+        ("", None),
+    ] {
+        let bsdf =
+            format!("<shape type=\"sphere\"><bsdf type=\"conductor\">{inside}</bsdf></shape>");
+        let world = common::world(&bsdf);
+        let Material::Conductor(metal) = &world.materials[0] else {
+            panic!("{:?}", world.materials);
+        };
+        assert_eq!(metal.index.is_some(), expected.is_some());
+        assert_close(
+            &metal.index.unwrap_or_default(),
+            &expected.unwrap_or_default(),
+            1e-5,
+        );
+    }
+    let both = "<shape type=\"sphere\"><bsdf type=\"conductor\"><string name=\"material\" value=\"Au\"/><float name=\"eta\" value=\"1\"/></bsdf></shape>";
+    assert!(common::causes(both)[0].contains("material beside eta or k"));
+}
+
+/// A PNG picture of 2 × 1 pixels.
+fn png() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 2, 1);
+    encoder.set_color(png::ColorType::Rgb);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[80, 175, 80, 0, 255, 10]).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+fn bitmap(file: &str, inside: &str) -> String {
+    format!(
+        "<texture name=\"reflectance\" type=\"bitmap\"><string name=\"filename\" value=\"{file}\"/><string name=\"filter_type\" value=\"nearest\"/>{inside}</texture>"
+    )
+}
+
+#[test]
+fn levels_of_pictures_are_linear_unless_raw() {
+    let picture = png();
+    let files = folder(&[("a.png", &picture)]);
+    let linear = [0.080_219_9, 0.428_691, 0.080_219_9];
+    let luminance = 0.212_671 * linear[0] + 0.715_160 * linear[1] + 0.072_169 * linear[2];
+    let at = |inside: &str, u: f64| {
+        ALL.map(|c| {
+            reflectance(&bitmap("a.png", inside), files.path(), c).value(DVec2::new(u, 0.5))
+        })
+    };
+    assert_close(
+        &at("", 0.25),
+        &[luminance, linear[0], linear[1], linear[2]],
+        1e-6,
+    );
+    let raw = "<boolean name=\"raw\" value=\"true\"/>";
+    let levels = [80.0 / 255.0, 175.0 / 255.0, 80.0 / 255.0];
+    assert_close(&at(raw, 0.25)[1..], &levels, 1e-12);
+    let moved = "<transform name=\"to_uv\"><translate x=\"0.5\"/></transform>";
+    assert_close(&at(moved, 0.25)[1..], &at("", 0.75)[1..], 0.0);
+    let clamped = "<string name=\"wrap_mode\" value=\"clamp\"/>";
+    assert_close(&at(clamped, 1.25), &at("", 0.75), 0.0);
+    assert_close(&at("", 1.25), &at("", 0.25), 0.0);
+}
+
+#[test]
+fn jpeg_and_radiance_pictures_are_read() {
+    let hdr = [
+        b"#?RADIANCE\nFORMAT=32-bit_rle_rgbe\n\n-Y 1 +X 2\n".as_slice(),
+        &[128, 64, 0, 129, 0, 0, 0, 0],
+    ]
+    .concat();
+    let files = folder(&[("a.hdr", &hdr), ("b.jpg", include_bytes!("data/two.jpg"))]);
+    let at = |file: &str, inside: &str, u: f64, color| {
+        reflectance(&bitmap(file, inside), files.path(), color).value(DVec2::new(u, 0.5))
+    };
+    let found = ALL.map(|c| at("a.hdr", "", 0.25, c));
+    assert_close(&found[1..], &[1.0, 0.5, 0.0], 0.0);
+    assert_close(&[at("a.hdr", "", 0.75, Color::Red)], &[0.0], 0.0);
+    // What Mitsuba decodes; decoders may differ by one level.
+    let raw = "<boolean name=\"raw\" value=\"true\"/>";
+    for (u, levels) in [(0.25, [200.0, 100.0, 50.0]), (0.75, [30.0, 60.0, 90.0])] {
+        let found = ALL.map(|c| at("b.jpg", raw, u, c) * 255.0);
+        assert_close(&found[1..], &levels, 1.01);
+    }
+}

@@ -1,0 +1,88 @@
+//! Lights that are no surfaces.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use common::{assert_close, causes, folder, read_in, world};
+use etendue_import::Color;
+use etendue_world::Light;
+
+fn light(plugin: &str, inside: &str) -> Light {
+    world(&format!("<emitter type=\"{plugin}\">{inside}</emitter>"))
+        .lights
+        .remove(0)
+}
+
+#[test]
+fn points_have_a_place() {
+    let place = |inside: &str| match light("point", inside) {
+        Light::Point { position, .. } => position.to_array(),
+        other => panic!("{other:?}"),
+    };
+    let moved = "<transform name=\"to_world\"><translate x=\"4\"/></transform>";
+    let named = "<point name=\"position\" x=\"1\" y=\"2\" z=\"3\"/>";
+    assert_close(&place(moved), &[4.0, 0.0, 0.0], 0.0);
+    assert_close(&place(named), &[1.0, 2.0, 3.0], 0.0);
+    let both = format!("<emitter type=\"point\">{moved}{named}</emitter>");
+    assert!(causes(&both)[0].contains("position beside to_world"));
+}
+
+#[test]
+fn directional_light_goes_along_z() {
+    let way = |inside: &str| match light("directional", inside) {
+        Light::Directional {
+            direction,
+            irradiance,
+        } => {
+            assert_close(&[irradiance], &[1.0], 0.0);
+            direction.to_array()
+        }
+        other => panic!("{other:?}"),
+    };
+    assert_close(&way(""), &[0.0, 0.0, 1.0], 0.0);
+    assert_close(
+        &way("<vector name=\"direction\" value=\"0, 0, -2\"/>"),
+        &[0.0, 0.0, -1.0],
+        0.0,
+    );
+    let turned = "<transform name=\"to_world\"><rotate y=\"1\" angle=\"90\"/></transform>";
+    assert_close(&way(turned), &[1.0, 0.0, 0.0], 1e-15);
+}
+
+#[test]
+fn spots_have_two_angles() {
+    let angles = |inside: &str| match light("spot", inside) {
+        Light::Spot { beam, cutoff, .. } => [beam.to_degrees(), cutoff.to_degrees()],
+        other => panic!("{other:?}"),
+    };
+    assert_close(&angles(""), &[15.0, 20.0], 1e-12);
+    assert_close(
+        &angles("<float name=\"cutoff_angle\" value=\"40\"/>"),
+        &[30.0, 40.0],
+        1e-12,
+    );
+    let wide = "<emitter type=\"spot\"><float name=\"beam_width\" value=\"20\"/></emitter>";
+    assert!(causes(wide)[0].contains("beam_width is 20"));
+    let texture =
+        "<emitter type=\"spot\"><texture name=\"texture\" type=\"checkerboard\"/></emitter>";
+    assert!(causes(texture)[0].contains("texture of a spot"));
+}
+
+#[test]
+fn skies_keep_their_pixels_and_turn() {
+    let hdr = [
+        b"#?RADIANCE\n\n-Y 1 +X 2\n".as_slice(),
+        &[128, 128, 128, 129, 128, 128, 128, 130],
+    ]
+    .concat();
+    let files = folder(&[("a.hdr", &hdr)]);
+    let inside = "<emitter type=\"envmap\"><string name=\"filename\" value=\"a.hdr\"/><float name=\"scale\" value=\"3\"/>\
+                  <transform name=\"to_world\"><rotate x=\"1\" angle=\"90\"/></transform></emitter>";
+    let world = read_in(inside, files.path(), Color::Green).unwrap().world;
+    let Light::Sky(sky) = &world.lights[0] else {
+        panic!("{:?}", world.lights);
+    };
+    assert_close(sky.radiance.values(), &[3.0, 6.0], 1e-12);
+    assert_close(&(sky.to_world.y_axis).to_array(), &[0.0, 0.0, 1.0], 1e-15);
+}

@@ -1,0 +1,120 @@
+//! Damaged scenes: every one is read or refused, none panics.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use common::folder;
+use etendue_import::{Options, import, import_mitsuba};
+use std::fs;
+
+const SCENE: &str = r#"<scene version="2.1.0"><default name="n" value="3"/><path value="."/><include filename="part.xml"/>
+<integrator type="path"><integer name="max_depth" value="$n"/></integrator>
+<sensor type="thinlens"><float name="fov" value="40"/><float name="aperture_radius" value="0.1"/>
+<transform name="to_world"><lookat origin="1,2,3" target="0,0,0" up="0,0,1"/></transform>
+<film type="hdrfilm"><integer name="width" value="4"/><rfilter type="box"/></film></sensor>
+<bsdf type="twosided" id="m"><bsdf type="roughconductor"><string name="material" value="Au"/><float name="alpha" value="0.1"/></bsdf></bsdf>
+<shape type="obj"><string name="filename" value="a.obj"/><ref id="m"/><transform name="to_world"><rotate x="1" angle="30"/><scale value="2"/></transform></shape>
+<shape type="ply"><string name="filename" value="a.ply"/><emitter type="area"><spectrum name="radiance" value="400:1, 500:2"/></emitter></shape>
+<shape type="shapegroup" id="g"><shape type="cylinder"><point name="p1" x="0" y="1" z="2"/></shape></shape><shape type="instance"><ref id="g"/></shape>
+<emitter type="envmap"><string name="filename" value="a.hdr"/></emitter><alias id="m" as="k"/></scene>"#;
+const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 0\nvn 0 0 1\nf 1/1/1 2/2/1 3/1/1\nf -1//1 1 2\n";
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nproperty float u\nproperty float v\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0 0 0\n1 0 0 1 0\n0 1 0 0 1\n3 0 1 2\n";
+const HDR: &str = "#?RADIANCE\n\n-Y 2 +X 1\nabcdabcd";
+const PART: &str =
+    "<shape type=\"sphere\" version=\"3.0.0\"><float name=\"radius\" value=\"2\"/></shape>";
+
+/// The same numbers each time (Marsaglia 2003).
+fn next(state: &mut u64) -> usize {
+    *state ^= *state << 13;
+    *state ^= *state >> 7;
+    *state ^= *state << 17;
+    usize::try_from(*state >> 40).unwrap()
+}
+
+#[test]
+fn no_byte_makes_it_panic() {
+    let names = ["a.xml", "a.obj", "a.ply", "a.hdr", "part.xml"];
+    let texts = [SCENE, OBJ, PLY, HDR, PART];
+    let files: Vec<_> = names.into_iter().zip(texts.map(str::as_bytes)).collect();
+    let folder = folder(&files);
+    let main = folder.path().join("a.xml");
+    assert_eq!(
+        import(&main, &Options::default())
+            .unwrap()
+            .world
+            .shapes
+            .len(),
+        4
+    );
+    let mut state = 88_172_645_463_325_252;
+    let (mut read, mut refused) = (0, 0);
+    for round in 0..3000 {
+        // Every second time the scene, else one of its files.
+        let which = if round % 2 == 0 {
+            0
+        } else {
+            1 + next(&mut state) % 4
+        };
+        let (name, sound) = files[which];
+        let mut bytes = sound.to_vec();
+        for _ in 0..=next(&mut state) % 2 {
+            let at = next(&mut state) % bytes.len();
+            match next(&mut state) % 4 {
+                0 => bytes[at] = b"0123456789-.e\"<>/$= \n"[next(&mut state) % 21],
+                1 => bytes[at] ^= 1 << (next(&mut state) % 8),
+                2 => drop(bytes.remove(at)),
+                _ => bytes.truncate(at.max(1)),
+            }
+        }
+        fs::write(folder.path().join(name), &bytes).unwrap();
+        match import(&main, &Options::default()) {
+            Ok(_) => read += 1,
+            Err(causes) => {
+                assert!(!causes.causes.is_empty() && !causes.to_string().is_empty());
+                refused += 1;
+            }
+        }
+        fs::write(folder.path().join(name), sound).unwrap();
+    }
+    // Both happen, so both are tested.
+    assert!(
+        read > 200 && refused > 200,
+        "{read} read, {refused} refused"
+    );
+}
+
+#[test]
+fn deep_and_wide_scenes_end() {
+    let folder = folder(&[]);
+    let refused = |text: &str| {
+        let read = import_mitsuba(text, folder.path(), &Options::default());
+        read.map(|read| read.notes.len()).unwrap_err().causes
+    };
+    let deep = "<bsdf type=\"twosided\">".repeat(100_000) + &"</bsdf>".repeat(100_000);
+    let causes = refused(&format!("<scene version=\"3.0.0\">{deep}</scene>"));
+    assert!(causes[0].message.contains("elements"), "{:?}", causes[0]);
+    // References that double what is below them, again and again.
+    let mut doubled = String::from("<scene version=\"3.0.0\"><bsdf type=\"diffuse\" id=\"b0\"/>");
+    for i in 1..64 {
+        let j = i - 1;
+        doubled += &format!(
+            "<bsdf type=\"twosided\" id=\"b{i}\"><ref id=\"b{j}\"/><ref id=\"b{j}\"/></bsdf>"
+        );
+    }
+    doubled += "<shape type=\"sphere\"><ref id=\"b63\"/></shape></scene>";
+    assert!(refused(&doubled)[0].message.contains("in one another"));
+    // Groups and instances multiply.
+    let group = "<shape type=\"sphere\"/>".repeat(2000);
+    let instances = "<shape type=\"instance\"><ref id=\"g\"/></shape>".repeat(2000);
+    let many = format!(
+        "<scene version=\"3.0.0\"><shape type=\"shapegroup\" id=\"g\">{group}</shape>{instances}</scene>"
+    );
+    let causes = refused(&many);
+    assert_eq!(causes.len(), 1, "{causes:?}");
+    assert!(causes[0].message.contains("shapes, with all instances"));
+    let wrong = "<gizmo/>".repeat(5000);
+    let causes = refused(&format!("<scene version=\"3.0.0\">{wrong}</scene>"));
+    assert_eq!(causes.len(), 1001);
+    assert!(causes[1000].message.contains("4000 causes more"));
+}

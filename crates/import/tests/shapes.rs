@@ -1,0 +1,308 @@
+//! Shapes: placement, fronts, normals and texture coordinates, against Mitsuba 3.9.1.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use common::{assert_close, folder, read_in, world};
+use etendue_import::Color;
+use etendue_world::{Geometry, Material, Shape, Texture, Triangles, World};
+use flate2::{Compression, write::ZlibEncoder};
+use glam::{DAffine3, DMat3, DVec3};
+use std::io::Write;
+use std::path::Path;
+use std::sync::Arc;
+
+const MIRROR: &str = "<transform name=\"to_world\"><scale x=\"-1\"/></transform>";
+/// Two triangles that meet at a right angle, along the Y axis.
+const BEND: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 2 3\nf 1 3 4\n";
+const UVS: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n";
+const BACK: &[u8] = b"v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 -1\nf 1//1 2//1 3//1\n";
+
+fn meshes() -> tempfile::TempDir {
+    let ply = b"ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n\
+        property float nx\nproperty float ny\nproperty float nz\nproperty float s\nproperty float t\n\
+        element face 1\nproperty list uchar int vertex_indices\nend_header\n\
+        0 0 0 0 0 1 0 0\n1 0 0 0 0 1 1 0\n0 1 0 0 0 1 0 0.25\n3 0 1 2\n";
+    folder(&[
+        ("bend.obj", BEND),
+        ("uvs.obj", UVS),
+        ("back.obj", BACK),
+        ("a.ply", ply),
+    ])
+}
+
+fn read(inside: &str, folder: &Path) -> World {
+    read_in(inside, folder, Color::Luminance).unwrap().world
+}
+
+fn file(plugin: &str, name: &str, inside: &str) -> String {
+    format!("<shape type=\"{plugin}\"><string name=\"filename\" value=\"{name}\"/>{inside}</shape>")
+}
+
+fn mesh(shape: &Shape) -> &Arc<Triangles> {
+    match &shape.geometry {
+        Geometry::Mesh(mesh) => mesh,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The normal that a vertex is shaded with, in the world.
+fn shading_normal(shape: &Shape, vertex: usize) -> [f64; 3] {
+    let normal = mesh(shape).normals().unwrap()[vertex];
+    turned(shape, normal)
+}
+
+/// A normal of a shape in the world, on its front.
+fn turned(shape: &Shape, normal: DVec3) -> [f64; 3] {
+    let sign = if shape.is_flipped { -1.0 } else { 1.0 };
+    let map = shape.to_world.matrix3.inverse().transpose();
+    ((map * normal).normalize() * sign).to_array()
+}
+
+#[test]
+fn fronts_of_simple_shapes() {
+    for (plugin, inside, at, front) in [
+        ("rectangle", "", DVec3::Z, DVec3::Z),
+        ("rectangle", MIRROR, DVec3::Z, DVec3::Z),
+        (
+            "rectangle",
+            "<boolean name=\"flip_normals\" value=\"true\"/>",
+            DVec3::Z,
+            DVec3::NEG_Z,
+        ),
+        ("disk", MIRROR, DVec3::Z, DVec3::Z),
+        ("sphere", "", DVec3::Z, DVec3::Z),
+        // Spheres alone are turned inside out.
+        ("sphere", MIRROR, DVec3::Z, DVec3::NEG_Z),
+        ("cylinder", MIRROR, DVec3::Y, DVec3::Y),
+        ("cube", MIRROR, DVec3::Z, DVec3::Z),
+    ] {
+        let world = world(&format!("<shape type=\"{plugin}\">{inside}</shape>"));
+        let found = turned(&world.shapes[0], at);
+        assert_close(&found, &front.to_array(), 0.0);
+    }
+}
+
+#[test]
+fn spheres_and_cylinders_are_placed() {
+    let sphere = "<shape type=\"sphere\"><point name=\"center\" x=\"1\" y=\"2\" z=\"3\"/><float name=\"radius\" value=\"2\"/>\
+                  <transform name=\"to_world\"><scale value=\"3\"/></transform></shape>";
+    let map = world(sphere).shapes[0].to_world;
+    let expected = DAffine3::from_mat3_translation(
+        DMat3::from_diagonal(DVec3::splat(6.0)),
+        DVec3::new(3.0, 6.0, 9.0),
+    );
+    assert!(map.abs_diff_eq(expected, 0.0), "{map}");
+    let cylinder = "<shape type=\"cylinder\"><point name=\"p0\" value=\"1,2,3\"/><point name=\"p1\" value=\"2,4,3\"/><float name=\"radius\" value=\"0.5\"/></shape>";
+    let map = world(cylinder).shapes[0].to_world;
+    let expected = [
+        0.4,
+        -0.2,
+        -0.223_606_8,
+        -0.2,
+        0.1,
+        -0.447_213_6,
+        1.0,
+        2.0,
+        0.0,
+    ];
+    assert_close(&map.matrix3.to_cols_array(), &expected, 1e-7);
+    for (shape, inside) in [
+        ("sphere", "<scale x=\"2\"/>"),
+        ("cylinder", "<scale x=\"2\"/>"),
+        ("rectangle", "<scale x=\"0\"/>"),
+    ] {
+        let inside = format!(
+            "<shape type=\"{shape}\"><transform name=\"to_world\">{inside}</transform></shape>"
+        );
+        assert_eq!(common::causes(&inside).len(), 1);
+    }
+    world(
+        "<shape type=\"cylinder\"><transform name=\"to_world\"><scale value=\"2 2 5\"/></transform></shape>",
+    );
+}
+
+#[test]
+fn meshes_without_normals_get_smooth_ones() {
+    let files = meshes();
+    let at = |inside: &str| {
+        let world = read(&file("obj", "bend.obj", inside), files.path());
+        shading_normal(&world.shapes[0], 0)
+    };
+    let half = 0.5_f64.sqrt();
+    assert_close(&at(""), &[half, 0.0, half], 1e-12);
+    // Normals are made of the placed triangles: the mirror turns them over, as it does in Mitsuba.
+    assert_close(&at(MIRROR), &[half, 0.0, -half], 1e-12);
+    let stretched = "<transform name=\"to_world\"><scale z=\"3\"/></transform>";
+    assert_close(&at(stretched), &[half, 0.0, half], 1e-12);
+    let flipped = "<boolean name=\"flip_normals\" value=\"true\"/>";
+    assert_close(&at(flipped), &[-half, 0.0, -half], 1e-12);
+    let flat = "<boolean name=\"face_normals\" value=\"true\"/>";
+    let world = read(&file("obj", "bend.obj", flat), files.path());
+    assert!(mesh(&world.shapes[0]).normals().is_none());
+    assert_close(&turned(&world.shapes[0], DVec3::Z), &[0.0, 0.0, 1.0], 0.0);
+}
+
+#[test]
+fn normals_of_the_file_say_where_the_front_is() {
+    let files = meshes();
+    let world = read(&file("obj", "back.obj", ""), files.path());
+    let shape = &world.shapes[0];
+    assert_close(&shading_normal(shape, 0), &[0.0, 0.0, -1.0], 0.0);
+    let mesh = mesh(shape);
+    let [a, b, c] = mesh.corners()[0].map(|i| mesh.vertices()[i as usize]);
+    assert!((b - a).cross(c - a).z < 0.0);
+    let mirrored = read(&file("obj", "back.obj", MIRROR), files.path());
+    assert_close(
+        &shading_normal(&mirrored.shapes[0], 0),
+        &[0.0, 0.0, -1.0],
+        0.0,
+    );
+}
+
+#[test]
+fn textures_of_obj_files_are_turned_over() {
+    let files = meshes();
+    let last = |plugin: &str, name: &str, inside: &str| {
+        let world = read(&file(plugin, name, inside), files.path());
+        mesh(&world.shapes[0])
+            .uvs()
+            .unwrap()
+            .last()
+            .unwrap()
+            .to_array()
+    };
+    let flip = |on: bool| format!("<boolean name=\"flip_tex_coords\" value=\"{on}\"/>");
+    assert_close(&last("obj", "uvs.obj", ""), &[0.0, 0.0], 0.0);
+    assert_close(&last("obj", "uvs.obj", &flip(false)), &[0.0, 1.0], 0.0);
+    assert_close(&last("ply", "a.ply", ""), &[0.0, 0.25], 0.0);
+    assert_close(&last("ply", "a.ply", &flip(true)), &[0.0, 0.75], 0.0);
+}
+
+#[test]
+fn instances_share_triangles() {
+    let files = meshes();
+    let group = file(
+        "ply",
+        "a.ply",
+        "<transform name=\"to_world\"><translate x=\"1\"/></transform>",
+    );
+    let instance = |x: i32| {
+        format!(
+            "<shape type=\"instance\"><ref id=\"g\"/><transform name=\"to_world\"><scale value=\"{x}\"/></transform></shape>"
+        )
+    };
+    let inside = format!(
+        "<shape type=\"shapegroup\" id=\"g\">{group}</shape>{}{}",
+        instance(2),
+        instance(-3)
+    );
+    let world = read(&inside, files.path());
+    let [first, second] = &world.shapes[..] else {
+        panic!("{:?}", world.shapes);
+    };
+    assert!(Arc::ptr_eq(mesh(first), mesh(second)));
+    let places = [first, second].map(|s| s.to_world.translation.x);
+    assert_close(&places, &[2.0, -3.0], 0.0);
+    let shining = "<shape type=\"shapegroup\" id=\"g\"><shape type=\"sphere\"><emitter type=\"area\"/></shape></shape><shape type=\"instance\"><ref id=\"g\"/></shape>";
+    assert!(common::causes(shining)[0].contains("an emitter within a shapegroup"));
+}
+
+#[test]
+fn shapes_without_a_material_are_grey_or_black() {
+    let inside = "<shape type=\"sphere\"/><shape type=\"sphere\"><emitter type=\"area\"><rgb name=\"radiance\" value=\"2\"/></emitter></shape>";
+    let world = world(inside);
+    let reflectances = world
+        .shapes
+        .iter()
+        .map(|shape| match &world.materials[shape.material] {
+            Material::Diffuse { reflectance } => reflectance.largest(),
+            other => panic!("{other:?}"),
+        });
+    assert_close(&reflectances.collect::<Vec<f64>>(), &[0.5, 0.0], 0.0);
+    let emission = world.shapes[1].emission.as_ref().map(Texture::largest);
+    assert_close(&[emission.unwrap()], &[2.0], 1e-12);
+    assert!(world.shapes[0].emission.is_none());
+}
+
+/// A mesh file of version 4 with two triangles in two meshes; the second is 1 higher.
+fn serialized() -> Vec<u8> {
+    let mut file = Vec::new();
+    let mut offsets = Vec::new();
+    for z in [0.0_f32, 1.0] {
+        offsets.push(file.len() as u64);
+        file.extend([0x1c, 0x04, 0x04, 0x00]);
+        let mut packed = ZlibEncoder::new(Vec::new(), Compression::fast());
+        let mut put = |bytes: &[u8]| packed.write_all(bytes).unwrap();
+        put(&0x1003_u32.to_le_bytes());
+        put(b"name\0");
+        put(&3_u64.to_le_bytes());
+        put(&1_u64.to_le_bytes());
+        for value in [0.0, 0.0, z, 1.0, 0.0, z, 0.0, 1.0, z] {
+            put(&value.to_le_bytes());
+        }
+        for value in [0.0, 0.0, 2.0_f32].repeat(3) {
+            put(&value.to_le_bytes());
+        }
+        for value in [0.0, 0.0, 1.0, 0.0, 0.0, 0.75_f32] {
+            put(&value.to_le_bytes());
+        }
+        for corner in [0_u32, 1, 2] {
+            put(&corner.to_le_bytes());
+        }
+        file.extend(packed.finish().unwrap());
+    }
+    for offset in offsets {
+        file.extend(offset.to_le_bytes());
+    }
+    file.extend(2_u32.to_le_bytes());
+    file
+}
+
+#[test]
+fn serialized_files_hold_several_meshes() {
+    let bytes = serialized();
+    let files = folder(&[("a.serialized", &bytes)]);
+    let shape = |i: usize| {
+        file(
+            "serialized",
+            "a.serialized",
+            &format!("<integer name=\"shape_index\" value=\"{i}\"/>"),
+        )
+    };
+    let world = read(&(shape(0) + &shape(1)), files.path());
+    let heights = world.shapes.iter().map(|s| mesh(s).vertices()[2].z);
+    assert_close(&heights.collect::<Vec<f64>>(), &[0.0, 1.0], 0.0);
+    assert_close(
+        &mesh(&world.shapes[1]).uvs().unwrap()[2].to_array(),
+        &[0.0, 0.75],
+        0.0,
+    );
+    assert_close(&shading_normal(&world.shapes[1], 1), &[0.0, 0.0, 1.0], 0.0);
+    let causes = read_in(&shape(2), files.path(), Color::Luminance).unwrap_err();
+    assert!(
+        causes[0].contains("has 2 meshes; shape_index 2 is none of them"),
+        "{causes:?}"
+    );
+}
+
+#[test]
+fn mesh_files_that_are_damaged_are_causes() {
+    let files = folder(&[
+        ("a.obj", b"v 0 0 0\nf 1 2 3\n"),
+        ("b.obj", b"v 0 0 0\nv 0 0 0\nv 0 0 0\nf 1 2 3\n"),
+    ]);
+    let inside = file("obj", "a.obj", "") + &file("obj", "b.obj", "") + &file("ply", "a.obj", "");
+    let causes = read_in(&inside, files.path(), Color::Luminance).unwrap_err();
+    assert_eq!(causes.len(), 3, "{causes:#?}");
+    assert!(
+        causes[0].contains("line 2, face 1, corner 2"),
+        "{causes:#?}"
+    );
+    assert!(
+        causes[1].contains("no triangle with an area"),
+        "{causes:#?}"
+    );
+    assert!(causes[2].contains("has extension `obj`"), "{causes:#?}");
+}

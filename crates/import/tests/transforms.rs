@@ -1,0 +1,115 @@
+//! Transforms, against matrices that Mitsuba 3.9.1 prints.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+
+use common::{assert_close, causes, world};
+
+/// Rows of the matrix of a rectangle's `to_world`.
+fn rows(steps: &str) -> Vec<f64> {
+    let shape = format!(
+        "<shape type=\"rectangle\"><transform name=\"to_world\">{steps}</transform></shape>"
+    );
+    let map = world(&shape).shapes[0].to_world;
+    let rows = (0..3).flat_map(|i| {
+        let row = map.matrix3.row(i);
+        [row.x, row.y, row.z, map.translation[i]]
+    });
+    rows.collect()
+}
+
+#[test]
+fn later_steps_come_after_earlier_ones() {
+    let steps = "<translate x=\"1\"/><scale value=\"2\"/><rotate z=\"1\" angle=\"90\"/>";
+    let expected = [0.0, -2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 2.0, 0.0, 0.0, 2.0, 0.0];
+    assert_close(&rows(steps), &expected, 1e-15);
+}
+
+#[test]
+fn lookat_has_x_to_the_left() {
+    let steps = "<lookat origin=\"1, 2, 3\" target=\"0 0 0\" up=\"0, 0, 1\"/>";
+    let expected = [
+        0.894_427_2,
+        -0.358_568_55,
+        -0.267_261_24,
+        1.0,
+        -0.447_213_6,
+        -0.717_137_1,
+        -0.534_522_5,
+        2.0,
+        0.0,
+        0.597_614_3,
+        -0.801_783_7,
+        3.0,
+    ];
+    assert_close(&rows(steps), &expected, 1e-7);
+}
+
+#[test]
+fn lookat_finds_a_way_up() {
+    let steps = "<lookat origin=\"1,2,3\" target=\"4,4,4\"/>";
+    let expected = [
+        0.338_187, 0.492_719, 0.801_784, 1.0, -0.774_542, -0.338_187, 0.534_522, 2.0, 0.534_522,
+        -0.801_784, 0.267_261, 3.0,
+    ];
+    assert_close(&rows(steps), &expected, 1e-6);
+}
+
+#[test]
+fn matrices_are_written_row_by_row() {
+    let nine = "<matrix value=\"1 2 3, 4 5 6, 7 8 10\"/>";
+    let expected = [1.0, 2.0, 3.0, 0.0, 4.0, 5.0, 6.0, 0.0, 7.0, 8.0, 10.0, 0.0];
+    assert_close(&rows(nine), &expected, 0.0);
+    let all = "<matrix value=\"1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1\"/>";
+    let expected = [1.0, 0.0, 0.0, 5.0, 0.0, 1.0, 0.0, 6.0, 0.0, 0.0, 1.0, 7.0];
+    assert_close(&rows(all), &expected, 0.0);
+}
+
+#[test]
+fn axes_of_other_lengths_are_taken_as_they_are() {
+    let expected = [
+        1.0, 0.233_956, 0.642_788, 0.0, 0.233_956, 1.0, -0.642_788, 0.0, -0.642_788, 0.642_788,
+        0.766_044, 0.0,
+    ];
+    let step = "<rotate x=\"1\" y=\"1\" angle=\"40\"/>";
+    assert_close(&rows(step), &expected, 1e-6);
+    let shape = format!(
+        "<shape type=\"rectangle\"><transform name=\"to_world\">\n {step}</transform></shape>"
+    );
+    let notes = common::notes(&shape);
+    assert!(
+        notes[0].starts_with("text:3:2: an axis whose length is not 1"),
+        "{notes:?}"
+    );
+}
+
+#[test]
+fn unsound_steps_are_causes() {
+    for (step, what) in [
+        ("<rotate angle=\"3\"/>", "an axis of no length"),
+        ("<scale value=\"1\" x=\"2\"/>", "value beside x, y or z"),
+        ("<translate x=\"1.0f\"/>", "`1.0f` is no finite number"),
+        ("<translate x=\"nan\"/>", "`nan` is no finite number"),
+        ("<matrix value=\"1 2 3\"/>", "3 numbers"),
+        (
+            "<matrix value=\"1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1\"/>",
+            "last row",
+        ),
+        (
+            "<lookat origin=\"1,1,1\" target=\"1,1,1\"/>",
+            "no direction",
+        ),
+        ("<shear x=\"1\"/>", "no part of a transform"),
+    ] {
+        let shape = format!(
+            "<shape type=\"rectangle\"><transform name=\"to_world\">{step}</transform></shape>"
+        );
+        let found = causes(&shape);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(
+            found[0].starts_with("text:2:25: ") && found[0].contains(what),
+            "{found:?}"
+        );
+    }
+}

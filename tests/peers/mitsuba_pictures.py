@@ -1,0 +1,89 @@
+"""A scene of Mitsuba 3 as `etendue render` sees it and as Mitsuba does: a z-test for each pixel.
+
+usage: mitsuba_pictures.py ETENDUE SCENE.xml [--root DIR] [--samples N] [--depth N] [--out DIR]
+       e.g. mitsuba_pictures.py target/release/etendue cbox.xml --depth 1
+
+Both trace paths through at most 64 x 64 pixels, with a box for a filter, and count in one number: luminance (llvm_ad_mono). z is the difference over its
+standard error. A picture passes when no |z| is beyond what one in a hundred pictures reaches by chance (Sidak 1967), and the mean of z is
+within 3.3 standard errors of 0, so that many small differences are seen too. Exit code 1 says it does not.
+"""
+import argparse, json, math, pathlib, subprocess, sys
+import mitsuba as mi, numpy as np
+from statistics import NormalDist
+
+mi.set_variant("llvm_ad_mono")
+import drjit as dr
+
+SIDE = 64
+LEVEL = 0.01
+BLOCKS = 64    # a pixel's mean is tested, not its samples: sixteen means of them tell its error
+
+
+def size_of(scene):
+    """Pixels across and down: as many as fit into 64 x 64 and have the shape of the file's."""
+    w, h = (int(n) for n in scene.sensors()[0].film().size())
+    w, h = w // math.gcd(w, h), h // math.gcd(w, h)
+    return [n * max(1, SIDE // max(w, h)) for n in (w, h)]
+
+
+def ours(args, size, folder):
+    command = [args.etendue, "render", args.scene, "--size", f"{size[0]}x{size[1]}", "--samples", str(args.samples), "--out", folder, "--force", "--quiet"]
+    for name in ["root", "depth"]:
+        if getattr(args, name) is not None:
+            command += [f"--{name}", str(getattr(args, name))]
+    done = subprocess.run(command, capture_output=True, text=True)
+    if done.returncode:
+        sys.exit(done.stderr)
+    arrays = np.load(folder / "picture.npz")
+    return arrays["radiance"], arrays["error"], json.loads((folder / "picture.json").read_text())
+
+
+def theirs(args, scene, made):
+    depth = made["depth"]
+    integrator = mi.load_dict({"type": "path", "max_depth": -1 if depth is None else depth + 1, "rr_depth": 1000, "hide_emitters": made["hides_sources"]})
+    sensor = scene.sensors()[0]
+    w, h = made["size"]
+    means = []
+    for block in range(BLOCKS):
+        each = max(1, args.samples // BLOCKS)
+        sampler = mi.load_dict({"type": "independent"})
+        sampler.seed(block, w * h * each)
+        pixel = dr.arange(mi.UInt32, w * h * each) // each
+        place = mi.Point2f(pixel % w, pixel // w) + sampler.next_2d()
+        ray, weight = sensor.sample_ray_differential(0, sampler.next_1d(), place / mi.Point2f(w, h), sampler.next_2d())
+        radiance, _, _ = integrator.sample(scene, sampler, ray)
+        sums = dr.zeros(mi.Float, w * h)
+        dr.scatter_reduce(dr.ReduceOp.Add, sums, mi.Float((weight * radiance)[0]), pixel)
+        means.append(np.array(sums) / each)
+    means = np.array(means)
+    return means.mean(0).reshape(h, w), (means.std(0, ddof=1) / np.sqrt(BLOCKS)).reshape(h, w)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("etendue")
+    parser.add_argument("scene")
+    parser.add_argument("--root")
+    parser.add_argument("--samples", type=int, default=1024)
+    parser.add_argument("--depth", type=int)
+    parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/pictures"))
+    args = parser.parse_args()
+    folder = args.out / pathlib.Path(args.scene).stem
+    scene = mi.load_file(args.scene)
+    a, sa, made = ours(args, size_of(scene), folder)
+    b, sb = theirs(args, scene, made)
+    sigma = np.hypot(sa, sb)
+    same = np.isclose(a, b, rtol=1e-5, atol=1e-9 * b.mean())    # where neither is noisy Mitsuba's 32 bits are left, and it has no 10^-40
+    z = np.where(same, 0, (a - b) / np.where(sigma > 0, sigma, np.nan))
+    np.savez(folder / "compared.npz", ours=a, theirs=b, z=z)
+    lit = ~same
+    largest = NormalDist().inv_cdf(1 - (1 - (1 - LEVEL) ** (1 / max(1, lit.sum()))) / 2)
+    mean = z[lit].mean() * np.sqrt(lit.sum()) if lit.any() else 0.0
+    passes = bool(np.nanmax(np.abs(z)) < largest and abs(mean) < 3.3 and not np.isnan(z).any())
+    print(f"{pathlib.Path(args.scene).stem:45} depth {made['depth']}  mean {b.mean():9.5f}  off {(a - b).mean() / max(b.mean(), 1e-300):9.2e}"
+          f"  noise {np.sqrt((sigma**2).mean()) / max(b.mean(), 1e-300):8.2e}  max |z| {np.nanmax(np.abs(z)):5.2f} of {largest:.2f}"
+          f"  mean z {mean:5.2f}  rms z {np.sqrt(np.nanmean(z[lit]**2)) if lit.any() else 0:.3f}  {'pass' if passes else 'FAIL'}")
+    sys.exit(0 if passes else 1)
+
+
+main()
