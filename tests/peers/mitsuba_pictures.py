@@ -1,7 +1,7 @@
 """A scene of Mitsuba 3 as `etendue render` sees it and as Mitsuba does: a z-test for each pixel.
 
-usage: mitsuba_pictures.py ETENDUE SCENE.xml [--root DIR] [--samples N] [--depth N] [--out DIR]
-       e.g. mitsuba_pictures.py target/release/etendue cbox.xml --depth 1
+usage: mitsuba_pictures.py ETENDUE SCENE.xml [--root DIR] [--samples N] [--bounces N] [--out DIR]
+       e.g. mitsuba_pictures.py target/release/etendue cbox.xml --bounces 1
 
 Both trace paths through at most 64 x 64 pixels, with a box for a filter, and count in one number: luminance (llvm_ad_mono). z is the difference over its
 standard error. A picture passes when no |z| is beyond what one in a hundred pictures reaches by chance (Sidak 1967), and the mean of z is
@@ -28,7 +28,7 @@ def size_of(scene):
 
 def ours(args, size, folder):
     command = [args.etendue, "render", args.scene, "--size", f"{size[0]}x{size[1]}", "--samples", str(args.samples), "--out", folder, "--force", "--quiet"]
-    for name in ["root", "depth"]:
+    for name in ["root", "bounces"]:
         if getattr(args, name) is not None:
             command += [f"--{name}", str(getattr(args, name))]
     done = subprocess.run(command, capture_output=True, text=True)
@@ -65,7 +65,7 @@ def main():
     parser.add_argument("scene")
     parser.add_argument("--root")
     parser.add_argument("--samples", type=int, default=1024)
-    parser.add_argument("--depth", type=int)
+    parser.add_argument("--bounces", type=int)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/pictures"))
     args = parser.parse_args()
     folder = args.out / pathlib.Path(args.scene).stem

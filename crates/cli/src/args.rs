@@ -9,7 +9,7 @@ use std::time::Duration;
 
 mod world;
 
-pub(crate) use world::{CameraArgs, ImportArgs, RenderArgs, WorldArgs};
+pub(crate) use world::{CameraArgs, ImportArgs, ProbeArgs, RenderArgs, WorldArgs};
 
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]
@@ -61,6 +61,8 @@ pub(crate) enum Command {
     Import(ImportArgs),
     /// Render what a camera of such a scene sees, with errors: by paths that end at any light.
     Render(RenderArgs),
+    /// Measure the light field behind a pixel of such a scene, along the ray through it.
+    Probe(ProbeArgs),
     /// Print the JSON schema of scene files, or what it says as a page: each field with its range, default and an example.
     Schema(SchemaArgs),
 }

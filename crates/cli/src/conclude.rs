@@ -176,8 +176,14 @@ pub(crate) fn written(
 ) -> Result<Finished, Failure> {
     let each = case.predictions.iter().zip(planes);
     for ((prediction, plane), at) in each.zip(&case.scene.planes) {
-        arrays::write(&mut results, summary, plane)?;
-        pictures::plane(&mut results, summary, prediction, at, plane)?;
+        arrays::write(&mut results, summary.made_from(), plane)?;
+        pictures::plane(
+            &mut results,
+            &pictures::made_from(summary),
+            prediction,
+            at,
+            plane,
+        )?;
     }
     let path = pictures::path(&mut results, case, planes)?;
     let data = report::data(case, summary, planes, &path);

@@ -30,6 +30,7 @@ mod method;
 mod photons;
 mod pictures;
 mod predict;
+mod probe;
 mod progress;
 mod render;
 mod report;
@@ -84,6 +85,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Export(args) => export::export(&args),
         Command::Import(args) => world::report(&args),
         Command::Render(args) => render::render(&args),
+        Command::Probe(args) => probe::probe(&args),
         Command::Schema(args) => schema::schema(&args),
     });
     ended(outcome, false)

@@ -43,17 +43,17 @@ pub(crate) const NAMES: [&str; 6] = [
 /// The picture of the path, and what is behind it.
 pub(crate) const PATH_NAMES: [&str; 3] = ["path.png", "path.svg", "path.csv"];
 
-/// `primal` and `spectrum` of a plane.
+/// `primal` and `spectrum` of a plane; `made_from` says what from.
 pub(crate) fn plane(
     results: &mut Results,
-    summary: &Summary,
+    made_from: &str,
     prediction: &Prediction,
     at: &VirtualPlane,
     plane: &PlaneComparison,
 ) -> Result<(), Failure> {
     let words = Words::of(at);
     let name = &plane.report.name;
-    let note = format!("{}; {}", made_from(summary), verdict_line(plane));
+    let note = format!("{made_from}; {}", verdict_line(plane));
     let measured = &plane.projection.mean;
     let [x, u] = words.projection_axes(&measured.grid);
     let difference = z(
@@ -252,7 +252,7 @@ fn column<'a>(
 }
 
 /// What a picture was made from, in a line.
-fn made_from(summary: &Summary) -> String {
+pub(crate) fn made_from(summary: &Summary) -> String {
     format!(
         "{}, {} photons, seed {}",
         summary.scene,

@@ -43,6 +43,8 @@ pub(crate) const FIGURE: &str = "figure.json";
 pub(crate) const SWEEP: &str = "sweep.json";
 /// The index of a folder with a picture.
 pub(crate) const PICTURE: &str = "picture.json";
+/// The index of `etendue probe`.
+pub(crate) const PROBE: &str = "probe.json";
 /// Seconds of a comparison: beside the index, since they are never the same twice.
 pub(crate) const TIMING: &str = "timing.json";
 
@@ -254,6 +256,7 @@ impl Results {
             SWEEP,
             FIGURE,
             PICTURE,
+            PROBE,
         ]
         .into_iter();
         indices.find(|index| listed(&self.ready(index)).is_some())

@@ -10,8 +10,8 @@ use etendue_world::{Camera, Geometry, Light, Projection, World};
 /// Reads the scene named on the command line; causes for which it is refused come all together.
 pub(crate) fn load(args: &WorldArgs) -> Result<Imported, Failure> {
     let mut imported = import(&args.path, &args.options()).map_err(Failure::bad_input)?;
-    if args.depth.is_some() {
-        imported.world.depth = args.depth;
+    if args.bounces.is_some() {
+        imported.world.depth = args.bounces;
     }
     Ok(imported)
 }

@@ -192,16 +192,32 @@ impl Prediction {
         measurement: &Measurement,
         at: usize,
     ) -> Result<Self, TooFewBatches> {
+        let plane = &scene.planes[index];
+        Ok(Self {
+            steps: applicability.steps(scene, plane),
+            quadrature_error: scene.mesh_mismatch(plane),
+            cuts: cuts(scene, plane),
+            ..Self::measured(measurement, at)?
+        })
+    }
+
+    /// A plane of a measurement, to hold another, independent one against.
+    ///
+    /// # Errors
+    /// When it has too few batches.
+    pub fn measured(measurement: &Measurement, plane: usize) -> Result<Self, TooFewBatches> {
+        let batches = measurement.at_plane(plane);
         Ok(Self {
             class: Class::Reference,
-            slices: estimate::slices(measurement, at)?.mean,
-            quadrature_error: scene.mesh_mismatch(&scene.planes[index]),
-            replicates: measurement
-                .at_plane(at)
-                .map(|batch| batch.slices.clone())
-                .collect(),
-            projection: estimate::projection(measurement, at)?.mean,
-            ..Self::darkness(scene, &scene.planes[index], applicability)
+            steps: Vec::new(),
+            slices: estimate::slices(measurement, plane)?.mean,
+            quadrature_error: None,
+            first_order: None,
+            replicates: batches.map(|batch| batch.slices.clone()).collect(),
+            unblocked: 0.0,
+            projection: estimate::projection(measurement, plane)?.mean,
+            parameters: Vec::new(),
+            cuts: Vec::new(),
         })
     }
 }

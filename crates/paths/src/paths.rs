@@ -12,15 +12,15 @@ use glam::DVec3;
 #[derive(Debug)]
 pub struct Paths {
     pub(crate) space: Space,
-    lamps: Lamps,
+    pub(crate) lamps: Lamps,
     materials: Vec<Scatter>,
     of_shape: Vec<usize>,
-    depth: u32,
-    hides_sources: bool,
+    pub(crate) depth: u32,
+    pub(crate) hides_sources: bool,
 }
 
 /// From this surface on a path goes on only as often as it carries light.
-const ROULETTE: u32 = 6;
+pub(crate) const ROULETTE: u32 = 6;
 
 /// A path between hall of mirrors without an end is given up here; what it still carries is below rounding of a picture.
 const LONGEST: u32 = 10_000;
@@ -60,7 +60,7 @@ impl Paths {
             let Some(hit) = hit.filter(|_| met < self.depth) else {
                 break;
             };
-            let scatter = &self.materials[self.of_shape[hit.shape]];
+            let scatter = self.scatter(&hit);
             let wo = hit.frame.transpose() * -ray.along;
             if !scatter.is_smooth() {
                 sum += weight * self.looked_for(&hit, scatter, wo, numbers.draw());
@@ -82,6 +82,16 @@ impl Paths {
             last = bounce.density;
         }
         sum
+    }
+
+    /// The material of what is hit.
+    pub(crate) fn scatter(&self, hit: &Hit) -> &Scatter {
+        &self.materials[self.of_shape[hit.shape]]
+    }
+
+    /// Whether light comes from far away on all sides.
+    pub(crate) fn has_sky(&self) -> bool {
+        self.lamps.of_sky(DVec3::Z).next().is_some()
     }
 
     /// What lights send along a ray that meets them, weighted against looking for them.

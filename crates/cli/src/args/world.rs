@@ -1,6 +1,6 @@
 //! Arguments of commands that take scenes of other programs.
 
-use super::{ForceArgs, ThreadArgs, assignment};
+use super::{ForceArgs, ThreadArgs, assignment, whole_number};
 use clap::{Args, ValueEnum};
 use etendue_import::{Color, Options};
 use std::path::PathBuf;
@@ -25,7 +25,7 @@ pub(crate) struct WorldArgs {
 
     /// Most surfaces that light meets between a source and the camera, instead of the file's: 0 shows sources, 1 adds direct light
     #[arg(long, value_name = "N")]
-    pub(crate) depth: Option<u32>,
+    pub(crate) bounces: Option<u32>,
 }
 
 impl WorldArgs {
@@ -67,7 +67,7 @@ pub(crate) struct ImportArgs {
 #[derive(Debug, Args)]
 #[command(after_help = "Examples:
   etendue render cbox.xml
-  etendue render cbox.xml --size 64x64 --samples 1024 --depth 1 --out out/direct
+  etendue render cbox.xml --size 64x64 --samples 1024 --bounces 1 --out out/direct
 
 Leaves in its folder
   picture.exr    radiance and its standard error, as two parts of one channel Y
@@ -102,6 +102,73 @@ pub(crate) struct RenderArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue probe cbox.xml --pixel 128,200
+  etendue probe cbox.xml --pixel 128,200 --depth 2 --window 8 --rays 2^22
+
+Follows the ray through a pixel from the camera to the surface it meets, and on as a mirror would send it. At the camera, where light
+leaves each surface and where it arrives there, the light field is measured: by rays traced back, and by photons from the lights. The
+verdict is theirs against each other, so a sky or a mirror that photons cannot connect to leaves it undecided.
+Leaves in its folder what `run` does for each plane, and probe.json. Exit codes are those of run.")]
+pub(crate) struct ProbeArgs {
+    #[command(flatten)]
+    pub(crate) scene: WorldArgs,
+
+    #[command(flatten)]
+    pub(crate) camera: CameraArgs,
+
+    /// Column and row of the pixel, from 0 at the top left
+    #[arg(long, value_name = "X,Y", value_parser = pixel)]
+    pub(crate) pixel: [usize; 2],
+
+    /// Most surfaces along the ray
+    #[arg(long = "depth", value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=16))]
+    pub(crate) surfaces: u16,
+
+    /// Pixels across the window
+    #[arg(long, value_name = "PIXELS", default_value = "16", value_parser = window)]
+    pub(crate) window: f64,
+
+    /// Rays traced back for each plane
+    #[arg(long, value_name = "N", default_value = "2^20", value_parser = whole_number)]
+    pub(crate) rays: u64,
+
+    /// Photons that check them
+    #[arg(long, value_name = "N", default_value = "2^25", value_parser = whole_number)]
+    pub(crate) photons: u64,
+
+    /// Seed of both
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub(crate) seed: u64,
+
+    /// Folder for the results [default: out/NAME-X-Y]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+fn pixel(text: &str) -> Result<[usize; 2], String> {
+    let parsed = text
+        .split_once(',')
+        .and_then(|(x, y)| Some([x.parse().ok()?, y.parse().ok()?]));
+    parsed.ok_or_else(|| "allowed: two whole numbers, as in 128,200".to_owned())
+}
+
+fn window(text: &str) -> Result<f64, String> {
+    let sound = text.parse().ok().filter(|x| (0.01..=1e4).contains(x));
+    sound.ok_or_else(|| "allowed: 0.01 to 10000".to_owned())
 }
 
 /// Which camera looks.

@@ -4,23 +4,27 @@ use crate::failure::Failure;
 use crate::results::Results;
 use crate::results::exr::{Part, exr};
 use crate::results::npz::{Npz, azimuths};
-use crate::results::summary::Summary;
 use etendue_compare::PlaneComparison;
 use etendue_field::Complex;
 use ndarray::{Array1, Array2, Array3};
+use serde_json::{Value, json};
 
 /// The files of a plane.
 pub(crate) const NAMES: [&str; 3] = ["slices.npz", "radial.npz", "radial.exr"];
 
+/// Writes them; `made_from` says what from.
 pub(crate) fn write(
     results: &mut Results,
-    summary: &Summary,
+    made_from: Value,
     plane: &PlaneComparison,
 ) -> Result<(), Failure> {
     let name = &plane.report.name;
     results.write(&format!("{name}/slices.npz"), &slices(plane)?)?;
     results.write(&format!("{name}/radial.npz"), &radial(plane)?)?;
-    results.write(&format!("{name}/radial.exr"), &radial_exr(summary, plane)?)
+    results.write(
+        &format!("{name}/radial.exr"),
+        &radial_exr(made_from, plane)?,
+    )
 }
 
 /// The slices of a plane, as in `slices.npz`.
@@ -102,7 +106,7 @@ pub(crate) fn z(
 }
 
 /// Four parts; ρ to the right, ν upwards.
-fn radial_exr(summary: &Summary, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
+fn radial_exr(mut made_from: Value, plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let power = &plane.radial.power;
     let difference = power - &plane.predicted_radial;
     let parts = [
@@ -120,24 +124,9 @@ fn radial_exr(summary: &Summary, plane: &PlaneComparison) -> Result<Vec<u8>, Fai
         let samples = pixels.map(|at| values[at] as f32).collect();
         Part { name, samples }
     });
-    exr(
-        [width, height],
-        Vec::from(parts),
-        &provenance(summary, plane),
-    )
-}
-
-/// What the arrays were made from.
-fn provenance(summary: &Summary, plane: &PlaneComparison) -> serde_json::Value {
     let grid = plane.measured.grid;
-    serde_json::json!({
-        "scene": summary.scene,
-        "scene_hash": summary.scene_hash,
-        "plane": plane.report.name,
-        "version": summary.version,
-        "seed": summary.seed,
-        "photons": summary.photons,
-        "rho_max": grid.rho.max(),
-        "nu_max": grid.nu.max(),
-    })
+    made_from["plane"] = json!(plane.report.name);
+    made_from["rho_max"] = json!(grid.rho.max());
+    made_from["nu_max"] = json!(grid.nu.max());
+    exr([width, height], Vec::from(parts), &made_from)
 }

@@ -50,6 +50,17 @@ pub(crate) struct Inquiry {
 }
 
 impl Summary {
+    /// What its arrays are made from.
+    pub(crate) fn made_from(&self) -> serde_json::Value {
+        serde_json::json!({
+            "scene": self.scene,
+            "scene_hash": self.scene_hash,
+            "version": self.version,
+            "seed": self.seed,
+            "photons": self.photons,
+        })
+    }
+
     pub(crate) fn new(case: &Case, planes: &[PlaneComparison], inquiries: Vec<Inquiry>) -> Self {
         let Case {
             scene,

@@ -53,6 +53,13 @@ impl Ball {
         })
     }
 
+    /// A place drawn evenly over its area, its normal, and the radiance there over the density of places.
+    pub(super) fn emit(&self, space: &Space, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
+        let (place, normal, uv) = space.placed(self.shape).sample(0, [a, b]);
+        let area = 2.0 * TAU * self.radius * self.radius;
+        (place, normal, self.emission.value(uv) * area)
+    }
+
     pub(super) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -along);
         let density = self.cone(from).map_or(0.0, |cone| 1.0 / (TAU * cone));

@@ -1,11 +1,13 @@
 //! Lights as paths look for them: a direction to light, what comes from there, and how densely such directions are drawn.
 
 mod ball;
+mod emit;
 mod shape;
 mod sky;
 
 use crate::space::{Hit, Space};
 use ball::Ball;
+pub(crate) use emit::{Emitted, Flash, Target};
 use etendue_world::{Geometry, Light, Shape, Texture, World};
 use glam::{DAffine3, DVec2, DVec3};
 use shape::Surface;
@@ -175,21 +177,13 @@ impl Lamp {
                     density: None,
                 })
             }
-            Self::Spot {
-                to_local,
-                intensity,
-                beam,
-                cutoff,
-            } => {
+            Self::Spot { to_local, .. } => {
                 let (toward, distance) = way(at, to_local.inverse().translation);
-                let local = to_local.transform_vector3(-toward);
-                let angle = libm::atan2(local.truncate().length(), local.z);
-                let falloff = ((cutoff - angle) / (cutoff - beam)).clamp(0.0, 1.0);
-                let weight = intensity * falloff / (distance * distance);
-                (weight > 0.0).then_some(Incoming {
+                let intensity = self.intensity(to_local.transform_vector3(-toward));
+                (intensity > 0.0).then_some(Incoming {
                     toward,
                     distance,
-                    weight,
+                    weight: intensity / (distance * distance),
                     density: None,
                 })
             }
@@ -212,6 +206,23 @@ impl Lamp {
                 (density > 0.0).then_some(found)
             }
         }
+    }
+}
+
+impl Lamp {
+    /// What a spot sends along a direction of its own coordinates, W sr⁻¹.
+    fn intensity(&self, local: DVec3) -> f64 {
+        let Self::Spot {
+            intensity,
+            beam,
+            cutoff,
+            ..
+        } = self
+        else {
+            return 0.0;
+        };
+        let angle = libm::atan2(local.truncate().length(), local.z);
+        intensity * ((cutoff - angle) / (cutoff - beam)).clamp(0.0, 1.0)
     }
 }
 

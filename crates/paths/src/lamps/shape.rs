@@ -1,7 +1,7 @@
 use super::{Incoming, emitted, way};
 use crate::space::{Hit, Space};
 use etendue_world::Texture;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 
 /// A shape that shines, of which places are drawn evenly over its area.
 #[derive(Debug)]
@@ -26,15 +26,12 @@ impl Surface {
         }
     }
 
-    fn area(&self) -> f64 {
+    pub(super) fn area(&self) -> f64 {
         self.summed.last().copied().unwrap_or_default()
     }
 
     pub(super) fn sample(&self, space: &Space, at: DVec3, [a, b, c]: [f64; 3]) -> Option<Incoming> {
-        let wanted = c * self.area();
-        let piece = self.summed.partition_point(|sum| *sum <= wanted);
-        let piece = piece.min(self.summed.len().checked_sub(1)?);
-        let (place, normal, uv) = space.placed(self.shape).sample(piece, [a, b]);
+        let (place, normal, uv) = self.place(space, [a, b, c])?;
         let (toward, distance) = way(at, place);
         let density = self.density(distance, normal.dot(toward));
         let radiance = emitted(&self.emission, uv, normal, -toward);
@@ -44,6 +41,20 @@ impl Surface {
             weight: radiance / density,
             density: Some(density),
         })
+    }
+
+    /// A place drawn evenly over its area, its normal and texture coordinates.
+    fn place(&self, space: &Space, [a, b, c]: [f64; 3]) -> Option<(DVec3, DVec3, DVec2)> {
+        let wanted = c * self.area();
+        let piece = self.summed.partition_point(|sum| *sum <= wanted);
+        let piece = piece.min(self.summed.len().checked_sub(1)?);
+        Some(space.placed(self.shape).sample(piece, [a, b]))
+    }
+
+    /// A place, its normal, and the radiance there over the density of places.
+    pub(super) fn emit(&self, space: &Space, random: [f64; 3]) -> Option<(DVec3, DVec3, f64)> {
+        let (place, normal, uv) = self.place(space, random)?;
+        Some((place, normal, self.emission.value(uv) * self.area()))
     }
 
     /// Per solid angle, of a place at a distance, seen at an angle of this cosine.

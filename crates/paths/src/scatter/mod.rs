@@ -11,14 +11,27 @@ mod plastic;
 
 pub(crate) use bounce::Bounce;
 use bounce::{by_cosine, cosine_density, mirrored};
-use etendue_field::Fresnel;
+use etendue_field::{Fresnel, Lobe};
 use etendue_trace::brdf::reflected_share;
-use etendue_world::{Conductor, Dielectric, Material, Roughness, Texture};
+use etendue_world::{Conductor, Dielectric, Distribution, Material, Roughness, Texture};
 use fresnel::dielectric;
 use glam::{DVec2, DVec3};
 use microfacet::{Microfacets, RoughInterface};
 use plastic::Coated;
 use std::f64::consts::PI;
+
+/// What a surface does to light, in a word.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Reflects {
+    /// It is black from here.
+    Nothing,
+    /// It sends light alike to all directions.
+    Diffuse,
+    /// It sends light one way.
+    Mirror,
+    /// It has a lobe about the mirror direction, perhaps above a diffuse base.
+    Lobe(Lobe),
+}
 
 /// A material, ready to scatter.
 #[derive(Clone, Debug)]
@@ -205,6 +218,62 @@ impl Scatter {
             density: Some(density),
             ..bounce
         })
+    }
+
+    /// The squared index of the side that `to` is on, over that of the side of `from`: 1 unless light is refracted on its way.
+    pub(crate) fn squared_index(&self, from: DVec3, to: DVec3) -> f64 {
+        match self {
+            Self::Dielectric(of) if !of.is_thin && from.z * to.z < 0.0 => {
+                let index = if from.z > 0.0 {
+                    of.index
+                } else {
+                    1.0 / of.index
+                };
+                index * index
+            }
+            // What goes straight on has met nothing.
+            Self::Mask(_, of) if (from + to).length_squared() > 1e-24 => of.squared_index(from, to),
+            Self::Blend(_, of) => of.iter().map(|of| of.squared_index(from, to)).product(),
+            _ => 1.0,
+        }
+    }
+
+    /// What it does to light on the side that `wo` sees, in a word; of a mixture, by its larger part.
+    pub(crate) fn kind(&self, uv: DVec2, wo: DVec3) -> Reflects {
+        let rough = |roughness: Option<&Roughness>| {
+            roughness.map_or(Reflects::Mirror, |of| {
+                let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
+                // Of the same area as the ellipse of both.
+                let roughness = (a * b).sqrt();
+                Reflects::Lobe(match of.distribution {
+                    Distribution::Beckmann => Lobe::Beckmann { roughness },
+                    Distribution::Ggx => Lobe::Ggx { roughness },
+                })
+            })
+        };
+        match self {
+            Self::TwoSided(sides) => side_of(sides, wo).0.kind(uv, wo.abs()),
+            Self::Mask(_, of) => of.kind(uv, wo),
+            Self::Blend(weight, of) => of[usize::from(weight.value(uv) > 0.5)].kind(uv, wo),
+            Self::Dielectric(of) => rough(of.roughness.as_ref().filter(|_| !of.is_thin)),
+            _ if wo.z <= 0.0 => Reflects::Nothing,
+            Self::Diffuse(_) => Reflects::Diffuse,
+            Self::Conductor(of) => rough(of.roughness.as_ref()),
+            Self::Plastic(of) => of.kind(),
+            Self::Phong([_, _, exponent]) => Reflects::Lobe(Lobe::Phong {
+                exponent: exponent.value(uv),
+            }),
+        }
+    }
+
+    /// Whether some of what leaves it goes one way only.
+    pub(crate) fn has_mirror(&self) -> bool {
+        match self {
+            Self::Plastic(of) => of.is_smooth(),
+            Self::TwoSided(of) | Self::Blend(_, of) => of.iter().any(Self::has_mirror),
+            Self::Mask(..) => true,
+            _ => self.is_smooth(),
+        }
     }
 
     /// Whether all that leaves it goes one way, so that no light can be looked for from it.

@@ -44,6 +44,9 @@ pub(crate) struct Space {
     hierarchy: Hierarchy,
     /// No nearer hit counts: it is the surface that the ray begins on.
     nearest: f64,
+    /// A sphere around all surfaces.
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
 }
 
 /// A surface where it is.
@@ -82,6 +85,8 @@ impl Space {
             hierarchy: Hierarchy::new(placed.len(), farthest, |i| bounds[i]),
             placed,
             nearest: NEAREST * farthest,
+            center: 0.5 * (low + high),
+            radius: 0.5 * (high - low).length(),
         }
     }
 
@@ -110,6 +115,14 @@ impl Space {
     pub(crate) fn meets(&self, shape: usize, ray: &Ray, within: [f64; 2]) -> Option<Hit> {
         let (distance, local) = self.placed[shape].first(ray, within)?;
         Some(self.placed[shape].hit(ray, distance, shape, &local))
+    }
+
+    /// Whether nothing is between two places.
+    pub(crate) fn is_clear(&self, from: DVec3, to: DVec3) -> bool {
+        let between = to - from;
+        let distance = between.length();
+        let along = between / distance;
+        self.is_free(&Ray { from, along }, distance)
     }
 
     /// Whether a ray meets nothing before a distance.

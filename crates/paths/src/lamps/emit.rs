@@ -1,0 +1,238 @@
+//! Light as it leaves its sources, for photons: half of them as they come, half of them aimed.
+
+use super::{Lamp, Lamps};
+use crate::space::{Ray, Space};
+use glam::{DMat3, DVec3};
+use std::f64::consts::{PI, TAU};
+
+/// A photon on its way.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Emitted {
+    pub(crate) ray: Ray,
+    /// Its flux, W, times the number of photons.
+    pub(crate) flux: f64,
+    /// The place of a surface that it has left.
+    pub(crate) flash: Option<Flash>,
+}
+
+/// A place of a surface that shines.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Flash {
+    pub(crate) position: DVec3,
+    pub(crate) normal: DVec3,
+    /// Radiance over the density of places, W sr⁻¹.
+    pub(crate) shine: f64,
+}
+
+/// A sphere that photons are aimed at.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Target {
+    pub(crate) center: DVec3,
+    pub(crate) radius: f64,
+}
+
+/// What the ways of photons are drawn from.
+struct Draw<'a> {
+    targets: &'a [Target],
+    /// For the way, and for what it is drawn by.
+    random: [f64; 3],
+}
+
+impl Lamps {
+    /// A photon, from seven numbers; `None` for one that carries nothing.
+    pub(crate) fn emit(
+        &self,
+        space: &Space,
+        [a, b, c, d, e, by, lamp]: [f64; 7],
+        targets: &[Target],
+    ) -> Option<Emitted> {
+        let count = self.lamps.len() as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of a lamp"
+        )]
+        let lamp = self.lamps.get((lamp * count) as usize)?;
+        let random = [d, e, by];
+        let mut emitted = lamp.emit(space, [a, b, c], &Draw { targets, random })?;
+        emitted.flux *= count;
+        if let Some(flash) = &mut emitted.flash {
+            flash.shine *= count;
+        }
+        Some(emitted)
+    }
+}
+
+impl Lamp {
+    fn emit(&self, space: &Space, place: [f64; 3], draw: &Draw<'_>) -> Option<Emitted> {
+        let [a, b, c] = place;
+        match self {
+            Self::Surface(surface) => Some(draw.flashed(surface.emit(space, place)?)),
+            Self::Ball(ball) => Some(draw.flashed(ball.emit(space, [a, b]))),
+            Self::Point {
+                position,
+                intensity,
+            } => Some(draw.away(*position, DVec3::Z, -1.0, &|_| *intensity)),
+            Self::Spot {
+                to_local, cutoff, ..
+            } => {
+                let to_world = to_local.inverse();
+                let intensity = |along| self.intensity(to_local.transform_vector3(along));
+                let axis = to_world.matrix3.z_axis;
+                Some(draw.away(to_world.translation, axis, libm::cos(*cutoff), &intensity))
+            }
+            Self::Directional { toward, irradiance } => {
+                Some(draw.afar(space, *toward, *irradiance))
+            }
+            Self::Sky(sky) => {
+                let toward = sky.sample([a, b, c]);
+                let density = sky.density(toward);
+                let irradiance = sky.radiance(toward) / density;
+                (density > 0.0).then(|| draw.afar(space, toward, irradiance))
+            }
+        }
+    }
+}
+
+impl Draw<'_> {
+    /// The target that this photon is aimed at.
+    fn target(&self) -> Option<&Target> {
+        let [.., by] = self.random;
+        // Half of the photons, shared by the targets.
+        let number = (2.0 * by - 1.0) * self.targets.len() as f64;
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of a target, from 0"
+        )]
+        let found = (number >= 0.0).then_some(number as usize);
+        found.and_then(|number| self.targets.get(number))
+    }
+
+    /// The density of what is drawn by `plain` for half of the photons, and by `aimed` for each target's share of the rest.
+    fn density(&self, plain: f64, aimed: impl Fn(&Target) -> f64) -> f64 {
+        if self.targets.is_empty() {
+            return plain;
+        }
+        let aimed: f64 = self.targets.iter().map(aimed).sum();
+        0.5 * plain + 0.5 * aimed / self.targets.len() as f64
+    }
+
+    /// A photon from a place of a surface: by the cosine, or aimed.
+    fn flashed(&self, (position, normal, shine): (DVec3, DVec3, f64)) -> Emitted {
+        let [a, b, _] = self.random;
+        let along = match self.target() {
+            Some(target) => target.toward(position, [a, b]),
+            None => about(normal, (1.0 - a).sqrt(), b),
+        };
+        let cosine = along.dot(normal).max(0.0);
+        let density = self.density(cosine / PI, |target| target.density(position, along));
+        Emitted {
+            ray: Ray {
+                from: position,
+                along,
+            },
+            flux: shine * cosine / density,
+            flash: Some(Flash {
+                position,
+                normal,
+                shine,
+            }),
+        }
+    }
+
+    /// A photon from a point: evenly within a cone, whose half angle has the cosine `end`, or aimed.
+    fn away(
+        &self,
+        from: DVec3,
+        axis: DVec3,
+        end: f64,
+        intensity: &dyn Fn(DVec3) -> f64,
+    ) -> Emitted {
+        let [a, b, _] = self.random;
+        let along = match self.target() {
+            Some(target) => target.toward(from, [a, b]),
+            None => about(axis, 1.0 - a * (1.0 - end), b),
+        };
+        let is_within = along.dot(axis) >= end;
+        let plain = if is_within {
+            1.0 / (TAU * (1.0 - end))
+        } else {
+            0.0
+        };
+        let density = self.density(plain, |target| target.density(from, along));
+        Emitted {
+            ray: Ray { from, along },
+            flux: intensity(along) / density,
+            flash: None,
+        }
+    }
+
+    /// A photon from far away: across a disc as wide as all surfaces, or as a target.
+    fn afar(&self, space: &Space, toward: DVec3, irradiance: f64) -> Emitted {
+        let [a, b, _] = self.random;
+        let whole = Target {
+            center: space.center,
+            // A little wider, for what touches the sphere.
+            radius: 1.001 * space.radius,
+        };
+        let aimed = self.target().unwrap_or(&whole);
+        let (s, t) = toward.any_orthonormal_pair();
+        let (sin, cos) = libm::sincos(TAU * b);
+        let place = aimed.center + aimed.radius * a.sqrt() * (cos * s + sin * t);
+        let density = |disc: &Target| {
+            let off = place - disc.center;
+            let is_in = off.length_squared() - off.dot(toward).powi(2) <= disc.radius.powi(2);
+            if is_in {
+                1.0 / (PI * disc.radius * disc.radius)
+            } else {
+                0.0
+            }
+        };
+        let height = (place - whole.center).dot(toward);
+        Emitted {
+            ray: Ray {
+                from: place + (2.0 * whole.radius - height) * toward,
+                along: -toward,
+            },
+            flux: irradiance / self.density(density(&whole), density),
+            flash: None,
+        }
+    }
+}
+
+impl Target {
+    /// 1 − cos of half of the cone in which it is seen; all around from within.
+    fn cone(&self, from: DVec3) -> f64 {
+        let sine2 = self.radius * self.radius / (self.center - from).length_squared();
+        if sine2 < 1.0 {
+            sine2 / (1.0 + (1.0 - sine2).sqrt())
+        } else {
+            2.0
+        }
+    }
+
+    fn toward(&self, from: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+        let axis = (self.center - from).normalize_or(DVec3::Z);
+        about(axis, 1.0 - a * self.cone(from), b)
+    }
+
+    fn density(&self, from: DVec3, along: DVec3) -> f64 {
+        let axis = (self.center - from).normalize_or(DVec3::Z);
+        let cone = self.cone(from);
+        if axis.dot(along) >= 1.0 - cone {
+            1.0 / (TAU * cone)
+        } else {
+            0.0
+        }
+    }
+}
+
+/// The direction at an angle of this cosine to an axis; `turn` is its azimuth over 2π.
+fn about(axis: DVec3, cosine: f64, turn: f64) -> DVec3 {
+    let (s, t) = axis.any_orthonormal_pair();
+    let frame = DMat3::from_cols(s, t, axis);
+    let sine = ((1.0 - cosine) * (1.0 + cosine)).max(0.0).sqrt();
+    let (sin, cos) = libm::sincos(TAU * turn);
+    frame * DVec3::new(sine * cos, sine * sin, cosine)
+}

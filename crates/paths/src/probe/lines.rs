@@ -1,0 +1,63 @@
+use crate::space::{Ray, Space};
+use etendue_field::{Frame, TwoPlane};
+use glam::DVec3;
+
+/// A leg of the central ray.
+#[derive(Clone, Debug)]
+pub(super) struct Leg {
+    /// At its end, on the side of the camera; D is the way of light.
+    pub(super) frame: Frame,
+    /// The shape at its end; `None` at the camera.
+    pub(super) shape: Option<usize>,
+    /// How far from the plane at its end the shape is looked for.
+    pub(super) reach: f64,
+    /// Half-width of the windows in slope.
+    pub(super) slope: f64,
+}
+
+impl Leg {
+    /// The farthest from the central ray that lines of the windows are, at a distance before the end of the leg.
+    pub(super) fn wide(&self, distance: f64) -> f64 {
+        0.25 * self.reach + self.slope * distance
+    }
+
+    /// The line that a plane of this leg has as `seen`, followed back from where the leg ends: at the camera, or on the surface there.
+    pub(super) fn line(&self, space: &Space, plane: &Frame, seen: &TwoPlane) -> Ray {
+        let point = plane.to_world(DVec3::new(seen.x, seen.y, 0.0));
+        let along = plane
+            .vector_to_world(DVec3::new(seen.u, seen.v, 1.0))
+            .normalize();
+        self.through(space, point, along)
+    }
+
+    /// The line through a point along the way of light.
+    pub(super) fn through(&self, space: &Space, point: DVec3, along: DVec3) -> Ray {
+        let end = &self.frame;
+        let left = (end.origin - point).dot(end.d) / along.dot(end.d);
+        let at_end = point + left * along;
+        let start = self.shape.and_then(|shape| {
+            let ray = Ray {
+                from: at_end - self.reach * along,
+                along,
+            };
+            let hit = space.meets(shape, &ray, [0.0, 2.0 * self.reach])?;
+            Some(hit.position)
+        });
+        Ray {
+            from: start.unwrap_or(at_end),
+            along: -along,
+        }
+    }
+}
+
+/// A line in the coordinates of a plane.
+pub(super) fn seen_by(plane: &Frame, point: DVec3, along: DVec3) -> TwoPlane {
+    let (from, way) = (plane.to_local(point), plane.vector_to_local(along));
+    let (u, v) = (way.x / way.z, way.y / way.z);
+    TwoPlane {
+        x: from.x - from.z * u,
+        y: from.y - from.z * v,
+        u,
+        v,
+    }
+}

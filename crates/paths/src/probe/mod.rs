@@ -1,0 +1,171 @@
+//! The light field behind a pixel: the ray through its middle, followed back from surface to surface, and virtual planes along it.
+
+mod backward;
+mod lines;
+mod photons;
+mod stop;
+
+pub use backward::BackwardProbe;
+pub use photons::PhotonProbe;
+pub use stop::Stop;
+
+use crate::paths::Paths;
+use etendue_field::{
+    Frame, FrequencyAxis, Orientation, Profile, Quantity, Side, SliceGrid, VirtualPlane, Window,
+};
+use etendue_world::{Camera, Projection};
+use glam::DVec3;
+use lines::Leg;
+
+/// What is asked of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub struct Question {
+    /// Column and row, from 0 at the top left.
+    pub pixel: [usize; 2],
+    /// Most surfaces along the ray.
+    pub surfaces: usize,
+    /// Pixels across the window.
+    pub across: f64,
+    /// Frequencies on either side of zero, along each axis of the slices.
+    pub frequencies: usize,
+    /// Azimuths of slices.
+    pub azimuths: usize,
+}
+
+/// The light field behind a pixel, ready to be measured.
+#[derive(Debug)]
+pub struct Probe<'a> {
+    paths: &'a Paths,
+    /// Surfaces, the first being what the camera sees.
+    pub stops: Vec<Stop>,
+    /// `camera`, and for each surface `leaving_1`, `arriving_1` and so on: light that leaves it towards the camera, and that arrives on the way that
+    /// it mirrors there.
+    pub planes: Vec<VirtualPlane>,
+    legs: Vec<Leg>,
+    /// The slope from one pixel to the next.
+    pub pixel_slope: f64,
+}
+
+/// Slopes of a window never go farther.
+const WIDEST: f64 = 1.0;
+
+impl<'a> Probe<'a> {
+    /// The light field behind a pixel of a camera. `None` where the camera is orthographic, or the ray meets nothing.
+    #[must_use]
+    pub fn new(paths: &'a Paths, camera: &Camera, question: &Question) -> Option<Self> {
+        let Projection::Perspective { half_width, .. } = camera.projection else {
+            return None;
+        };
+        let middle = question.pixel.map(|i| i as f64 + 0.5);
+        let look = camera.look(middle, [0.0; 2]);
+        let pixel_slope = 2.0 * half_width / camera.size[0] as f64;
+        let half = 0.5 * question.across * pixel_slope;
+        let stops = stop::followed(paths, &look, question.surfaces, half);
+        let first = stops.first()?;
+        let right = camera.to_world.transform_vector3(-DVec3::X);
+        let x = across(first.normal, first.leaving).unwrap_or(right);
+        let mut probe = Self {
+            paths,
+            planes: Vec::new(),
+            legs: Vec::new(),
+            pixel_slope,
+            stops: stops.clone(),
+        };
+        let eye = Frame::new(look.from, first.leaving, x)?;
+        probe.add_leg(eye, None, [half * first.distance, half]);
+        let whole: f64 = stops.iter().map(|stop| stop.distance).sum();
+        let mut left = whole;
+        probe.add_plane("camera", left, 0, [half * first.distance, half], question);
+        let (mut travelled, mut spread) = (0.0, half);
+        for (i, stop) in stops.iter().enumerate() {
+            let number = i + 1;
+            left -= stop.distance;
+            travelled += stop.distance;
+            let wide = half * travelled;
+            probe.add_plane(
+                &format!("leaving_{number}"),
+                left,
+                i,
+                [wide, spread.min(WIDEST)],
+                question,
+            );
+            spread *= stop.spreading(travelled);
+            let axis = probe.legs[i].frame.x;
+            let mirrored = axis - 2.0 * axis.dot(stop.normal) * stop.normal;
+            let frame = Frame::new(stop.position, stop.arriving, mirrored)?;
+            probe.add_leg(frame, Some(stop.shape), [wide, spread.min(WIDEST)]);
+            probe.add_plane(
+                &format!("arriving_{number}"),
+                left,
+                i + 1,
+                [wide, spread.min(WIDEST)],
+                question,
+            );
+        }
+        Some(probe)
+    }
+
+    /// A leg, by the frame at its end, where light is on its way to the camera.
+    fn add_leg(&mut self, frame: Frame, shape: Option<usize>, [wide, slope]: [f64; 2]) {
+        self.legs.push(Leg {
+            frame,
+            shape,
+            reach: 4.0 * wide,
+            slope,
+        });
+    }
+
+    /// A plane on a leg, as far from the leg's end as `distance` says: it falls towards the camera.
+    fn add_plane(
+        &mut self,
+        name: &str,
+        distance: f64,
+        leg: usize,
+        half: [f64; 2],
+        question: &Question,
+    ) {
+        let end = &self.legs[leg].frame;
+        let is_at_end = !name.starts_with("leaving");
+        let before = if is_at_end {
+            0.0
+        } else {
+            self.stops[leg].distance
+        };
+        let [x, u] = half.map(Profile::Hann);
+        let axis = |half_width: f64| FrequencyAxis {
+            half: question.frequencies,
+            spacing: 0.5 / half_width,
+        };
+        self.planes.push(VirtualPlane {
+            name: name.to_owned(),
+            distance,
+            leg,
+            side: if is_at_end { Side::Before } else { Side::After },
+            quantity: Quantity::Radiance,
+            orientation: Orientation::Orthogonal,
+            longitude: 0.0,
+            frame: end.travelled(-before),
+            window: Window { x, y: x, u, v: u },
+            grid: SliceGrid {
+                azimuths: question.azimuths,
+                rho: axis(half[0]),
+                nu: axis(half[1]),
+            },
+        });
+    }
+}
+
+/// A normal as far as it is across a direction; `None` where it is along it.
+fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
+    let across = normal - normal.dot(along) * along;
+    (across.length() > 1e-6).then(|| across.normalize())
+}
+
+/// Rays or photons of each batch, and how batches are keyed.
+#[derive(Clone, Copy, Debug)]
+pub struct Budget {
+    /// In each batch.
+    pub each: u64,
+    /// Of all batches.
+    pub seed: u64,
+}

@@ -1,0 +1,256 @@
+use super::lines::Leg;
+use super::lines::seen_by;
+use super::{Budget, Probe, Stop};
+use crate::lamps::{Emitted, Flash, Target};
+use crate::numbers::Numbers;
+use crate::paths::ROULETTE;
+use crate::space::{Hit, Ray};
+use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane};
+use glam::DVec3;
+
+/// Photons of a [`Probe`], the independent check of [`BackwardProbe`](super::BackwardProbe).
+///
+/// They leave the lights, and wherever one meets a surface, or leaves one, a way through the windows is drawn for it. So they find no light that a
+/// mirror or smooth glass sends into a window, nor the sky itself: [`PhotonProbe::misses`] says where.
+#[derive(Debug)]
+pub struct PhotonProbe<'a> {
+    probe: &'a Probe<'a>,
+    budget: Budget,
+    /// What the windows look at, on each surface.
+    targets: Vec<Target>,
+}
+
+/// Photons between two reports.
+const BLOCK: u64 = 4096;
+/// Lines that tell what is seen through a window.
+const LINES: u64 = 4096;
+
+/// Where light leaves a surface, and how much of it goes which way.
+struct Source<'s> {
+    position: DVec3,
+    /// Flux per solid angle along a direction, W sr⁻¹.
+    intensity: &'s dyn Fn(DVec3) -> f64,
+    /// Surfaces that light has met, this one included.
+    met: u32,
+}
+
+impl<'a> PhotonProbe<'a> {
+    /// The photons of a probe.
+    #[must_use]
+    pub fn new(probe: &'a Probe<'a>, budget: Budget) -> Self {
+        let targets = probe.stops.iter().zip(&probe.legs);
+        let target = |(stop, leg): (&Stop, &Leg)| Target {
+            center: stop.position,
+            // Of the corners of the window, on a surface at an angle.
+            radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
+        };
+        Self {
+            probe,
+            budget,
+            targets: targets.map(target).collect(),
+        }
+    }
+
+    /// Why photons do not find all the light of a plane: what is seen through its window.
+    #[must_use]
+    pub fn misses(&self, plane: usize) -> Option<&'static str> {
+        let Probe {
+            paths,
+            legs,
+            planes,
+            ..
+        } = self.probe;
+        let plane = &planes[plane];
+        let half = [plane.window.x, plane.window.u].map(|profile| profile.half_width());
+        (0..LINES).find_map(|number| {
+            let mut numbers = Numbers::new(self.budget.seed, number);
+            let [x, y, u, v] = numbers.draw().map(|drawn: f64| 2.0 * drawn - 1.0);
+            let seen = TwoPlane {
+                x: half[0] * x,
+                y: half[0] * y,
+                u: half[1] * u,
+                v: half[1] * v,
+            };
+            let line = legs[plane.leg].line(&paths.space, &plane.frame, &seen);
+            match paths.space.first(&line, [0.0, f64::INFINITY]) {
+                None if paths.has_sky() => Some("the sky"),
+                Some(hit) if paths.scatter(&hit).has_mirror() => Some("a smooth surface"),
+                _ => None,
+            }
+        })
+    }
+
+    fn photon(&self, number: u64, record: &mut dyn FnMut(usize, Crossing)) {
+        let paths = self.probe.paths;
+        let mut numbers = Numbers::new(self.budget.seed, number);
+        let emitted = paths
+            .lamps
+            .emit(&paths.space, numbers.draw(), &self.targets);
+        let Some(Emitted {
+            mut ray,
+            mut flux,
+            flash,
+        }) = emitted
+        else {
+            return;
+        };
+        if let Some(Flash {
+            position,
+            normal,
+            shine,
+        }) = flash
+        {
+            let intensity = |along: DVec3| shine * along.dot(normal).max(0.0);
+            self.pass(
+                &Source {
+                    position,
+                    intensity: &intensity,
+                    met: 0,
+                },
+                &mut numbers,
+                record,
+            );
+        }
+        // A photon that carries nothing ends, but what it has left may shine into a window.
+        let first = flux;
+        if first <= 0.0 {
+            return;
+        }
+        for met in 1..=paths.depth {
+            let Some(hit) = paths.space.first(&ray, [0.0, f64::INFINITY]) else {
+                return;
+            };
+            let wi = hit.frame.transpose() * -ray.along;
+            let scatter = paths.scatter(&hit);
+            let intensity = |along: DVec3| {
+                let wo = hit.frame.transpose() * along;
+                flux * scatter.value(hit.uv, wi, wo) * tilt(&hit, ray.along, along)
+            };
+            if !scatter.is_smooth() {
+                self.pass(
+                    &Source {
+                        position: hit.position,
+                        intensity: &intensity,
+                        met,
+                    },
+                    &mut numbers,
+                    record,
+                );
+            }
+            let Some(bounce) = scatter.sample(hit.uv, wi, numbers.draw()) else {
+                return;
+            };
+            let along = (hit.frame * bounce.wi).normalize();
+            flux *= match bounce.density {
+                Some(density) => {
+                    scatter.value(hit.uv, wi, bounce.wi) * tilt(&hit, ray.along, along) / density
+                }
+                // A mirror or smooth glass, for which power is not counted over squared indices.
+                None => bounce.weight * scatter.squared_index(wi, bounce.wi),
+            };
+            let [survives] = numbers.draw();
+            let share = (flux / first).min(0.95);
+            if met >= ROULETTE {
+                if survives >= share {
+                    return;
+                }
+                flux /= share;
+            }
+            ray = Ray {
+                from: hit.position,
+                along,
+            };
+        }
+    }
+
+    /// Draws a way from a place through the windows of each leg, and records it where nothing is in between.
+    fn pass(
+        &self,
+        source: &Source<'_>,
+        numbers: &mut Numbers,
+        record: &mut dyn FnMut(usize, Crossing),
+    ) {
+        let Probe {
+            paths,
+            legs,
+            planes,
+            ..
+        } = self.probe;
+        for (number, leg) in legs.iter().enumerate() {
+            let drawn: [f64; 2] = numbers.draw();
+            let before = u32::try_from(number).unwrap_or(u32::MAX);
+            let is_hidden = paths.hides_sources && source.met + before == 0;
+            if is_hidden || source.met.saturating_add(before) > paths.depth {
+                continue;
+            }
+            let [u, v] = drawn.map(|drawn| (2.0 * drawn - 1.0) * leg.slope);
+            let secant_squared = 1.0 + u * u + v * v;
+            let along = leg.frame.vector_to_world(DVec3::new(u, v, 1.0)).normalize();
+            let of_leg = planes
+                .iter()
+                .enumerate()
+                .filter(|(_, plane)| plane.leg == number);
+            let seen = of_leg.filter_map(|(i, plane)| {
+                let ray = seen_by(&plane.frame, source.position, along);
+                plane.window.contains(&ray).then_some((i, ray))
+            });
+            let seen: Vec<(usize, TwoPlane)> = seen.collect();
+            if seen.is_empty() {
+                continue;
+            }
+            let intensity = (source.intensity)(along);
+            if intensity <= 0.0 || !self.is_seen(number, source.position, along) {
+                continue;
+            }
+            // Slopes are drawn evenly; dω = du dv / (1 + u² + v²)^(3/2).
+            let weight = intensity * 4.0 * leg.slope * leg.slope * secant_squared.sqrt();
+            for (i, ray) in seen {
+                record(i, Crossing { ray, weight });
+            }
+        }
+    }
+
+    /// Whether the line through a place, followed back from the end of a leg, meets that place first.
+    fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
+        let Probe { paths, legs, .. } = self.probe;
+        let line = legs[leg].through(&paths.space, position, along);
+        let is_before = (position - line.from).dot(line.along) > 0.0;
+        is_before && paths.space.is_clear(line.from, position)
+    }
+}
+
+/// What turns BSDF times cosine to the normal for shading into flux: both cosines are to the surface itself.
+fn tilt(hit: &Hit, arriving: DVec3, leaving: DVec3) -> f64 {
+    (leaving.dot(hit.normal) / arriving.dot(hit.normal)).abs()
+}
+
+impl PhotonSource for PhotonProbe<'_> {
+    fn emitted(&self, _batch: u32) -> u64 {
+        self.budget.each
+    }
+
+    fn emit(
+        &self,
+        batch: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        let first = u64::from(batch) * self.budget.each;
+        let mut found: Vec<Vec<Crossing>> = vec![Vec::new(); self.probe.planes.len()];
+        for block in 0..self.budget.each.div_ceil(BLOCK) {
+            let start = block * BLOCK;
+            let count = BLOCK.min(self.budget.each - start);
+            for photon in start..start + count {
+                self.photon(first + photon, &mut |plane, crossing| {
+                    found[plane].push(crossing);
+                });
+            }
+            for (plane, crossings) in found.iter_mut().enumerate() {
+                record(plane, crossings);
+                crossings.clear();
+            }
+            progress(count);
+        }
+        Ledger::default()
+    }
+}

@@ -1,0 +1,106 @@
+use crate::paths::Paths;
+use crate::scatter::Reflects;
+use crate::space::{Hit, Ray, Space};
+use etendue_world::Look;
+use glam::DVec3;
+
+/// A surface on the central ray of a pixel.
+#[derive(Clone, Debug)]
+pub struct Stop {
+    /// The number of its shape.
+    pub shape: usize,
+    /// Where the ray meets it.
+    pub position: DVec3,
+    /// Its normal for shading, on the side that is seen.
+    pub normal: DVec3,
+    /// The way light leaves on, towards the camera: of unit length.
+    pub leaving: DVec3,
+    /// The way light arrives on that a mirror would send on: of unit length.
+    pub arriving: DVec3,
+    /// From here to the camera, or to the surface before.
+    pub distance: f64,
+    /// Curvatures in the plane of incidence and across it, convex positive, by finite differences over the footprint.
+    pub curvature: [f64; 2],
+    /// What it does to light.
+    pub reflects: Reflects,
+}
+
+impl Stop {
+    /// The cosine of the angle at which light leaves.
+    #[must_use]
+    pub fn cosine(&self) -> f64 {
+        self.normal.dot(self.leaving)
+    }
+
+    /// By how much slopes of rays from one point at `travelled` before the surface spread when it mirrors them.
+    pub(super) fn spreading(&self, travelled: f64) -> f64 {
+        let [along, across] = self.curvature;
+        let turned = |k: f64, cosine: f64| (1.0 + 2.0 * k * travelled * cosine).abs();
+        let cosine = self.cosine();
+        turned(along, 1.0 / cosine)
+            .max(turned(across, cosine))
+            .max(1.0)
+    }
+}
+
+/// The surfaces that a look meets, going on as mirrors would send it. `half` is half of the window's angle.
+pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Vec<Stop> {
+    let mut stops: Vec<Stop> = Vec::new();
+    let mut ray = Ray {
+        from: look.from,
+        along: look.along,
+    };
+    let mut seen = look.seen;
+    let mut travelled = 0.0;
+    while stops.len() < most
+        && let Some(hit) = paths.space.first(&ray, seen)
+    {
+        travelled += hit.distance;
+        let side = if hit.frame.z_axis.dot(ray.along) < 0.0 {
+            1.0
+        } else {
+            -1.0
+        };
+        let normal = side * hit.frame.z_axis;
+        let onward = ray.along - 2.0 * ray.along.dot(normal) * normal;
+        stops.push(Stop {
+            shape: hit.shape,
+            position: hit.position,
+            normal,
+            leaving: -ray.along,
+            arriving: -onward,
+            distance: hit.distance,
+            reflects: paths
+                .scatter(&hit)
+                .kind(hit.uv, hit.frame.transpose() * -ray.along),
+            curvature: curvature(&paths.space, &hit, normal, -ray.along, half * travelled),
+        });
+        ray = Ray {
+            from: hit.position,
+            along: onward,
+        };
+        seen = [0.0, f64::INFINITY];
+    }
+    stops
+}
+
+/// Curvatures by the normals at a step to either side.
+fn curvature(space: &Space, hit: &Hit, normal: DVec3, leaving: DVec3, step: f64) -> [f64; 2] {
+    let tangent = super::across(leaving, normal).unwrap_or_else(|| normal.any_orthonormal_vector());
+    [tangent, normal.cross(tangent)].map(|axis| {
+        let at = |side: f64| {
+            let from = hit.position + side * step * axis + 4.0 * step * normal;
+            let ray = Ray {
+                from,
+                along: -normal,
+            };
+            let met = space.meets(hit.shape, &ray, [0.0, 8.0 * step])?;
+            let facing = met.frame.z_axis.dot(normal).signum();
+            Some((met.position, facing * met.frame.z_axis))
+        };
+        let Some(((p, m), (q, n))) = at(1.0).zip(at(-1.0)) else {
+            return 0.0;
+        };
+        (m - n).dot(axis) / (p - q).dot(axis)
+    })
+}

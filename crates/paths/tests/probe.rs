@@ -1,0 +1,213 @@
+//! Light fields behind a pixel that are known.
+
+use etendue_field::{Crossing, PhotonSource};
+use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question, Reflects};
+use etendue_world::{
+    Camera, Conductor, Geometry, Light, Material, Projection, Shape, Texture, World,
+};
+use glam::{DAffine3, DMat3, DVec3};
+use std::f64::consts::PI;
+
+const QUESTION: Question = Question {
+    pixel: [32, 32],
+    surfaces: 1,
+    across: 8.0,
+    frequencies: 4,
+    azimuths: 2,
+};
+
+/// A camera at (0, −3, 2) that looks at the origin, 64 × 64 pixels.
+fn camera() -> Camera {
+    let from = DVec3::new(0.0, -3.0, 2.0);
+    let along = -from.normalize();
+    let left = -DVec3::X;
+    let turned = DMat3::from_cols(left, along.cross(left), along);
+    Camera {
+        name: "camera".to_owned(),
+        to_world: DAffine3::from_mat3_translation(turned, from),
+        size: [64, 64],
+        projection: Projection::Perspective {
+            half_width: 0.5,
+            shift: [0.0; 2],
+            lens: None,
+        },
+        clip: [1e-3, 1e6],
+    }
+}
+
+fn shape(geometry: Geometry, to_world: DAffine3, material: usize) -> Shape {
+    Shape {
+        name: String::new(),
+        geometry,
+        to_world,
+        is_flipped: false,
+        material,
+        emission: None,
+    }
+}
+
+fn world(shapes: Vec<Shape>) -> World {
+    let constant = |value| Texture::Constant(value);
+    let mirror = Conductor {
+        index: None,
+        reflectance: constant(1.0),
+        roughness: None,
+    };
+    let diffuse = Material::Diffuse {
+        reflectance: constant(0.5),
+    };
+    World {
+        shapes,
+        materials: vec![diffuse, Material::Conductor(mirror)],
+        ..World::default()
+    }
+}
+
+fn floor(material: usize) -> Shape {
+    shape(
+        Geometry::Rectangle,
+        DAffine3::from_scale(DVec3::splat(20.0)),
+        material,
+    )
+}
+
+/// The mean of what crosses each plane in its window, with its standard error: over 32 batches.
+fn sums(probe: &Probe<'_>, source: &dyn PhotonSource) -> Vec<[f64; 2]> {
+    const BATCHES: u32 = 32;
+    let mut each = vec![Vec::new(); probe.planes.len()];
+    for batch in 0..BATCHES {
+        let mut sums = vec![0.0; probe.planes.len()];
+        let mut record = |plane: usize, crossings: &[Crossing]| {
+            let window = &probe.planes[plane].window;
+            let weights = crossings.iter().map(|c| c.weight * window.value(&c.ray));
+            sums[plane] += weights.sum::<f64>();
+        };
+        source.emit(batch, &mut record, &|_| {});
+        for (all, sum) in each.iter_mut().zip(sums) {
+            all.push(sum / source.emitted(batch) as f64);
+        }
+    }
+    let of = |sums: &Vec<f64>| {
+        let count = f64::from(BATCHES);
+        let mean = sums.iter().sum::<f64>() / count;
+        let squares: f64 = sums.iter().map(|sum| (sum - mean).powi(2)).sum();
+        [mean, (squares / (count * (count - 1.0))).sqrt()]
+    };
+    each.iter().map(of).collect()
+}
+
+/// Rays and photons both find `radiance` in the windows of these planes: ∫ L W is radiance times half-widths.
+fn assert_even(world: &World, question: &Question, planes: &[&str], radiance: f64) {
+    let paths = Paths::new(world);
+    let probe = Probe::new(&paths, &camera(), question).expect("the ray meets something");
+    let rays = BackwardProbe::new(
+        &probe,
+        Budget {
+            each: 4_000,
+            seed: 5,
+        },
+    );
+    let photons = PhotonProbe::new(
+        &probe,
+        Budget {
+            each: 100_000,
+            seed: 6,
+        },
+    );
+    for (what, source) in [("rays", &rays as &dyn PhotonSource), ("photons", &photons)] {
+        let found = sums(&probe, source);
+        for (plane, [mean, error]) in probe.planes.iter().zip(found) {
+            if !planes.contains(&plane.name.as_str()) {
+                continue;
+            }
+            let half = [plane.window.x, plane.window.u].map(|profile| profile.half_width());
+            let expected = radiance * half[0].powi(2) * half[1].powi(2);
+            let close = (mean - expected).abs() < 5.0 * error + 1e-9 * expected;
+            assert!(
+                close,
+                "{what} at {}: {mean} ± {error}, not {expected}",
+                plane.name
+            );
+            // Small enough to see a cosine or a half-width that is missing.
+            assert!(
+                error < 0.06 * expected,
+                "{what} at {}: ± {error} of {expected}",
+                plane.name
+            );
+        }
+    }
+}
+
+#[test]
+fn light_that_leaves_a_floor() {
+    let mut of = world(vec![floor(0)]);
+    let direction = DVec3::new(0.0, 0.6, -0.8);
+    of.lights = vec![Light::Directional {
+        direction,
+        irradiance: 3.0,
+    }];
+    assert_even(
+        &of,
+        &QUESTION,
+        &["camera", "leaving_1"],
+        0.5 * 3.0 * 0.8 / PI,
+    );
+}
+
+#[test]
+fn light_that_arrives_at_a_floor_and_leaves_a_wall() {
+    // The ray goes on to a wall that shines, as a mirror would send it.
+    let mut wall = shape(
+        Geometry::Rectangle,
+        DAffine3::from_translation(DVec3::new(0.0, 4.0, 0.0)),
+        0,
+    );
+    wall.to_world.matrix3 = DMat3::from_cols(8.0 * DVec3::X, 8.0 * DVec3::Z, -8.0 * DVec3::Y);
+    wall.emission = Some(Texture::Constant(2.0));
+    let mut of = world(vec![floor(0), wall]);
+    of.depth = Some(1);
+    let question = Question {
+        surfaces: 2,
+        ..QUESTION
+    };
+    assert_even(&of, &question, &["arriving_1", "leaving_2"], 2.0);
+}
+
+#[test]
+fn surfaces_curve_as_they_do() {
+    let of = |geometry: Geometry, to_world: DAffine3| {
+        let paths = Paths::new(&world(vec![shape(geometry, to_world, 0)]));
+        let probe = Probe::new(&paths, &camera(), &QUESTION).unwrap();
+        probe.stops[0].curvature
+    };
+    let scaled = |radius: f64| DAffine3::from_scale(DVec3::splat(radius));
+    for k in of(Geometry::Sphere, scaled(0.5)) {
+        // Differences over a few hundredths of the radius.
+        assert!((k - 2.0).abs() < 0.03, "{k}");
+    }
+    // Its axis is along X: the plane of incidence is across it.
+    let turned = DMat3::from_cols(DVec3::Z * 0.5, DVec3::Y * 0.5, -4.0 * DVec3::X);
+    let to_world = DAffine3::from_mat3_translation(turned, DVec3::X * 2.0);
+    let [along, across] = of(Geometry::Cylinder, to_world);
+    // The ray comes nearly along the normal, so the plane of incidence is some degrees off; the sum does not depend on it.
+    assert!((along + across - 2.0).abs() < 0.03, "{along}, {across}");
+    assert!(along > 1.9 && across < 0.1, "{along}, {across}");
+    // From within a large sphere.
+    let [along, across] = of(Geometry::Sphere, scaled(5.0));
+    assert!(
+        (along + 0.2).abs() < 0.003 && (across + 0.2).abs() < 0.003,
+        "{along}, {across}"
+    );
+}
+
+#[test]
+fn photons_know_what_they_miss() {
+    let mut of = world(vec![floor(1)]);
+    of.lights = vec![Light::Constant { radiance: 1.0 }];
+    let paths = Paths::new(&of);
+    let probe = Probe::new(&paths, &camera(), &QUESTION).unwrap();
+    assert_eq!(probe.stops[0].reflects, Reflects::Mirror);
+    let photons = PhotonProbe::new(&probe, Budget { each: 10, seed: 1 });
+    assert_eq!(photons.misses(0), Some("a smooth surface"));
+    assert_eq!(photons.misses(2), Some("the sky"));
+}
