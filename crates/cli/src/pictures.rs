@@ -19,7 +19,7 @@ use across::differs_across;
 use etendue_compare::{
     Applicability, Class, PlaneComparison, Prediction, Theory, Verdict, stands_before,
 };
-use etendue_field::{Side, VirtualPlane};
+use etendue_field::{Side, VirtualPlane, percent};
 use etendue_figures::{
     Column, Comparison, Figure, Guide, Picture, Scale, Strip, Style, comparison, section, strip,
 };
@@ -356,10 +356,15 @@ pub(crate) fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
 }
 
 fn p_value(plane: &PlaneComparison) -> String {
-    match plane.report.p_value {
-        None => "no photons".to_owned(),
-        Some(p) if p < 0.001 => "*p* < 0.001".to_owned(),
-        Some(p) => format!("*p* = {p:.3}"),
+    let report = &plane.report;
+    match (report.p_value, report.quadrature_error) {
+        (None, _) => "no photons".to_owned(),
+        // What photons disagree with is that error: it is why the plane passes.
+        (Some(p), Some(error)) if p < 0.001 && report.verdict == Verdict::Pass => {
+            format!("within the {} of the quadrature", percent(error, 3))
+        }
+        (Some(p), _) if p < 0.001 => "*p* < 0.001".to_owned(),
+        (Some(p), _) => format!("*p* = {p:.3}"),
     }
 }
 

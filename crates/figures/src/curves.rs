@@ -208,7 +208,13 @@ fn axes(panel: &CurvePanel, y: &Quantity) -> [Axis; 2] {
         by_factors(around(|p| p[1], |p| p[1] + p[2]))
     } else {
         let [least, most] = around(|p| p[1] - p[2], |p| p[1] + p[2]);
-        [1.06 * least.min(0.0), 1.06 * most.max(0.0)]
+        let [least, most] = [least.min(0.0), most.max(0.0)];
+        let margin = 0.06 * (most - least);
+        // Zero is an edge where nothing is below it.
+        [
+            if least < 0.0 { least - margin } else { 0.0 },
+            most + margin,
+        ]
     };
     [
         axis(&panel.x, panel.is_log[0], across),

@@ -57,7 +57,7 @@ pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
     ];
     taken.curves(&Curves {
         title: "Criteria and photons".to_owned(),
-        note: "*B*: the frequency below which 95 % of the power lies, at a fixed point a distance *d* off. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'* \
+        note: "*B*: the frequency below which 95 % of the power lies, at a fixed point a distance *d* off. Corrected: Ω_{ρ} |1 + 2*kd*/cos *θ*_{1}|, and behind an edge at *d'*: \
                Ω_{ρ} |1 + *d* (cos *θ*_{0}/*d'* + 2*k*)/cos *θ*_{1}|. Where the corrected value is least the window sets what is measured."
             .to_owned(),
         y: Quantity::new("*B*", "cycles/slope"),

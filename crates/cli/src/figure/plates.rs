@@ -76,7 +76,7 @@ pub(crate) fn steps(taken: &Taken<'_>) -> Result<Figure, Failure> {
     })
 }
 
-/// Fig. 7: occluders that cancel.
+/// Fig. 7: occluders that together leave nothing.
 pub(crate) fn occluders(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let seen = taken
         .shots
@@ -111,7 +111,7 @@ pub(crate) fn occluders(taken: &Taken<'_>) -> Result<Figure, Failure> {
         ),
     ];
     taken.plate(&Plate {
-        title: "Occluders whose spectra cancel",
+        title: "Two occluders that together leave no light",
         note: "Measured, the slice at azimuth 0. Each occluder leaves half of the light; their phases differ, and together they leave none.",
         heads: ["one occluder", "the other", "both"]
             .map(str::to_owned)

@@ -145,7 +145,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "7",
-        about: "one occluder, the other, and both, whose spectra cancel by their phases",
+        about: "one occluder, the other, and both: what each takes away differs in phase, and together they take all",
         scenes: &[
             ("fig7_one", scene!("fig7_one")),
             ("fig7_other", scene!("fig7_other")),
