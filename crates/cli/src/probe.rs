@@ -1,22 +1,25 @@
-//! The light field behind a pixel.
+//! The light field behind a pixel, and how fast it changes over a picture.
+
+mod map;
+mod said;
 
 use crate::args::ProbeArgs;
 use crate::failure::Failure;
 use crate::results::sealed::json;
 use crate::results::stored::VERSION;
 use crate::results::{PROBE, Plan, Results, arrays};
-use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{deliver, pictures, progress, world};
 use etendue_compare::{PlaneComparison, Prediction, Test, Verdict, compare, sidak};
-use etendue_field::{Lobe, PhotonSource, uncertain};
-use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question, Reflects, Stop};
+use etendue_field::PhotonSource;
+use etendue_import::Imported;
+use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question};
 use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::{CrossPower, Measurement, Uncertain, measure};
-use etendue_theory::shading::{self, Criterion};
-use etendue_world::World;
+use etendue_world::Camera;
+use said::{of_plane, of_stop, said};
 use serde_json::{Value, json as tree_of};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Batches of rays and of photons, from whose differences errors and p are found.
 const BATCHES: u32 = 64;
@@ -38,90 +41,133 @@ struct Found {
     misses: Option<&'static str>,
 }
 
+/// What is asked of which scene.
+struct Case<'a> {
+    args: &'a ProbeArgs,
+    imported: Imported,
+    camera: Camera,
+    paths: Paths,
+}
+
 /// `etendue probe`: returns the exit code.
 pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
     let imported = world::load(&args.scene)?;
-    let camera = world::camera(&imported.world, &args.camera)?;
-    let [column, row] = args.pixel;
-    let [w, h] = camera.size;
-    if column >= w || row >= h {
-        let message = format!(
-            "--pixel {column},{row}; allowed: 0,0 to {},{}",
-            w - 1,
-            h - 1
-        );
-        return Err(Failure::bad_input(message));
-    }
-    let paths = Paths::new(&imported.world);
-    let question = Question {
-        pixel: args.pixel,
-        surfaces: args.surfaces.into(),
-        across: args.window,
-        frequencies: FREQUENCIES,
-        azimuths: 4,
+    let case = Case {
+        args,
+        camera: world::camera(&imported.world, &args.camera)?,
+        paths: Paths::new(&imported.world),
+        imported,
     };
-    let probe = Probe::new(&paths, &camera, &question).ok_or_else(|| {
-        Failure::bad_input(
-            "the ray through this pixel meets nothing, or the camera is orthographic",
-        )
-    })?;
-    let name = args
-        .scene
-        .path
-        .file_stem()
-        .unwrap_or_default()
-        .to_string_lossy();
-    let folder = args.out.clone();
-    let folder = folder.unwrap_or_else(|| Path::new("out").join(format!("{name}-{column}-{row}")));
-    let plan = Plan {
-        index: PROBE,
-        files: probe
-            .planes
-            .iter()
-            .flat_map(|plane| files_of(&plane.name))
-            .collect(),
-        inputs: vec![args.scene.path.clone()],
-        force: args.force.force,
-    };
-    let mut results = Results::claim(&folder, plan)?;
-    let found = on_threads(&args.threads, || measured(args, &probe))?;
-    let made_from = tree_of!({
-        "scene": args.scene.path.file_name().map(|name| name.to_string_lossy()),
-        "camera": camera.name,
-        "pixel": args.pixel,
-        "rays": args.rays,
-        "seed": args.seed,
-        "version": VERSION,
-    });
-    let note = format!("{name}, pixel {column}, {row}; backward rays | photons");
-    for (plane, found) in probe.planes.iter().zip(&found) {
-        arrays::write(&mut results, made_from.clone(), &found.0.comparison)?;
-        pictures::plane(&mut results, &note, &found.1, plane, &found.0.comparison)?;
+    match (args.pixel, args.map) {
+        (Some(pixel), _) => case.pixel(pixel),
+        (None, Some(size)) => map::map(&case, size),
+        (None, None) => unreachable!("clap asks for one of them"),
     }
-    let found: Vec<Found> = found.into_iter().map(|(found, _)| found).collect();
-    let verdict = found.iter().map(verdict).fold(Verdict::Pass, Verdict::and);
-    let finished = results.finish(|files| {
-        let mut index = made_from.clone();
-        index["verdict"] = tree_of!(verdict);
-        index["surfaces"] = probe
-            .stops
-            .iter()
-            .map(|stop| of_stop(&imported.world, stop))
-            .collect();
-        index["planes"] = found.iter().map(of_plane).collect();
-        index["files"] = tree_of!(files);
-        json(&index)
-    })?;
-    finished.tell_replaced(args.quiet);
-    if !args.quiet {
-        deliver(&said(&imported.world, &probe, &found).join("\n"))?;
-        deliver(&format!("results: {}", folder.display()))?;
+}
+
+impl Case<'_> {
+    fn name(&self) -> String {
+        let name = self.args.scene.path.file_stem().unwrap_or_default();
+        name.to_string_lossy().into_owned()
     }
-    Ok(match verdict {
-        Verdict::Pass => 0,
-        Verdict::Fail => 1,
-        Verdict::Undecided => 4,
-    })
+
+    /// What results are made from.
+    fn made_from(&self) -> Value {
+        let name = self.args.scene.path.file_name();
+        tree_of!({
+            "scene": name.map(|name| name.to_string_lossy()),
+            "camera": self.camera.name,
+            "seed": self.args.seed,
+            "version": VERSION,
+        })
+    }
+
+    fn question(&self, pixel: [usize; 2], azimuths: usize) -> Question {
+        Question {
+            pixel,
+            surfaces: self.args.surfaces.into(),
+            across: self.args.window,
+            frequencies: FREQUENCIES,
+            azimuths,
+        }
+    }
+
+    /// Claims the folder that is asked for, or one of this name.
+    fn claim(&self, name: String, files: Vec<String>) -> Result<(Results, PathBuf), Failure> {
+        let folder = self.args.out.clone();
+        let folder = folder.unwrap_or_else(|| Path::new("out").join(name));
+        let plan = Plan {
+            index: PROBE,
+            files,
+            inputs: vec![self.args.scene.path.clone()],
+            force: self.args.force.force,
+        };
+        Ok((Results::claim(&folder, plan)?, folder))
+    }
+
+    /// The light field behind one pixel.
+    fn pixel(&self, pixel: [usize; 2]) -> Result<u8, Failure> {
+        let [[column, row], [w, h]] = [pixel, self.camera.size];
+        if column >= w || row >= h {
+            let [w, h] = [w - 1, h - 1];
+            let message = format!("--pixel {column},{row}; allowed: 0,0 to {w},{h}");
+            return Err(Failure::bad_input(message));
+        }
+        let question = self.question(pixel, 4);
+        let probe = Probe::new(&self.paths, &self.camera, &question).ok_or_else(|| {
+            Failure::bad_input(
+                "the ray through this pixel meets nothing, or the camera is orthographic",
+            )
+        })?;
+        let name = self.name();
+        let files = probe.planes.iter().flat_map(|plane| files_of(&plane.name));
+        let (results, folder) = self.claim(format!("{name}-{column}-{row}"), files.collect())?;
+        let found = on_threads(&self.args.threads, || measured(self.args, &probe))?;
+        let note = format!("{name}, pixel {column}, {row}; backward rays | photons");
+        let verdict = self.written(results, &note, pixel, &probe, &found)?;
+        if !self.args.quiet {
+            let found: Vec<&Found> = found.iter().map(|(found, _)| found).collect();
+            deliver(&said(&self.imported.world, &probe, &found).join("\n"))?;
+            deliver(&format!("results: {}", folder.display()))?;
+        }
+        Ok(match verdict {
+            Verdict::Pass => 0,
+            Verdict::Fail => 1,
+            Verdict::Undecided => 4,
+        })
+    }
+
+    /// Writes everything, and says what it comes to.
+    fn written(
+        &self,
+        mut results: Results,
+        note: &str,
+        pixel: [usize; 2],
+        probe: &Probe<'_>,
+        found: &[(Found, Prediction)],
+    ) -> Result<Verdict, Failure> {
+        let mut made_from = self.made_from();
+        made_from["pixel"] = tree_of!(pixel);
+        made_from["rays"] = tree_of!(self.args.rays());
+        for (plane, (found, photons)) in probe.planes.iter().zip(found) {
+            arrays::write(&mut results, made_from.clone(), &found.comparison)?;
+            pictures::plane(&mut results, note, photons, plane, &found.comparison)?;
+        }
+        let each = found.iter().map(|(found, _)| verdict(found));
+        let verdict = each.fold(Verdict::Pass, Verdict::and);
+        let stops = probe.stops.iter();
+        let finished = results.finish(|files| {
+            made_from["verdict"] = tree_of!(verdict);
+            made_from["surfaces"] = stops
+                .map(|stop| of_stop(&self.imported.world, stop))
+                .collect();
+            made_from["planes"] = found.iter().map(|(found, _)| of_plane(found)).collect();
+            made_from["files"] = tree_of!(files);
+            json(&made_from)
+        })?;
+        finished.tell_replaced(self.args.quiet);
+        Ok(verdict)
+    }
 }
 
 fn files_of(name: &str) -> impl Iterator<Item = String> + use<'_> {
@@ -136,7 +182,7 @@ fn measured(args: &ProbeArgs, probe: &Probe<'_>) -> Result<Vec<(Found, Predictio
         each,
         seed: args.seed,
     };
-    let rays = BackwardProbe::new(probe, budget(each(args.rays)));
+    let rays = BackwardProbe::new(probe, budget(each(args.rays())));
     let photons = PhotonProbe::new(
         probe,
         Budget {
@@ -150,7 +196,7 @@ fn measured(args: &ProbeArgs, probe: &Probe<'_>) -> Result<Vec<(Found, Predictio
         bar.finish_and_clear();
         found
     };
-    let backward = trace(&rays, args.rays);
+    let backward = trace(&rays, args.rays());
     let forward = trace(&photons, args.photons);
     let test = Test {
         level: sidak(ALPHA, probe.planes.len()),
@@ -187,138 +233,4 @@ impl Found {
     fn is_dark(&self) -> bool {
         self.comparison.measured.is_dark() && self.comparison.predicted.is_dark()
     }
-}
-
-/// The paper's criterion for light that leaves a surface, in cycles per radian at the camera (Durand et al. 2005, Eq. 20, corrected); `None` where it has
-/// no lobe.
-fn criterion(stop: &Stop) -> Option<f64> {
-    let Reflects::Lobe(lobe) = stop.reflects else {
-        return None;
-    };
-    let cutoff = match lobe {
-        Lobe::Phong { exponent } => shading::Lobe::Phong { exponent },
-        Lobe::Beckmann { roughness } => shading::Lobe::Beckmann { roughness },
-        Lobe::Ggx { roughness } => shading::Lobe::Ggx { roughness },
-        Lobe::Lambertian => return None,
-    }
-    .cutoff(BANDWIDTH_FRACTION);
-    let angle = libm::acos(stop.cosine().clamp(-1.0, 1.0));
-    let of = Criterion {
-        curvature: stop.curvature[0],
-        incidence: angle,
-        outgoing: angle,
-        distance: stop.distance,
-        blocker_distance: None,
-        lobe_cutoff: cutoff,
-        environment_cutoff: f64::INFINITY,
-    };
-    Some(of.environment())
-}
-
-fn of_stop(world: &World, stop: &Stop) -> Value {
-    tree_of!({
-        "shape": world.shapes[stop.shape].name,
-        "position": stop.position.to_array(),
-        "normal": stop.normal.to_array(),
-        "distance": stop.distance,
-        "angle": libm::acos(stop.cosine().clamp(-1.0, 1.0)),
-        "curvature": stop.curvature,
-        "reflects": word(stop.reflects),
-        "criterion": criterion(stop),
-    })
-}
-
-fn of_plane(found: &Found) -> Value {
-    let number = |of: &Option<Uncertain>| of.map(|of| [of.value, of.error]);
-    tree_of!({
-        "report": found.comparison.report,
-        "verdict": verdict(found),
-        "photons_miss": found.misses,
-        "bandwidth_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
-    })
-}
-
-fn word(reflects: Reflects) -> String {
-    match reflects {
-        Reflects::Nothing => "nothing: it is black from here".to_owned(),
-        Reflects::Diffuse => "diffuse".to_owned(),
-        Reflects::Mirror => "mirror or smooth interface".to_owned(),
-        Reflects::Lobe(lobe) => match lobe {
-            Lobe::Lambertian => "diffuse".to_owned(),
-            Lobe::Phong { exponent } => format!("Phong, exponent {exponent}"),
-            Lobe::Beckmann { roughness } => format!("Beckmann, roughness {roughness}"),
-            Lobe::Ggx { roughness } => format!("GGX, roughness {roughness}"),
-        },
-    }
-}
-
-/// The surfaces, the planes, and how densely the picture is to be sampled.
-fn said(world: &World, probe: &Probe<'_>, found: &[Found]) -> Vec<String> {
-    let header = [
-        "surface",
-        "shape",
-        "reflects",
-        "distance",
-        "angle [°]",
-        "curvatures [1/m]",
-    ];
-    let surfaces = probe.stops.iter().enumerate().map(|(i, stop)| {
-        let angle = libm::acos(stop.cosine().clamp(-1.0, 1.0)).to_degrees();
-        let [along, across] = stop.curvature;
-        vec![
-            (i + 1).to_string(),
-            world.shapes[stop.shape].name.clone(),
-            word(stop.reflects),
-            format!("{:.4}", stop.distance),
-            format!("{angle:.2}"),
-            format!("{along:.4}, {across:.4}"),
-        ]
-    });
-    let header = vec![header.map(str::to_owned).to_vec()];
-    let mut lines = aligned(header.into_iter().chain(surfaces).collect());
-    lines.push(String::new());
-    let header = [
-        "plane",
-        "noise alone",
-        "p",
-        "95 % of ν",
-        "95 % of ρ [1/m]",
-        "verdict",
-    ];
-    let shown =
-        |of: &Option<Uncertain>| of.map_or("–".to_owned(), |of| uncertain(of.value, of.error));
-    let planes = found.iter().map(|found| {
-        let report = &found.comparison.report;
-        let percent =
-            |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));
-        vec![
-            report.name.clone(),
-            percent(report.noise_limit),
-            report.p_value.map_or("–".to_owned(), |p| format!("{p:.5}")),
-            shown(&found.nu),
-            shown(&found.rho),
-            match found.misses {
-                Some(what) => format!("undecided: photons do not find light from {what}"),
-                None if found.is_dark() => "dark".to_owned(),
-                None => format!("{:?}", report.verdict).to_lowercase(),
-            },
-        ]
-    });
-    let header = vec![header.map(str::to_owned).to_vec()];
-    lines.extend(aligned(header.into_iter().chain(planes).collect()));
-    lines.push(String::new());
-    if let Some(nu) = found.first().and_then(|camera| camera.nu) {
-        let samples = |cycles: f64| 2.0 * cycles * probe.pixel_slope;
-        lines.push(format!(
-            "shading samples a pixel and direction: measured {:.4}{}",
-            samples(nu.value),
-            criterion(&probe.stops[0]).map_or(String::new(), |cycles| {
-                format!(
-                    "; by Eq. 20, corrected, for light of all frequencies {:.4}",
-                    samples(cycles)
-                )
-            })
-        ));
-    }
-    lines
 }

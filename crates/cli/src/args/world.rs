@@ -108,11 +108,13 @@ pub(crate) struct RenderArgs {
 #[command(after_help = "Examples:
   etendue probe cbox.xml --pixel 128,200
   etendue probe cbox.xml --pixel 128,200 --depth 2 --window 8 --rays 2^22
+  etendue probe cbox.xml --map 64x40
 
 Follows the ray through a pixel from the camera to the surface it meets, and on as a mirror would send it. At the camera, where light
 leaves each surface and where it arrives there, the light field is measured: by rays traced back, and by photons from the lights. The
 verdict is theirs against each other, so a sky or a mirror that photons cannot connect to leaves it undecided.
-Leaves in its folder what `run` does for each plane, and probe.json. Exit codes are those of run.")]
+Leaves in its folder what `run` does for each plane, and probe.json. Exit codes are those of run.
+A map leaves map.exr and map.npz with measured, error, criterion and samples (a pixel and direction), and map.png, .svg and .csv.")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -121,8 +123,12 @@ pub(crate) struct ProbeArgs {
     pub(crate) camera: CameraArgs,
 
     /// Column and row of the pixel, from 0 at the top left
-    #[arg(long, value_name = "X,Y", value_parser = pixel)]
-    pub(crate) pixel: [usize; 2],
+    #[arg(long, value_name = "X,Y", value_parser = pixel, required_unless_present = "map")]
+    pub(crate) pixel: Option<[usize; 2]>,
+
+    /// Instead of one pixel, the bandwidths at the camera for as many as this, evenly over the picture: by rays traced back alone
+    #[arg(long, value_name = "WxH", value_parser = size, conflicts_with_all = ["pixel", "photons", "surfaces"])]
+    pub(crate) map: Option<[usize; 2]>,
 
     /// Most surfaces along the ray
     #[arg(long = "depth", value_name = "N", default_value = "1", value_parser = clap::value_parser!(u16).range(1..=16))]
@@ -132,9 +138,9 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "PIXELS", default_value = "16", value_parser = window)]
     pub(crate) window: f64,
 
-    /// Rays traced back for each plane
-    #[arg(long, value_name = "N", default_value = "2^20", value_parser = whole_number)]
-    pub(crate) rays: u64,
+    /// Rays traced back for each plane [default: 2^20; for a map, 2^14]
+    #[arg(long, value_name = "N", value_parser = whole_number)]
+    pub(crate) rays: Option<u64>,
 
     /// Photons that check them
     #[arg(long, value_name = "N", default_value = "2^25", value_parser = whole_number)]
@@ -157,6 +163,14 @@ pub(crate) struct ProbeArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+impl ProbeArgs {
+    /// Rays traced back for each plane.
+    pub(crate) fn rays(&self) -> u64 {
+        let default = if self.map.is_some() { 1 << 14 } else { 1 << 20 };
+        self.rays.unwrap_or(default)
+    }
 }
 
 fn pixel(text: &str) -> Result<[usize; 2], String> {

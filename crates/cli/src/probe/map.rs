@@ -1,0 +1,182 @@
+//! How fast light changes with angle at the camera, over a picture: measured, and by the criterion of Durand et al. 2005.
+
+use super::said::criterion;
+use super::{BATCHES, Case};
+use crate::failure::Failure;
+use crate::results::Results;
+use crate::results::exr::{Part, exr};
+use crate::results::npz::Npz;
+use crate::results::sealed::json;
+use crate::threads::on_threads;
+use crate::{deliver, pictures, progress};
+use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
+use etendue_paths::{BackwardProbe, Budget, Probe};
+use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu};
+use etendue_spectrum::{CrossPower, measure};
+use ndarray::{Array2, Axis as ArrayAxis};
+use rayon::prelude::*;
+use serde_json::json as tree_of;
+
+const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
+/// What the estimator gives for even light, in half-widths of the window: nothing is measured below it.
+const WINDOW: f64 = 0.43;
+
+/// A bandwidth with a larger standard error, as a share of it, is not shown: few rays make its jackknife unsafe.
+const UNSURE: f64 = 0.2;
+
+/// What is known of a pixel; NaN where there is nothing, or too much noise.
+#[derive(Clone, Copy, Debug)]
+struct Point {
+    /// The frequency below which 95 % of the power in the window lies, cycles per slope, with its standard error.
+    measured: f64,
+    error: f64,
+    /// Eq. 20, corrected, and not below what the window has alone.
+    criterion: f64,
+    /// Shading samples along a direction.
+    samples: f64,
+}
+
+impl Point {
+    const NOTHING: Self = Self {
+        measured: f64::NAN,
+        error: f64::NAN,
+        criterion: f64::NAN,
+        samples: f64::NAN,
+    };
+}
+
+/// `etendue probe --map`: returns the exit code.
+pub(super) fn map(case: &Case<'_>, [w, h]: [usize; 2]) -> Result<u8, Failure> {
+    let name = format!("{}-map", case.name());
+    let (results, folder) = case.claim(name, FILES.map(str::to_owned).to_vec())?;
+    let points = on_threads(&case.args.threads, || {
+        let bar = progress::steps("probing", w * h, "pixels", case.args.quiet);
+        let points = (0..w * h).into_par_iter().map(|i| {
+            let point = point(case, [i % w, i / w], [w, h]);
+            bar.inc(1);
+            point
+        });
+        let points: Result<Vec<Point>, Failure> = points.collect();
+        bar.finish_and_clear();
+        points
+    })?;
+    let map = Array2::from_shape_vec((h, w), points).map_err(Failure::cannot_run)?;
+    write(case, results, &map)?;
+    if !case.args.quiet {
+        deliver(&said(&map))?;
+        deliver(&format!("results: {}", folder.display()))?;
+    }
+    Ok(0)
+}
+
+/// The bandwidths behind one pixel of the lattice.
+fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, Failure> {
+    let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
+    let question = case.question(pixel, 4);
+    let Some(mut probe) = Probe::new(&case.paths, &case.camera, &question) else {
+        return Ok(Point::NOTHING);
+    };
+    probe.planes.truncate(1);
+    let number = (at[1] * lattice[0] + at[0]) as u64;
+    let budget = Budget {
+        each: case.args.rays().div_ceil(u64::from(BATCHES)),
+        seed: case.args.seed.wrapping_add(number << 32),
+    };
+    let rays = BackwardProbe::new(&probe, budget);
+    let found = measure(&rays, &probe.planes, 0..BATCHES, &|_| {});
+    let power = CrossPower::new(&found, 0).map_err(Failure::cannot_run)?;
+    let plane = &probe.planes[0];
+    let nu = power.statistic(|p| bandwidth_nu(p, &plane.grid, BANDWIDTH_FRACTION));
+    let nu = nu.filter(|nu| nu.error <= UNSURE * nu.value);
+    let own = WINDOW / plane.window.u.half_width();
+    Ok(Point {
+        measured: nu.map_or(f64::NAN, |nu| nu.value),
+        error: nu.map_or(f64::NAN, |nu| nu.error),
+        criterion: criterion(&probe.stops[0]).map_or(f64::NAN, |cycles| cycles.max(own)),
+        samples: nu.map_or(f64::NAN, |nu| 2.0 * nu.value * probe.pixel_slope),
+    })
+}
+
+fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(), Failure> {
+    let (h, w) = map.dim();
+    let layers: [(&'static str, fn(&Point) -> f64); 4] = [
+        ("measured", |point| point.measured),
+        ("error", |point| point.error),
+        ("criterion", |point| point.criterion),
+        ("samples", |point| point.samples),
+    ];
+    let mut made_from = case.made_from();
+    made_from["map"] = tree_of!([w, h]);
+    made_from["rays"] = tree_of!(case.args.rays());
+    let mut npz = Npz::new();
+    let mut parts = Vec::new();
+    for (name, of) in layers {
+        npz = npz.add(name, &map.map(of))?;
+        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        let samples = map.iter().map(|point| of(point) as f32).collect();
+        parts.push(Part { name, samples });
+    }
+    results.write(FILES[0], &exr([w, h], parts, &made_from)?)?;
+    results.write(FILES[1], &npz.bytes()?)?;
+    pictures::write(&mut results, "map", &drawn(case, map)?)?;
+    let finished = results.finish(|files| {
+        made_from["files"] = tree_of!(files);
+        json(&made_from)
+    })?;
+    finished.tell_replaced(case.args.quiet);
+    Ok(())
+}
+
+fn drawn(case: &Case<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure, Failure> {
+    // Pictures have y upwards.
+    let of = |value: fn(&Point) -> f64| {
+        let mut rows = map.map(value);
+        rows.invert_axis(ArrayAxis(0));
+        rows.reversed_axes()
+    };
+    let [w, h] = case.camera.size.map(|n| n as f64);
+    let name = case.name();
+    comparison(&Comparison {
+        title: &format!("{name}: bandwidth at the camera"),
+        note: &format!(
+            "95 % of the power in windows {} pixels wide; right: Eq. 20, corrected, for light of all frequencies",
+            case.args.window
+        ),
+        x: Axis::edges("column", "pixels", [0.0, w]),
+        y: Axis::edges("row from below", "pixels", [0.0, h]),
+        quantity: Quantity::new("*B*", "cycles/slope"),
+        scale: Scale::Linear,
+        measured: of(|point| point.measured).view(),
+        predicted: of(|point| point.criterion).view(),
+        z: of(|point| (point.measured - point.criterion) / point.error).view(),
+    })
+    .map_err(Failure::cannot_run)
+}
+
+/// How measured and predicted bandwidths are to each other.
+fn said(map: &Array2<Point>) -> String {
+    let seen = map
+        .iter()
+        .filter(|point| point.measured.is_finite())
+        .count();
+    let ratio = |point: &Point| point.measured / point.criterion;
+    let mut ratios: Vec<f64> = map.iter().map(ratio).filter(|x| x.is_finite()).collect();
+    ratios.sort_unstable_by(f64::total_cmp);
+    let all = ratios.len();
+    let mut lines = vec![format!(
+        "{seen} of {} bandwidths measured, {all} of them on a lobe; the rest is dark or too noisy",
+        map.len()
+    )];
+    if all > 0 {
+        let at = |share: f64| ratios[((all - 1) as f64 * share) as usize];
+        let above = ratios.iter().filter(|ratio| **ratio > 1.1).count();
+        lines.push(format!(
+            "measured over criterion: median {:.3}, tenths {:.3} and {:.3}; under-predicted by more than a tenth: {:.1} %",
+            at(0.5),
+            at(0.1),
+            at(0.9),
+            100.0 * above as f64 / all as f64
+        ));
+    }
+    lines.join("\n")
+}

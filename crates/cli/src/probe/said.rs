@@ -1,0 +1,144 @@
+//! What a probe comes to, in words and in JSON.
+
+use super::{Found, verdict};
+use crate::table::aligned;
+use etendue_field::{Lobe, percent, uncertain};
+use etendue_paths::{Probe, Reflects, Stop};
+use etendue_spectrum::Uncertain;
+use etendue_spectrum::moments::BANDWIDTH_FRACTION;
+use etendue_theory::shading::{self, Criterion};
+use etendue_world::World;
+use serde_json::{Value, json as tree_of};
+
+/// The paper's criterion for light that leaves a surface, in cycles per radian at the camera (Durand et al. 2005, Eq. 20, corrected); `None` where it has
+/// no lobe.
+pub(super) fn criterion(stop: &Stop) -> Option<f64> {
+    let Reflects::Lobe(lobe) = stop.reflects else {
+        return None;
+    };
+    let cutoff = match lobe {
+        Lobe::Phong { exponent } => shading::Lobe::Phong { exponent },
+        Lobe::Beckmann { roughness } => shading::Lobe::Beckmann { roughness },
+        Lobe::Ggx { roughness } => shading::Lobe::Ggx { roughness },
+        Lobe::Lambertian => return None,
+    }
+    .cutoff(BANDWIDTH_FRACTION);
+    let angle = libm::acos(stop.cosine().clamp(-1.0, 1.0));
+    let of = Criterion {
+        curvature: stop.curvature[0],
+        incidence: angle,
+        outgoing: angle,
+        distance: stop.distance,
+        blocker_distance: None,
+        lobe_cutoff: cutoff,
+        environment_cutoff: f64::INFINITY,
+    };
+    Some(of.environment())
+}
+
+pub(super) fn of_stop(world: &World, stop: &Stop) -> Value {
+    tree_of!({
+        "shape": world.shapes[stop.shape].name,
+        "position": stop.position.to_array(),
+        "normal": stop.normal.to_array(),
+        "distance": stop.distance,
+        "angle": libm::acos(stop.cosine().clamp(-1.0, 1.0)),
+        "curvature": stop.curvature,
+        "reflects": word(stop.reflects),
+        "criterion": criterion(stop),
+    })
+}
+
+pub(super) fn of_plane(found: &Found) -> Value {
+    let number = |of: &Option<Uncertain>| of.map(|of| [of.value, of.error]);
+    tree_of!({
+        "report": found.comparison.report,
+        "verdict": verdict(found),
+        "photons_miss": found.misses,
+        "bandwidth_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
+    })
+}
+
+fn word(reflects: Reflects) -> String {
+    match reflects {
+        Reflects::Nothing => "nothing: it is black from here".to_owned(),
+        Reflects::Diffuse => "diffuse".to_owned(),
+        Reflects::Mirror => "mirror or smooth interface".to_owned(),
+        Reflects::Lobe(lobe) => match lobe {
+            Lobe::Lambertian => "diffuse".to_owned(),
+            Lobe::Phong { exponent } => format!("Phong, exponent {exponent}"),
+            Lobe::Beckmann { roughness } => format!("Beckmann, roughness {roughness}"),
+            Lobe::Ggx { roughness } => format!("GGX, roughness {roughness}"),
+        },
+    }
+}
+
+/// The surfaces, the planes, and how densely the picture is to be sampled.
+pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found]) -> Vec<String> {
+    let header = [
+        "surface",
+        "shape",
+        "reflects",
+        "distance",
+        "angle [°]",
+        "curvatures [1/m]",
+    ];
+    let surfaces = probe.stops.iter().enumerate().map(|(i, stop)| {
+        let angle = libm::acos(stop.cosine().clamp(-1.0, 1.0)).to_degrees();
+        let [along, across] = stop.curvature;
+        vec![
+            (i + 1).to_string(),
+            world.shapes[stop.shape].name.clone(),
+            word(stop.reflects),
+            format!("{:.4}", stop.distance),
+            format!("{angle:.2}"),
+            format!("{along:.4}, {across:.4}"),
+        ]
+    });
+    let header = vec![header.map(str::to_owned).to_vec()];
+    let mut lines = aligned(header.into_iter().chain(surfaces).collect());
+    lines.push(String::new());
+    let header = [
+        "plane",
+        "noise alone",
+        "p",
+        "95 % of ν",
+        "95 % of ρ [1/m]",
+        "verdict",
+    ];
+    let shown =
+        |of: &Option<Uncertain>| of.map_or("–".to_owned(), |of| uncertain(of.value, of.error));
+    let planes = found.iter().map(|found| {
+        let report = &found.comparison.report;
+        let share = |x: Option<f64>| x.map_or("–".to_owned(), |x| percent(x, 3));
+        vec![
+            report.name.clone(),
+            share(report.noise_limit),
+            report.p_value.map_or("–".to_owned(), |p| format!("{p:.5}")),
+            shown(&found.nu),
+            shown(&found.rho),
+            match found.misses {
+                Some(what) => format!("undecided: photons do not find light from {what}"),
+                None if found.is_dark() => "dark".to_owned(),
+                None => format!("{:?}", report.verdict).to_lowercase(),
+            },
+        ]
+    });
+    let header = vec![header.map(str::to_owned).to_vec()];
+    lines.extend(aligned(header.into_iter().chain(planes).collect()));
+    lines.push(String::new());
+    if let Some(nu) = found.first().and_then(|camera| camera.nu) {
+        let samples = |cycles: f64| 2.0 * cycles * probe.pixel_slope;
+        lines.push(format!(
+            "shading samples a pixel and direction: measured {:.4}{}",
+            samples(nu.value),
+            criterion(&probe.stops[0]).map_or(String::new(), |cycles| {
+                format!(
+                    "; by Eq. 20, corrected, for light of all frequencies {:.4}",
+                    samples(cycles)
+                )
+            })
+        ));
+    }
+    lines
+}
