@@ -6,7 +6,7 @@ mod sky;
 
 use crate::space::{Hit, Space};
 use ball::Ball;
-use etendue_world::{Geometry, Light, Shape, Texture, World};
+use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
 use glam::{DAffine3, DVec2, DVec3};
 use shape::Surface;
 use sky::Sky;
@@ -45,6 +45,7 @@ enum Lamp {
         intensity: f64,
         beam: f64,
         cutoff: f64,
+        falloff: Falloff,
     },
     Directional {
         toward: DVec3,
@@ -138,11 +139,13 @@ impl From<&Light> for Lamp {
                 intensity,
                 beam,
                 cutoff,
+                falloff,
             } => Self::Spot {
                 to_local: to_world.inverse(),
                 intensity: *intensity,
                 beam: *beam,
                 cutoff: *cutoff,
+                falloff: *falloff,
             },
             Light::Directional {
                 direction,
@@ -180,12 +183,13 @@ impl Lamp {
                 intensity,
                 beam,
                 cutoff,
+                falloff,
             } => {
                 let (toward, distance) = way(at, to_local.inverse().translation);
                 let local = to_local.transform_vector3(-toward);
                 let angle = libm::atan2(local.truncate().length(), local.z);
-                let falloff = ((cutoff - angle) / (cutoff - beam)).clamp(0.0, 1.0);
-                let weight = intensity * falloff / (distance * distance);
+                let share = falloff.share(angle, *beam, *cutoff);
+                let weight = intensity * share / (distance * distance);
                 (weight > 0.0).then_some(Incoming {
                     toward,
                     distance,
