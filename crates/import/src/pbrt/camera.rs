@@ -206,13 +206,28 @@ impl Reader<'_> {
         for (kind, entity) in &self.scene.settings {
             let plugin = quoted(&entity.plugin);
             let message = match *kind {
-                "PixelFilter" if entity.plugin == "box" => continue,
+                "PixelFilter" if entity.plugin == "box" => {
+                    self.check_box(entity);
+                    continue;
+                }
                 "PixelFilter" => format!("filter {plugin} is approximated by the box filter"),
                 "Sampler" | "Accelerator" => format!("{kind} {plugin} is left out"),
                 _ => continue,
             };
             self.report.note(&entity.place, message);
             entity.drop_all();
+        }
+    }
+
+    /// A box of one pixel is exact.
+    fn check_box(&self, entity: &Entity) {
+        entity.is_used.set(true);
+        for name in ["xradius", "yradius"] {
+            let radius = entity.float_or(self.report, name, 0.5);
+            if radius.is_ok_and(|radius| (radius - 0.5).abs() > 1e-9) {
+                let message = format!("{name} is approximated by 0.5, a box of one pixel");
+                self.report.note(entity.place_of(name), message);
+            }
         }
     }
 
