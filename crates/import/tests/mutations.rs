@@ -225,6 +225,6 @@ fn deep_and_wide_pbrt_scenes_end() {
     }
     doubled += "NamedMaterial \"m63\" Shape \"sphere\"";
     assert!(refused(&doubled)[0].message.contains("in one another"));
-    let causes = refused(&"Gizmo ".repeat(5000));
+    let causes = refused(&"ObjectEnd ".repeat(5000));
     assert_eq!(causes.len(), 1001);
 }

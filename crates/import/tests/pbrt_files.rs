@@ -122,7 +122,7 @@ fn types_must_fit() {
 #[test]
 fn strings_have_escapes_and_text_is_counted_in_characters() {
     let found = causes("Shape \"ä\\\"b\" \"float c\" nan");
-    assert_eq!(found[0], "text:3:25: `nan` is no finite number");
+    assert_eq!(found[0], "text:3:24: `nan` is no finite number");
     assert!(
         found[1].starts_with("text:3:1: shape `ä\\\"b` is not supported"),
         "{found:?}"
