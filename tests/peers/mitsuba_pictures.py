@@ -5,8 +5,9 @@ usage: mitsuba_pictures.py ETENDUE SCENE [--against OTHER.xml] [--root DIR] [--s
             mitsuba_pictures.py target/release/etendue tests/peers/scenes/room.pbrt --against tests/peers/scenes/room.xml
 
 Both trace paths through at most 64 x 64 pixels, with a box for a filter, and count in one number: luminance (llvm_ad_mono). z is the difference over its
-standard error. With --against, Mitsuba reads that file: the same scene in its own format. A picture passes when no |z| is beyond what one in a hundred pictures reaches by chance (Sidak 1967), and the mean of z is
+standard error. A picture passes when no |z| is beyond what one in a hundred pictures reaches by chance (Sidak 1967), and the mean of z is
 within 3.3 standard errors of 0, so that many small differences are seen too. Exit code 1 says it does not.
+With --against, Mitsuba reads that file instead: the same scene in its own format.
 """
 import argparse, json, math, pathlib, subprocess, sys
 import mitsuba as mi, numpy as np

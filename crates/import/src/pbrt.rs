@@ -26,6 +26,7 @@
 //! 256 at once; shapes at most 2²⁰ with all instances. What is read and unpacked is at most 4 GiB in all.
 
 mod area;
+mod block;
 mod build;
 mod camera;
 mod directive;

@@ -145,7 +145,7 @@ fn lights_shine_by_their_units() {
     let cosine = |angle: f64| (angle.cos() - 0.5_f64.cos()) / (0.3_f64.cos() - 0.5_f64.cos());
     let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
     for (falloff, angle, share) in [
-        (Falloff::Angle, 0.4, 0.5),
+        (Falloff::Angle, 0.4_f64, 0.5),
         (Falloff::SmoothCosine, 0.35, smooth(cosine(0.35))),
         (Falloff::SmoothCosine, 0.45, smooth(cosine(0.45))),
         (Falloff::SmoothCosine, 0.29, 1.0),

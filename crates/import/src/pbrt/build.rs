@@ -2,7 +2,7 @@
 
 use super::entity::Entity;
 use super::parameter::Parameter;
-use super::scene::{Instance, MaterialOf, Object, Scene, Shape, State};
+use super::scene::{MaterialOf, Scene, Shape, State};
 use super::token::Tokens;
 use crate::files::Files;
 use crate::report::{Place, Report, quoted};
@@ -10,9 +10,6 @@ use glam::DAffine3;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
-
-/// Blocks within one another.
-const DEEPEST: usize = 1 << 12;
 
 /// Files within one another.
 pub(super) const DEEPEST_FILES: usize = 64;
@@ -46,7 +43,7 @@ pub(super) struct Builder<'a> {
     systems: BTreeMap<String, DAffine3>,
     pub(super) is_world: bool,
     /// The object that shapes go to.
-    object: Option<String>,
+    pub(super) object: Option<String>,
     /// The folder of the scene.
     pub(super) folder: PathBuf,
     /// Files that are being read.
@@ -82,21 +79,6 @@ impl<'a> Builder<'a> {
         self.scene
     }
 
-    /// A cause for each block above a level that has no end.
-    pub(super) fn refuse_open(&mut self, level: usize) {
-        while self.stack.len() > level {
-            if let Some((state, kind, place)) = self.stack.pop() {
-                let word = if kind == 'o' { "Object" } else { "Attribute" };
-                self.report
-                    .cause(&place, format!("{word}Begin without {word}End"));
-                self.state = state;
-                if kind == 'o' {
-                    self.object = None;
-                }
-            }
-        }
-    }
-
     pub(super) fn coordinate_system(&mut self, name: String) {
         self.systems.insert(name, self.state.to_world);
     }
@@ -121,7 +103,7 @@ impl<'a> Builder<'a> {
         Ok(())
     }
 
-    fn before_world(&self, word: &str) -> Result<(), String> {
+    pub(super) fn before_world(&self, word: &str) -> Result<(), String> {
         match self.is_world {
             false => Ok(()),
             true => Err(format!("{word} after WorldBegin; allowed: before")),
@@ -133,68 +115,6 @@ impl<'a> Builder<'a> {
             true => Ok(()),
             false => Err(format!("{word} before WorldBegin; allowed: after")),
         }
-    }
-
-    pub(super) fn push(&mut self, kind: char, place: &Place) -> Result<(), String> {
-        self.within_world("a block")?;
-        if self.stack.len() >= DEEPEST {
-            return Err(format!("more than {DEEPEST} blocks in one another"));
-        }
-        self.stack.push((self.state.clone(), kind, place.clone()));
-        Ok(())
-    }
-
-    pub(super) fn pop(&mut self, kind: char) -> Result<(), String> {
-        let word = if kind == 'o' { "Object" } else { "Attribute" };
-        match self.stack.last() {
-            Some((_, begun, _)) if *begun == kind => {
-                if let Some((state, ..)) = self.stack.pop() {
-                    self.state = state;
-                }
-                Ok(())
-            }
-            Some((.., place)) => Err(format!(
-                "{word}End, but the block that began in line {} is open",
-                place.line
-            )),
-            None => Err(format!("{word}End without {word}Begin")),
-        }
-    }
-
-    pub(super) fn begin_object(&mut self, name: String, place: &Place) -> Result<(), String> {
-        if self.object.is_some() {
-            return Err("an object within an object".to_owned());
-        }
-        if self.scene.objects.contains_key(&name) {
-            return Err(format!("a second object {}", quoted(&name)));
-        }
-        self.push('o', place)?;
-        let object = Object {
-            place: place.clone(),
-            shapes: Vec::new(),
-        };
-        self.scene.objects.insert(name.clone(), object);
-        self.object = Some(name);
-        Ok(())
-    }
-
-    pub(super) fn end_object(&mut self) -> Result<(), String> {
-        self.pop('o')?;
-        self.object = None;
-        Ok(())
-    }
-
-    pub(super) fn instance(&mut self, name: String, place: &Place) -> Result<(), String> {
-        self.within_world("ObjectInstance")?;
-        if self.object.is_some() {
-            return Err("an instance within an object".to_owned());
-        }
-        self.scene.instances.push(Instance {
-            name,
-            place: place.clone(),
-            to_world: self.state.to_world,
-        });
-        Ok(())
     }
 
     pub(super) fn named_material(&mut self, name: &str, place: &Place) {
@@ -218,22 +138,23 @@ impl<'a> Builder<'a> {
             return Ok(());
         }
         match word {
-            "Camera" => self.camera(plugin, own, place)?,
-            "Attribute" => self.attribute(&plugin, own)?,
+            "Camera" => return self.camera(plugin, own, place),
+            "Attribute" => return self.attribute(&plugin, own),
+            "MakeNamedMedium" => {
+                let name = quoted(&plugin);
+                return Err(format!(
+                    "medium {name}: participating media are not supported"
+                ));
+            }
+            _ => self.within_world(word)?,
+        }
+        match word {
             "Material" => {
                 let entity = self.entity("material", plugin, own, place, Some(2));
                 self.state.material = MaterialOf::Number(self.scene.materials.len());
                 self.scene.materials.push(entity);
             }
-            "MakeNamedMaterial" => {
-                let entity = self.entity("material", String::new(), own, place, Some(2));
-                let number = self.scene.materials.len();
-                let before = self.scene.named.insert(plugin.clone(), number);
-                self.scene.materials.push(entity);
-                if before.is_some() {
-                    return Err(format!("a second material {}", quoted(&plugin)));
-                }
-            }
+            "MakeNamedMaterial" => return self.make_named(plugin, own, place),
             "LightSource" => {
                 let entity = self.entity("light", plugin, own, place, Some(1));
                 self.scene.lights.push((entity, self.state.to_world));
@@ -243,17 +164,24 @@ impl<'a> Builder<'a> {
                 self.state.area = Some(self.scene.areas.len());
                 self.scene.areas.push(entity);
             }
-            "Shape" => self.shape(plugin, own, place),
-            _ => {
-                let name = quoted(&plugin);
-                return Err(format!(
-                    "medium {name}: participating media are not supported"
-                ));
-            }
+            _ => self.shape(plugin, own, place),
         }
-        match word {
-            "Camera" | "Attribute" => Ok(()),
-            _ => self.within_world(word),
+        Ok(())
+    }
+
+    fn make_named(
+        &mut self,
+        name: String,
+        own: Vec<Rc<Parameter>>,
+        place: &Place,
+    ) -> Result<(), String> {
+        let entity = self.entity("material", String::new(), own, place, Some(2));
+        let shown = quoted(&name);
+        let before = self.scene.named.insert(name, self.scene.materials.len());
+        self.scene.materials.push(entity);
+        match before {
+            None => Ok(()),
+            Some(_) => Err(format!("a second material {shown}")),
         }
     }
 
