@@ -4,6 +4,7 @@ use super::entity::Entity;
 use super::parameter::Parameter;
 use super::scene::Scene;
 use crate::report::{Report, quoted};
+use std::collections::BTreeSet;
 use std::rc::Rc;
 
 /// A note for each parameter that was not read, and for each object that the world does not have.
@@ -18,12 +19,12 @@ pub(super) fn tell(scene: &Scene, report: &Report) {
         .chain(&scene.areas)
         .chain(scene.shapes.iter().map(|shape| &shape.entity));
     all.for_each(|entity| entity_left(entity, report));
-    let shown = |name: &str| scene.instances.iter().any(|instance| instance.name == name);
+    let shown: BTreeSet<&str> = scene.instances.iter().map(|i| i.name.as_str()).collect();
     for (name, object) in &scene.objects {
         let shapes = object.shapes.iter().map(|shape| &shape.entity);
         if object.shapes.iter().any(|shape| shape.entity.is_used.get()) {
             shapes.for_each(|entity| entity_left(entity, report));
-        } else if !shown(name) {
+        } else if !shown.contains(name.as_str()) {
             report.note(
                 &object.place,
                 format!("object {} is not used", quoted(name)),
