@@ -1,11 +1,13 @@
 """A scene of Mitsuba 3 as `etendue render` sees it and as Mitsuba does: a z-test for each pixel.
 
-usage: mitsuba_pictures.py ETENDUE SCENE.xml [--root DIR] [--samples N] [--bounces N] [--out DIR]
+usage: mitsuba_pictures.py ETENDUE SCENE [--against OTHER.xml] [--root DIR] [--samples N] [--bounces N] [--out DIR]
        e.g. mitsuba_pictures.py target/release/etendue cbox.xml --bounces 1
+            mitsuba_pictures.py target/release/etendue tests/peers/scenes/room.pbrt --against tests/peers/scenes/room.xml
 
 Both trace paths through at most 64 x 64 pixels, with a box for a filter, and count in one number: luminance (llvm_ad_mono). z is the difference over its
 standard error. A picture passes when no |z| is beyond what one in a hundred pictures reaches by chance (Sidak 1967), and the mean of z is
 within 3.3 standard errors of 0, so that many small differences are seen too. Exit code 1 says it does not.
+With --against, Mitsuba reads that file instead: the same scene in its own format.
 """
 import argparse, json, math, pathlib, subprocess, sys
 import mitsuba as mi, numpy as np
@@ -63,13 +65,14 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("etendue")
     parser.add_argument("scene")
+    parser.add_argument("--against")
     parser.add_argument("--root")
     parser.add_argument("--samples", type=int, default=1024)
     parser.add_argument("--bounces", type=int)
     parser.add_argument("--out", type=pathlib.Path, default=pathlib.Path("out/pictures"))
     args = parser.parse_args()
     folder = args.out / pathlib.Path(args.scene).stem
-    scene = mi.load_file(args.scene)
+    scene = mi.load_file(args.against or args.scene)
     a, sa, made = ours(args, size_of(scene), folder)
     b, sb = theirs(args, scene, made)
     sigma = np.hypot(sa, sb)

@@ -19,7 +19,18 @@ const MOST_PER_BYTE: usize = 1032;
 /// Pictures that have been read, each once.
 #[derive(Debug, Default)]
 pub(crate) struct Pictures {
-    known: HashMap<(PathBuf, bool), Result<Arc<Raster>, String>>,
+    known: HashMap<(PathBuf, u64), Result<Arc<Raster>, String>>,
+}
+
+/// How levels of a picture go with light.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Curve {
+    /// As sRGB has them.
+    Srgb,
+    /// They are in proportion to light.
+    Linear,
+    /// Light is this power of them.
+    Gamma(f64),
 }
 
 impl Pictures {
@@ -31,24 +42,50 @@ impl Pictures {
         color: Color,
         raw: bool,
     ) -> Result<Arc<Raster>, String> {
-        let key = (path.to_owned(), raw);
+        let curve = if raw { Curve::Linear } else { Curve::Srgb };
+        self.read_by(files, path, color, curve)
+    }
+
+    /// The picture at a path, with the curve of its levels.
+    pub(crate) fn read_by(
+        &mut self,
+        files: &Files,
+        path: &Path,
+        color: Color,
+        curve: Curve,
+    ) -> Result<Arc<Raster>, String> {
+        let key = (path.to_owned(), curve.exponent().to_bits());
         if let Some(known) = self.known.get(&key) {
             return known.clone();
         }
-        let read = read(files, path, color, raw).map(Arc::new);
+        let read = read(files, path, color, curve).map(Arc::new);
         self.known.insert(key, read.clone());
         read
     }
 }
 
-fn read(files: &Files, path: &Path, color: Color, raw: bool) -> Result<Raster, String> {
+impl Curve {
+    /// Tells curves apart; 0 for that of sRGB.
+    fn exponent(self) -> f64 {
+        match self {
+            Self::Srgb => 0.0,
+            Self::Linear => 1.0,
+            Self::Gamma(exponent) => exponent,
+        }
+    }
+}
+
+fn read(files: &Files, path: &Path, color: Color, curve: Curve) -> Result<Raster, String> {
     let bytes = files.read(path)?;
     let channels = channels(path, &bytes)?;
     if !channels.values.iter().all(|v| v.is_finite()) {
         return Err("has pixels that are not finite".to_owned());
     }
-    let is_curved = channels.are_levels && !raw;
-    let linear = |v: f64| if is_curved { linear(v) } else { v };
+    let linear = |v: f64| match curve {
+        Curve::Srgb if channels.are_levels => linear(v),
+        Curve::Gamma(exponent) if channels.are_levels => libm::pow(v, exponent),
+        _ => v,
+    };
     let grey = channels.count == 1;
     // Three equal numbers have a luminance that rounding moves off them.
     let number = |rgb: [f64; 3]| match grey {

@@ -5,7 +5,7 @@
 mod common;
 
 use common::folder;
-use etendue_import::{Options, import, import_mitsuba};
+use etendue_import::{Options, import, import_mitsuba, import_pbrt};
 use std::fs;
 
 const SCENE: &str = r#"<scene version="2.1.0"><default name="n" value="3"/><path value="."/><include filename="part.xml"/>
@@ -24,6 +24,21 @@ const HDR: &str = "#?RADIANCE\n\n-Y 2 +X 1\nabcdabcd";
 const PART: &str =
     "<shape type=\"sphere\" version=\"3.0.0\"><float name=\"radius\" value=\"2\"/></shape>";
 
+const PBRT: &str = r#"LookAt 1 2 3 0 0 0 0 1 0 Camera "perspective" "float fov" 40 "float lensradius" .1
+Film "rgb" "integer xresolution" [4] "integer yresolution" 3 Integrator "path" "integer maxdepth" 3
+WorldBegin Include "part.pbrt" Attribute "shape" "float radius" .5
+Texture "t" "spectrum" "checkerboard" "float uscale" 3 "rgb tex1" [.1 .2 .3]
+Texture "s" "spectrum" "scale" "texture tex" "t" "float scale" .5
+MakeNamedMaterial "m" "string type" "conductor" "spectrum eta" "metal-Au-eta" "float roughness" .1
+AttributeBegin Rotate 30 1 0 0 NamedMaterial "m" Shape "sphere" ReverseOrientation Shape "disk" "float alpha" .5 AttributeEnd
+Material "diffuse" "texture reflectance" "s" Shape "plymesh" "string filename" "a.ply"
+AreaLightSource "diffuse" "blackbody L" [3000] Shape "trianglemesh" "point3 P" [0 0 0 1 0 0 0 1 0] "integer indices" [0 1 2]
+ObjectBegin "o" Shape "cylinder" ObjectEnd Transform [1 0 0 0 0 1 0 0 0 0 1 0 1 2 3 1] ObjectInstance "o"
+LightSource "infinite" "string filename" "b.hdr" LightSource "spot" "spectrum I" [400 1 500 2]
+"#;
+const SQUARE: &str = "#?RADIANCE\n\n-Y 2 +X 2\nabcdabcdabcdabcd";
+const PBRT_PART: &str = "Scale 2 2 2\nMaterial \"dielectric\" \"float eta\" 1.4\nShape \"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]\n";
+
 /// The same numbers each time (Marsaglia 2003).
 fn next(state: &mut u64) -> usize {
     *state ^= *state << 13;
@@ -36,16 +51,39 @@ fn next(state: &mut u64) -> usize {
 fn no_byte_makes_it_panic() {
     let names = ["a.xml", "a.obj", "a.ply", "a.hdr", "part.xml"];
     let texts = [SCENE, OBJ, PLY, HDR, PART];
-    let files: Vec<_> = names.into_iter().zip(texts.map(str::as_bytes)).collect();
-    let folder = folder(&files);
-    let main = folder.path().join("a.xml");
+    damage(
+        &names
+            .into_iter()
+            .zip(texts.map(str::as_bytes))
+            .collect::<Vec<_>>(),
+        4,
+    );
+}
+
+#[test]
+fn no_byte_of_a_pbrt_scene_makes_it_panic() {
+    let names = ["a.pbrt", "a.ply", "b.hdr", "part.pbrt"];
+    let texts = [PBRT, PLY, SQUARE, PBRT_PART];
+    damage(
+        &names
+            .into_iter()
+            .zip(texts.map(str::as_bytes))
+            .collect::<Vec<_>>(),
+        6,
+    );
+}
+
+/// Damages files of a scene of so many shapes, the first of which names the others.
+fn damage(files: &[(&str, &[u8])], shapes: usize) {
+    let folder = folder(files);
+    let main = folder.path().join(files[0].0);
     assert_eq!(
         import(&main, &Options::default())
             .unwrap()
             .world
             .shapes
             .len(),
-        4
+        shapes
     );
     let mut state = 88_172_645_463_325_252;
     let (mut read, mut refused) = (0, 0);
@@ -54,14 +92,14 @@ fn no_byte_makes_it_panic() {
         let which = if round % 2 == 0 {
             0
         } else {
-            1 + next(&mut state) % 4
+            1 + next(&mut state) % (files.len() - 1)
         };
         let (name, sound) = files[which];
         let mut bytes = sound.to_vec();
         for _ in 0..=next(&mut state) % 2 {
             let at = next(&mut state) % bytes.len();
             match next(&mut state) % 4 {
-                0 => bytes[at] = b"0123456789-.e\"<>/$= \n"[next(&mut state) % 21],
+                0 => bytes[at] = b"0123456789-.e\"<>/$= \n[]"[next(&mut state) % 23],
                 1 => bytes[at] ^= 1 << (next(&mut state) % 8),
                 2 => drop(bytes.remove(at)),
                 _ => bytes.truncate(at.max(1)),
@@ -117,4 +155,76 @@ fn deep_and_wide_scenes_end() {
     let causes = refused(&format!("<scene version=\"3.0.0\">{wrong}</scene>"));
     assert_eq!(causes.len(), 1001);
     assert!(causes[1000].message.contains("4000 causes more"));
+}
+
+#[test]
+fn deep_and_wide_pbrt_scenes_end() {
+    let files: Vec<(String, String)> = (0..60)
+        .map(|i| {
+            let next = format!("Include \"{}.pbrt\"\n", i + 1);
+            (
+                format!("{i}.pbrt"),
+                if i < 59 {
+                    next.repeat(2)
+                } else {
+                    String::new()
+                },
+            )
+        })
+        .collect();
+    let all: Vec<(&str, &[u8])> = files.iter().map(|(n, t)| (&**n, t.as_bytes())).collect();
+    let folder = folder(&all);
+    let refused = |inside: &str| {
+        let text = format!("WorldBegin\n{inside}");
+        let read = import_pbrt(&text, folder.path(), &Options::default());
+        read.map(|read| read.notes.len()).unwrap_err().causes
+    };
+    // Files that double what is below them, again and again.
+    assert!(
+        refused("Include \"0.pbrt\"")[0]
+            .message
+            .contains("files are included")
+    );
+    assert!(
+        refused(&"AttributeBegin ".repeat(100_000))[0]
+            .message
+            .contains("blocks in one another")
+    );
+    assert!(
+        refused(&"Attribute \"shape\" \"float a\" 1 ".repeat(1000))[0]
+            .message
+            .contains("attributes")
+    );
+    let object = "Shape \"sphere\" ".repeat(2000);
+    let many = format!(
+        "ObjectBegin \"o\" {object} ObjectEnd {}",
+        "ObjectInstance \"o\" ".repeat(2000)
+    );
+    let causes = refused(&many);
+    assert_eq!(causes.len(), 1, "{causes:?}");
+    assert!(causes[0].message.contains("shapes, with all instances"));
+    // Textures that name one another in a long row.
+    let mut row = String::from("Texture \"t0\" \"spectrum\" \"constant\"\n");
+    for i in 1..5000 {
+        let before = i - 1;
+        row += &format!("Texture \"t{i}\" \"spectrum\" \"scale\" \"texture tex\" \"t{before}\"\n");
+    }
+    row += "Material \"diffuse\" \"texture reflectance\" \"t4999\" Shape \"sphere\"";
+    assert!(
+        refused(&row)[0]
+            .message
+            .contains("too many are in one another")
+    );
+    // Materials that double those below them.
+    let mut doubled = String::from("MakeNamedMaterial \"m0\" \"string type\" \"diffuse\"\n");
+    for i in 1..64 {
+        let before = i - 1;
+        doubled += &format!(
+            "MakeNamedMaterial \"m{i}\" \"string type\" \"mix\" \"string materials\" [\"m{before}\" \"m{before}\"]\n"
+        );
+    }
+    doubled += "NamedMaterial \"m63\" Shape \"sphere\"";
+    assert!(refused(&doubled)[0].message.contains("in one another"));
+    let causes = refused(&"ObjectEnd ".repeat(5000));
+    assert_eq!(causes.len(), 1001);
 }

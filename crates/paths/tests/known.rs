@@ -3,8 +3,8 @@
 use etendue_field::Raster;
 use etendue_paths::Paths;
 use etendue_world::{
-    Camera, Dielectric, Geometry, Lens, Light, Material, Projection, Shape, SkyMap, Texture,
-    Triangles, World,
+    Camera, Dielectric, Falloff, Geometry, Lens, Light, Material, Projection, Shape, SkyMap,
+    Texture, Triangles, World,
 };
 use glam::{DAffine3, DMat3, DQuat, DVec3};
 use std::f64::consts::PI;
@@ -137,24 +137,34 @@ fn lights_shine_by_their_units() {
         DVec3::ZERO,
         0.35,
     );
-    // Half-way between full intensity and none.
+    // Between full intensity and none.
     let down = DAffine3::from_mat3_translation(
         DMat3::from_diagonal(DVec3::new(1.0, -1.0, -1.0)),
         DVec3::new(0.0, 0.0, 1.0),
     );
-    let spot = Light::Spot {
-        to_world: down,
-        intensity: 4.0,
-        beam: 0.3,
-        cutoff: 0.5,
-    };
-    let there = DVec3::new(0.4_f64.tan(), 0.0, 0.0);
-    assert_seen(
-        &floor(vec![], vec![spot]),
-        ASIDE,
-        there,
-        0.5 / PI * 2.0 * 0.4_f64.cos().powi(3),
-    );
+    let cosine = |angle: f64| (angle.cos() - 0.5_f64.cos()) / (0.3_f64.cos() - 0.5_f64.cos());
+    let smooth = |t: f64| t * t * (3.0 - 2.0 * t);
+    for (falloff, angle, share) in [
+        (Falloff::Angle, 0.4_f64, 0.5),
+        (Falloff::SmoothCosine, 0.35, smooth(cosine(0.35))),
+        (Falloff::SmoothCosine, 0.45, smooth(cosine(0.45))),
+        (Falloff::SmoothCosine, 0.29, 1.0),
+    ] {
+        let spot = Light::Spot {
+            to_world: down,
+            intensity: 4.0,
+            beam: 0.3,
+            cutoff: 0.5,
+            falloff,
+        };
+        let there = DVec3::new(angle.tan(), 0.0, 0.0);
+        assert_seen(
+            &floor(vec![], vec![spot]),
+            ASIDE,
+            there,
+            0.5 / PI * 4.0 * share * angle.cos().powi(3),
+        );
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! A world: surfaces, each with a geometry and a material, lights, and cameras that look at them.
 //!
-//! It is what scenes of other programs are read as. Coordinates are right-handed, in the units of the file, which are metres where the file
-//! says nothing else. Light is one number: the luminance of what the file has as a colour, or one of its channels.
+//! It is what scenes of other programs are read as. Coordinates are right-handed, or left-handed where the file's are: then maps of
+//! cameras mirror. They are in the units of the file, which are metres where the file says nothing else. Light is one number: the luminance of what the file has as a colour, or one of its channels.
 
 mod camera;
 mod light;
@@ -10,7 +10,7 @@ mod shape;
 mod texture;
 
 pub use camera::{Camera, Lens, Look, Projection};
-pub use light::{Emission, Light, SkyMap};
+pub use light::{Emission, Falloff, Light, SkyMap};
 pub use material::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness};
 pub use shape::{Geometry, Shape, Triangles};
 pub use texture::{Bitmap, Filter, Texture, Wrap};

@@ -21,8 +21,10 @@ pub enum Light {
         intensity: f64,
         /// Half of the angle of full intensity, radians.
         beam: f64,
-        /// Half of the angle beyond which it is dark, radians. Between both, intensity falls linearly with the angle.
+        /// Half of the angle beyond which it is dark, radians.
         cutoff: f64,
+        /// How intensity falls between both.
+        falloff: Falloff,
     },
     /// From so far away that all of it goes one way.
     Directional {
@@ -38,6 +40,36 @@ pub enum Light {
     },
     /// Radiance by the direction that it comes from.
     Sky(SkyMap),
+}
+
+/// How the intensity of a spot falls from its beam to where it is dark.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Falloff {
+    /// Linearly with the angle, as in Mitsuba 3.
+    Angle,
+    /// As t² (3 − 2t), with t from 1 to 0 linearly with the cosine of the angle, as in pbrt-v4.
+    SmoothCosine,
+}
+
+impl Falloff {
+    /// The share of the intensity that is left at an angle, of a beam and a cutoff.
+    #[must_use]
+    pub fn share(self, angle: f64, beam: f64, cutoff: f64) -> f64 {
+        // A beam without an edge is sharp.
+        let between = |at: f64, full: f64, dark: f64| match full - dark {
+            0.0 if at >= full => 1.0,
+            0.0 => 0.0,
+            width => ((at - dark) / width).clamp(0.0, 1.0),
+        };
+        match self {
+            Self::Angle => between(-angle, -beam, -cutoff),
+            Self::SmoothCosine => {
+                let [at, full, dark] = [angle, beam, cutoff].map(libm::cos);
+                let t = between(at, full, dark);
+                t * t * (3.0 - 2.0 * t)
+            }
+        }
+    }
 }
 
 /// Radiance from far away, by direction: pixels over longitude and latitude, bilinear between their centres.

@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 #[derive(Debug, Args)]
 pub(crate) struct WorldArgs {
-    /// Scene file of Mitsuba 3 (.xml)
+    /// Scene file of Mitsuba 3 (.xml) or pbrt-v4 (.pbrt)
     #[arg(value_name = "SCENE")]
     pub(crate) path: PathBuf,
 

@@ -5,7 +5,7 @@ use super::object::Object;
 use super::reader::Reader;
 use super::transform::is_rigid;
 use etendue_field::Raster;
-use etendue_world::{Light, SkyMap};
+use etendue_world::{Falloff, Light, SkyMap};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
@@ -123,6 +123,7 @@ impl<'a> Reader<'a> {
             intensity: intensity?,
             beam: beam.to_radians(),
             cutoff: cutoff.to_radians(),
+            falloff: Falloff::Angle,
         })
     }
 

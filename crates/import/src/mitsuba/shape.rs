@@ -4,6 +4,7 @@ use super::mesh::Mesh;
 use super::object::{Kind, Object};
 use super::reader::{MOST_SHAPES, Reader};
 use super::transform::frame;
+use crate::placement::fault;
 use crate::report::quoted;
 use etendue_world::{Geometry, Shape};
 use glam::{DAffine3, DMat3, DVec3};
@@ -11,9 +12,6 @@ use glam::{DAffine3, DMat3, DVec3};
 /// Plugins that are shapes of a world.
 const ALLOWED: &str =
     "rectangle, disk, sphere, cylinder, cube, obj, ply, serialized, shapegroup, instance";
-
-/// By how much of its length an axis of a sphere may differ from the others: transforms are products of rounded numbers.
-const ALIKE: f64 = 1e-4;
 
 impl<'a> Reader<'a> {
     /// A shape of the scene itself.
@@ -155,24 +153,10 @@ impl<'a> Reader<'a> {
 
     /// Whether a shape can be placed like this; else a cause.
     fn is_sound(&self, object: &'a Object, geometry: &Geometry, to_world: DAffine3) -> bool {
-        let [x, y, z] = [0, 1, 2].map(|i| to_world.matrix3.col(i));
-        let alike = |a: DVec3, b: DVec3| (a.length() - b.length()).abs() <= ALIKE * a.length();
-        let across = |a: DVec3, b: DVec3| a.dot(b).abs() <= ALIKE * a.length() * b.length();
-        let is_square = across(x, y) && across(y, z) && across(z, x);
-        let fits = match geometry {
-            Geometry::Sphere => alike(x, y) && alike(y, z) && is_square,
-            Geometry::Cylinder => alike(x, y) && is_square,
-            _ => true,
-        };
-        let is_regular = to_world.is_finite() && to_world.matrix3.determinant().abs() > 0.0;
-        if fits && is_regular {
+        let Some(fault) = fault(geometry, to_world) else {
             return true;
-        }
-        let plugin = &object.plugin;
-        let message = match is_regular {
-            false => format!("a {plugin} that is scaled to nothing, or without bounds"),
-            true => format!("a {plugin} with shear, or not scaled alike along its axes"),
         };
+        let message = format!("a {} {fault}", object.plugin);
         self.report
             .cause(self.place_of(object, "to_world"), message);
         false

@@ -8,7 +8,7 @@ mod sky;
 use crate::space::{Hit, Space};
 use ball::Ball;
 pub(crate) use emit::{Emitted, Flash, Target};
-use etendue_world::{Geometry, Light, Shape, Texture, World};
+use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
 use glam::{DAffine3, DVec2, DVec3};
 use shape::Surface;
 use sky::Sky;
@@ -47,6 +47,7 @@ enum Lamp {
         intensity: f64,
         beam: f64,
         cutoff: f64,
+        falloff: Falloff,
     },
     Directional {
         toward: DVec3,
@@ -140,11 +141,13 @@ impl From<&Light> for Lamp {
                 intensity,
                 beam,
                 cutoff,
+                falloff,
             } => Self::Spot {
                 to_local: to_world.inverse(),
                 intensity: *intensity,
                 beam: *beam,
                 cutoff: *cutoff,
+                falloff: *falloff,
             },
             Light::Directional {
                 direction,
@@ -216,13 +219,14 @@ impl Lamp {
             intensity,
             beam,
             cutoff,
+            falloff,
             ..
         } = self
         else {
             return 0.0;
         };
         let angle = libm::atan2(local.truncate().length(), local.z);
-        intensity * ((cutoff - angle) / (cutoff - beam)).clamp(0.0, 1.0)
+        intensity * falloff.share(angle, *beam, *cutoff)
     }
 }
 

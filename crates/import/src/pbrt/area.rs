@@ -1,0 +1,92 @@
+//! Surfaces that shine.
+
+use super::entity::{Entity, Read};
+use super::imagemap::upside_down;
+use super::reader::{Reader, Uv};
+use super::scene::Shape;
+use super::shape::Surface;
+use crate::pictures::Curve;
+use etendue_world::{Bitmap, Emission, Filter, Texture, Wrap};
+use std::f64::consts::PI;
+
+impl Reader<'_> {
+    /// What a shape emits, but for the power that is wanted.
+    pub(super) fn shape_emission(
+        &mut self,
+        shape: &Shape,
+        uv: Uv,
+        is_in_object: bool,
+    ) -> Read<Option<Emission>> {
+        let Some(area) = shape.area.map(|area| &self.scene.areas[area]) else {
+            return Ok(None);
+        };
+        area.is_used.set(true);
+        if is_in_object {
+            let message = "left out, as in pbrt: area lights of an object";
+            self.note_once(&area.place, message);
+            return Ok(None);
+        }
+        if area.plugin != "diffuse" {
+            return Err(area.unsupported(self.report, "diffuse"));
+        }
+        if area.truth(self.report, "twosided", false)? {
+            let message = "light from both sides of a surface is not supported";
+            return Err(area.fault(self.report, "twosided", message.to_owned()));
+        }
+        if shape.entity.has("alpha") {
+            let message = "alpha of a shape that shines is not supported";
+            return Err(shape.entity.fault(self.report, "alpha", message.to_owned()));
+        }
+        match area.has("filename") {
+            true => self.shown(area, uv).map(Some),
+            false => Ok(Some(Texture::Constant(self.strength(area, "L")?))),
+        }
+    }
+
+    /// A picture that shines.
+    fn shown(&mut self, area: &Entity, uv: Uv) -> Read<Emission> {
+        for name in ["L", "power"] {
+            if area.has(name) {
+                let message = format!("{name} beside filename is not supported");
+                return Err(area.fault(self.report, name, message));
+            }
+        }
+        let scale = self.scale_of(area);
+        let name = self.file_name(area)?;
+        let is_png = name.to_ascii_lowercase().ends_with(".png");
+        let curve = if is_png { Curve::Srgb } else { Curve::Linear };
+        let pixels = self.picture(area, curve)?;
+        let scale = scale?;
+        Ok(Texture::Bitmap(Bitmap {
+            to_uv: upside_down() * uv.to_pbrt(),
+            pixels: self.mapped_pixels(area, &pixels, |v| scale * v.max(0.0))?,
+            wrap: Wrap::Clamp,
+            filter: Filter::Bilinear,
+        }))
+    }
+
+    /// What is emitted, with the power that is wanted. pbrt takes the area of a shape before it is scaled, but that of triangles after, each for itself.
+    pub(super) fn powered(
+        &self,
+        area: Option<&Entity>,
+        emission: Option<Emission>,
+        surface: &Surface,
+    ) -> Read<Option<Emission>> {
+        let (Some(area), Some(Texture::Constant(radiance))) = (area, &emission) else {
+            return Ok(emission);
+        };
+        let has_power = area.float(self.report, "power")?.is_some_and(|p| p > 0.0);
+        match surface.area {
+            Some(size) => {
+                let factor = self.wanted(area, "power", PI * size)?;
+                Ok(Some(Texture::Constant(radiance * factor)))
+            }
+            None if has_power => {
+                let message =
+                    "power of a mesh: pbrt gives it to each triangle; allowed: a mesh of one";
+                Err(area.fault(self.report, "power", message.to_owned()))
+            }
+            None => Ok(emission),
+        }
+    }
+}

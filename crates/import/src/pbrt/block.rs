@@ -1,0 +1,87 @@
+//! What begins and ends: blocks of attributes, and objects.
+
+use super::build::Builder;
+use super::scene::{Instance, Object};
+use crate::report::{Place, quoted};
+
+/// Blocks within one another.
+const DEEPEST: usize = 1 << 12;
+
+impl Builder<'_> {
+    /// A cause for each block above a level that has no end.
+    pub(super) fn refuse_open(&mut self, level: usize) {
+        while self.stack.len() > level {
+            if let Some((state, kind, place)) = self.stack.pop() {
+                let word = if kind == 'o' { "Object" } else { "Attribute" };
+                self.report
+                    .cause(&place, format!("{word}Begin without {word}End"));
+                self.state = state;
+                if kind == 'o' {
+                    self.object = None;
+                }
+            }
+        }
+    }
+
+    pub(super) fn push(&mut self, kind: char, place: &Place) -> Result<(), String> {
+        self.within_world("a block")?;
+        if self.stack.len() >= DEEPEST {
+            return Err(format!("more than {DEEPEST} blocks in one another"));
+        }
+        self.stack.push((self.state.clone(), kind, place.clone()));
+        Ok(())
+    }
+
+    pub(super) fn pop(&mut self, kind: char) -> Result<(), String> {
+        let word = if kind == 'o' { "Object" } else { "Attribute" };
+        match self.stack.last() {
+            Some((_, begun, _)) if *begun == kind => {
+                if let Some((state, ..)) = self.stack.pop() {
+                    self.state = state;
+                }
+                Ok(())
+            }
+            Some((.., place)) => Err(format!(
+                "{word}End, but the block that began in line {} is open",
+                place.line
+            )),
+            None => Err(format!("{word}End without {word}Begin")),
+        }
+    }
+
+    pub(super) fn begin_object(&mut self, name: String, place: &Place) -> Result<(), String> {
+        if self.object.is_some() {
+            return Err("an object within an object".to_owned());
+        }
+        if self.scene.objects.contains_key(&name) {
+            return Err(format!("a second object {}", quoted(&name)));
+        }
+        self.push('o', place)?;
+        let object = Object {
+            place: place.clone(),
+            shapes: Vec::new(),
+        };
+        self.scene.objects.insert(name.clone(), object);
+        self.object = Some(name);
+        Ok(())
+    }
+
+    pub(super) fn end_object(&mut self) -> Result<(), String> {
+        self.pop('o')?;
+        self.object = None;
+        Ok(())
+    }
+
+    pub(super) fn instance(&mut self, name: String, place: &Place) -> Result<(), String> {
+        self.within_world("ObjectInstance")?;
+        if self.object.is_some() {
+            return Err("an instance within an object".to_owned());
+        }
+        self.scene.instances.push(Instance {
+            name,
+            place: place.clone(),
+            to_world: self.state.to_world,
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,260 @@
+//! The camera, the film and how far light is followed.
+
+use super::entity::{Entity, Given, Read};
+use super::parameter::Kind;
+use super::reader::Reader;
+use super::transform::without_scale;
+use crate::report::{Place, quoted};
+use etendue_world::{Camera, Lens, Projection};
+use glam::{DAffine3, DVec3};
+
+/// Plugins that are cameras of a world.
+const ALLOWED: &str = "perspective, orthographic";
+
+/// Pixels of a film, if nothing is said.
+const SIZE: [usize; 2] = [1280, 720];
+
+/// Most pixels across or down.
+const MOST: i64 = 1 << 16;
+
+/// What pbrt's depth is, if nothing is said.
+const DEPTH: i64 = 5;
+
+/// Integrators that sum the light of paths.
+const PATHS: [&str; 8] = [
+    "path",
+    "volpath",
+    "simplepath",
+    "simplevolpath",
+    "lightpath",
+    "bdpt",
+    "mlt",
+    "randomwalk",
+];
+
+/// By how much of its size a window may miss square pixels.
+const SQUARE: f64 = 1e-4;
+
+impl Reader<'_> {
+    pub(super) fn camera(&mut self, whole: &Place) {
+        let default = || Entity::default("camera", "perspective", whole.clone());
+        let found = self.scene.camera.clone();
+        let (entity, map) = found.unwrap_or_else(|| (default(), DAffine3::IDENTITY));
+        if let Some((entity, _)) = &self.scene.camera {
+            entity.is_used.set(true);
+        }
+        let size = self.film(whole);
+        if let Ok(camera) = self.camera_of(&entity, map, size) {
+            self.world.cameras.push(camera);
+        }
+    }
+
+    fn camera_of(&self, entity: &Entity, map: DAffine3, size: Read<[usize; 2]>) -> Read<Camera> {
+        let is_flat = match entity.plugin.as_str() {
+            "perspective" => false,
+            "orthographic" => true,
+            _ => return Err(entity.unsupported(self.report, ALLOWED)),
+        };
+        let placed = without_scale(map.inverse()).ok_or_else(|| {
+            let message = "a camera that is sheared, or scaled differently along axes";
+            self.report.cause(&entity.place, message);
+            Given
+        });
+        self.exposure(entity)?;
+        let size = size?;
+        let window = self.window(entity, size)?;
+        let (rigid, scale) = placed?;
+        // pbrt's X goes to the right of the picture, a world's to the left: the map mirrors, as the file's coordinates are left-handed.
+        let rigid = rigid * DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+        let (to_world, projection) = match is_flat {
+            true => (
+                self.flat(entity, rigid, scale, window)?,
+                Projection::Orthographic,
+            ),
+            false => (rigid, self.perspective(entity, scale, window)?),
+        };
+        Ok(Camera {
+            name: "camera".to_owned(),
+            to_world,
+            size,
+            projection,
+            clip: [0.0, f64::INFINITY],
+        })
+    }
+
+    /// Lowest and highest x, and lowest and highest y, of what is seen; the shorter side goes from −1 to 1.
+    fn window(&self, entity: &Entity, [w, h]: [usize; 2]) -> Read<[f64; 4]> {
+        let report = self.report;
+        let above: (_, fn(f64) -> bool) = ("above 0", |a| a > 0.0);
+        let film = w as f64 / h as f64;
+        let aspect = entity.float_within(report, "frameaspectratio", film, above)?;
+        let [x, y] = if aspect > 1.0 {
+            [aspect, 1.0]
+        } else {
+            [1.0, 1.0 / aspect]
+        };
+        let window = entity.exactly::<4>(report, "screenwindow", Kind::Float)?;
+        let window = window.unwrap_or([-x, x, -y, y]);
+        let [left, right, low, high] = window;
+        let (width, height) = (right - left, high - low);
+        let is_square = (width / height / film - 1.0).abs() <= SQUARE;
+        if is_square && width > 0.0 && height > 0.0 {
+            return Ok(window);
+        }
+        let message = format!("pixels that are not square, {width} × {height} over {w} × {h}");
+        self.report.cause(&entity.place, message);
+        Err(Given)
+    }
+
+    /// `fov` is that of the shorter side, from −1 to 1.
+    fn perspective(&self, entity: &Entity, scale: f64, window: [f64; 4]) -> Read<Projection> {
+        let report = self.report;
+        let angle: (_, fn(f64) -> bool) = ("between 0 and 180 degrees", |a| 0.0 < a && a < 180.0);
+        let fov = entity.float_within(report, "fov", 90.0, angle);
+        let radius: (_, fn(f64) -> bool) = ("from 0 on", |r| r >= 0.0);
+        let radius = entity.float_within(report, "lensradius", 0.0, radius);
+        let above: (_, fn(f64) -> bool) = ("above 0", |f| f > 0.0);
+        let focus = entity.float_within(report, "focaldistance", 1e6, above);
+        let tangent = libm::tan(fov?.to_radians() / 2.0);
+        let (radius, focus) = (radius? * scale, focus? * scale);
+        let [left, right, low, high] = window;
+        let (width, height) = (right - left, high - low);
+        Ok(Projection::Perspective {
+            half_width: tangent * width / 2.0,
+            shift: [
+                -(left + right) / (2.0 * width),
+                (low + high) / (2.0 * height),
+            ],
+            lens: (radius > 0.0).then_some(Lens { radius, focus }),
+        })
+    }
+
+    /// Where an orthographic camera is, with its width as the scale of X and Y.
+    fn flat(
+        &self,
+        entity: &Entity,
+        rigid: DAffine3,
+        scale: f64,
+        [left, right, low, high]: [f64; 4],
+    ) -> Read<DAffine3> {
+        if entity.float_or(self.report, "lensradius", 0.0)? > 0.0 {
+            let message = "a lens of an orthographic camera is not supported".to_owned();
+            return Err(entity.fault(self.report, "lensradius", message));
+        }
+        let middle = scale * DVec3::new(-(left + right) / 2.0, (low + high) / 2.0, 0.0);
+        let half = scale * (right - left) / 2.0;
+        let wide = DAffine3::from_scale(DVec3::new(half, half, 1.0));
+        Ok(rigid * DAffine3::from_translation(middle) * wide)
+    }
+
+    /// What multiplies pbrt's numbers after all light is summed.
+    fn exposure(&self, entity: &Entity) -> Read<()> {
+        let open = entity.float_or(self.report, "shutteropen", 0.0)?;
+        let close = entity.float_or(self.report, "shutterclose", 1.0)?;
+        let film = self.scene.settings.get("Film");
+        let iso = film.map_or(Ok(100.0), |film| film.float_or(self.report, "iso", 100.0))?;
+        let ratio = (close - open) * iso / 100.0;
+        if (ratio - 1.0).abs() > 1e-9 {
+            let message = format!("pbrt's picture has {ratio} times the radiance: left out");
+            self.report.note(&entity.place, message);
+        }
+        Ok(())
+    }
+
+    /// Pixels across and down.
+    fn film(&self, whole: &Place) -> Read<[usize; 2]> {
+        let Some(film) = self.scene.settings.get("Film") else {
+            return Ok(SIZE);
+        };
+        let report = self.report;
+        film.is_used.set(true);
+        let pixels = |i: usize, name| {
+            let default = i64::try_from(SIZE[i]).unwrap_or_default();
+            let value = film.integer_or(report, name, default)?;
+            let fits = usize::try_from(value)
+                .ok()
+                .filter(|_| (1..=MOST).contains(&value));
+            fits.ok_or_else(|| {
+                film.fault(
+                    report,
+                    name,
+                    format!("{name} is {value}; allowed: 1 to {MOST}"),
+                )
+            })
+        };
+        let [w, h] = [pixels(0, "xresolution"), pixels(1, "yresolution")];
+        let crop = film.exactly::<4>(report, "cropwindow", Kind::Float)?;
+        if crop.is_some_and(|crop| is_part(crop, [0.0, 1.0, 0.0, 1.0])) {
+            let message = "parts of a film are not supported".to_owned();
+            return Err(film.fault(report, "cropwindow", message));
+        }
+        let (w, h) = (w?, h?);
+        let bounds = film.exactly::<4>(report, "pixelbounds", Kind::Integer)?;
+        if bounds.is_some_and(|b| is_part(b, [0.0, w as f64, 0.0, h as f64])) {
+            let message = "parts of a film are not supported".to_owned();
+            return Err(film.fault(report, "pixelbounds", message));
+        }
+        if !self.scene.settings.contains_key("PixelFilter") {
+            let message = "filter `gaussian`, the default, is approximated by the box filter";
+            self.report.note(whole, message);
+        }
+        Ok([w, h])
+    }
+
+    /// What is only how pbrt computes.
+    pub(super) fn settings(&self) {
+        for (kind, entity) in &self.scene.settings {
+            let plugin = quoted(&entity.plugin);
+            let message = match *kind {
+                "PixelFilter" if entity.plugin == "box" => {
+                    self.check_box(entity);
+                    continue;
+                }
+                "PixelFilter" => format!("filter {plugin} is approximated by the box filter"),
+                "Sampler" | "Accelerator" => format!("{kind} {plugin} is left out"),
+                _ => continue,
+            };
+            self.report.note(&entity.place, message);
+            entity.drop_all();
+        }
+    }
+
+    /// A box of one pixel is exact.
+    fn check_box(&self, entity: &Entity) {
+        entity.is_used.set(true);
+        for name in ["xradius", "yradius"] {
+            let radius = entity.float_or(self.report, name, 0.5);
+            if radius.is_ok_and(|radius| (radius - 0.5).abs() > 1e-9) {
+                let message = format!("{name} is approximated by 0.5, a box of one pixel");
+                self.report.note(entity.place_of(name), message);
+            }
+        }
+    }
+
+    /// How many bounces there are.
+    pub(super) fn integrator(&mut self) {
+        let mut depth = DEPTH;
+        if let Some(entity) = self.scene.settings.get("Integrator") {
+            entity.is_used.set(true);
+            if !PATHS.contains(&entity.plugin.as_str()) {
+                entity.unsupported(self.report, &PATHS.join(", "));
+                return;
+            }
+            depth = match entity.integer_or(self.report, "maxdepth", DEPTH) {
+                Ok(depth) => depth,
+                Err(Given) => return,
+            };
+            if depth < 0 {
+                let message = format!("maxdepth is {depth}; allowed: from 0 on");
+                entity.fault(self.report, "maxdepth", message);
+            }
+        }
+        self.world.depth = u32::try_from(depth).ok();
+    }
+}
+
+/// Whether a window leaves something out of the whole.
+fn is_part(window: [f64; 4], whole: [f64; 4]) -> bool {
+    let inward = [1.0, -1.0, 1.0, -1.0];
+    (0..4).any(|i| (window[i] - whole[i]) * inward[i] > 0.0)
+}

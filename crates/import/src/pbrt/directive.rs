@@ -1,0 +1,248 @@
+//! The directives of a file, one after the other.
+
+use super::build::Builder;
+use super::parameter::parameters;
+use super::token::{Token, Tokens, number};
+use super::transform::{look_at, matrix, rotation};
+use crate::report::{Place, quoted};
+use glam::{DAffine3, DVec3};
+
+/// All directives of pbrt-v4.
+const DIRECTIVES: [&str; 38] = [
+    "Accelerator",
+    "ActiveTransform",
+    "AreaLightSource",
+    "Attribute",
+    "AttributeBegin",
+    "AttributeEnd",
+    "Camera",
+    "ColorSpace",
+    "ConcatTransform",
+    "CoordSysTransform",
+    "CoordinateSystem",
+    "Film",
+    "Identity",
+    "Import",
+    "Include",
+    "Integrator",
+    "LightSource",
+    "LookAt",
+    "MakeNamedMaterial",
+    "MakeNamedMedium",
+    "Material",
+    "MediumInterface",
+    "NamedMaterial",
+    "ObjectBegin",
+    "ObjectEnd",
+    "ObjectInstance",
+    "Option",
+    "PixelFilter",
+    "ReverseOrientation",
+    "Rotate",
+    "Sampler",
+    "Scale",
+    "Shape",
+    "Texture",
+    "Transform",
+    "TransformTimes",
+    "Translate",
+    "WorldBegin",
+];
+
+/// Of pbrt-v3, for `AttributeBegin` and `AttributeEnd`.
+const LEGACY: [&str; 2] = ["TransformBegin", "TransformEnd"];
+
+/// Whether a word begins a directive.
+pub(super) fn is_directive(word: &str) -> bool {
+    DIRECTIVES.binary_search(&word).is_ok() || LEGACY.contains(&word)
+}
+
+impl Builder<'_> {
+    /// Follows all directives of a text.
+    pub(super) fn follow(&mut self, tokens: &mut Tokens<'_>) {
+        while let Some((token, at)) = tokens.next() {
+            let place = tokens.place(at);
+            let done = match token {
+                Token::Word(word) if is_directive(word) => self.directive(word, &place, tokens),
+                Token::Word(word) => Err(format!("directive {} is not known", quoted(word))),
+                Token::Text(text) => Err(format!("{} outside of a directive", quoted(&text))),
+                Token::Open | Token::Close => Err("a bracket outside of a directive".to_owned()),
+                Token::Broken(what) => Err(what.to_owned()),
+            };
+            if let Err(error) = done {
+                self.report.cause(&place, error);
+                // What follows belongs to it.
+                while tokens.peek().is_some_and(
+                    |(token, _)| !matches!(token, Token::Word(word) if is_directive(word)),
+                ) {
+                    tokens.next();
+                }
+            }
+        }
+    }
+
+    fn directive(
+        &mut self,
+        word: &str,
+        place: &Place,
+        tokens: &mut Tokens<'_>,
+    ) -> Result<(), String> {
+        match word {
+            "Identity" => self.state.to_world = DAffine3::IDENTITY,
+            "Translate" => self.concat(DAffine3::from_translation(vector(tokens)?)),
+            "Scale" => self.concat(DAffine3::from_scale(vector(tokens)?)),
+            "Rotate" => self.concat(rotation(numbers(tokens)?)?),
+            "LookAt" => self.concat(look_at(numbers(tokens)?)?),
+            "ConcatTransform" => self.concat(matrix(&in_brackets(tokens)?)?),
+            "Transform" => self.state.to_world = matrix(&in_brackets(tokens)?)?,
+            "CoordinateSystem" => self.coordinate_system(text(tokens)?),
+            "CoordSysTransform" => self.go_to_system(&text(tokens)?, place)?,
+            "ActiveTransform" => active_transform(tokens)?,
+            "TransformTimes" => {
+                numbers::<2>(tokens)?;
+            }
+            "WorldBegin" => self.begin_world()?,
+            "AttributeBegin" | "TransformBegin" => self.push('a', place)?,
+            "AttributeEnd" | "TransformEnd" => self.pop('a')?,
+            "ReverseOrientation" => self.state.is_reversed = !self.state.is_reversed,
+            "ObjectBegin" => self.begin_object(text(tokens)?, place)?,
+            "ObjectEnd" => self.end_object()?,
+            "ObjectInstance" => self.instance(text(tokens)?, place)?,
+            "NamedMaterial" => self.named_material(&text(tokens)?, place),
+            "MediumInterface" => self.media(tokens, place)?,
+            "ColorSpace" => color_space(&text(tokens)?)?,
+            "Option" => self.option(tokens, place)?,
+            "Include" | "Import" => self.include(word, &text(tokens)?, place)?,
+            "Texture" => self.texture(tokens, place)?,
+            _ => self.plugin(word, tokens, place)?,
+        }
+        Ok(())
+    }
+
+    fn concat(&mut self, map: DAffine3) {
+        self.state.to_world *= map;
+    }
+
+    /// A directive with the name of a plugin and parameters.
+    fn plugin(&mut self, word: &str, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+        let name = text(tokens)?;
+        let own = parameters(tokens, self.report);
+        self.make(word, name, own, place)
+    }
+
+    fn texture(&mut self, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+        let name = text(tokens)?;
+        let kind = text(tokens)?;
+        let plugin = text(tokens)?;
+        let own = parameters(tokens, self.report);
+        self.make_texture(name, &kind, plugin, own, place)
+    }
+
+    fn media(&self, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+        let mut names = vec![text(tokens)?];
+        if let Some((Token::Text(second), _)) = tokens.peek().cloned() {
+            tokens.next();
+            names.push(second.into_owned());
+        }
+        if let Some(name) = names.iter().find(|name| !name.is_empty()) {
+            let message = format!(
+                "medium {}: participating media are not supported",
+                quoted(name)
+            );
+            self.report.cause(place, message);
+        }
+        Ok(())
+    }
+
+    fn option(&self, tokens: &mut Tokens<'_>, place: &Place) -> Result<(), String> {
+        let name = text(tokens)?;
+        match tokens.peek() {
+            Some((Token::Word(word), _)) if is_directive(word) => {
+                return Err("an option without a value".to_owned());
+            }
+            None => return Err("an option without a value".to_owned()),
+            Some(_) => tokens.next(),
+        };
+        let message = format!("option {} is left out", quoted(&name));
+        self.report.note(place, message);
+        Ok(())
+    }
+}
+
+/// Only transforms that stand still.
+fn active_transform(tokens: &mut Tokens<'_>) -> Result<(), String> {
+    match tokens.peek() {
+        Some((Token::Word("All"), _)) => {
+            tokens.next();
+            Ok(())
+        }
+        _ => Err("transforms that move are not supported; allowed: All".to_owned()),
+    }
+}
+
+fn color_space(name: &str) -> Result<(), String> {
+    match name.eq_ignore_ascii_case("srgb") {
+        true => Ok(()),
+        false => Err(format!(
+            "colour space {} is not supported; allowed: srgb",
+            quoted(name)
+        )),
+    }
+}
+
+fn text(tokens: &mut Tokens<'_>) -> Result<String, String> {
+    match tokens.peek().cloned() {
+        Some((Token::Text(text), _)) => {
+            tokens.next();
+            Ok(text.into_owned())
+        }
+        Some((Token::Broken(what), _)) => Err(what.to_owned()),
+        _ => Err("a name in quotation marks is missing".to_owned()),
+    }
+}
+
+fn vector(tokens: &mut Tokens<'_>) -> Result<DVec3, String> {
+    numbers(tokens).map(DVec3::from_array)
+}
+
+fn numbers<const N: usize>(tokens: &mut Tokens<'_>) -> Result<[f64; N], String> {
+    let mut all = [0.0; N];
+    for value in &mut all {
+        match tokens.peek().cloned() {
+            Some((Token::Word(word), _)) if !is_directive(word) => {
+                *value = number(word)?;
+                tokens.next();
+            }
+            _ => return Err(format!("allowed: {N} numbers")),
+        }
+    }
+    Ok(all)
+}
+
+fn in_brackets(tokens: &mut Tokens<'_>) -> Result<[f64; 16], String> {
+    let bracket = |tokens: &mut Tokens<'_>, wanted: Token<'_>| {
+        let is_there = tokens.peek().is_some_and(|(token, _)| *token == wanted);
+        if is_there {
+            tokens.next();
+        }
+        is_there
+    };
+    let begins = bracket(tokens, Token::Open);
+    let all = numbers(tokens)?;
+    match begins && bracket(tokens, Token::Close) {
+        true => Ok(all),
+        false => Err("allowed: 16 numbers in brackets".to_owned()),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directives_are_found() {
+        assert!(DIRECTIVES.is_sorted());
+        assert!(is_directive("Accelerator") && is_directive("WorldBegin"));
+        assert!(!is_directive("WorldEnd"));
+    }
+}

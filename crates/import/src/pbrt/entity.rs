@@ -1,0 +1,233 @@
+//! What a directive makes, and asking it for its parameters, which marks them as read.
+
+use super::parameter::{Kind, Parameter, Values};
+use crate::report::{Place, Report, quoted};
+use glam::{DVec2, DVec3};
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// A cause has been given.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Given;
+
+/// What was read, or nothing after a cause.
+pub(super) type Read<T> = Result<T, Given>;
+
+/// What pbrt has a plugin for.
+#[derive(Clone, Debug)]
+pub(super) struct Entity {
+    /// The directive.
+    pub(super) kind: &'static str,
+    /// The name of the plugin.
+    pub(super) plugin: String,
+    pub(super) place: Place,
+    /// Its own parameters.
+    pub(super) own: Vec<Rc<Parameter>>,
+    /// Those of `Attribute` directives before it.
+    pub(super) defaults: Rc<Vec<Rc<Parameter>>>,
+    /// Whether the world has it.
+    pub(super) is_used: Cell<bool>,
+}
+
+impl Entity {
+    /// What pbrt takes where a file names nothing.
+    pub(super) fn default(kind: &'static str, plugin: &str, place: Place) -> Self {
+        Self {
+            kind,
+            plugin: plugin.to_owned(),
+            place,
+            own: Vec::new(),
+            defaults: Rc::default(),
+            is_used: true.into(),
+        }
+    }
+
+    /// The last parameter of this name, its own before others.
+    pub(super) fn find(&self, name: &str) -> Option<&Parameter> {
+        let all = self.own.iter().rev().chain(self.defaults.iter().rev());
+        let found = all.map(|p| &**p).find(|p| p.name == name)?;
+        found.is_read.set(true);
+        Some(found)
+    }
+
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.find(name).is_some()
+    }
+
+    /// Where a parameter is, or the directive.
+    pub(super) fn place_of(&self, name: &str) -> &Place {
+        self.find(name).map_or(&self.place, |p| &p.place)
+    }
+
+    /// A cause at a parameter.
+    pub(super) fn fault(&self, report: &Report, name: &str, message: String) -> Given {
+        report.cause(self.place_of(name), message);
+        Given
+    }
+
+    /// A cause that says what this plugin may be.
+    pub(super) fn unsupported(&self, report: &Report, allowed: &str) -> Given {
+        let plugin = quoted(&self.plugin);
+        let message = format!(
+            "{} {plugin} is not supported; allowed: {allowed}",
+            self.kind
+        );
+        report.cause(&self.place, message);
+        self.drop_all();
+        Given
+    }
+
+    /// It is passed over with all parameters: a message has been given.
+    pub(super) fn drop_all(&self) {
+        self.is_used.set(true);
+        for parameter in &self.own {
+            parameter.is_read.set(true);
+        }
+    }
+
+    /// The values of a parameter of one of these types; `None` if it is not there.
+    fn values(&self, report: &Report, name: &str, kinds: &[Kind]) -> Read<Option<&Values>> {
+        let Some(parameter) = self.find(name) else {
+            return Ok(None);
+        };
+        if let Values::Broken = parameter.values {
+            return Err(Given);
+        }
+        if kinds.contains(&parameter.kind) {
+            return Ok(Some(&parameter.values));
+        }
+        let names: Vec<&str> = kinds.iter().map(|kind| kind.name()).collect();
+        let (kind, names) = (parameter.kind.name(), names.join(", "));
+        let message = format!("{name} is of type {kind}; allowed: {names}");
+        Err(self.fault(report, name, message))
+    }
+
+    /// All numbers of a parameter.
+    pub(super) fn numbers(&self, report: &Report, name: &str, kinds: &[Kind]) -> Read<&[f64]> {
+        match self.values(report, name, kinds)? {
+            Some(Values::Numbers(all)) => Ok(all),
+            _ => Ok(&[]),
+        }
+    }
+
+    /// `N` numbers, if they are there.
+    pub(super) fn exactly<const N: usize>(
+        &self,
+        report: &Report,
+        name: &str,
+        kind: Kind,
+    ) -> Read<Option<[f64; N]>> {
+        if !self.has(name) {
+            return Ok(None);
+        }
+        let all = self.numbers(report, name, &[kind])?;
+        match <[f64; N]>::try_from(all) {
+            Ok(numbers) => Ok(Some(numbers)),
+            Err(_) => {
+                let message = format!("{name} has {} numbers; allowed: {N}", all.len());
+                Err(self.fault(report, name, message))
+            }
+        }
+    }
+
+    pub(super) fn float(&self, report: &Report, name: &str) -> Read<Option<f64>> {
+        let one = self.exactly::<1>(report, name, Kind::Float)?;
+        Ok(one.map(|[value]| value))
+    }
+
+    pub(super) fn float_or(&self, report: &Report, name: &str, default: f64) -> Read<f64> {
+        Ok(self.float(report, name)?.unwrap_or(default))
+    }
+
+    /// A number in a range; else a cause that says the range.
+    pub(super) fn float_within(
+        &self,
+        report: &Report,
+        name: &str,
+        default: f64,
+        (allowed, is_allowed): (&str, fn(f64) -> bool),
+    ) -> Read<f64> {
+        let value = self.float_or(report, name, default)?;
+        match is_allowed(value) {
+            true => Ok(value),
+            false => {
+                let message = format!("{name} is {value}; allowed: {allowed}");
+                Err(self.fault(report, name, message))
+            }
+        }
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "32 bits were checked")]
+    pub(super) fn integer_or(&self, report: &Report, name: &str, default: i64) -> Read<i64> {
+        let one = self.exactly::<1>(report, name, Kind::Integer)?;
+        Ok(one.map_or(default, |[value]| value as i64))
+    }
+
+    pub(super) fn truth(&self, report: &Report, name: &str, default: bool) -> Read<bool> {
+        match self.values(report, name, &[Kind::Bool])? {
+            None => Ok(default),
+            Some(Values::Truths(all)) if all.len() == 1 => Ok(all[0]),
+            Some(_) => Err(self.fault(report, name, format!("{name} is not one truth value"))),
+        }
+    }
+
+    /// All words of a parameter.
+    pub(super) fn texts(&self, report: &Report, name: &str) -> Read<&[String]> {
+        match self.values(report, name, &[Kind::Text])? {
+            Some(Values::Texts(all)) => Ok(all),
+            _ => Ok(&[]),
+        }
+    }
+
+    /// The name of the texture that a parameter of that type asks for.
+    pub(super) fn texture_name(&self, report: &Report, name: &str) -> Read<&str> {
+        match self.values(report, name, &[Kind::Texture])? {
+            Some(Values::Texts(all)) if all.len() == 1 => Ok(&all[0]),
+            _ => Err(self.fault(report, name, format!("{name} is not one texture"))),
+        }
+    }
+
+    /// One word, if it is there.
+    pub(super) fn text(&self, report: &Report, name: &str) -> Read<Option<&str>> {
+        match self.texts(report, name)? {
+            [] if !self.has(name) => Ok(None),
+            [one] => Ok(Some(one)),
+            _ => Err(self.fault(report, name, format!("{name} is not one string"))),
+        }
+    }
+
+    /// One of several words; the first where none is given.
+    pub(super) fn choice<T: Copy>(
+        &self,
+        report: &Report,
+        name: &str,
+        allowed: &[(&str, T)],
+    ) -> Read<T> {
+        let word = self.text(report, name)?;
+        let found = allowed
+            .iter()
+            .find(|(known, _)| word.is_none_or(|word| word == *known));
+        found.map(|(_, value)| *value).ok_or_else(|| {
+            let words: Vec<&str> = allowed.iter().map(|(known, _)| *known).collect();
+            let word = quoted(word.unwrap_or_default());
+            let message = format!("{name} is {word}; allowed: {}", words.join(", "));
+            self.fault(report, name, message)
+        })
+    }
+
+    pub(super) fn point_or(&self, report: &Report, name: &str, default: DVec3) -> Read<DVec3> {
+        let found = self.exactly::<3>(report, name, Kind::Point3)?;
+        Ok(found.map_or(default, DVec3::from))
+    }
+
+    pub(super) fn points(&self, report: &Report, name: &str, kind: Kind) -> Read<Vec<DVec3>> {
+        let all = self.numbers(report, name, &[kind])?.chunks_exact(3);
+        Ok(all.map(DVec3::from_slice).collect())
+    }
+
+    pub(super) fn pairs(&self, report: &Report, name: &str) -> Read<Vec<DVec2>> {
+        let kinds = [Kind::Point2, Kind::Vector2];
+        let all = self.numbers(report, name, &kinds)?.chunks_exact(2);
+        Ok(all.map(DVec2::from_slice).collect())
+    }
+}

@@ -1,0 +1,73 @@
+//! Files within files.
+
+use super::build::{Builder, DEEPEST_FILES, MOST_FILES};
+use super::token::Tokens;
+use crate::files::Files;
+use crate::report::{Place, quoted};
+use flate2::read::MultiGzDecoder;
+use std::io::Read;
+use std::path::Path;
+
+impl Builder<'_> {
+    /// `Include` reads a file as if it stood here; after `Import` all is as before but for what was made.
+    pub(super) fn include(&mut self, word: &str, name: &str, place: &Place) -> Result<(), String> {
+        let path = self.files.find(std::slice::from_ref(&self.folder), name);
+        let path = path.map_err(|error| format!("file {} {error}", quoted(name)))?;
+        if self.open.contains(&path) {
+            return Err(format!("file {} is read within itself", quoted(name)));
+        }
+        if self.open.len() >= DEEPEST_FILES {
+            return Err(format!("more than {DEEPEST_FILES} files in one another"));
+        }
+        self.included += 1;
+        if self.included > MOST_FILES {
+            return match self.included == MOST_FILES + 1 {
+                true => Err(format!("more than {MOST_FILES} files are included")),
+                // The cause has been given.
+                false => Ok(()),
+            };
+        }
+        let text = read(self.files, &path).map_err(|e| format!("file {} {e}", quoted(name)))?;
+        let before = (word == "Import").then(|| (self.state.clone(), self.stack.len()));
+        if before.is_some() {
+            self.within_world(word)?;
+        }
+        self.open.push(path);
+        self.follow(&mut Tokens::new(&text, name));
+        self.open.pop();
+        if let Some((state, level)) = before {
+            self.refuse_open(level);
+            if self.stack.len() < level {
+                self.report.cause(
+                    place,
+                    format!("file {} ends more than it begins", quoted(name)),
+                );
+            }
+            self.state = state;
+        }
+        Ok(())
+    }
+}
+
+/// The text of a file, unpacked if its name ends in .gz.
+pub(super) fn read(files: &Files, path: &Path) -> Result<String, String> {
+    String::from_utf8(bytes(files, path)?).map_err(|_| "is no UTF-8".to_owned())
+}
+
+/// The bytes of a file, unpacked if its name ends in .gz.
+pub(super) fn bytes(files: &Files, path: &Path) -> Result<Vec<u8>, String> {
+    let packed = files.read(path)?;
+    if path
+        .extension()
+        .is_none_or(|e| !e.eq_ignore_ascii_case("gz"))
+    {
+        return Ok(packed);
+    }
+    let most = files.left();
+    let mut unpacked = Vec::new();
+    let mut stream = MultiGzDecoder::new(packed.as_slice()).take(most.saturating_add(1));
+    let read = stream.read_to_end(&mut unpacked);
+    files.spend(unpacked.len() as u64)?;
+    read.map_err(|error| format!("cannot be unpacked: {error}"))?;
+    Ok(unpacked)
+}

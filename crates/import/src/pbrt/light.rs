@@ -1,0 +1,136 @@
+//! Lights that are no surfaces.
+
+use super::entity::{Entity, Given, Read};
+use super::reader::Reader;
+use super::transform::without_scale;
+use crate::spectrum::Role;
+use etendue_world::{Falloff, Light};
+use glam::{DAffine3, DMat3, DVec3};
+use std::f64::consts::PI;
+
+/// Plugins that are lights of a world.
+const ALLOWED: &str = "point, spot, distant, infinite";
+
+impl Reader<'_> {
+    pub(super) fn light(&mut self, entity: &Entity, to_world: DAffine3) {
+        entity.is_used.set(true);
+        let light = match entity.plugin.as_str() {
+            "point" => self.point(entity, to_world),
+            "spot" => self.spot(entity, to_world),
+            "distant" => self.distant(entity, to_world),
+            "infinite" => self.infinite(entity, to_world),
+            _ => Err(entity.unsupported(self.report, ALLOWED)),
+        };
+        if let Ok(light) = light {
+            self.world.lights.push(light);
+        }
+    }
+
+    /// What a light's colour is, times its scale.
+    pub(super) fn strength(&self, entity: &Entity, name: &str) -> Read<f64> {
+        let color = self.number_of(entity, name, Role::Emission);
+        let scale = self.scale_of(entity)?;
+        Ok(color?.unwrap_or(1.0) * scale)
+    }
+
+    pub(super) fn scale_of(&self, entity: &Entity) -> Read<f64> {
+        let allowed: (_, fn(f64) -> bool) = ("from 0 on", |v| v >= 0.0);
+        entity.float_within(self.report, "scale", 1.0, allowed)
+    }
+
+    /// What a light is multiplied with for its power or illuminance, where one above 0 is given: pbrt passes over others.
+    pub(super) fn wanted(&self, entity: &Entity, name: &str, now: f64) -> Read<f64> {
+        let wanted = entity.float(self.report, name)?;
+        Ok(wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now))
+    }
+
+    fn point(&self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
+        let strength = self.strength(entity, "I");
+        let factor = self.wanted(entity, "power", 4.0 * PI);
+        let from = entity.point_or(self.report, "from", DVec3::ZERO);
+        Ok(Light::Point {
+            position: self.place(entity, to_world.transform_point3(from?))?,
+            intensity: strength? * factor?,
+        })
+    }
+
+    /// A place without bounds is a cause.
+    fn place(&self, entity: &Entity, place: DVec3) -> Read<DVec3> {
+        if place.is_finite() {
+            return Ok(place);
+        }
+        self.report.cause(&entity.place, "a place without bounds");
+        Err(Given)
+    }
+
+    /// The way from `from` to `to` in the world.
+    fn way(&self, entity: &Entity, to_world: DAffine3) -> Read<DVec3> {
+        let from = entity.point_or(self.report, "from", DVec3::ZERO);
+        let to = entity.point_or(self.report, "to", DVec3::Z);
+        let way = to_world.transform_vector3(to? - from?).try_normalize();
+        way.ok_or_else(|| {
+            self.report.cause(&entity.place, "a direction of no length");
+            Given
+        })
+    }
+
+    fn distant(&self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
+        let strength = self.strength(entity, "L");
+        let factor = self.wanted(entity, "illuminance", 1.0);
+        Ok(Light::Directional {
+            direction: self.way(entity, to_world)?,
+            irradiance: strength? * factor?,
+        })
+    }
+
+    fn spot(&self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
+        let report = self.report;
+        let strength = self.strength(entity, "I");
+        let angle: (_, fn(f64) -> bool) = ("0 to 180 degrees", |a| (0.0..=180.0).contains(&a));
+        let cutoff = entity.float_within(report, "coneangle", 30.0, angle);
+        let delta = entity.float_within(report, "conedeltaangle", 5.0, angle);
+        let from = entity.point_or(report, "from", DVec3::ZERO);
+        let way = self.way(entity, to_world);
+        if without_scale(to_world).is_none() {
+            let message = "a spot that is sheared, or scaled differently along axes";
+            report.cause(&entity.place, message);
+            return Err(Given);
+        }
+        let (cutoff, delta) = (cutoff?, delta?);
+        if delta > cutoff {
+            let message = format!("conedeltaangle is {delta}; allowed: 0 to coneangle, {cutoff}");
+            return Err(entity.fault(report, "conedeltaangle", message));
+        }
+        let [cutoff, beam] = [cutoff, cutoff - delta].map(f64::to_radians);
+        let [end, start] = [cutoff, beam].map(libm::cos);
+        // As pbrt counts it: the mean of the falloff over its cosines is a half.
+        let solid = 2.0 * PI * ((1.0 - start) + (start - end) / 2.0);
+        let factor = self.wanted(entity, "power", solid)?;
+        let along = way?;
+        let across = along.any_orthonormal_vector();
+        let frame = DMat3::from_cols(across, along.cross(across), along);
+        let position = self.place(entity, to_world.transform_point3(from?))?;
+        Ok(Light::Spot {
+            to_world: DAffine3::from_mat3_translation(frame, position),
+            intensity: strength? * factor,
+            beam,
+            cutoff,
+            falloff: Falloff::SmoothCosine,
+        })
+    }
+
+    fn infinite(&mut self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
+        if entity.has("portal") {
+            let message = "portals are not supported".to_owned();
+            return Err(entity.fault(self.report, "portal", message));
+        }
+        if entity.has("filename") {
+            return self.sky(entity, to_world);
+        }
+        let strength = self.strength(entity, "L");
+        let factor = self.wanted(entity, "illuminance", PI);
+        Ok(Light::Constant {
+            radiance: strength? * factor?,
+        })
+    }
+}

@@ -1,0 +1,294 @@
+//! Materials. Those that do not let light through are the same on both sides.
+
+use super::entity::{Entity, Given, Read};
+use super::reader::{Reader, Uv};
+use super::scene::MaterialOf;
+use super::texture::Ask;
+use crate::report::quoted;
+use crate::spectrum::Role;
+use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness, Texture};
+
+/// Materials within one another.
+const DEEPEST: usize = 8;
+
+/// Materials of a world, with those within one another.
+const MOST: usize = 1 << 20;
+
+/// Below it pbrt takes a surface for smooth.
+const SMOOTH: f64 = 1e-3;
+
+/// Plugins that are materials of a world.
+const ALLOWED: &str =
+    "diffuse, coateddiffuse, conductor, dielectric, thindielectric, mix, interface";
+
+/// The number of pbrt's own material, where none is named.
+const DEFAULT: usize = usize::MAX;
+
+const ALBEDO: Ask = Ask::Spectrum(Role::Reflectance);
+
+impl Reader<'_> {
+    /// The number of a material; `None` where there is no surface at all.
+    pub(super) fn material(&mut self, of: &MaterialOf, uv: Uv) -> Read<Option<usize>> {
+        let number = match of {
+            MaterialOf::Default => DEFAULT,
+            MaterialOf::Number(number) => *number,
+            MaterialOf::Named(name, place) => match self.scene.named.get(&**name) {
+                Some(number) => *number,
+                None => {
+                    let message = format!("material {} is not known", quoted(name));
+                    self.cause_once(place, message);
+                    return Err(Given);
+                }
+            },
+        };
+        // What is unsound on one surface is so on all.
+        let all = [Uv::Own, Uv::Ball, Uv::Disc].map(|uv| self.materials.get(&(number, uv)));
+        if all.contains(&Some(&Err(Given))) {
+            return Err(Given);
+        }
+        if let Some(known) = self.materials.get(&(number, uv)) {
+            return *known;
+        }
+        let made = match self.scene.materials.get(number) {
+            Some(entity) => self.make_material(entity, uv),
+            None => Ok(Some(both_sides(Material::Diffuse {
+                reflectance: Texture::Constant(0.5),
+            }))),
+        };
+        let made = made.map(|material| material.map(|material| self.add_material(material)));
+        self.materials.insert((number, uv), made);
+        made
+    }
+
+    fn cause_once(&self, place: &crate::report::Place, message: String) {
+        if self.is_first(place, &message) {
+            self.report.cause(place, message);
+        }
+    }
+
+    pub(super) fn add_material(&mut self, material: Material) -> usize {
+        self.world.materials.push(material);
+        self.world.materials.len() - 1
+    }
+
+    fn make_material(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Material>> {
+        entity.is_used.set(true);
+        self.made_materials += 1;
+        if self.made_materials > MOST || self.depth > DEEPEST {
+            let message = "it is in itself, or too many materials are in one another";
+            self.cause_once(&entity.place, message.to_owned());
+            return Err(Given);
+        }
+        for name in ["displacement", "normalmap"] {
+            if entity.has(name) {
+                let message = format!("approximated: {name} is left out, the surface is smooth");
+                self.note_once(entity.place_of(name), &message);
+            }
+        }
+        // Named materials have their type among the parameters.
+        let plugin = match entity.plugin.as_str() {
+            "" => entity.text(self.report, "type")?.unwrap_or_default(),
+            plugin => plugin,
+        };
+        Ok(Some(match plugin {
+            "" | "none" | "interface" => return Ok(None),
+            "diffuse" => both_sides(Material::Diffuse {
+                reflectance: self.texture_or(entity, "reflectance", ALBEDO, 0.5, uv)?,
+            }),
+            "conductor" => both_sides(Material::Conductor(self.conductor(entity, uv)?)),
+            "coateddiffuse" => both_sides(Material::Plastic(self.coated(entity, uv)?)),
+            "dielectric" => Material::Dielectric(self.dielectric(entity, false, uv)?),
+            "thindielectric" => Material::Dielectric(self.dielectric(entity, true, uv)?),
+            "mix" => self.mixed(entity, uv)?,
+            other => {
+                let message = format!(
+                    "material {} is not supported; allowed: {ALLOWED}",
+                    quoted(other)
+                );
+                self.report.cause(&entity.place, message);
+                entity.drop_all();
+                return Err(Given);
+            }
+        }))
+    }
+
+    fn conductor(&mut self, entity: &Entity, uv: Uv) -> Read<Conductor> {
+        let index = self.metal(entity);
+        let roughness = self.roughness(entity, uv);
+        Ok(Conductor {
+            index: Some(index?),
+            reflectance: Texture::Constant(1.0),
+            roughness: roughness?,
+        })
+    }
+
+    /// n and k; a reflectance is that of a metal with n = 1 seen straight on.
+    fn metal(&mut self, entity: &Entity) -> Read<[f64; 2]> {
+        let number = Ask::Spectrum(Role::Number);
+        if entity.has("reflectance") {
+            if entity.has("eta") || entity.has("k") {
+                let message = "reflectance beside eta or k; allowed: one of both".to_owned();
+                return Err(entity.fault(self.report, "reflectance", message));
+            }
+            let share = self.constant_or(entity, "reflectance", ALBEDO, 1.0)?;
+            let share = share.clamp(0.0, 0.9999);
+            return Ok([1.0, 2.0 * (share / (1.0 - share)).sqrt()]);
+        }
+        let copper = |name| super::named::index(name).map_or(0.0, |rgb| self.color.of(rgb));
+        let [n, k] = ["metal-Cu-eta", "metal-Cu-k"].map(copper);
+        let n = self.constant_or(entity, "eta", number, n);
+        let k = self.constant_or(entity, "k", number, k);
+        Ok([n?, k?])
+    }
+
+    fn coated(&mut self, entity: &Entity, uv: Uv) -> Read<Plastic> {
+        let message = "approximated: layers are those of a plastic, whose rough coat does not blur what the base scatters; pbrt-v4 follows random walks between both";
+        self.note_once(&entity.place, message);
+        let albedo = self.constant_or(entity, "albedo", ALBEDO, 0.0);
+        for name in ["thickness", "maxdepth", "nsamples", "g"] {
+            // The note above is on them.
+            entity.has(name);
+        }
+        if albedo? > 0.0 {
+            let message = "a medium between the layers is not supported; allowed: albedo 0";
+            return Err(entity.fault(self.report, "albedo", message.to_owned()));
+        }
+        let index = self.index(entity);
+        let diffuse = self.texture_or(entity, "reflectance", ALBEDO, 0.5, uv);
+        let roughness = self.roughness(entity, uv);
+        Ok(Plastic {
+            index: index?,
+            diffuse: diffuse?,
+            specular: Texture::Constant(1.0),
+            is_nonlinear: true,
+            roughness: roughness?,
+        })
+    }
+
+    fn dielectric(&mut self, entity: &Entity, is_thin: bool, uv: Uv) -> Read<Dielectric> {
+        let index = self.index(entity);
+        let roughness = match is_thin {
+            true => Ok(None),
+            false => self.roughness(entity, uv),
+        };
+        Ok(Dielectric {
+            index: index?,
+            reflectance: Texture::Constant(1.0),
+            transmittance: Texture::Constant(1.0),
+            roughness: roughness?,
+            is_thin,
+        })
+    }
+
+    /// Of what is behind the normal over what is before it.
+    fn index(&mut self, entity: &Entity) -> Read<f64> {
+        let is_float = |p: &super::parameter::Parameter| p.kind == super::parameter::Kind::Float;
+        let index = match entity.find("eta") {
+            Some(parameter) if !is_float(parameter) => {
+                let message = "approximated: eta is the same at all wavelengths";
+                self.note_once(&parameter.place, message);
+                let found = self.number_of(entity, "eta", Role::Number)?;
+                found.unwrap_or(1.5)
+            }
+            _ => entity.float_or(self.report, "eta", 1.5)?,
+        };
+        match index > 0.0 {
+            true => Ok(index),
+            false => {
+                let message = format!("eta is {index}; allowed: above 0");
+                Err(entity.fault(self.report, "eta", message))
+            }
+        }
+    }
+
+    fn mixed(&mut self, entity: &Entity, uv: Uv) -> Read<Material> {
+        let weight = self.texture_or(entity, "amount", Ask::Float, 0.5, uv);
+        let names = entity.texts(self.report, "materials")?;
+        let [first, second] = names else {
+            let message = format!("{} materials; allowed: 2", names.len());
+            return Err(entity.fault(self.report, "materials", message));
+        };
+        let [first, second] = [first, second].map(|name| self.part(entity, name, uv));
+        Ok(Material::Blend {
+            weight: weight?,
+            of: Box::new([first?, second?]),
+        })
+    }
+
+    fn part(&mut self, entity: &Entity, name: &str, uv: Uv) -> Read<Material> {
+        let known = self.scene.named.get(name);
+        let fault = |what: &str| {
+            let message = format!("material {} {what}", quoted(name));
+            entity.fault(self.report, "materials", message)
+        };
+        let Some(of) = known.and_then(|number| self.scene.materials.get(*number)) else {
+            return Err(fault("is not known"));
+        };
+        self.depth += 1;
+        let made = self.make_material(of, uv);
+        self.depth -= 1;
+        made?.ok_or_else(|| {
+            let message = format!("material {} is no surface", quoted(name));
+            entity.fault(self.report, "materials", message)
+        })
+    }
+
+    /// `None` for a smooth surface.
+    fn roughness(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Roughness>> {
+        let remaps = entity.truth(self.report, "remaproughness", true);
+        let names = ["uroughness", "vroughness"];
+        let names = names.map(|name| if entity.has(name) { name } else { "roughness" });
+        let both = names.map(|name| self.texture_or(entity, name, Ask::Float, 0.0, uv));
+        let remaps = remaps?;
+        let alpha = |v: f64| if remaps { v.max(0.0).sqrt() } else { v };
+        let [u, v] = both;
+        let [u, v] = [u?, v?];
+        if [&u, &v].iter().any(|t| matches!(t, Texture::Bitmap(_))) && remaps {
+            let message =
+                "approximated: pixels of a roughness are remapped before they are interpolated";
+            self.note_once(entity.place_of("remaproughness"), message);
+        }
+        let alpha = [
+            self.mapped(entity, u, alpha)?,
+            self.mapped(entity, v, alpha)?,
+        ];
+        if alpha.iter().all(|alpha| alpha.largest() < SMOOTH) {
+            return Ok(None);
+        }
+        let [u, v] = alpha;
+        let rough = |v: f64| v.max(1e-4);
+        Ok(Some(Roughness {
+            distribution: Distribution::Ggx,
+            alpha: [
+                self.mapped(entity, u, rough)?,
+                self.mapped(entity, v, rough)?,
+            ],
+        }))
+    }
+}
+
+fn both_sides(material: Material) -> Material {
+    Material::TwoSided(Box::new([material.clone(), material]))
+}
+
+/// Whether texture coordinates matter: something varies, or is rough along u and v in different ways.
+pub(super) fn reads_uv(material: &Material) -> bool {
+    let varies = |texture: &Texture| !matches!(texture, Texture::Constant(_));
+    let rough = |roughness: &Option<Roughness>| {
+        roughness.as_ref().is_some_and(|r| match &r.alpha {
+            #[expect(clippy::float_cmp, reason = "the same number or not")]
+            [Texture::Constant(u), Texture::Constant(v)] => u != v,
+            _ => true,
+        })
+    };
+    match material {
+        Material::Diffuse { reflectance } => varies(reflectance),
+        Material::Conductor(of) => varies(&of.reflectance) || rough(&of.roughness),
+        Material::Dielectric(of) => rough(&of.roughness),
+        Material::Plastic(of) => varies(&of.diffuse) || rough(&of.roughness),
+        Material::Phong { .. } => false,
+        Material::TwoSided(of) => of.iter().any(reads_uv),
+        Material::Mask { opacity, of } => varies(opacity) || reads_uv(of),
+        Material::Blend { weight, of } => varies(weight) || of.iter().any(reads_uv),
+    }
+}

@@ -1,0 +1,257 @@
+//! Shapes that are meshes.
+
+use super::entity::{Entity, Given, Read};
+use super::include;
+use super::parameter::Kind;
+use super::reader::Reader;
+use super::scene::Shape;
+use crate::meshes::Parts;
+use crate::report::quoted;
+use etendue_scene::DetailedMesh;
+use etendue_world::Triangles;
+use glam::{DAffine3, DVec2, DVec3};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// The largest coordinate, as in other meshes.
+const LARGEST: f64 = 1e9;
+
+/// By how much of its size a patch may be off a plane or a parallelogram.
+const FLAT: f64 = 1e-5;
+
+/// (u, v) at the corners of triangles without any.
+const TRIANGLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::ONE];
+
+/// (u, v) at the corners of patches without any.
+const PATCH: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
+
+/// The file of a mesh, and whether its texture coordinates are asked for.
+pub(super) type MeshKey = (PathBuf, bool);
+
+/// Triangles, with their area in the world if they are one triangle or one patch.
+pub(super) struct Mesh {
+    pub(super) triangles: Arc<Triangles>,
+    pub(super) area: Option<f64>,
+}
+
+impl Reader<'_> {
+    pub(super) fn mesh(&mut self, shape: &Shape, needs_uv: bool) -> Read<Mesh> {
+        let entity = &shape.entity;
+        let (triangles, each) = match entity.plugin.as_str() {
+            "trianglemesh" => (self.triangle_mesh(entity, needs_uv)?, 1),
+            "plymesh" => (self.ply(entity, needs_uv)?, 1),
+            _ => (self.bilinear(entity, needs_uv)?, 2),
+        };
+        let is_one = triangles.corners().len() <= each;
+        let area = is_one.then(|| area(&triangles, shape.to_world));
+        Ok(Mesh { triangles, area })
+    }
+
+    fn ply(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
+        if entity.has("displacement") {
+            let message = "displacement of a mesh is not supported".to_owned();
+            return Err(entity.fault(self.report, "displacement", message));
+        }
+        let name = self.file_name(entity)?;
+        let unread = |error: &String| self.unread(entity, name, error);
+        let path = self.find(name).map_err(|error| unread(&error))?;
+        let key = (path, needs_uv);
+        if let Some(known) = self.meshes.get(&key) {
+            return known.clone().map_err(|error| unread(&error));
+        }
+        let parts = self.ply_parts(&key.0);
+        let made = parts.and_then(|parts| self.finish(parts, needs_uv));
+        let made = made.map_err(|error| self.unread_once(entity, name, error));
+        self.meshes.insert(key, made.clone());
+        made.map_err(|_| Given)
+    }
+
+    /// The cause is given, and stays.
+    fn unread_once(&self, entity: &Entity, name: &str, error: String) -> String {
+        self.unread(entity, name, &error);
+        error
+    }
+
+    fn ply_parts(&self, path: &Path) -> Result<Parts, String> {
+        let bytes = include::bytes(self.files, path)?;
+        let is_gz = path
+            .extension()
+            .is_some_and(|e| e.eq_ignore_ascii_case("gz"));
+        let inner = if is_gz {
+            path.with_extension("")
+        } else {
+            path.to_owned()
+        };
+        let extension = inner.extension().unwrap_or_default();
+        if !extension.eq_ignore_ascii_case("ply") {
+            let extension = quoted(&extension.to_string_lossy());
+            return Err(format!("has extension {extension}; allowed: ply, ply.gz"));
+        }
+        let mesh = DetailedMesh::parse(&inner, &bytes);
+        mesh.map(Parts::from)
+            .map_err(|fault| format!("is no sound mesh: {fault}"))
+    }
+
+    fn triangle_mesh(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
+        let (vertices, indices) = self.indexed::<3>(entity)?;
+        let parts = Parts {
+            normals: self.beside(entity, "N", &vertices, |e, r| {
+                e.points(r, "N", Kind::Normal)
+            })?,
+            uvs: self.beside(entity, "uv", &vertices, |e, r| e.pairs(r, "uv"))?,
+            vertices,
+            corners: indices,
+        };
+        self.made(entity, parts, needs_uv)
+    }
+
+    /// Patches, each of two triangles.
+    fn bilinear(&mut self, entity: &Entity, needs_uv: bool) -> Read<Arc<Triangles>> {
+        let (vertices, patches) = self.indexed::<4>(entity)?;
+        let normals = self.beside(entity, "N", &vertices, |e, r| {
+            e.points(r, "N", Kind::Normal)
+        })?;
+        let uvs = self.beside(entity, "uv", &vertices, |e, r| e.pairs(r, "uv"))?;
+        let mut parts = Parts {
+            vertices: Vec::new(),
+            corners: Vec::new(),
+            normals: normals.as_ref().map(|_| Vec::new()),
+            uvs: Some(Vec::new()),
+        };
+        for patch in patches {
+            let at = patch.map(|i| i as usize);
+            self.check_patch(entity, at.map(|i| vertices[i]), needs_uv)?;
+            // Below 2³² in all: each index of the file makes one vertex.
+            let first = u32::try_from(parts.vertices.len()).map_err(|_| Given)?;
+            parts.vertices.extend(at.map(|i| vertices[i]));
+            if let (Some(to), Some(of)) = (&mut parts.normals, &normals) {
+                to.extend(at.map(|i| of[i]));
+            }
+            let uv = |k: usize| uvs.as_ref().map_or(PATCH[k], |uvs| uvs[at[k]]);
+            parts
+                .uvs
+                .get_or_insert_default()
+                .extend([0, 1, 2, 3].map(uv));
+            let triangles = [[0, 1, 3], [0, 3, 2]];
+            parts
+                .corners
+                .extend(triangles.map(|t| t.map(|k: u32| first + k)));
+        }
+        self.made(entity, parts, needs_uv)
+    }
+
+    /// A patch that is no plane is a cause; one that is no parallelogram has other texture coordinates within.
+    fn check_patch(&self, entity: &Entity, [a, b, c, d]: [DVec3; 4], needs_uv: bool) -> Read<()> {
+        let (along, across, diagonal) = (b - a, c - a, d - a);
+        let size = along.length().max(across.length()).max(diagonal.length());
+        let volume = along.cross(across).dot(diagonal).abs();
+        if volume > FLAT * size * size * size {
+            let message = "a patch that is no plane; allowed: planes".to_owned();
+            return Err(entity.fault(self.report, "P", message));
+        }
+        if needs_uv && (along + across - diagonal).length() > FLAT * size {
+            let message = "approximated: texture coordinates of a patch that is no parallelogram are those of two triangles";
+            self.note_once(&entity.place, message);
+        }
+        Ok(())
+    }
+
+    /// Places of vertices, and which of them make each face of `N` corners.
+    fn indexed<const N: usize>(&self, entity: &Entity) -> Read<(Vec<DVec3>, Vec<[u32; N]>)> {
+        let report = self.report;
+        let vertices = entity.points(report, "P", Kind::Point3)?;
+        if vertices.iter().any(|p| p.abs().max_element() > LARGEST) {
+            let message = format!("a coordinate beyond ±{LARGEST:e}");
+            return Err(entity.fault(report, "P", message));
+        }
+        let indices = entity.numbers(report, "indices", &[Kind::Integer])?;
+        if indices.is_empty() && vertices.len() == N {
+            #[expect(clippy::cast_possible_truncation, reason = "3 or 4")]
+            let all = std::array::from_fn(|i| i as u32);
+            return Ok((vertices, vec![all]));
+        }
+        if indices.is_empty() || !indices.len().is_multiple_of(N) {
+            let count = indices.len();
+            let message = format!("{count} indices; allowed: {N} for each face");
+            return Err(entity.fault(report, "indices", message));
+        }
+        let count = vertices.len() as f64;
+        if let Some(wrong) = indices.iter().find(|i| !(0.0..count).contains(*i)) {
+            let message = format!("index {wrong} of {count} vertices");
+            return Err(entity.fault(report, "indices", message));
+        }
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "among the vertices, in 32 bits"
+        )]
+        let face = |face: &[f64]| std::array::from_fn(|k| face[k] as u32);
+        Ok((vertices, indices.chunks_exact(N).map(face).collect()))
+    }
+
+    /// Something that each vertex has; of another number it is left out, as in pbrt.
+    fn beside<T>(
+        &self,
+        entity: &Entity,
+        name: &str,
+        vertices: &[DVec3],
+        read: impl Fn(&Entity, &crate::report::Report) -> Read<Vec<T>>,
+    ) -> Read<Option<Vec<T>>> {
+        let all = read(entity, self.report)?;
+        if all.len() != vertices.len() && !all.is_empty() {
+            let (found, count) = (all.len(), vertices.len());
+            let message = format!("{name} is left out: {found} of {count} vertices");
+            self.note_once(entity.place_of(name), &message);
+            return Ok(None);
+        }
+        Ok((!all.is_empty()).then_some(all))
+    }
+
+    fn made(&self, entity: &Entity, parts: Parts, needs_uv: bool) -> Read<Arc<Triangles>> {
+        let made = self.finish(parts, needs_uv);
+        made.map_err(|error| {
+            self.report
+                .cause(&entity.place, format!("the mesh {error}"));
+            Given
+        })
+    }
+
+    fn finish(&self, mut parts: Parts, needs_uv: bool) -> Result<Arc<Triangles>, String> {
+        self.files.spend(parts.bytes())?;
+        parts.drop_empty();
+        if needs_uv && parts.uvs.is_none() {
+            parts = apart(parts)?;
+            self.files.spend(parts.bytes())?;
+        }
+        // Normals say where the front is, as in pbrt.
+        parts.face_normals();
+        parts.mend_normals();
+        let made = parts.finish().map(Arc::new);
+        made.ok_or_else(|| "has no triangle with an area".to_owned())
+    }
+}
+
+/// Triangles that share no vertex, with pbrt's own texture coordinates.
+fn apart(parts: Parts) -> Result<Parts, String> {
+    let count = u32::try_from(parts.corners.len()).ok();
+    let count = count.filter(|count| count.checked_mul(3).is_some());
+    let count = count.ok_or("has too many triangles")?;
+    let all = || parts.corners.iter().flatten().map(|i| *i as usize);
+    let normals = parts.normals.as_ref();
+    Ok(Parts {
+        vertices: all().map(|i| parts.vertices[i]).collect(),
+        normals: normals.map(|normals| all().map(|i| normals[i]).collect()),
+        uvs: Some(parts.corners.iter().flat_map(|_| TRIANGLE).collect()),
+        corners: (0..count).map(|i| [0, 1, 2].map(|k| 3 * i + k)).collect(),
+    })
+}
+
+fn area(triangles: &Triangles, to_world: DAffine3) -> f64 {
+    let corners = triangles.corners().iter();
+    let areas = corners.map(|corners| {
+        let [a, b, c] =
+            corners.map(|i| to_world.transform_point3(triangles.vertices()[i as usize]));
+        0.5 * (b - a).cross(c - a).length()
+    });
+    areas.sum()
+}

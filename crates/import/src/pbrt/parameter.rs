@@ -1,0 +1,217 @@
+//! Lists of parameters, such as `"float radius" 2`.
+
+use super::directive::is_directive;
+use super::token::{At, Token, Tokens, number};
+use crate::report::{Place, Report, quoted};
+use std::cell::Cell;
+use std::rc::Rc;
+
+/// A named value.
+#[derive(Debug)]
+pub(super) struct Parameter {
+    pub(super) kind: Kind,
+    pub(super) name: String,
+    pub(super) values: Values,
+    pub(super) place: Place,
+    /// Whether anything asked for it.
+    pub(super) is_read: Cell<bool>,
+}
+
+/// What stands behind the name.
+#[derive(Debug)]
+pub(super) enum Values {
+    Numbers(Vec<f64>),
+    Texts(Vec<String>),
+    Truths(Vec<bool>),
+    /// A cause has been given.
+    Broken,
+}
+
+/// The types of pbrt-v4.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Bool,
+    Integer,
+    Float,
+    Point2,
+    Vector2,
+    Point3,
+    Vector3,
+    Normal,
+    Text,
+    Texture,
+    Rgb,
+    Blackbody,
+    Spectrum,
+}
+
+/// All types by their names.
+const KINDS: [(&str, Kind); 13] = [
+    ("bool", Kind::Bool),
+    ("integer", Kind::Integer),
+    ("float", Kind::Float),
+    ("point2", Kind::Point2),
+    ("vector2", Kind::Vector2),
+    ("point3", Kind::Point3),
+    ("vector3", Kind::Vector3),
+    ("normal", Kind::Normal),
+    ("string", Kind::Text),
+    ("texture", Kind::Texture),
+    ("rgb", Kind::Rgb),
+    ("blackbody", Kind::Blackbody),
+    ("spectrum", Kind::Spectrum),
+];
+
+impl Kind {
+    /// How many numbers make one value.
+    fn arity(self) -> usize {
+        match self {
+            Self::Point2 | Self::Vector2 => 2,
+            Self::Point3 | Self::Vector3 | Self::Normal | Self::Rgb => 3,
+            _ => 1,
+        }
+    }
+
+    /// Its name in the file.
+    pub(super) fn name(self) -> &'static str {
+        let found = KINDS.iter().find(|(_, kind)| *kind == self);
+        found.map_or("", |(name, _)| name)
+    }
+}
+
+/// All parameters that follow. Those with a fault are there too, as [`Values::Broken`].
+pub(super) fn parameters(tokens: &mut Tokens<'_>, report: &Report) -> Vec<Rc<Parameter>> {
+    let mut all = Vec::new();
+    while let Some((Token::Text(declared), at)) = tokens.peek().cloned() {
+        tokens.next();
+        let place = tokens.place(at);
+        let values = values(tokens, &place, report);
+        let mut words = declared.split([' ', '\t']).filter(|word| !word.is_empty());
+        let (Some(kind), Some(name), None) = (words.next(), words.next(), words.next()) else {
+            let message = format!("{} is not a type and a name", quoted(&declared));
+            report.cause(&place, message);
+            continue;
+        };
+        let Some((_, kind)) = KINDS.iter().find(|(known, _)| *known == kind) else {
+            let known = KINDS.map(|(known, _)| known).join(", ");
+            let message = format!("type {} of parameters; allowed: {known}", quoted(kind));
+            report.cause(&place, message);
+            continue;
+        };
+        all.push(Rc::new(Parameter {
+            values: checked(values, *kind, name, &place, report),
+            kind: *kind,
+            name: name.to_owned(),
+            place,
+            is_read: false.into(),
+        }));
+    }
+    all
+}
+
+/// One value, or a list of them in brackets.
+fn values(tokens: &mut Tokens<'_>, place: &Place, report: &Report) -> Values {
+    let mut list = List::default();
+    match tokens.peek().cloned() {
+        Some((Token::Open, _)) => {
+            tokens.next();
+            loop {
+                match tokens.peek().cloned() {
+                    Some((Token::Close, _)) => {
+                        tokens.next();
+                        return list.finish();
+                    }
+                    Some((Token::Word(word), _)) if is_directive(word) => break,
+                    Some((token, at)) => {
+                        tokens.next();
+                        list.add(token, at, tokens, report);
+                    }
+                    None => break,
+                }
+            }
+            report.cause(place, "a list without ]");
+            return Values::Broken;
+        }
+        Some((Token::Word(word), _)) if is_directive(word) => {}
+        Some((token, at)) => {
+            tokens.next();
+            list.add(token, at, tokens, report);
+            return list.finish();
+        }
+        None => {}
+    }
+    report.cause(place, "a parameter without a value");
+    Values::Broken
+}
+
+/// Values of one sort, as they come.
+#[derive(Default)]
+struct List {
+    found: Option<Values>,
+}
+
+impl List {
+    fn add(&mut self, token: Token<'_>, at: At, tokens: &Tokens<'_>, report: &Report) {
+        let error = match (self.found.as_mut(), token) {
+            // One message is enough.
+            (Some(Values::Broken), _) => return,
+            (_, Token::Broken(what)) => what.to_owned(),
+            (_, Token::Open | Token::Close) => "a bracket where a value should be".to_owned(),
+            (None, Token::Text(text)) => {
+                self.found = Some(Values::Texts(vec![text.into_owned()]));
+                return;
+            }
+            (Some(Values::Texts(all)), Token::Text(text)) => return all.push(text.into_owned()),
+            (None, Token::Word(word @ ("true" | "false"))) => {
+                self.found = Some(Values::Truths(vec![word == "true"]));
+                return;
+            }
+            (Some(Values::Truths(all)), Token::Word(word @ ("true" | "false"))) => {
+                return all.push(word == "true");
+            }
+            (None, Token::Word(word)) => match number(word) {
+                Ok(value) => {
+                    self.found = Some(Values::Numbers(vec![value]));
+                    return;
+                }
+                Err(error) => error,
+            },
+            (Some(Values::Numbers(all)), Token::Word(word)) => match number(word) {
+                Ok(value) => return all.push(value),
+                Err(error) => error,
+            },
+            (Some(_), _) => "values of different sorts in one list".to_owned(),
+        };
+        report.cause(&tokens.place(at), error);
+        self.found = Some(Values::Broken);
+    }
+
+    fn finish(self) -> Values {
+        self.found.unwrap_or(Values::Numbers(Vec::new()))
+    }
+}
+
+/// The values if they go with the type; else a cause.
+fn checked(values: Values, kind: Kind, name: &str, place: &Place, report: &Report) -> Values {
+    let whole = |v: &f64| v.fract() == 0.0 && v.abs() <= f64::from(i32::MAX);
+    let allowed = match (kind, &values) {
+        (_, Values::Broken) => return values,
+        (_, Values::Numbers(none)) if none.is_empty() => return values,
+        (Kind::Bool, Values::Truths(_))
+        | (Kind::Text | Kind::Texture | Kind::Spectrum, Values::Texts(_)) => return values,
+        (Kind::Integer, Values::Numbers(all)) if all.iter().all(whole) => return values,
+        (Kind::Bool, _) => "true or false, without quotation marks",
+        (Kind::Text | Kind::Texture, _) => "words in quotation marks",
+        (Kind::Integer, _) => "integers of 32 bits",
+        (_, Values::Numbers(all)) if all.len().is_multiple_of(kind.arity()) => return values,
+        (Kind::Spectrum, _) => "pairs of a wavelength and a value, or a name",
+        (kind, _) => match kind.arity() {
+            1 => "numbers",
+            2 => "pairs of numbers",
+            _ => "threes of numbers",
+        },
+    };
+    let message = format!("{} {name}; allowed: {allowed}", kind.name());
+    report.cause(place, message);
+    Values::Broken
+}

@@ -1,0 +1,136 @@
+use super::entity::{Entity, Given, Read};
+use super::mesh::MeshKey;
+use super::scene::Scene;
+use super::texture::Key;
+use crate::Color;
+use crate::files::Files;
+use crate::pictures::Pictures;
+use crate::report::{Place, Report, quoted};
+use etendue_world::{Texture, Triangles, World};
+use glam::{DAffine2, DMat2, DVec2};
+use std::cell::RefCell;
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Most shapes of a world: instances may repeat what an object holds.
+pub(super) const MOST_SHAPES: usize = 1 << 20;
+
+/// Makes a world of a scene.
+pub(super) struct Reader<'a> {
+    pub(super) scene: &'a Scene,
+    pub(super) files: &'a Files,
+    pub(super) report: &'a Report,
+    pub(super) color: Color,
+    pub(super) folder: PathBuf,
+    pub(super) world: World,
+    pub(super) pictures: Pictures,
+    pub(super) meshes: HashMap<MeshKey, Result<Arc<Triangles>, String>>,
+    pub(super) textures: BTreeMap<Key, Read<Texture>>,
+    /// Materials that were made, by their number in the scene and what they are on; `None` for no surface at all.
+    pub(super) materials: BTreeMap<(usize, Uv), Read<Option<usize>>>,
+    /// Materials, with those within one another.
+    pub(super) made_materials: usize,
+    /// Textures or materials within one another, now.
+    pub(super) depth: usize,
+    noted: RefCell<BTreeSet<(usize, usize, String)>>,
+}
+
+/// How (u, v) of a world's surface go with those of pbrt.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Uv {
+    /// They are the same.
+    Own,
+    /// On spheres pbrt's v goes up from the lower pole.
+    Ball,
+    /// On discs pbrt's u is the azimuth, and v goes in from the edge.
+    Disc,
+}
+
+impl Uv {
+    pub(super) fn to_pbrt(self) -> DAffine2 {
+        let [x, y, start] = match self {
+            Self::Own => [DVec2::X, DVec2::Y, DVec2::ZERO],
+            Self::Ball => [DVec2::X, DVec2::NEG_Y, DVec2::Y],
+            Self::Disc => [DVec2::NEG_Y, DVec2::X, DVec2::Y],
+        };
+        DAffine2::from_mat2_translation(DMat2::from_cols(x, y), start)
+    }
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(
+        scene: &'a Scene,
+        files: &'a Files,
+        report: &'a Report,
+        color: Color,
+        folder: PathBuf,
+    ) -> Self {
+        Self {
+            scene,
+            files,
+            report,
+            color,
+            folder,
+            world: World::default(),
+            pictures: Pictures::default(),
+            meshes: HashMap::new(),
+            textures: BTreeMap::new(),
+            materials: BTreeMap::new(),
+            made_materials: 0,
+            depth: 0,
+            noted: RefCell::default(),
+        }
+    }
+
+    /// The world of the scene.
+    pub(super) fn world(mut self, whole: &Place) -> World {
+        self.integrator();
+        self.settings();
+        self.camera(whole);
+        for (entity, to_world) in &self.scene.lights {
+            self.light(entity, *to_world);
+        }
+        self.shapes();
+        self.instances();
+        self.world
+    }
+
+    /// A note that is given once, however often its object is used.
+    pub(super) fn note_once(&self, place: &Place, message: &str) {
+        if self.is_first(place, message) {
+            self.report.note(place, message);
+        }
+    }
+
+    /// Whether this is said for the first time.
+    pub(super) fn is_first(&self, place: &Place, message: &str) -> bool {
+        let (line, column) = (place.line, place.column);
+        let key = (line, column, format!("{}: {message}", place.file));
+        self.noted.borrow_mut().insert(key)
+    }
+
+    /// The path of a file; names are looked for from the folder of the scene.
+    pub(super) fn find(&self, name: &str) -> Result<PathBuf, String> {
+        self.files.find(std::slice::from_ref(&self.folder), name)
+    }
+
+    /// The name of the file that an entity asks for.
+    pub(super) fn file_name<'b>(&self, entity: &'b Entity) -> Read<&'b str> {
+        let name = entity.text(self.report, "filename")?;
+        name.ok_or_else(|| {
+            let message = format!(
+                "{} {} without filename",
+                entity.kind,
+                quoted(&entity.plugin)
+            );
+            entity.fault(self.report, "filename", message)
+        })
+    }
+
+    /// A cause for a file that cannot be used.
+    pub(super) fn unread(&self, entity: &Entity, name: &str, error: &str) -> Given {
+        let message = format!("file {} {error}", quoted(name));
+        entity.fault(self.report, "filename", message)
+    }
+}

@@ -1,0 +1,224 @@
+//! Shapes, objects and instances.
+
+use super::entity::{Entity, Given, Read};
+use super::material::reads_uv;
+use super::mesh::Mesh;
+use super::reader::{MOST_SHAPES, Reader, Uv};
+use super::scene::Shape;
+use super::texture::Ask;
+use crate::placement::fault;
+use crate::report::{Place, quoted};
+use etendue_world::{Emission, Geometry, Material, Texture};
+use glam::{DAffine3, DVec3};
+use std::collections::BTreeMap;
+use std::f64::consts::PI;
+
+/// Plugins that are shapes of a world.
+const ALLOWED: &str = "sphere, disk, cylinder, trianglemesh, plymesh, bilinearmesh";
+
+/// A surface before it has a material.
+pub(super) struct Surface {
+    pub(super) geometry: Geometry,
+    /// From the geometry's coordinates to those of the shape.
+    pub(super) placement: DAffine3,
+    /// What pbrt takes for its area when it is asked for a power; `None` for many surfaces at once.
+    pub(super) area: Option<f64>,
+}
+
+impl Reader<'_> {
+    /// The shapes that are in no object.
+    pub(super) fn shapes(&mut self) {
+        for shape in &self.scene.shapes {
+            if let Some(made) = self.shape(shape, false) {
+                self.add(made, &shape.entity.place);
+            }
+        }
+    }
+
+    /// Objects where they are shown.
+    pub(super) fn instances(&mut self) {
+        let mut known: BTreeMap<&str, Vec<etendue_world::Shape>> = BTreeMap::new();
+        for instance in &self.scene.instances {
+            let Some(object) = self.scene.objects.get(&instance.name) else {
+                let message = format!("object {} is not known", quoted(&instance.name));
+                self.report.cause(&instance.place, message);
+                continue;
+            };
+            if !known.contains_key(&*instance.name) {
+                let shapes = object.shapes.iter();
+                let made = shapes.filter_map(|shape| self.shape(shape, true)).collect();
+                known.insert(&instance.name, made);
+            }
+            for shape in known.get(&*instance.name).into_iter().flatten() {
+                let to_world = instance.to_world * shape.to_world;
+                let shape = shape.clone();
+                let placed = etendue_world::Shape { to_world, ..shape };
+                if !self.add(placed, &instance.place) {
+                    return;
+                }
+            }
+        }
+    }
+
+    /// Whether there may be more.
+    fn add(&mut self, shape: etendue_world::Shape, place: &Place) -> bool {
+        if self.world.shapes.len() >= MOST_SHAPES {
+            let message = format!("more than {MOST_SHAPES} shapes, with all instances");
+            if self.is_first(&Place::whole(""), &message) {
+                self.report.cause(place, message);
+            }
+            return false;
+        }
+        match fault(&shape.geometry, shape.to_world) {
+            Some(message) => self.report.cause(place, format!("a shape {message}")),
+            None => self.world.shapes.push(shape),
+        }
+        true
+    }
+
+    /// A shape where its own transform places it; `None` after a cause, or if there is no surface.
+    fn shape(&mut self, shape: &Shape, is_in_object: bool) -> Option<etendue_world::Shape> {
+        let entity = &shape.entity;
+        entity.is_used.set(true);
+        let uv = match entity.plugin.as_str() {
+            "sphere" => Uv::Ball,
+            "disk" => Uv::Disc,
+            _ => Uv::Own,
+        };
+        let material = self.material(&shape.material, uv);
+        let area = shape.area.map(|area| &self.scene.areas[area]);
+        if let Ok(None) = material {
+            entity.drop_all();
+            if let Some(area) = area {
+                let message =
+                    "left out, as in pbrt: an area light on a shape whose material is no surface";
+                self.note_once(&entity.place, message);
+                area.is_used.set(true);
+            }
+            return None;
+        }
+        let opacity = self.texture_or(entity, "alpha", Ask::Float, 1.0, uv);
+        let material =
+            material.and_then(|number| Ok(self.masked(entity, number.ok_or(Given)?, opacity?)));
+        let emission = self.shape_emission(shape, uv, is_in_object);
+        let varies = |emission: &Emission| !matches!(emission, Texture::Constant(_));
+        let needs_uv = material.is_ok_and(|at| reads_uv(&self.world.materials[at]))
+            || emission
+                .as_ref()
+                .is_ok_and(|e| e.as_ref().is_some_and(varies));
+        let surface = self.surface(shape, needs_uv).ok()?;
+        let emission = self.powered(area, emission.ok()?, &surface).ok()?;
+        Some(etendue_world::Shape {
+            name: String::new(),
+            to_world: shape.to_world * surface.placement,
+            is_flipped: self.is_flipped(shape, &surface.geometry, emission.is_some()),
+            geometry: surface.geometry,
+            material: material.ok()?,
+            emission,
+        })
+    }
+
+    fn masked(&mut self, entity: &Entity, number: usize, opacity: Texture) -> usize {
+        if matches!(opacity, Texture::Constant(a) if a >= 1.0) {
+            return number;
+        }
+        let message =
+            "approximated: where alpha lets light through it counts as a surface of the path";
+        self.note_once(entity.place_of("alpha"), message);
+        let of = Box::new(self.world.materials[number].clone());
+        self.add_material(Material::Mask { opacity, of })
+    }
+
+    /// Whether the front is another side than a world's geometry says.
+    ///
+    /// pbrt makes normals of meshes where they are placed, so that a mirror leaves their front where it is; but it turns those of other shapes over
+    /// below a mirror. Where such a shape shines, it is seen on one side and sends light from the other: it is taken where it sends light.
+    fn is_flipped(&self, shape: &Shape, geometry: &Geometry, shines: bool) -> bool {
+        let is_mirrored = shape.to_world.matrix3.determinant() < 0.0;
+        let turns = is_mirrored && !matches!(geometry, Geometry::Mesh(_));
+        if turns && shines {
+            let message = "below a mirror pbrt sees this light on one side and sends its light from the other; the other is taken";
+            self.note_once(&shape.entity.place, message);
+        }
+        shape.is_reversed != (turns && !shines)
+    }
+
+    fn surface(&mut self, shape: &Shape, needs_uv: bool) -> Read<Surface> {
+        let entity = &shape.entity;
+        let meshed = |Mesh { triangles, area }| Surface {
+            geometry: Geometry::Mesh(triangles),
+            placement: DAffine3::IDENTITY,
+            area,
+        };
+        match entity.plugin.as_str() {
+            "sphere" => self.sphere(entity),
+            "disk" => self.disk(entity),
+            "cylinder" => self.cylinder(entity),
+            "trianglemesh" | "plymesh" | "bilinearmesh" => self.mesh(shape, needs_uv).map(meshed),
+            _ => Err(entity.unsupported(self.report, ALLOWED)),
+        }
+    }
+
+    fn radius(&self, entity: &Entity) -> Read<f64> {
+        let above: (_, fn(f64) -> bool) = ("above 0", |r| r > 0.0);
+        entity.float_within(self.report, "radius", 1.0, above)
+    }
+
+    /// A cause for a shape that does not go all around.
+    fn goes_around(&self, entity: &Entity) -> Read<()> {
+        let whole: (_, fn(f64) -> bool) = ("360, all around", |a| a >= 360.0);
+        entity.float_within(self.report, "phimax", 360.0, whole)?;
+        Ok(())
+    }
+
+    fn sphere(&self, entity: &Entity) -> Read<Surface> {
+        let radius = self.radius(entity);
+        self.goes_around(entity)?;
+        let radius = radius?;
+        for (name, end) in [("zmin", -radius), ("zmax", radius)] {
+            let z = entity.float_or(self.report, name, end)?;
+            if (z - end) * end.signum() < 0.0 {
+                let message = format!("{name} is {z}: parts of spheres are not supported");
+                return Err(entity.fault(self.report, name, message));
+            }
+        }
+        Ok(Surface {
+            geometry: Geometry::Sphere,
+            placement: DAffine3::from_scale(DVec3::splat(radius)),
+            area: Some(4.0 * PI * radius * radius),
+        })
+    }
+
+    fn disk(&self, entity: &Entity) -> Read<Surface> {
+        let radius = self.radius(entity);
+        let height = entity.float_or(self.report, "height", 0.0);
+        let none: (_, fn(f64) -> bool) = ("0", |r| r == 0.0);
+        let inner = entity.float_within(self.report, "innerradius", 0.0, none);
+        self.goes_around(entity)?;
+        let (radius, height) = (radius?, height?);
+        inner?;
+        let scale = DAffine3::from_scale(DVec3::new(radius, radius, 1.0));
+        Ok(Surface {
+            geometry: Geometry::Disc,
+            placement: DAffine3::from_translation(height * DVec3::Z) * scale,
+            area: Some(PI * radius * radius),
+        })
+    }
+
+    fn cylinder(&self, entity: &Entity) -> Read<Surface> {
+        let radius = self.radius(entity);
+        let ends = [("zmin", -1.0), ("zmax", 1.0)]
+            .map(|(name, end)| entity.float_or(self.report, name, end));
+        self.goes_around(entity)?;
+        let radius = radius?;
+        let [a, b] = ends;
+        let (a, b) = (a?, b?);
+        let (low, high) = (a.min(b), a.max(b));
+        let scale = DAffine3::from_scale(DVec3::new(radius, radius, high - low));
+        Ok(Surface {
+            geometry: Geometry::Cylinder,
+            placement: DAffine3::from_translation(low * DVec3::Z) * scale,
+            area: Some(2.0 * PI * radius * (high - low)),
+        })
+    }
+}

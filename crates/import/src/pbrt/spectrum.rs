@@ -1,0 +1,149 @@
+//! Colours and spectra of parameters, as numbers.
+
+use super::entity::{Entity, Given, Read};
+use super::named;
+use super::parameter::{Kind, Values};
+use super::reader::Reader;
+use super::token::number;
+use crate::Color;
+use crate::report::quoted;
+use crate::spectrum::{Role, rgb};
+
+/// Planck's second constant, nm K.
+const PLANCK: f64 = 1.438_776_877e7;
+
+/// The temperature of the CIE's illuminant A, K.
+const TUNGSTEN: f64 = 2855.5;
+
+/// A spectrum as a file has it.
+enum Spectrum {
+    Rgb([f64; 3]),
+    /// Kelvin.
+    Blackbody(f64),
+    /// Pairs of a wavelength, nm, and a value.
+    Sampled(Vec<[f64; 2]>),
+    Named(String),
+}
+
+impl Reader<'_> {
+    /// The number of a colour or spectrum; `None` if it is not there.
+    pub(super) fn number_of(&self, entity: &Entity, name: &str, role: Role) -> Read<Option<f64>> {
+        let Some(spectrum) = self.spectrum(entity, name)? else {
+            return Ok(None);
+        };
+        let fault = |what: &str| entity.fault(self.report, name, format!("{name} {what}"));
+        let color = match (role, spectrum) {
+            (Role::Emission, spectrum) => self.light_color(spectrum, &fault)?,
+            (Role::Reflectance, Spectrum::Rgb(rgb)) if rgb.iter().any(|v| *v > 1.0) => {
+                return Err(fault("is above 1; allowed: 0 to 1"));
+            }
+            (_, Spectrum::Rgb(rgb)) => rgb,
+            (role, Spectrum::Sampled(samples)) => rgb(&samples, role),
+            (_, Spectrum::Named(name)) => match named::index(&name) {
+                Some(rgb) => rgb,
+                None => return Err(fault("is light; allowed: what is not")),
+            },
+            (_, Spectrum::Blackbody(_)) => return Err(fault("is light; allowed: what is not")),
+        };
+        Ok(Some(self.color.of(color)))
+    }
+
+    /// Spectra of light have luminance 1, whatever they add up to; colours have that of their numbers.
+    fn light_color(&self, spectrum: Spectrum, fault: &impl Fn(&str) -> Given) -> Read<[f64; 3]> {
+        let samples = match spectrum {
+            Spectrum::Rgb(rgb) => return Ok(rgb),
+            Spectrum::Blackbody(kelvin) if kelvin > 0.0 => blackbody(kelvin),
+            Spectrum::Blackbody(_) => return Err(fault("is no temperature above 0")),
+            Spectrum::Sampled(samples) => samples,
+            Spectrum::Named(name) => match name.as_str() {
+                "stdillum-D65" => return Ok([1.0; 3]),
+                "stdillum-A" => blackbody(TUNGSTEN),
+                // All that is asked for is its luminance.
+                _ if named::is_illuminant(&name) && self.color == Color::Luminance => {
+                    return Ok([1.0; 3]);
+                }
+                _ if named::is_illuminant(&name) => {
+                    return Err(fault("has no colour here; allowed: luminance alone"));
+                }
+                _ => return Err(fault("is an index of refraction; allowed: light")),
+            },
+        };
+        let color = rgb(&samples, Role::Emission);
+        let luminance = Color::Luminance.of(color);
+        match luminance > 0.0 {
+            true => Ok(color.map(|v| v / luminance)),
+            false => Err(fault("is not seen: it has no luminance")),
+        }
+    }
+
+    fn spectrum(&self, entity: &Entity, name: &str) -> Read<Option<Spectrum>> {
+        let Some(parameter) = entity.find(name) else {
+            return Ok(None);
+        };
+        let fault = |message: String| entity.fault(self.report, name, message);
+        let found = match (parameter.kind, &parameter.values) {
+            (_, Values::Broken) => return Err(Given),
+            (Kind::Rgb, Values::Numbers(all)) => match all[..] {
+                [r, g, b] if r.min(g).min(b) >= 0.0 => Spectrum::Rgb([r, g, b]),
+                [_, _, _] => return Err(fault(format!("{name} is below 0"))),
+                _ => return Err(fault(format!("{name} is not one colour"))),
+            },
+            (Kind::Blackbody, Values::Numbers(all)) if all.len() == 1 => {
+                Spectrum::Blackbody(all[0])
+            }
+            (Kind::Spectrum, Values::Numbers(all)) => {
+                Spectrum::Sampled(sampled(all).map_err(|error| fault(format!("{name}: {error}")))?)
+            }
+            (Kind::Spectrum, Values::Texts(all)) if all.len() == 1 => {
+                self.named_spectrum(&all[0]).map_err(fault)?
+            }
+            (kind, _) => {
+                let kind = kind.name();
+                let message =
+                    format!("{name} of type {kind}; allowed: one rgb, spectrum or blackbody");
+                return Err(fault(message));
+            }
+        };
+        Ok(Some(found))
+    }
+
+    /// One that pbrt knows, or a file of pairs.
+    fn named_spectrum(&self, name: &str) -> Result<Spectrum, String> {
+        if named::index(name).is_some() || named::is_illuminant(name) {
+            return Ok(Spectrum::Named(name.to_owned()));
+        }
+        let unread = |error: String| format!("spectrum {} {error}", quoted(name));
+        let path = self.find(name).map_err(unread)?;
+        let text = super::include::read(self.files, &path).map_err(unread)?;
+        let lines = text.lines().map(|line| line.split('#').next());
+        let words = lines.flat_map(|line| line.unwrap_or_default().split_whitespace());
+        let numbers: Result<Vec<f64>, String> = words.map(number).collect();
+        let samples = numbers.and_then(|numbers| sampled(&numbers));
+        Ok(Spectrum::Sampled(
+            samples.map_err(|e| unread(format!(": {e}")))?,
+        ))
+    }
+}
+
+fn sampled(numbers: &[f64]) -> Result<Vec<[f64; 2]>, String> {
+    let pairs: Vec<[f64; 2]> = numbers.chunks_exact(2).map(|p| [p[0], p[1]]).collect();
+    if pairs.len() < 2 || !numbers.len().is_multiple_of(2) {
+        return Err("allowed: at least two pairs of a wavelength and a value".to_owned());
+    }
+    match pairs.is_sorted_by(|a, b| a[0] < b[0]) {
+        true => Ok(pairs),
+        false => Err("wavelengths are not in rising order".to_owned()),
+    }
+}
+
+/// Planck's law, 1 at its largest value.
+fn blackbody(kelvin: f64) -> Vec<[f64; 2]> {
+    // Relative to 560 nm, so that nothing overflows in the ratio.
+    let log = |nm: f64| {
+        let x = PLANCK / (nm * kelvin);
+        -5.0 * libm::log(nm) - x - libm::log1p(-libm::exp(-x))
+    };
+    let all = (0..=94).map(|i| 360.0 + 5.0 * f64::from(i));
+    let most = all.clone().map(log).fold(f64::NEG_INFINITY, f64::max);
+    all.map(|nm| [nm, libm::exp(log(nm) - most)]).collect()
+}

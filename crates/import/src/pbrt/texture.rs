@@ -1,0 +1,205 @@
+//! Numbers that may vary over a surface: values, spectra and textures.
+
+use super::entity::{Entity, Given, Read};
+use super::parameter::Kind;
+use super::reader::{Reader, Uv};
+use crate::report::quoted;
+use crate::spectrum::Role;
+use etendue_field::Raster;
+use etendue_world::{Bitmap, Texture};
+use glam::{DAffine2, DMat2, DVec2};
+use std::sync::Arc;
+
+/// Textures within one another.
+const DEEPEST: usize = 16;
+
+/// Plugins that textures may be.
+const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
+
+/// A texture once read, by its name and what it is asked for.
+pub(super) type Key = (bool, String, u8, Uv);
+
+/// What is asked for: floats are numbers of their own.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Ask {
+    Float,
+    Spectrum(Role),
+}
+
+impl Reader<'_> {
+    /// The texture of a parameter, or a constant where it is not there.
+    pub(super) fn texture_or(
+        &mut self,
+        entity: &Entity,
+        name: &str,
+        ask: Ask,
+        default: f64,
+        uv: Uv,
+    ) -> Read<Texture> {
+        let Some(parameter) = entity.find(name) else {
+            return Ok(Texture::Constant(default));
+        };
+        if parameter.kind == Kind::Texture {
+            let asked = entity.texture_name(self.report, name)?;
+            return self.named_texture(entity, name, asked, ask, uv);
+        }
+        match ask {
+            Ask::Float => entity
+                .float_or(self.report, name, default)
+                .map(Texture::Constant),
+            Ask::Spectrum(role) => {
+                let value = self.number_of(entity, name, role)?;
+                Ok(Texture::Constant(value.unwrap_or(default)))
+            }
+        }
+    }
+
+    /// One number; a texture that varies is a cause.
+    pub(super) fn constant_or(
+        &mut self,
+        entity: &Entity,
+        name: &str,
+        ask: Ask,
+        default: f64,
+    ) -> Read<f64> {
+        match self.texture_or(entity, name, ask, default, Uv::Own)? {
+            Texture::Constant(value) => Ok(value),
+            _ => {
+                let message = format!("{name} varies; allowed: one value");
+                Err(entity.fault(self.report, name, message))
+            }
+        }
+    }
+
+    fn named_texture(
+        &mut self,
+        asked_by: &Entity,
+        parameter: &str,
+        name: &str,
+        ask: Ask,
+        uv: Uv,
+    ) -> Read<Texture> {
+        let is_spectrum = ask != Ask::Float;
+        let role = match ask {
+            Ask::Float => 0,
+            Ask::Spectrum(role) => 1 + role as u8,
+        };
+        let key = (is_spectrum, name.to_owned(), role, uv);
+        if let Some(known) = self.textures.get(&key) {
+            return known.clone();
+        }
+        let fault = |message: &str| {
+            let message = format!("texture {} {message}", quoted(name));
+            asked_by.fault(self.report, parameter, message)
+        };
+        let found = self.scene.textures.get(&(is_spectrum, name.to_owned()));
+        let Some(entity) = found else {
+            let kind = if is_spectrum { "spectrum" } else { "float" };
+            return Err(fault(&format!("is not known among those of type {kind}")));
+        };
+        if self.depth >= DEEPEST {
+            return Err(fault("is in itself, or too many are in one another"));
+        }
+        entity.is_used.set(true);
+        self.depth += 1;
+        let made = self.make_texture(entity, ask, uv);
+        self.depth -= 1;
+        self.textures.insert(key, made.clone());
+        made
+    }
+
+    fn make_texture(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
+        match entity.plugin.as_str() {
+            "constant" => self.texture_or(entity, "value", ask, 1.0, uv),
+            "checkerboard" => self.checkerboard(entity, ask, uv),
+            "scale" => self.scale(entity, ask, uv),
+            "mix" => self.mix(entity, ask),
+            "imagemap" => self.imagemap(entity, ask, uv),
+            _ => Err(entity.unsupported(self.report, ALLOWED)),
+        }
+    }
+
+    /// Squares of one unit: the first value where both coordinates, rounded down, are even or both odd.
+    fn checkerboard(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
+        if entity.integer_or(self.report, "dimension", 2)? != 2 {
+            let message = "a checkerboard in space; allowed: dimension 2".to_owned();
+            return Err(entity.fault(self.report, "dimension", message));
+        }
+        let first = self.constant_or(entity, "tex1", ask, 1.0);
+        let second = self.constant_or(entity, "tex2", ask, 0.0);
+        let to_uv = self.mapping(entity, uv)?;
+        Ok(Texture::Checkerboard {
+            // A world's squares are half a unit wide.
+            to_uv: DAffine2::from_scale(DVec2::splat(0.5)) * to_uv,
+            values: [first?, second?],
+        })
+    }
+
+    fn scale(&mut self, entity: &Entity, ask: Ask, uv: Uv) -> Read<Texture> {
+        let texture = self.texture_or(entity, "tex", ask, 1.0, uv);
+        let scale = self.texture_or(entity, "scale", Ask::Float, 1.0, uv);
+        match (texture?, scale?) {
+            (Texture::Constant(factor), other) | (other, Texture::Constant(factor)) => {
+                self.mapped(entity, other, |v| v * factor)
+            }
+            _ => {
+                let message = "a product of two textures that vary; allowed: one".to_owned();
+                Err(entity.fault(self.report, "tex", message))
+            }
+        }
+    }
+
+    fn mix(&mut self, entity: &Entity, ask: Ask) -> Read<Texture> {
+        let first = self.constant_or(entity, "tex1", ask, 0.0);
+        let second = self.constant_or(entity, "tex2", ask, 1.0);
+        let amount = self.constant_or(entity, "amount", Ask::Float, 0.5);
+        let amount = amount?;
+        Ok(Texture::Constant(
+            (1.0 - amount) * first? + amount * second?,
+        ))
+    }
+
+    /// From (u, v) of a world's surface to those of the texture.
+    pub(super) fn mapping(&self, entity: &Entity, uv: Uv) -> Read<DAffine2> {
+        let report = self.report;
+        entity.choice(report, "mapping", &[("uv", ())])?;
+        let float = |name, default| entity.float_or(report, name, default);
+        let scale = DVec2::new(float("uscale", 1.0)?, float("vscale", 1.0)?);
+        let delta = DVec2::new(float("udelta", 0.0)?, float("vdelta", 0.0)?);
+        Ok(DAffine2::from_mat2_translation(DMat2::from_diagonal(scale), delta) * uv.to_pbrt())
+    }
+
+    /// A texture with a function of its values.
+    pub(super) fn mapped(
+        &self,
+        entity: &Entity,
+        texture: Texture,
+        of: impl Fn(f64) -> f64,
+    ) -> Read<Texture> {
+        Ok(match texture {
+            Texture::Constant(value) => Texture::Constant(of(value)),
+            Texture::Checkerboard { to_uv, values } => Texture::Checkerboard {
+                to_uv,
+                values: values.map(of),
+            },
+            Texture::Bitmap(bitmap) => Texture::Bitmap(Bitmap {
+                pixels: self.mapped_pixels(entity, &bitmap.pixels, of)?,
+                ..bitmap
+            }),
+        })
+    }
+
+    pub(super) fn mapped_pixels(
+        &self,
+        entity: &Entity,
+        pixels: &Raster,
+        of: impl Fn(f64) -> f64,
+    ) -> Read<Arc<Raster>> {
+        let bytes = size_of_val(pixels.values()) as u64;
+        let spent = self.files.spend(bytes);
+        spent.map_err(|error| entity.fault(self.report, "filename", error))?;
+        let values = pixels.values().iter().map(|v| of(*v)).collect();
+        let raster = Raster::new(pixels.width(), pixels.height(), values);
+        raster.map(Arc::new).ok_or(Given)
+    }
+}

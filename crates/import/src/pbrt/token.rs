@@ -1,0 +1,174 @@
+//! Words, strings and brackets of a pbrt file, with their places.
+
+use crate::report::Place;
+use std::borrow::Cow;
+use std::rc::Rc;
+
+/// A part of the text.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) enum Token<'a> {
+    /// A directive, a number or a truth value.
+    Word(&'a str),
+    /// What stands in quotation marks.
+    Text(Cow<'a, str>),
+    /// `[`
+    Open,
+    /// `]`
+    Close,
+    /// What is no part of a scene, and why.
+    Broken(&'static str),
+}
+
+/// A line and a column, both from 1.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct At {
+    line: usize,
+    column: usize,
+}
+
+/// The tokens of a file, one after the other; comments are left out.
+#[derive(Debug)]
+pub(super) struct Tokens<'a> {
+    file: Rc<str>,
+    rest: &'a str,
+    at: At,
+    peeked: Option<(Token<'a>, At)>,
+}
+
+impl<'a> Tokens<'a> {
+    pub(super) fn new(text: &'a str, file: &str) -> Self {
+        Self {
+            file: file.into(),
+            rest: text,
+            at: At { line: 1, column: 1 },
+            peeked: None,
+        }
+    }
+
+    /// A place in this file.
+    pub(super) fn place(&self, at: At) -> Place {
+        Place {
+            file: Rc::clone(&self.file),
+            line: at.line,
+            column: at.column,
+        }
+    }
+
+    /// Where the next token is looked for.
+    pub(super) fn here(&self) -> Place {
+        self.place(self.at)
+    }
+
+    /// The next token, which stays.
+    pub(super) fn peek(&mut self) -> Option<&(Token<'a>, At)> {
+        if self.peeked.is_none() {
+            self.peeked = self.read();
+        }
+        self.peeked.as_ref()
+    }
+
+    /// The next token; `None` at the end of the file.
+    pub(super) fn next(&mut self) -> Option<(Token<'a>, At)> {
+        self.peeked.take().or_else(|| self.read())
+    }
+
+    fn read(&mut self) -> Option<(Token<'a>, At)> {
+        self.skip();
+        let at = self.at;
+        let start = self.rest;
+        let token = match self.bump()? {
+            '[' => Token::Open,
+            ']' => Token::Close,
+            '"' => self.text(),
+            _ => {
+                while self.rest.starts_with(is_of_word) {
+                    self.bump();
+                }
+                Token::Word(&start[..start.len() - self.rest.len()])
+            }
+        };
+        Some((token, at))
+    }
+
+    /// Passes over white space and comments.
+    fn skip(&mut self) {
+        loop {
+            if self.rest.starts_with('#') {
+                while self.rest.starts_with(|c| c != '\n' && c != '\r') {
+                    self.bump();
+                }
+            } else if self.rest.starts_with(is_space) {
+                self.bump();
+            } else {
+                return;
+            }
+        }
+    }
+
+    /// A string, whose first quotation mark has been read.
+    fn text(&mut self) -> Token<'a> {
+        let start = self.rest;
+        let mut escaped: Option<String> = None;
+        loop {
+            let before = &start[..start.len() - self.rest.len()];
+            let Some(c) = self.bump().filter(|c| *c != '\n') else {
+                return Token::Broken("a string without its end");
+            };
+            let made = match c {
+                '"' => {
+                    return Token::Text(escaped.map_or(Cow::Borrowed(before), Cow::Owned));
+                }
+                '\\' => {
+                    escaped.get_or_insert_with(|| before.to_owned());
+                    match self.bump().and_then(escape) {
+                        Some(c) => c,
+                        None => return Token::Broken("a \\ before no sign that it goes with"),
+                    }
+                }
+                other => other,
+            };
+            if let Some(escaped) = &mut escaped {
+                escaped.push(made);
+            }
+        }
+    }
+
+    fn bump(&mut self) -> Option<char> {
+        let c = self.rest.chars().next()?;
+        self.rest = &self.rest[c.len_utf8()..];
+        if c == '\n' {
+            self.at.line += 1;
+            self.at.column = 1;
+        } else {
+            self.at.column += 1;
+        }
+        Some(c)
+    }
+}
+
+fn is_space(c: char) -> bool {
+    matches!(c, ' ' | '\n' | '\t' | '\r')
+}
+
+fn is_of_word(c: char) -> bool {
+    !is_space(c) && !matches!(c, '"' | '[' | ']')
+}
+
+fn escape(c: char) -> Option<char> {
+    Some(match c {
+        'b' => '\u{8}',
+        'f' => '\u{c}',
+        'n' => '\n',
+        'r' => '\r',
+        't' => '\t',
+        '\\' | '\'' | '"' => c,
+        _ => return None,
+    })
+}
+
+/// A finite number; `Err` is what is wrong.
+pub(super) fn number(word: &str) -> Result<f64, String> {
+    let parsed: Option<f64> = word.parse().ok();
+    let finite = parsed.filter(|value| value.is_finite());
+    finite.ok_or_else(|| format!("{} is no finite number", crate::report::quoted(word)))
+}

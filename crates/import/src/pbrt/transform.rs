@@ -1,0 +1,50 @@
+//! Transforms as pbrt writes them. Each is applied before those that stand before it.
+
+use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
+
+/// By how much axes may differ from ones at right angles and of one length: transforms are products of rounded numbers.
+const ALIKE: f64 = 1e-3;
+
+/// A rotation by degrees about an axis of any length.
+pub(super) fn rotation([angle, x, y, z]: [f64; 4]) -> Result<DAffine3, String> {
+    let axis = DVec3::new(x, y, z).try_normalize();
+    let axis = axis.ok_or("an axis of no length")?;
+    let (sin, cos) = libm::sincos(angle.to_radians());
+    let column =
+        |unit: DVec3| cos * unit + (1.0 - cos) * axis.dot(unit) * axis + sin * axis.cross(unit);
+    let columns = [DVec3::X, DVec3::Y, DVec3::Z].map(column);
+    Ok(DAffine3::from_mat3(DMat3::from_cols(
+        columns[0], columns[1], columns[2],
+    )))
+}
+
+/// To coordinates of a camera, whose Z is the way it looks, Y up and X to the right: pbrt's world is left-handed.
+pub(super) fn look_at(numbers: [f64; 9]) -> Result<DAffine3, String> {
+    let [eye, at, up] = [0, 3, 6].map(|i| DVec3::from_slice(&numbers[i..]));
+    let along = (at - eye)
+        .try_normalize()
+        .ok_or("no direction to look in")?;
+    let right = up.normalize_or_zero().cross(along).try_normalize();
+    let right = right.ok_or("up is along the direction to look in")?;
+    let linear = DMat3::from_cols(right, along.cross(right), along);
+    Ok(DAffine3::from_mat3_translation(linear, eye).inverse())
+}
+
+/// 16 numbers, column by column.
+pub(super) fn matrix(numbers: &[f64; 16]) -> Result<DAffine3, String> {
+    let matrix = DMat4::from_cols_array(numbers);
+    if matrix.row(3) != DVec4::W {
+        return Err("every fourth number together is not 0 0 0 1".to_owned());
+    }
+    Ok(DAffine3::from_mat4(matrix))
+}
+
+/// A map without its scale, and the scale; `None` if it shears or scales axes differently.
+pub(super) fn without_scale(map: DAffine3) -> Option<(DAffine3, f64)> {
+    let scale = libm::cbrt(map.matrix3.determinant().abs());
+    let linear = map.matrix3 * (1.0 / scale);
+    let gram = linear.transpose() * linear;
+    let is_rigid = scale.is_finite() && gram.abs_diff_eq(DMat3::IDENTITY, ALIKE);
+    let rigid = DAffine3::from_mat3_translation(linear, map.translation);
+    (is_rigid && rigid.is_finite()).then_some((rigid, scale))
+}

@@ -1,0 +1,26 @@
+//! Where shapes of any scene may be placed.
+
+use etendue_world::Geometry;
+use glam::{DAffine3, DVec3};
+
+/// By how much of its length an axis of a sphere may differ from the others: transforms are products of rounded numbers.
+const ALIKE: f64 = 1e-4;
+
+/// Why a geometry cannot be placed like this, if so.
+pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3) -> Option<&'static str> {
+    let [x, y, z] = [0, 1, 2].map(|i| to_world.matrix3.col(i));
+    let alike = |a: DVec3, b: DVec3| (a.length() - b.length()).abs() <= ALIKE * a.length();
+    let across = |a: DVec3, b: DVec3| a.dot(b).abs() <= ALIKE * a.length() * b.length();
+    let is_square = across(x, y) && across(y, z) && across(z, x);
+    let fits = match geometry {
+        Geometry::Sphere => alike(x, y) && alike(y, z) && is_square,
+        Geometry::Cylinder => alike(x, y) && is_square,
+        _ => true,
+    };
+    let is_regular = to_world.is_finite() && to_world.matrix3.determinant().abs() > 0.0;
+    match (is_regular, fits) {
+        (false, _) => Some("that is scaled to nothing, or without bounds"),
+        (true, false) => Some("with shear, or not scaled alike along its axes"),
+        (true, true) => None,
+    }
+}

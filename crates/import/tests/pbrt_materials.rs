@@ -1,0 +1,255 @@
+//! Materials and textures of pbrt-v4.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+mod pbrt_scenes;
+
+use common::{assert_close, folder};
+use etendue_import::Color;
+use etendue_world::{Distribution, Material, Texture};
+use glam::DVec2;
+use pbrt_scenes::{causes, material, notes, read_in, scene, world};
+
+fn constant(texture: &Texture) -> f64 {
+    match texture {
+        Texture::Constant(value) => *value,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// α along u and v; `None` for a mirror.
+fn alpha(parameters: &str) -> Option<[f64; 2]> {
+    match material(&format!("Material \"conductor\" {parameters}")) {
+        Material::Conductor(metal) => metal.roughness.map(|rough| {
+            assert_eq!(rough.distribution, Distribution::Ggx);
+            [constant(&rough.alpha[0]), constant(&rough.alpha[1])]
+        }),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn roughness_is_remapped_by_its_root() {
+    assert_eq!(alpha(""), None);
+    assert_close(
+        &alpha("\"float roughness\" 0.09").unwrap(),
+        &[0.3; 2],
+        1e-12,
+    );
+    let both = "\"float uroughness\" 0.04 \"float vroughness\" 0.25";
+    assert_close(&alpha(both).unwrap(), &[0.2, 0.5], 1e-12);
+    let raw = "\"float roughness\" 0.09 \"bool remaproughness\" false";
+    assert_close(&alpha(raw).unwrap(), &[0.09; 2], 1e-12);
+    // Below α = 0.001 pbrt has a mirror.
+    assert_eq!(alpha("\"float roughness\" 0.0000005"), None);
+}
+
+#[test]
+fn what_reflects_does_so_on_both_sides() {
+    for (plugin, is_both) in [
+        ("diffuse", true),
+        ("conductor", true),
+        ("coateddiffuse", true),
+        ("dielectric", false),
+        ("thindielectric", false),
+    ] {
+        let world = world(&format!("Material \"{plugin}\"\nShape \"sphere\""));
+        let of = &world.materials[world.shapes[0].material];
+        assert_eq!(matches!(of, Material::TwoSided(_)), is_both, "{plugin}");
+    }
+    // So does pbrt's own material, with half the light.
+    match material("") {
+        Material::Diffuse { reflectance } => assert_close(&[constant(&reflectance)], &[0.5], 0.0),
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn metals_have_an_index() {
+    let index = |parameters: &str| match material(&format!("Material \"conductor\" {parameters}")) {
+        Material::Conductor(metal) => metal.index.unwrap(),
+        other => panic!("{other:?}"),
+    };
+    // Copper, the default, in luminance.
+    let copper = index("\"spectrum eta\" \"metal-Cu-eta\" \"spectrum k\" \"metal-Cu-k\"");
+    assert_close(&index(""), &copper, 0.0);
+    let luminance = |[r, g, b]: [f64; 3]| 0.212_671 * r + 0.715_160 * g + 0.072_169 * b;
+    let [n, k] = [
+        [0.105_056, 0.976_819, 1.203_228],
+        [3.270_163, 2.589_603, 2.366_343],
+    ];
+    assert_close(&copper, &[luminance(n), luminance(k)], 1e-5);
+    assert_close(
+        &index("\"rgb eta\" [2 2 2] \"rgb k\" [3 3 3]"),
+        &[2.0, 3.0],
+        1e-5,
+    );
+    // Straight on, n = 1 and k reflect k² / (4 + k²).
+    let [n, k] = index("\"rgb reflectance\" [0.6 0.6 0.6]");
+    assert_close(&[n, k * k / (4.0 + k * k)], &[1.0, 0.6], 1e-5);
+}
+
+#[test]
+fn glass_has_an_index() {
+    let index = |parameters: &str| match material(&format!("Material \"dielectric\" {parameters}"))
+    {
+        Material::Dielectric(glass) => glass.index,
+        other => panic!("{other:?}"),
+    };
+    assert_close(&[index(""), index("\"float eta\" 1.33")], &[1.5, 1.33], 0.0);
+    // BK7 at 587.6 nm has 1.5168.
+    assert_close(&[index("\"spectrum eta\" \"glass-BK7\"")], &[1.5168], 1e-3);
+    let eta = "Material \"dielectric\" \"spectrum eta\" \"glass-BK7\"\nShape \"sphere\"";
+    assert_eq!(
+        notes(eta),
+        ["text:3:23: approximated: eta is the same at all wavelengths"]
+    );
+}
+
+#[test]
+fn mixtures_have_amounts_of_the_second() {
+    let two = "MakeNamedMaterial \"a\" \"string type\" \"diffuse\" MakeNamedMaterial \"b\" \"string type\" \"conductor\"";
+    let mix = "Material \"mix\" \"string materials\" [\"a\" \"b\"] \"float amount\" 0.25";
+    match material(&format!("{two} {mix}")) {
+        Material::Blend { weight, of } => {
+            assert_close(&[constant(&weight)], &[0.25], 0.0);
+            assert!(
+                matches!(&of[1], Material::TwoSided(both) if matches!(both[0], Material::Conductor(_)))
+            );
+        }
+        other => panic!("{other:?}"),
+    }
+    let itself = "MakeNamedMaterial \"a\" \"string type\" \"mix\" \"string materials\" [\"a\" \"a\"] NamedMaterial \"a\" Shape \"sphere\"";
+    assert!(causes(itself)[0].contains("in itself"));
+}
+
+#[test]
+fn what_has_no_equal_is_refused() {
+    for plugin in [
+        "hair",
+        "measured",
+        "subsurface",
+        "diffusetransmission",
+        "coatedconductor",
+    ] {
+        let found = causes(&format!(
+            "Material \"{plugin}\"\nShape \"sphere\" Shape \"disk\""
+        ));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].starts_with("text:3:1: material"), "{found:?}");
+    }
+    let coated = notes("Material \"coateddiffuse\"\nShape \"sphere\" Shape \"disk\"");
+    assert_eq!(coated.len(), 1, "{coated:?}");
+    assert!(coated[0].contains("approximated: layers are those of a plastic"));
+}
+
+#[test]
+fn interfaces_are_no_surfaces() {
+    let inside = "Material \"interface\" Shape \"sphere\" Material \"\" Shape \"sphere\"";
+    assert!(world(inside).shapes.is_empty());
+}
+
+/// The value at a place of a rectangle with pbrt's (u, v).
+fn value(inside: &str, shape: &str, uv: [f64; 2]) -> f64 {
+    let declared = format!("{inside} Material \"diffuse\" \"texture reflectance\" \"t\" {shape}");
+    let world = world(&declared);
+    match &world.materials[world.shapes[0].material] {
+        Material::TwoSided(both) => match &both[0] {
+            Material::Diffuse { reflectance } => reflectance.value(DVec2::from(uv)),
+            other => panic!("{other:?}"),
+        },
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn squares_of_a_checkerboard_are_one_unit() {
+    let board = "Texture \"t\" \"spectrum\" \"checkerboard\" \"float uscale\" 3 \"float vdelta\" 0.5 \"rgb tex1\" [.8 .8 .8] \"rgb tex2\" [.2 .2 .2]";
+    let mesh = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
+    for (uv, expected) in [
+        ([0.1, 0.1], 0.8),
+        ([0.4, 0.1], 0.2),
+        ([0.7, 0.4], 0.8),
+        ([0.1, 0.6], 0.2),
+        ([-0.1, 0.1], 0.2),
+    ] {
+        assert_close(&[value(board, mesh, uv)], &[expected], 1e-5);
+    }
+    // v of a sphere goes up from its lower pole, u of a disk around it.
+    let rings = "Texture \"t\" \"spectrum\" \"checkerboard\" \"float vscale\" 4 \"rgb tex1\" [.8 .8 .8] \"rgb tex2\" [.2 .2 .2]";
+    assert_close(
+        &[value(rings, "Shape \"sphere\"", [0.5, 0.99])],
+        &[0.8],
+        1e-5,
+    );
+    assert_close(
+        &[value(rings, "Shape \"sphere\"", [0.5, 0.01])],
+        &[0.2],
+        1e-5,
+    );
+    // The edge of a disk, whose radius is u of a world, has v = 0.
+    assert_close(&[value(rings, "Shape \"disk\"", [0.99, 0.3])], &[0.8], 1e-5);
+    assert_close(&[value(rings, "Shape \"disk\"", [0.01, 0.3])], &[0.2], 1e-5);
+}
+
+#[test]
+fn textures_scale_and_mix() {
+    let mesh = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]";
+    let scale = "Texture \"b\" \"spectrum\" \"checkerboard\" Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"b\" \"float scale\" 0.25";
+    assert_close(&[value(scale, mesh, [0.5, 0.5])], &[0.25], 1e-12);
+    let mix = "Texture \"t\" \"spectrum\" \"mix\" \"rgb tex1\" [.4 .4 .4] \"rgb tex2\" [.8 .8 .8] \"float amount\" 0.25";
+    assert_close(&[value(mix, mesh, [0.5, 0.5])], &[0.5], 1e-5);
+    let itself = "Texture \"t\" \"spectrum\" \"scale\" \"texture tex\" \"t\" Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"disk\"";
+    assert!(
+        causes(itself)[0].contains("is in itself"),
+        "{:?}",
+        causes(itself)
+    );
+    let noise = "Texture \"t\" \"spectrum\" \"marble\" Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"disk\"";
+    assert!(causes(noise)[0].contains("texture `marble` is not supported"));
+}
+
+/// A grey picture of 1 × 2 pixels, the upper one white.
+fn png() -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, 1, 2);
+    encoder.set_color(png::ColorType::Grayscale);
+    let mut writer = encoder.write_header().unwrap();
+    writer.write_image_data(&[255, 128]).unwrap();
+    writer.finish().unwrap();
+    bytes
+}
+
+#[test]
+fn pictures_have_an_encoding_and_stand_upright() {
+    let png = png();
+    let folder = folder(&[("a.png", &png)]);
+    let value = |parameters: &str, v: f64| {
+        let inside = format!(
+            "Texture \"t\" \"spectrum\" \"imagemap\" \"string filename\" \"a.png\" \"string filter\" \"point\" {parameters} Material \"diffuse\" \"texture reflectance\" \"t\" Shape \"cylinder\""
+        );
+        let read = read_in(&scene("", &inside), folder.path(), Color::Luminance).unwrap();
+        match &read.world.materials[read.world.shapes[0].material] {
+            Material::TwoSided(both) => match &both[0] {
+                Material::Diffuse { reflectance } => reflectance.value(DVec2::new(0.5, v)),
+                other => panic!("{other:?}"),
+            },
+            other => panic!("{other:?}"),
+        }
+    };
+    let grey = 128.0 / 255.0;
+    assert_close(&[value("", 0.9), value("", 0.1)], &[1.0, 0.215_861], 1e-6);
+    assert_close(
+        &[value("\"string encoding\" \"linear\"", 0.1)],
+        &[grey],
+        1e-12,
+    );
+    assert_close(
+        &[value("\"string encoding\" \"gamma 3\"", 0.1)],
+        &[grey.powi(3)],
+        1e-12,
+    );
+    let inverted = "\"string encoding\" \"linear\" \"bool invert\" true \"float scale\" 0.5";
+    assert_close(&[value(inverted, 0.1)], &[1.0 - grey / 2.0], 1e-12);
+}

@@ -1,0 +1,78 @@
+//! Scenes of pbrt-v4 in a few lines, for all tests.
+
+#![allow(
+    dead_code,
+    clippy::unwrap_used,
+    reason = "helpers of tests, of which each takes what it needs"
+)]
+
+use etendue_import::{Color, Imported, Options, import_pbrt};
+use etendue_world::{Light, Material, Shape, World};
+use std::path::Path;
+
+/// A scene with this before `WorldBegin` and this after it, in line 3.
+pub(crate) fn scene(before: &str, inside: &str) -> String {
+    format!("PixelFilter \"box\" {before}\nWorldBegin\n{inside}\n")
+}
+
+/// Imports a scene whose files are in `folder`.
+pub(crate) fn read_in(text: &str, folder: &Path, color: Color) -> Result<Imported, Vec<String>> {
+    let options = Options {
+        color,
+        ..Options::default()
+    };
+    let read = import_pbrt(text, folder, &options);
+    read.map_err(|refused| refused.causes.iter().map(ToString::to_string).collect())
+}
+
+fn read(text: &str) -> Result<Imported, Vec<String>> {
+    let folder = tempfile::tempdir().unwrap();
+    read_in(text, folder.path(), Color::Luminance)
+}
+
+/// The world of a scene without files.
+pub(crate) fn world(inside: &str) -> World {
+    read(&scene("", inside))
+        .unwrap_or_else(|causes| panic!("{causes:#?}"))
+        .world
+}
+
+/// The world of settings alone.
+pub(crate) fn set_up(before: &str) -> World {
+    read(&scene(before, ""))
+        .unwrap_or_else(|causes| panic!("{causes:#?}"))
+        .world
+}
+
+/// All causes to refuse a scene without files.
+pub(crate) fn causes(inside: &str) -> Vec<String> {
+    read(&scene("", inside)).map(|read| read.world).unwrap_err()
+}
+
+/// All causes to refuse settings.
+pub(crate) fn unsettled(before: &str) -> Vec<String> {
+    read(&scene(before, "")).map(|read| read.world).unwrap_err()
+}
+
+/// All notes on a scene without files.
+pub(crate) fn notes(inside: &str) -> Vec<String> {
+    let read = read(&scene("", inside)).unwrap();
+    read.notes.iter().map(ToString::to_string).collect()
+}
+
+pub(crate) fn shape(inside: &str) -> Shape {
+    world(inside).shapes.remove(0)
+}
+
+pub(crate) fn light(inside: &str) -> Light {
+    world(inside).lights.remove(0)
+}
+
+/// The material of a sphere, without its two sides where they are alike.
+pub(crate) fn material(declared: &str) -> Material {
+    let mut world = world(&format!("{declared}\nShape \"sphere\""));
+    match world.materials.remove(world.shapes[0].material) {
+        Material::TwoSided(both) => both[0].clone(),
+        other => other,
+    }
+}

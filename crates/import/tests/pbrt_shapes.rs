@@ -1,0 +1,250 @@
+//! Shapes of pbrt-v4, where they are and which side is their front.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+mod pbrt_scenes;
+
+use common::{assert_close, folder};
+use etendue_import::Color;
+use etendue_world::{Geometry, Material, Shape, Triangles};
+use glam::{DMat4, DVec2, DVec3};
+use pbrt_scenes::{causes, notes, read_in, scene, shape, world};
+
+fn mesh(shape: &Shape) -> &Triangles {
+    match &shape.geometry {
+        Geometry::Mesh(triangles) => triangles,
+        other => panic!("{other:?}"),
+    }
+}
+
+/// The normal on the front of a shape, near a direction of its own coordinates.
+fn front(shape: &Shape, own: DVec3) -> DVec3 {
+    let side = if shape.is_flipped { -1.0 } else { 1.0 };
+    let normal = match &shape.geometry {
+        Geometry::Mesh(mesh) => {
+            let [a, b, c] = mesh.corners()[0].map(|i| mesh.vertices()[i as usize]);
+            (b - a).cross(c - a)
+        }
+        Geometry::Disc => DVec3::Z,
+        _ => own,
+    };
+    side * (shape.to_world.matrix3.inverse().transpose() * normal).normalize()
+}
+
+#[test]
+fn transforms_stand_before_those_they_are_applied_after() {
+    let place = |inside: &str| shape(&format!("{inside} Shape \"sphere\"")).to_world;
+    let at = |inside: &str| place(inside).transform_point3(DVec3::X).to_array();
+    assert_close(&at("Translate 1 2 3 Scale 2 2 2"), &[3.0, 2.0, 3.0], 0.0);
+    assert_close(
+        &at("Rotate 90 0 0 2 Translate 1 0 0"),
+        &[0.0, 2.0, 0.0],
+        1e-15,
+    );
+    // Columns: X goes to Y.
+    let matrix = "[0 1 0 0  -1 0 0 0  0 0 1 0  4 5 6 1]";
+    assert_close(&at(&format!("Transform {matrix}")), &[4.0, 6.0, 6.0], 0.0);
+    assert_close(
+        &at(&format!("Translate 1 0 0 Transform {matrix}")),
+        &[4.0, 6.0, 6.0],
+        0.0,
+    );
+    assert_close(
+        &at(&format!("Translate 1 0 0 ConcatTransform {matrix}")),
+        &[5.0, 6.0, 6.0],
+        0.0,
+    );
+    assert_close(&at("Translate 9 9 9 Identity"), &[1.0, 0.0, 0.0], 0.0);
+    let named = "Translate 1 0 0 CoordinateSystem \"a\" Translate 1 1 1 CoordSysTransform \"a\"";
+    assert_close(&at(named), &[2.0, 0.0, 0.0], 0.0);
+    let block =
+        "AttributeBegin Translate 5 5 5 AttributeEnd TransformBegin Scale 3 3 3 TransformEnd";
+    assert_close(&at(block), &[1.0, 0.0, 0.0], 0.0);
+    // LookAt maps to the camera's coordinates, whose X is to the right.
+    let look = place("LookAt 0 0 5  0 0 0  0 1 0");
+    let expected = DMat4::from_cols_array(&[
+        -1., 0., 0., 0., 0., 1., 0., 0., 0., 0., -1., 0., 0., 0., 5., 1.,
+    ]);
+    assert!(DMat4::from(look).abs_diff_eq(expected, 1e-12), "{look}");
+}
+
+#[test]
+fn fronts_are_where_normals_point() {
+    let own = DVec3::new(1.0, 0.0, 0.0);
+    for (plugin, outward) in [
+        ("\"sphere\"", DVec3::X),
+        ("\"cylinder\"", DVec3::X),
+        ("\"disk\"", DVec3::Z),
+        (
+            "\"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0]",
+            DVec3::Z,
+        ),
+        (
+            "\"bilinearmesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0 1 1 0]",
+            DVec3::Z,
+        ),
+    ] {
+        let of = |before: &str| front(&shape(&format!("{before} Shape {plugin}")), own);
+        assert_eq!(of(""), outward, "{plugin}");
+        assert_eq!(of("ReverseOrientation"), -outward, "{plugin}");
+        assert_eq!(
+            of("ReverseOrientation ReverseOrientation"),
+            outward,
+            "{plugin}"
+        );
+        // pbrt turns normals over below a mirror; those of meshes, whose corners it mirrors too, are turned twice.
+        let is_mesh = plugin.contains("mesh");
+        let mirrored = if is_mesh { outward } else { -outward };
+        assert_eq!(of("Scale 1 -1 1"), mirrored, "{plugin}");
+        assert_eq!(of("Scale 1 -1 1 ReverseOrientation"), -mirrored, "{plugin}");
+    }
+    // Normals of vertices say where the front is.
+    let down =
+        "\"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 -1 0 0 -1 0 0 -1]";
+    assert_eq!(front(&shape(&format!("Shape {down}")), own), DVec3::NEG_Z);
+    let turned = format!("ReverseOrientation Shape {down}");
+    assert_eq!(front(&shape(&turned), own), DVec3::Z);
+    // A sphere that shines below a mirror sends light from its outside.
+    let shining = "Scale -1 1 1 AreaLightSource \"diffuse\" Shape \"sphere\"";
+    assert_eq!(front(&shape(shining), own), DVec3::NEG_X);
+    assert!(notes(shining)[0].contains("below a mirror"));
+}
+
+#[test]
+fn quadrics_have_sizes() {
+    let at = |inside: &str, own: DVec3| shape(inside).to_world.transform_point3(own).to_array();
+    assert_close(
+        &at("Shape \"sphere\" \"float radius\" 3", DVec3::Y),
+        &[0.0, 3.0, 0.0],
+        0.0,
+    );
+    let disk = "Shape \"disk\" \"float radius\" 3 \"float height\" 2";
+    assert_close(&at(disk, DVec3::Y), &[0.0, 3.0, 2.0], 0.0);
+    let cylinder = "Shape \"cylinder\" \"float radius\" 3 \"float zmin\" 4 \"float zmax\" 2";
+    assert_close(&at(cylinder, DVec3::Y), &[0.0, 3.0, 2.0], 0.0);
+    assert_close(&at(cylinder, DVec3::Z), &[0.0, 0.0, 4.0], 0.0);
+    for (inside, what) in [
+        (
+            "Shape \"sphere\" \"float zmin\" 0",
+            "zmin is 0: parts of spheres",
+        ),
+        ("Shape \"sphere\" \"float phimax\" 90", "phimax is 90"),
+        (
+            "Shape \"disk\" \"float innerradius\" 0.5",
+            "innerradius is 0.5",
+        ),
+        ("Scale 1 2 1 Shape \"sphere\"", "not scaled alike"),
+        ("Scale 1 0 1 Shape \"disk\"", "scaled to nothing"),
+        ("Shape \"curve\"", "shape `curve` is not supported"),
+        (
+            "Shape \"loopsubdiv\"",
+            "shape `loopsubdiv` is not supported",
+        ),
+    ] {
+        let found = causes(inside);
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(what), "{found:?}");
+    }
+}
+
+#[test]
+fn textured_meshes_have_coordinates_by_triangle() {
+    let quad = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 1 1 0 0 1 0] \"integer indices\" [0 1 2 0 2 3]";
+    assert!(mesh(&shape(quad)).uvs().is_none());
+    let board = "Texture \"t\" \"spectrum\" \"checkerboard\" Material \"diffuse\" \"texture reflectance\" \"t\"";
+    let shape = shape(&format!("{board} {quad}"));
+    let uvs = mesh(&shape).uvs().unwrap();
+    assert_eq!(uvs, [[DVec2::ZERO, DVec2::X, DVec2::ONE]; 2].concat());
+}
+
+#[test]
+fn patches_are_two_triangles() {
+    let patch = shape("Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 1 0 2 1 0]");
+    let mesh = mesh(&patch);
+    assert_eq!(mesh.corners().len(), 2);
+    for (place, uv) in mesh.vertices().iter().zip(mesh.uvs().unwrap()) {
+        assert_close(&[place.x / 2.0, place.y], &uv.to_array(), 0.0);
+    }
+    let twisted = "Shape \"bilinearmesh\" \"point3 P\" [0 0 0 2 0 0 0 1 0 2 1 1]";
+    assert!(causes(twisted)[0].contains("a patch that is no plane"));
+}
+
+#[test]
+fn unsound_meshes_are_refused() {
+    for (inside, what) in [
+        (
+            "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1 3]",
+            "index 3 of 3",
+        ),
+        (
+            "\"point3 P\" [0 0 0 1 0 0 0 1 0] \"integer indices\" [0 1]",
+            "2 indices",
+        ),
+        (
+            "\"point3 P\" [0 0 0 1 0 0 2 0 0]",
+            "no triangle with an area",
+        ),
+        ("\"point3 P\" [0 0 0 1e10 0 0 2 1 0]", "beyond"),
+        ("\"point3 P\" [0 0 0 1 0]", "threes of numbers"),
+    ] {
+        let found = causes(&format!("Shape \"trianglemesh\" {inside}"));
+        assert_eq!(found.len(), 1, "{found:?}");
+        assert!(found[0].contains(what), "{found:?}");
+    }
+    let many = "Shape \"trianglemesh\" \"point3 P\" [0 0 0 1 0 0 0 1 0] \"normal N\" [0 0 1]";
+    assert!(notes(many)[0].contains("N is left out: 1 of 3 vertices"));
+}
+
+#[test]
+fn objects_are_shown_where_instances_are() {
+    let inside = "ObjectBegin \"o\" Translate 1 0 0 Shape \"sphere\" Shape \"disk\" ObjectEnd Scale 2 2 2 ObjectInstance \"o\" Translate 0 3 0 ObjectInstance \"o\"";
+    let world = world(inside);
+    let places: Vec<[f64; 3]> = world
+        .shapes
+        .iter()
+        .map(|s| s.to_world.translation.to_array())
+        .collect();
+    assert_eq!(
+        places,
+        [
+            [2.0, 0.0, 0.0],
+            [2.0, 0.0, 0.0],
+            [2.0, 6.0, 0.0],
+            [2.0, 6.0, 0.0]
+        ]
+    );
+    assert_eq!(
+        notes("ObjectBegin \"o\" Shape \"sphere\" ObjectEnd"),
+        ["text:3:1: object `o` is not used"]
+    );
+    assert!(causes("ObjectInstance \"p\"")[0].contains("object `p` is not known"));
+    assert!(
+        causes("ObjectBegin \"o\" ObjectInstance \"o\" ObjectEnd")[0].contains("within an object")
+    );
+}
+
+#[test]
+fn alpha_is_a_mask() {
+    let masked = world("Shape \"disk\" \"float alpha\" 0.25");
+    match &masked.materials[masked.shapes[0].material] {
+        Material::Mask { opacity, .. } => assert_close(&[opacity.largest()], &[0.25], 0.0),
+        other => panic!("{other:?}"),
+    }
+}
+
+const PLY: &str = "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n";
+
+#[test]
+fn files_may_be_packed() {
+    use std::io::Write;
+    let mut packer = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    packer.write_all(PLY.as_bytes()).unwrap();
+    let packed = packer.finish().unwrap();
+    let folder = folder(&[("a.ply.gz", &packed), ("a.ply", PLY.as_bytes())]);
+    for name in ["a.ply", "a.ply.gz"] {
+        let inside = format!("Shape \"plymesh\" \"string filename\" \"{name}\"");
+        let read = read_in(&scene("", &inside), folder.path(), Color::Luminance).unwrap();
+        assert_eq!(mesh(&read.world.shapes[0]).corners(), [[0, 1, 2]]);
+    }
+}
