@@ -5,6 +5,7 @@
 
 mod cie;
 mod files;
+mod gltf;
 mod meshes;
 mod mitsuba;
 mod note;
@@ -25,6 +26,7 @@ use std::path::Path;
 pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
+        "gltf" | "glb" => gltf::import(file, options),
         "xml" => mitsuba::import(file, options),
         other => Err(Refused::because(
             file,
