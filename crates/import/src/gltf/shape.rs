@@ -11,7 +11,7 @@ use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
 /// How far the back of a surface that shines on both sides is behind its front, over the size of its mesh.
-const GAP: f64 = 1e-6;
+const GAP: f64 = 1e-5;
 
 impl<'a> Reader<'a> {
     /// Adds the shapes of a mesh, one for each primitive.
