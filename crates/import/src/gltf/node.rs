@@ -54,7 +54,9 @@ impl<'a> Reader<'a> {
             let mut is_top = vec![true; self.root.nodes.len()];
             let children = self.root.nodes.iter().flat_map(|node| &node.children);
             for child in children.flatten() {
-                is_top[child.value()] = false;
+                if let Some(top) = is_top.get_mut(child.value()) {
+                    *top = false;
+                }
             }
             return (0..is_top.len()).filter(|i| is_top[*i]).collect();
         };

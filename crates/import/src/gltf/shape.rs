@@ -13,6 +13,9 @@ use std::sync::Arc;
 /// How far the back of a surface that shines on both sides is behind its front, over the size of its mesh.
 const GAP: f64 = 1e-5;
 
+/// Most characters of a name.
+const LONGEST: usize = 100;
+
 impl<'a> Reader<'a> {
     /// Adds the shapes of a mesh, one for each primitive.
     pub(super) fn mesh_of(&mut self, placed: &Placed<'a>, number: usize) {
@@ -28,6 +31,8 @@ impl<'a> Reader<'a> {
         }
         let own = || mesh.name.clone();
         let name = placed.node.name.clone().or_else(own).unwrap_or_default();
+        // Many nodes may show one mesh.
+        let name: String = name.chars().take(LONGEST).collect();
         for (i, primitive) in mesh.primitives.iter().enumerate() {
             self.primitive(placed, [number, i], primitive, &name);
         }
