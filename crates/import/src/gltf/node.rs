@@ -68,10 +68,18 @@ impl<'a> Reader<'a> {
         scene.nodes.iter().map(|node| node.value()).collect()
     }
 
+    /// Nodes that no scene shows. Without scenes only nodes that are below themselves are below no top.
     fn tell_unmet(&self, met: &[bool]) {
         let unmet = met.iter().filter(|met| !**met).count();
-        if unmet > 0 {
-            self.note("nodes", format!("{unmet} are not in the scene"));
+        match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {
+            (Some(first), true) => {
+                self.cause(
+                    &format!("nodes[{first}]"),
+                    "is below two nodes, or below itself",
+                );
+            }
+            (Some(_), false) => self.note("nodes", format!("{unmet} are not in the scene")),
+            (None, _) => {}
         }
     }
 
