@@ -85,13 +85,11 @@ impl Reader<'_> {
         let color = self.color;
         let is_grey = channels.count == 1;
         let raster = channels.raster(|rgb| match level {
+            // Rounding would move the luminance of three equal numbers off them.
+            Level::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
             Level::Color(factor) => {
                 let linear = rgb.map(pictures::linear);
-                // Three equal numbers have a luminance that rounding moves off them.
-                match is_grey && factor[0] == factor[1] && factor[1] == factor[2] {
-                    true => linear[0] * factor[0],
-                    false => color.of([0, 1, 2].map(|i| linear[i] * factor[i])),
-                }
+                color.of([0, 1, 2].map(|i| linear[i] * factor[i]))
             }
             Level::GreenSquared(factor) => (factor * rgb[1]) * (factor * rgb[1]),
             Level::Blue(factor) => factor * rgb[2],

@@ -170,13 +170,11 @@ impl Reader<'_> {
         let bytes = self.files.read(&path)?;
         let channels = decode(&path, &bytes)?;
         let is_curved = channels.are_levels && !raw;
-        let is_grey = channels.count == 1 && factor[0] == factor[1] && factor[1] == factor[2];
-        let raster = channels.raster(|rgb| {
-            let of = |i: usize| factor[i] * if is_curved { linear(rgb[i]) } else { rgb[i] };
-            match is_grey {
-                true => of(0),
-                false => self.color.of([of(0), of(1), of(2)]),
-            }
+        let light = |level: f64| if is_curved { linear(level) } else { level };
+        let is_grey = channels.count == 1;
+        let raster = channels.raster(|rgb| match is_grey {
+            true => light(rgb[0]) * self.color.of(factor),
+            false => self.color.of([0, 1, 2].map(|i| factor[i] * light(rgb[i]))),
         });
         let raster = raster.map_err(|fault| fault.to_string())?;
         let values = raster.values();

@@ -5,6 +5,7 @@ use super::map::Map;
 use crate::report::{Place, Report, quoted};
 use crate::spectrum::from_xyz;
 use std::collections::HashMap;
+use std::collections::hash_map::Entry as Slot;
 use std::path::Path;
 
 /// The highest kind of illumination.
@@ -70,11 +71,17 @@ fn close(open: Option<(String, Entry)>, report: &Report, entries: &mut HashMap<S
     let Some((name, entry)) = open else {
         return;
     };
-    if entries.contains_key(&name) {
-        let message = format!("material {} again: the first one counts", quoted(&name));
-        report.note(&entry.place, message);
-    } else {
-        entries.insert(name, entry);
+    match entries.entry(name) {
+        Slot::Occupied(known) => {
+            let message = format!(
+                "material {} again: the first one counts",
+                quoted(known.key())
+            );
+            report.note(&entry.place, message);
+        }
+        Slot::Vacant(slot) => {
+            slot.insert(entry);
+        }
     }
 }
 
