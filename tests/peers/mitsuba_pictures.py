@@ -1,15 +1,15 @@
 """A scene of Mitsuba 3 as `etendue render` sees it and as Mitsuba does: a z-test for each pixel.
 
-usage: mitsuba_pictures.py ETENDUE SCENE [--against OTHER.xml] [--root DIR] [--samples N] [--bounces N] [--out DIR]
+usage: mitsuba_pictures.py ETENDUE SCENE [--against OTHER.xml] [--more ARGUMENTS] [--root DIR] [--samples N] [--bounces N] [--out DIR]
        e.g. mitsuba_pictures.py target/release/etendue cbox.xml --bounces 1
             mitsuba_pictures.py target/release/etendue tests/peers/scenes/room.pbrt --against tests/peers/scenes/room.xml
 
+With --against, SCENE may have any format: Mitsuba renders OTHER.xml, which holds the same. --more goes to `etendue render`.
 Both trace paths through at most 64 x 64 pixels, with a box for a filter, and count in one number: luminance (llvm_ad_mono). z is the difference over its
 standard error. A picture passes when no |z| is beyond what one in a hundred pictures reaches by chance (Sidak 1967), and the mean of z is
 within 3.3 standard errors of 0, so that many small differences are seen too. Exit code 1 says it does not.
-With --against, Mitsuba reads that file instead: the same scene in its own format.
 """
-import argparse, json, math, pathlib, subprocess, sys
+import argparse, json, math, pathlib, shlex, subprocess, sys
 import mitsuba as mi, numpy as np
 from statistics import NormalDist
 
@@ -29,7 +29,7 @@ def size_of(scene):
 
 
 def ours(args, size, folder):
-    command = [args.etendue, "render", args.scene, "--size", f"{size[0]}x{size[1]}", "--samples", str(args.samples), "--out", folder, "--force", "--quiet"]
+    command = [args.etendue, "render", args.scene, "--size", f"{size[0]}x{size[1]}", "--samples", str(args.samples), "--out", folder, "--force", "--quiet", *shlex.split(args.more)]
     for name in ["root", "bounces"]:
         if getattr(args, name) is not None:
             command += [f"--{name}", str(getattr(args, name))]
@@ -66,6 +66,7 @@ def main():
     parser.add_argument("etendue")
     parser.add_argument("scene")
     parser.add_argument("--against")
+    parser.add_argument("--more", default="")
     parser.add_argument("--root")
     parser.add_argument("--samples", type=int, default=1024)
     parser.add_argument("--bounces", type=int)

@@ -9,7 +9,7 @@ use std::time::Duration;
 
 mod world;
 
-pub(crate) use world::{CameraArgs, ImportArgs, ProbeArgs, RenderArgs, WorldArgs};
+pub(crate) use world::{CameraArgs, ImportArgs, ProbeArgs, RenderArgs, ViewArgs, WorldArgs};
 
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]

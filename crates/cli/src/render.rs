@@ -20,6 +20,7 @@ const FILES: [&str; 3] = ["picture.exr", "picture.npz", "picture.png"];
 pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
     let imported = world::load(&args.scene)?;
     let camera = world::camera(&imported.world, &args.camera)?;
+    world::require_light(&imported.world)?;
     let name = args.scene.path.file_stem().unwrap_or_default();
     let folder = args
         .out
@@ -43,6 +44,8 @@ pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
     let made_from = tree_of!({
         "scene": args.scene.path.file_name().map(|name| name.to_string_lossy()),
         "camera": camera.name,
+        "camera_to_world": camera.to_world.to_cols_array(),
+        "sky": args.scene.sky,
         "depth": imported.world.depth,
         "hides_sources": imported.world.hides_sources,
         "size": camera.size,

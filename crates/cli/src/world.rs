@@ -1,11 +1,16 @@
 //! Scenes of other programs, as commands take them.
 
-use crate::args::{CameraArgs, ImportArgs, WorldArgs};
+use crate::args::{CameraArgs, ImportArgs, ViewArgs, WorldArgs};
 use crate::deliver;
 use crate::failure::Failure;
 use crate::table::aligned;
 use etendue_import::{Imported, import};
 use etendue_world::{Camera, Geometry, Light, Projection, World};
+use glam::{DAffine3, DMat3};
+
+/// What commands say.
+const NO_CAMERA: &str = "the scene has no camera: --look-from and --look-at add one";
+const NO_LIGHT: &str = "the scene has no light: --sky adds one";
 
 /// Reads the scene named on the command line; causes for which it is refused come all together.
 pub(crate) fn load(args: &WorldArgs) -> Result<Imported, Failure> {
@@ -13,7 +18,50 @@ pub(crate) fn load(args: &WorldArgs) -> Result<Imported, Failure> {
     if args.bounces.is_some() {
         imported.world.depth = args.bounces;
     }
+    if let Some(radiance) = args.sky {
+        imported.world.lights.push(Light::Constant { radiance });
+    }
+    if let Some(camera) = of_command(&args.view)? {
+        imported.world.cameras.insert(0, camera);
+    }
     Ok(imported)
+}
+
+/// The camera that the command line puts into the scene.
+fn of_command(view: &ViewArgs) -> Result<Option<Camera>, Failure> {
+    let (Some(from), Some(at)) = (view.look_from, view.look_at) else {
+        return Ok(None);
+    };
+    let ahead = (at - from).try_normalize();
+    let frame = ahead.and_then(|ahead| {
+        let left = view.up.cross(ahead).try_normalize()?;
+        Some(DMat3::from_cols(left, ahead.cross(left), ahead))
+    });
+    let frame = frame.ok_or_else(|| {
+        let message =
+            "--look-from and --look-at are one place, or --up goes along the line between them";
+        Failure::bad_input(message)
+    })?;
+    Ok(Some(Camera {
+        name: "command".to_owned(),
+        to_world: DAffine3::from_mat3_translation(frame, from),
+        size: [512; 2],
+        projection: Projection::Perspective {
+            half_width: libm::tan(view.fov.to_radians() / 2.0),
+            shift: [0.0; 2],
+            lens: None,
+        },
+        clip: [0.0, f64::MAX],
+    }))
+}
+
+/// Requires something that shines.
+pub(crate) fn require_light(world: &World) -> Result<(), Failure> {
+    let shines = world.shapes.iter().any(|shape| shape.emission.is_some());
+    if shines || !world.lights.is_empty() {
+        return Ok(());
+    }
+    Err(Failure::bad_input(NO_LIGHT))
 }
 
 /// The camera that is asked for, or the first, with the size that is asked for.
@@ -29,7 +77,7 @@ pub(crate) fn camera(world: &World, args: &CameraArgs) -> Result<Camera, Failure
             Some(name) if !names.is_empty() => {
                 format!("--camera {name}; allowed: {}", names.join(", "))
             }
-            _ => "the scene has no camera".to_owned(),
+            _ => NO_CAMERA.to_owned(),
         })
     })?;
     Ok(Camera {
@@ -43,6 +91,12 @@ pub(crate) fn report(args: &ImportArgs) -> Result<u8, Failure> {
     let Imported { world, notes, .. } = load(&args.scene)?;
     let mut lines = aligned(rows(&world));
     lines.extend(world.cameras.iter().map(of_camera));
+    if world.cameras.is_empty() {
+        lines.push(NO_CAMERA.to_owned());
+    }
+    if require_light(&world).is_err() {
+        lines.push(NO_LIGHT.to_owned());
+    }
     lines.push(match world.depth {
         Some(depth) => format!("light meets at most {depth} surfaces"),
         None => "light meets any number of surfaces".to_owned(),

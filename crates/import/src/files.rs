@@ -1,3 +1,4 @@
+use crate::{Options, Refused};
 use etendue_scene::read_file;
 use std::cell::Cell;
 use std::io;
@@ -24,6 +25,23 @@ impl Files {
             root: root.canonicalize()?,
             left: Cell::new(MOST_BYTES),
         })
+    }
+
+    /// The files of a scene, the path of its own file and its bytes.
+    pub(crate) fn open(
+        file: &Path,
+        options: &Options,
+    ) -> Result<(Self, PathBuf, Vec<u8>), Refused> {
+        let unread = |error: String| Refused::because(file, error);
+        let folder = file.parent().unwrap_or(Path::new(""));
+        let root = options.root.as_deref().unwrap_or(folder);
+        let files = Self::below(root).map_err(|error| unread(error.to_string()))?;
+        // The scene itself is named by who asks, and need not be below the root.
+        let path = file
+            .canonicalize()
+            .map_err(|error| unread(error.to_string()))?;
+        let bytes = files.read(&path).map_err(unread)?;
+        Ok((files, path, bytes))
     }
 
     /// The path of the file or folder `name`, looked for from one folder after the other.

@@ -1,13 +1,15 @@
 //! Scenes of other programs, read as a [`World`](etendue_world::World).
 //!
-//! Mitsuba 3's XML, and pbrt-v4's files. What a world cannot hold is a cause, and the scene is refused with all of them at once; what makes little difference,
+//! Mitsuba 3's XML; pbrt-v4's files; glTF 2.0, as JSON or binary; OBJ with MTL; PLY. What a world cannot hold is a cause, and the scene is refused with all of them at once; what makes little difference,
 //! or is approximated, is a note. Nothing is dropped in silence.
 
 mod cie;
 mod files;
+mod gltf;
 mod meshes;
 mod mitsuba;
 mod note;
+mod obj;
 mod options;
 mod pbrt;
 mod pictures;
@@ -20,18 +22,30 @@ pub use options::{Color, Options};
 
 use std::path::Path;
 
-/// Reads a scene file, its format told by its extension in any case: `xml` for Mitsuba 3, `pbrt` for pbrt-v4.
+/// Reads a scene file, its format told by its extension in any case:
+///
+/// - `xml`: Mitsuba 3.
+/// - `pbrt`: pbrt-v4.
+/// - `gltf`, `glb`: glTF 2.0. Right-handed with Y up; cameras look along −Z, and have no number of pixels: 512 across. The numbers of lights are
+///   taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit as 1 W m⁻² sr⁻¹. Surfaces that are not `doubleSided` are black behind.
+/// - `obj`: surfaces with the materials of MTL files, on both sides, and `Ke` as radiance on their front. No camera.
+/// - `ply`: one diffuse surface, 0.5 on both sides. No camera.
 ///
 /// # Errors
 /// All causes why the file makes no world.
 pub fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
     let extension = file.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
+        "gltf" | "glb" => gltf::import(file, options),
+        "obj" => obj::import(file, options),
+        "ply" => obj::import_ply(file, options),
         "xml" => mitsuba::import(file, options),
         "pbrt" => pbrt::import(file, options),
         other => Err(Refused::because(
             file,
-            format!("extension {other:?}; allowed: xml (Mitsuba 3), pbrt (pbrt-v4)"),
+            format!(
+                "extension {other:?}; allowed: gltf, glb (glTF 2.0), obj, ply, pbrt (pbrt-v4), xml (Mitsuba 3)"
+            ),
         )),
     }
 }

@@ -96,6 +96,27 @@ impl Parts {
         mended
     }
 
+    /// Turns normals over that point away from the front of the triangles around them; how many.
+    pub(crate) fn turn_normals(&mut self) -> usize {
+        let Some(normals) = &mut self.normals else {
+            return 0;
+        };
+        let mut fronts = vec![DVec3::ZERO; normals.len()];
+        for corners in &self.corners {
+            for corner in corners {
+                fronts[*corner as usize] += across(&self.vertices, *corners).normalize_or_zero();
+            }
+        }
+        let mut turned = 0;
+        for (normal, front) in normals.iter_mut().zip(fronts) {
+            if normal.dot(front) < 0.0 {
+                *normal = -*normal;
+                turned += 1;
+            }
+        }
+        turned
+    }
+
     /// The triangles; `None` if there are none, or something does not fit.
     pub(crate) fn finish(self) -> Option<Triangles> {
         if self.corners.is_empty() {

@@ -77,7 +77,7 @@ impl Curve {
 
 fn read(files: &Files, path: &Path, color: Color, curve: Curve) -> Result<Raster, String> {
     let bytes = files.read(path)?;
-    let channels = channels(path, &bytes)?;
+    let channels = decode(path, &bytes)?;
     if !channels.values.iter().all(|v| v.is_finite()) {
         return Err("has pixels that are not finite".to_owned());
     }
@@ -95,7 +95,8 @@ fn read(files: &Files, path: &Path, color: Color, curve: Curve) -> Result<Raster
     channels.raster(number).map_err(|fault| fault.to_string())
 }
 
-fn channels(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
+/// The channels of a picture, its format told by the extension of `path`.
+pub(crate) fn decode(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
     let extension = path.extension().unwrap_or_default().to_string_lossy();
     match extension.to_ascii_lowercase().as_str() {
         "jpg" | "jpeg" => jpeg::read(bytes),
@@ -108,7 +109,7 @@ fn channels(path: &Path, bytes: &[u8]) -> Result<Channels, String> {
 }
 
 /// A level of sRGB in proportion to light (IEC 61966-2-1).
-fn linear(level: f64) -> f64 {
+pub(crate) fn linear(level: f64) -> f64 {
     if level <= 0.04045 {
         level / 12.92
     } else {

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
 mod common;
+mod gltf_scene;
 
 use common::folder;
 use etendue_import::{Options, import, import_mitsuba, import_pbrt};
@@ -56,7 +57,7 @@ fn no_byte_makes_it_panic() {
             .into_iter()
             .zip(texts.map(str::as_bytes))
             .collect::<Vec<_>>(),
-        4,
+        3000,
     );
 }
 
@@ -69,30 +70,23 @@ fn no_byte_of_a_pbrt_scene_makes_it_panic() {
             .into_iter()
             .zip(texts.map(str::as_bytes))
             .collect::<Vec<_>>(),
-        6,
+        3000,
     );
 }
 
-/// Damages files of a scene of so many shapes, the first of which names the others.
-fn damage(files: &[(&str, &[u8])], shapes: usize) {
+/// Damages one file after the other, the first one most, and imports the scene each time.
+fn damage(files: &[(&str, &[u8])], rounds: usize) {
     let folder = folder(files);
     let main = folder.path().join(files[0].0);
-    assert_eq!(
-        import(&main, &Options::default())
-            .unwrap()
-            .world
-            .shapes
-            .len(),
-        shapes
-    );
+    let whole = import(&main, &Options::default());
+    assert!(whole.is_ok_and(|read| read.world.shapes.len() > 1));
     let mut state = 88_172_645_463_325_252;
     let (mut read, mut refused) = (0, 0);
-    for round in 0..3000 {
+    for round in 0..rounds {
         // Every second time the scene, else one of its files.
-        let which = if round % 2 == 0 {
-            0
-        } else {
-            1 + next(&mut state) % (files.len() - 1)
+        let which = match files.len() {
+            others @ 2.. if round % 2 == 1 => 1 + next(&mut state) % (others - 1),
+            _ => 0,
         };
         let (name, sound) = files[which];
         let mut bytes = sound.to_vec();
@@ -116,10 +110,63 @@ fn damage(files: &[(&str, &[u8])], shapes: usize) {
         fs::write(folder.path().join(name), sound).unwrap();
     }
     // Both happen, so both are tested.
+    let few = rounds / 15;
     assert!(
-        read > 200 && refused > 200,
+        read > few && refused > few,
         "{read} read, {refused} refused"
     );
+}
+
+#[test]
+fn no_byte_of_gltf_makes_it_panic() {
+    let text = everything();
+    let data = gltf_scene::binary(&text);
+    damage(&[("a.gltf", text.as_bytes())], 6000);
+    damage(&[("a.glb", &data)], 6000);
+}
+
+#[test]
+fn no_byte_of_obj_makes_it_panic() {
+    let more = "usemtl b\nf 1 2 3\nusemtl c\nf 2/1 3/2 4/1\n";
+    let obj = format!("mtllib a.mtl\n{OBJ}{more}");
+    let mtl = "newmtl b\nKd 0.1 0.2 0.3\nKs .5 .5 .5\nNs 20\nd 0.5\nillum 2\nnewmtl c\nKe 1 2 3\nmap_Kd -s 1 2 -o 0 1 a.hdr\nTf 1 1 1\nNi 1.5\n";
+    let files = [
+        ("a.obj", obj.as_bytes()),
+        ("a.mtl", mtl.as_bytes()),
+        ("a.hdr", HDR.as_bytes()),
+    ];
+    damage(&files, 6000);
+}
+
+/// A glTF scene with something of everything.
+fn everything() -> String {
+    let nodes = r#"{"mesh":0,"children":[1,2]},{"mesh":0,"rotation":[0,0.6,0,0.8],"scale":[-1,2,1],"camera":0},
+{"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,3,4,5,1],"extensions":{"KHR_lights_punctual":{"light":0}}}"#;
+    let material = r#"{"doubleSided":true,"alphaMode":"MASK","alphaCutoff":0.4,"emissiveFactor":[1,0.5,0],
+"pbrMetallicRoughness":{"metallicFactor":0.5,"roughnessFactor":0.3,"metallicRoughnessTexture":{"index":0},
+"baseColorTexture":{"index":0,"extensions":{"KHR_texture_transform":{"rotation":1,"scale":[2,3]}}}},
+"extensions":{"KHR_materials_ior":{"ior":1.4},"KHR_materials_transmission":{"transmissionFactor":0.5}}}"#;
+    let more = format!(
+        r#"{},"cameras":[{{"type":"perspective","perspective":{{"yfov":0.8,"aspectRatio":2,"znear":0.5}}}}],
+"extensions":{{"KHR_lights_punctual":{{"lights":[{{"type":"spot","intensity":5,"spot":{{"outerConeAngle":0.4}}}}]}}}}"#,
+        gltf_scene::BASE
+    );
+    gltf_scene::mesh(nodes, material, &more)
+}
+
+#[test]
+fn deep_and_wide_gltf_scenes_end() {
+    // A chain of nodes, each below the one before.
+    let node = |i: usize| format!(r#"{{"mesh":0,"children":[{}]}}"#, i + 1);
+    let mut nodes: Vec<String> = (0..20_000).map(node).collect();
+    nodes.push("{\"mesh\":0}".to_owned());
+    let read = |text: &str| gltf_scene::read(text.as_bytes());
+    let deep = read(&gltf_scene::mesh(&nodes.join(","), "", ""));
+    assert_eq!(deep.unwrap().world.shapes.len(), 20_001);
+    let nested = format!("{}{}", "[".repeat(100_000), "]".repeat(100_000));
+    assert!(read(&nested).is_err());
+    let back = gltf_scene::mesh("{\"mesh\":0,\"children\":[0]}", "", "");
+    assert!(read(&back).is_err());
 }
 
 #[test]

@@ -148,6 +148,7 @@ fn lights_shine_by_their_units() {
         (Falloff::Angle, 0.4_f64, 0.5),
         (Falloff::SmoothCosine, 0.35, smooth(cosine(0.35))),
         (Falloff::SmoothCosine, 0.45, smooth(cosine(0.45))),
+        (Falloff::SquaredCosine, 0.45, cosine(0.45).powi(2)),
         (Falloff::SmoothCosine, 0.29, 1.0),
     ] {
         let spot = Light::Spot {

@@ -46,7 +46,7 @@ pub use file::{
     SphericalGaussianFile, SurfaceFile, WindowFile,
 };
 pub use hierarchy::Hierarchy;
-pub use mesh::{DetailedMesh, Mesh};
+pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};
 pub use read::{ReadError, read_below, read_file};
 pub use resolve::resolve;

@@ -15,6 +15,7 @@ mod star;
 mod text;
 
 pub use detailed::DetailedMesh;
+pub use obj::parts::{ObjFile, ObjPart};
 
 use crate::fault::Fault;
 use error::fault;

@@ -49,6 +49,8 @@ pub enum Falloff {
     Angle,
     /// As t² (3 − 2t), with t from 1 to 0 linearly with the cosine of the angle, as in pbrt-v4.
     SmoothCosine,
+    /// As t², as glTF 2.0 advises.
+    SquaredCosine,
 }
 
 impl Falloff {
@@ -63,10 +65,13 @@ impl Falloff {
         };
         match self {
             Self::Angle => between(-angle, -beam, -cutoff),
-            Self::SmoothCosine => {
+            Self::SmoothCosine | Self::SquaredCosine => {
                 let [at, full, dark] = [angle, beam, cutoff].map(libm::cos);
                 let t = between(at, full, dark);
-                t * t * (3.0 - 2.0 * t)
+                match self {
+                    Self::SmoothCosine => t * t * (3.0 - 2.0 * t),
+                    _ => t * t,
+                }
             }
         }
     }

@@ -1,6 +1,7 @@
 //! OBJ files (Wavefront, Advanced Visualizer manual, appendix B1): vertices and faces.
 
 pub(super) mod detailed;
+pub(super) mod parts;
 
 use super::error::fault;
 use super::text::{Lines, Words, number, quoted};

@@ -1,0 +1,50 @@
+//! Scenes of glTF 2.0: `.gltf`, which is JSON, and `.glb`, which holds JSON and a buffer.
+//!
+//! - Both are right-handed with Y up, and stay so. Angles are radians, lengths metres.
+//! - Light is radiometric: a candela is read as 1 W/sr, a lux as 1 W/m², a nit of emission as 1 W m⁻² sr⁻¹.
+//! - Cameras look along −Z of their node, lights shine along it. Scale of the node changes neither.
+//! - The front of a triangle is where its corners run counterclockwise; on nodes that mirror, clockwise. Normals do not tell the front.
+//! - Surfaces scatter on their front alone unless they are `doubleSided`.
+//! - Roughness r is α = r² of GGX. Metallic 0 is a diffuse base below a dielectric coat, metallic 1 a metal that reflects its base colour at
+//!   all angles, what lies between a mixture of both. Without specular reflection (`specularFactor` 0, or index 1) it is Lambertian.
+//! - Pictures of colours are sRGB, of other quantities linear. Their first row is at v = 0, as in a world.
+//!
+//! Limits: 2²⁰ shapes and lights, as many bytes as one import reads.
+
+mod accessor;
+mod alpha;
+mod camera;
+mod container;
+mod glass;
+mod image;
+mod leftover;
+mod light;
+mod material;
+mod mesh;
+mod metallic;
+mod node;
+mod reader;
+mod shape;
+mod texture;
+mod uri;
+
+use crate::files::Files;
+use crate::report::{Place, Report};
+use crate::{Imported, Options, Refused};
+use etendue_world::World;
+use std::path::Path;
+
+pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
+    let (files, path, bytes) = Files::open(file, options)?;
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let place = Place::whole(&name);
+    let report = Report::default();
+    let mut world = World::default();
+    if let Some(document) = container::read(&bytes, &place, &report) {
+        let folder = path.parent().unwrap_or(Path::new("")).to_owned();
+        let mut reader = reader::Reader::new(&document, &files, &report, place, folder);
+        reader.color = options.color;
+        world = reader.world();
+    }
+    report.finish(world)
+}

@@ -1,0 +1,213 @@
+//! Buffers and what is read from them.
+
+use super::reader::Reader;
+use super::uri::{Source, source};
+use ::gltf::json::accessor::{ComponentType, Type};
+use ::gltf::json::validation::Checked;
+use ::gltf::json::{Accessor, Index};
+use std::sync::Arc;
+
+/// Rows of numbers in a buffer, all of them there.
+struct Rows {
+    bytes: Arc<[u8]>,
+    start: usize,
+    stride: usize,
+    count: usize,
+    component: ComponentType,
+    is_normalized: bool,
+}
+
+impl Rows {
+    fn number(&self, row: usize, column: usize) -> f64 {
+        let size = self.component.size();
+        let at = self.start + row * self.stride + column * size;
+        let mut word = [0; 4];
+        word[..size].copy_from_slice(&self.bytes[at..at + size]);
+        let signed = |value: f64, most: f64| match self.is_normalized {
+            true => (value / most).max(-1.0),
+            false => value,
+        };
+        match self.component {
+            ComponentType::I8 => signed(f64::from(i8::from_le_bytes([word[0]])), 127.0),
+            ComponentType::U8 => signed(f64::from(word[0]), 255.0),
+            ComponentType::I16 => {
+                signed(f64::from(i16::from_le_bytes([word[0], word[1]])), 32_767.0)
+            }
+            ComponentType::U16 => {
+                signed(f64::from(u16::from_le_bytes([word[0], word[1]])), 65_535.0)
+            }
+            ComponentType::U32 => f64::from(u32::from_le_bytes(word)),
+            ComponentType::F32 => f64::from(f32::from_le_bytes(word)),
+        }
+    }
+
+    fn whole(&self, row: usize) -> u32 {
+        let size = self.component.size();
+        let at = self.start + row * self.stride;
+        let mut word = [0; 4];
+        word[..size].copy_from_slice(&self.bytes[at..at + size]);
+        u32::from_le_bytes(word)
+    }
+}
+
+impl Reader<'_> {
+    /// Rows of N finite numbers; `None` after a cause.
+    pub(super) fn numbers<const N: usize>(
+        &mut self,
+        index: Index<Accessor>,
+    ) -> Option<Vec<[f64; N]>> {
+        let kind = match N {
+            1 => Type::Scalar,
+            2 => Type::Vec2,
+            _ => Type::Vec3,
+        };
+        let rows = self.rows(index, kind, N)?;
+        self.spend(index, rows.count * N * 8)?;
+        let row = |row| std::array::from_fn(|column| rows.number(row, column));
+        let numbers: Vec<[f64; N]> = (0..rows.count).map(row).collect();
+        let bad = numbers
+            .iter()
+            .position(|row| row.iter().any(|v| !v.is_finite()));
+        if let Some(bad) = bad {
+            let path = format!("accessors[{}]", index.value());
+            self.cause(&path, format!("element {bad} is not finite"));
+            return None;
+        }
+        Some(numbers)
+    }
+
+    /// Indices; `None` after a cause.
+    pub(super) fn indices(&mut self, index: Index<Accessor>) -> Option<Vec<u32>> {
+        let rows = self.rows(index, Type::Scalar, 1)?;
+        self.spend(index, rows.count * 4)?;
+        use ComponentType::{U8, U16, U32};
+        if !matches!(rows.component, U8 | U16 | U32) {
+            let path = format!("accessors[{}].componentType", index.value());
+            self.cause(&path, "of indices; allowed: 5121, 5123, 5125");
+            return None;
+        }
+        Some((0..rows.count).map(|row| rows.whole(row)).collect())
+    }
+
+    fn spend(&self, index: Index<Accessor>, bytes: usize) -> Option<()> {
+        let spent = self.files.spend(bytes as u64);
+        spent
+            .map_err(|error| self.cause(&format!("accessors[{}]", index.value()), error))
+            .ok()
+    }
+
+    fn rows(&mut self, index: Index<Accessor>, kind: Type, width: usize) -> Option<Rows> {
+        let path = format!("accessors[{}]", index.value());
+        let accessor = self.root.get(index)?;
+        let (Checked::Valid(found), Checked::Valid(component)) =
+            (accessor.type_, accessor.component_type)
+        else {
+            return None;
+        };
+        if found != kind {
+            self.cause(&path, format!("has type {found:?}; allowed here: {kind:?}"));
+            return None;
+        }
+        if accessor.sparse.is_some() {
+            self.cause(&format!("{path}.sparse"), "is not supported");
+            return None;
+        }
+        let view = self.root.get(accessor.buffer_view?)?;
+        let bytes = self.buffer(view.buffer.value())?;
+        let element = component.0.size() * width;
+        let stride = view.byte_stride.map_or(element, |stride| stride.0);
+        let fit = self.fit(accessor, element, stride, bytes.len());
+        let Some((start, count)) = fit else {
+            self.cause(&path, "reaches beyond its buffer, or elements overlap");
+            return None;
+        };
+        Some(Rows {
+            bytes,
+            start,
+            stride,
+            count,
+            component: component.0,
+            is_normalized: accessor.normalized,
+        })
+    }
+
+    /// Where elements begin and how many there are, if all are within their view and the view within its buffer.
+    fn fit(
+        &self,
+        accessor: &Accessor,
+        element: usize,
+        stride: usize,
+        length: usize,
+    ) -> Option<(usize, usize)> {
+        let whole = |value: u64| usize::try_from(value).ok();
+        let view = self.root.get(accessor.buffer_view?)?;
+        let view_start = whole(view.byte_offset.unwrap_or_default().0)?;
+        let view_length = whole(view.byte_length.0)?;
+        let within = whole(accessor.byte_offset.unwrap_or_default().0)?;
+        let count = whole(accessor.count.0)?;
+        let last = count.checked_sub(1)?.checked_mul(stride)?;
+        let end = within.checked_add(last)?.checked_add(element)?;
+        let fits = end <= view_length && view_start.checked_add(view_length)? <= length;
+        (fits && stride >= element).then_some((view_start + within, count))
+    }
+
+    /// The bytes of a view; `None` after a cause.
+    pub(super) fn view(&mut self, number: usize) -> Option<Vec<u8>> {
+        let view = self.root.buffer_views.get(number)?;
+        let bytes = self.buffer(view.buffer.value())?;
+        let whole = |value: u64| usize::try_from(value).ok();
+        let start = whole(view.byte_offset.unwrap_or_default().0)?;
+        let end = whole(view.byte_length.0).and_then(|length| start.checked_add(length));
+        let found = end.and_then(|end| bytes.get(start..end));
+        if found.is_none() {
+            let path = format!("bufferViews[{number}]");
+            self.cause(&path, "reaches beyond its buffer");
+        }
+        found.map(<[u8]>::to_vec)
+    }
+
+    /// The bytes of a buffer; `None` after a cause.
+    fn buffer(&mut self, number: usize) -> Option<Arc<[u8]>> {
+        if let Some(known) = self.buffers.get(&number) {
+            return known.clone();
+        }
+        let read = self.read_buffer(number);
+        let read = read
+            .map_err(|error| self.cause(&format!("buffers[{number}]"), error))
+            .ok();
+        self.buffers.insert(number, read.clone());
+        read
+    }
+
+    fn read_buffer(&self, number: usize) -> Result<Arc<[u8]>, String> {
+        let buffer = self.root.buffers.get(number).ok_or("is not there")?;
+        let bytes: Arc<[u8]> = match (&buffer.uri, self.chunk) {
+            (Some(uri), _) => self.bytes_of(uri)?.into(),
+            (None, Some(chunk)) if number == 0 => chunk.into(),
+            _ => return Err("has no uri, and the file no chunk for it".to_owned()),
+        };
+        let length = usize::try_from(buffer.byte_length.0).ok();
+        let within = length.and_then(|length| bytes.get(..length));
+        let (found, said) = (bytes.len(), buffer.byte_length.0);
+        within
+            .map(Arc::from)
+            .ok_or_else(|| format!("has {found} bytes; byteLength is {said}"))
+    }
+
+    /// What a URI names.
+    pub(super) fn bytes_of(&self, uri: &str) -> Result<Vec<u8>, String> {
+        match source(uri, self.files.left())? {
+            Source::Data(bytes) => {
+                self.files.spend(bytes.len() as u64)?;
+                Ok(bytes)
+            }
+            Source::File(name) => {
+                let folders = std::slice::from_ref(&self.folder);
+                let quoted = crate::report::quoted(&name);
+                let found = self.files.find(folders, &name);
+                let read = found.and_then(|path| self.files.read(&path));
+                read.map_err(|error| format!("file {quoted} {error}"))
+            }
+        }
+    }
+}

@@ -1,0 +1,113 @@
+//! Cameras.
+
+use super::node::Placed;
+use super::reader::Reader;
+use ::gltf::json::camera::{Orthographic, Perspective};
+use etendue_world::{Camera, Projection};
+use std::f64::consts::PI;
+
+/// Pixels across; files have no number of pixels.
+const ACROSS: usize = 512;
+
+/// Widths over heights that make a picture of at least one pixel, and not too many.
+const ASPECTS: [f64; 2] = [1.0 / 32.0, 512.0];
+
+impl<'a> Reader<'a> {
+    pub(super) fn camera_of(&mut self, placed: &Placed<'a>, number: usize) {
+        let path = format!("cameras[{number}]");
+        let Some(camera) = self.root.cameras.get(number) else {
+            return;
+        };
+        let Some(looking) = placed.looking() else {
+            return self.cause(&placed.path, "scales a camera to nothing");
+        };
+        let read = match (&camera.perspective, &camera.orthographic) {
+            (Some(of), _) => self.perspective(of, &format!("{path}.perspective")),
+            (_, Some(of)) => self.orthographic(of, &format!("{path}.orthographic")),
+            _ => None,
+        };
+        let Some((projection, scale, aspect, clip)) = read else {
+            return;
+        };
+        let mut to_world = looking;
+        to_world.matrix3.x_axis *= scale;
+        to_world.matrix3.y_axis *= scale;
+        let own = || camera.name.clone();
+        let name = placed.node.name.clone().or_else(own).unwrap_or(path);
+        self.world.cameras.push(Camera {
+            name,
+            to_world,
+            size: size(aspect),
+            projection,
+            clip,
+        });
+        self.note_once("cameras have no number of pixels: 512 across, and as many down as their aspect ratio asks for");
+    }
+
+    /// The projection, how much it is scaled, the picture's width over its height, and its clip planes.
+    fn perspective(
+        &mut self,
+        of: &Perspective,
+        path: &str,
+    ) -> Option<(Projection, f64, f64, [f64; 2])> {
+        let yfov = self.within(&format!("{path}.yfov"), of.yfov, [1e-4, PI - 1e-4]);
+        let aspect = match of.aspect_ratio {
+            Some(aspect) => self.within(&format!("{path}.aspectRatio"), aspect, ASPECTS),
+            None => {
+                self.note(path, "has no aspectRatio: 1 is taken");
+                Some(1.0)
+            }
+        };
+        let near = self.within(
+            &format!("{path}.znear"),
+            of.znear,
+            [f64::MIN_POSITIVE, 1e30],
+        );
+        let far = match of.zfar {
+            Some(far) => self.within(&format!("{path}.zfar"), far, [f64::from(of.znear), 1e30]),
+            None => Some(1e30),
+        };
+        let (aspect, tangent) = (aspect?, libm::tan(yfov? / 2.0));
+        let [w, h] = size(aspect);
+        let projection = Projection::Perspective {
+            half_width: tangent * w as f64 / h as f64,
+            shift: [0.0; 2],
+            lens: None,
+        };
+        Some((projection, 1.0, aspect, [near?, far?]))
+    }
+
+    fn orthographic(
+        &self,
+        of: &Orthographic,
+        path: &str,
+    ) -> Option<(Projection, f64, f64, [f64; 2])> {
+        let [xmag, ymag] = [("xmag", of.xmag), ("ymag", of.ymag)]
+            .map(|(name, value)| self.within(&format!("{path}.{name}"), value, [1e-9, 1e9]));
+        let near = self.within(&format!("{path}.znear"), of.znear, [0.0, 1e30]);
+        let far = self.within(
+            &format!("{path}.zfar"),
+            of.zfar,
+            [f64::from(of.znear), 1e30],
+        );
+        let (xmag, ymag) = (xmag?, ymag?);
+        let aspect = xmag / ymag;
+        if !(ASPECTS[0]..=ASPECTS[1]).contains(&aspect) {
+            let message = format!("xmag over ymag is {aspect}; allowed: {ASPECTS:?}");
+            self.cause(path, message);
+            return None;
+        }
+        Some((Projection::Orthographic, xmag, aspect, [near?, far?]))
+    }
+}
+
+/// Pixels across and down.
+fn size(aspect: f64) -> [usize; 2] {
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "aspects are within bounds"
+    )]
+    let down = (ACROSS as f64 / aspect).round() as usize;
+    [ACROSS, down.max(1)]
+}

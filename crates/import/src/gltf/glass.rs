@@ -1,0 +1,90 @@
+//! `KHR_materials_transmission`, as interfaces that light goes through.
+
+use super::material::Draft;
+use super::metallic::roughness;
+use super::reader::Reader;
+use etendue_world::{Dielectric, Material, Texture};
+
+impl Reader<'_> {
+    /// What lets a share of light through, and otherwise is `opaque`. `None` after a cause.
+    pub(super) fn with_glass(
+        &mut self,
+        draft: &mut Draft<'_>,
+        opaque: Material,
+    ) -> Option<Material> {
+        let extensions = draft.source.extensions.as_ref();
+        let transmission = extensions.and_then(|of| of.transmission.as_ref());
+        let Some(of) = transmission else {
+            if extensions.is_some_and(|of| of.volume.is_some()) {
+                let path = format!("{}.extensions.KHR_materials_volume", draft.path);
+                self.note(&path, "left out: nothing is transmitted");
+            }
+            return Some(opaque);
+        };
+        let path = format!("{}.extensions.KHR_materials_transmission", draft.path);
+        let field = format!("{path}.transmissionFactor");
+        let share = self.within(&field, of.transmission_factor.0, [0.0, 1.0])?;
+        if of.transmission_texture.is_some() {
+            self.note(&format!("{path}.transmissionTexture"), "left out");
+        }
+        if share <= 0.0 {
+            return Some(opaque);
+        }
+        let metallic = draft.source.pbr_metallic_roughness.metallic_factor.0;
+        if metallic > 0.0 {
+            let message = "approximated: metals transmit like other materials";
+            self.note(&path, message);
+        }
+        let glass = self.glass(draft, &path)?;
+        if share >= 1.0 {
+            return Some(glass);
+        }
+        self.note(
+            &path,
+            "approximated: a mixture of what is opaque and of glass",
+        );
+        let weight = Texture::Constant(share);
+        let of = Box::new([opaque, glass]);
+        Some(Material::Blend { weight, of })
+    }
+
+    fn glass(&mut self, draft: &mut Draft<'_>, path: &str) -> Option<Material> {
+        let color = self.base_color(draft);
+        let alpha = self.alpha(draft);
+        let index = self.index(draft)?;
+        let is_thin = !self.has_volume(draft);
+        let roughness = roughness(alpha?).filter(|_| !is_thin);
+        let message = match is_thin {
+            true => {
+                "approximated: a smooth thin sheet, with all reflections within; its base colour counts once"
+            }
+            false => {
+                "approximated: an interface that the base colour counts at, each time light passes"
+            }
+        };
+        self.note(path, message);
+        Some(Material::Dielectric(Dielectric {
+            index,
+            reflectance: Texture::Constant(1.0),
+            transmittance: color?,
+            roughness,
+            is_thin,
+        }))
+    }
+
+    /// Whether the surface bounds a body.
+    fn has_volume(&self, draft: &Draft<'_>) -> bool {
+        let extensions = draft.source.extensions.as_ref();
+        let Some(volume) = extensions.and_then(|of| of.volume.as_ref()) else {
+            return false;
+        };
+        let path = format!("{}.extensions.KHR_materials_volume", draft.path);
+        if volume.attenuation_distance.0.is_finite() {
+            self.note(&path, "attenuation left out: the body is clear");
+        }
+        if volume.thickness_factor.0 > 0.0 && volume.thickness_texture.is_some() {
+            self.note(&path, "thicknessTexture left out");
+        }
+        volume.thickness_factor.0 > 0.0
+    }
+}

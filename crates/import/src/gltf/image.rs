@@ -1,0 +1,100 @@
+//! Images, as numbers.
+
+use super::reader::Reader;
+use super::texture::{Level, cut};
+use crate::pictures;
+use etendue_field::Raster;
+use etendue_scene::Channels;
+use std::path::Path;
+use std::sync::Arc;
+
+/// An image, and which numbers are taken from it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct RasterKey {
+    image: usize,
+    kind: u8,
+    numbers: [u64; 3],
+}
+
+impl RasterKey {
+    fn new(image: usize, level: Level) -> Self {
+        let (kind, numbers) = match level {
+            Level::Color(factor) => (0, factor),
+            Level::GreenSquared(factor) => (1, [factor, 0.0, 0.0]),
+            Level::Blue(factor) => (2, [factor, 0.0, 0.0]),
+            Level::Alpha { factor, cutoff } => (3, [factor, cutoff.unwrap_or(-1.0), 0.0]),
+        };
+        Self {
+            image,
+            kind,
+            numbers: numbers.map(f64::to_bits),
+        }
+    }
+}
+
+/// What an image begins with, as the extension of a file.
+fn extension(bytes: &[u8]) -> Option<&'static str> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', ..] => Some("png"),
+        [0xff, 0xd8, ..] => Some("jpg"),
+        _ => None,
+    }
+}
+
+impl Reader<'_> {
+    /// The pixels of an image as one number each; `None` after a cause.
+    pub(super) fn raster(&mut self, image: usize, level: Level) -> Option<Arc<Raster>> {
+        let key = RasterKey::new(image, level);
+        if let Some(known) = self.rasters.get(&key) {
+            return known.clone().ok();
+        }
+        let read = self.read_image(image, level).map(Arc::new);
+        if let Err(error) = &read {
+            self.cause(&format!("images[{image}]"), error);
+        }
+        self.rasters.insert(key, read.clone());
+        read.ok()
+    }
+
+    fn read_image(&mut self, number: usize, level: Level) -> Result<Raster, String> {
+        let image = self.root.images.get(number).ok_or("is not there")?;
+        let bytes = match (&image.uri, image.buffer_view) {
+            (Some(uri), _) => self.bytes_of(uri)?,
+            (None, Some(view)) => self.view(view.value()).ok_or("cannot be read")?,
+            (None, None) => return Err("has neither uri nor bufferView".to_owned()),
+        };
+        let extension = extension(&bytes).ok_or("is no PNG or JPEG picture")?;
+        let raster = match level {
+            Level::Alpha { factor, cutoff } => {
+                let number = |alpha: f64| cut(factor * alpha, cutoff);
+                super::alpha::read(extension, &bytes, number)?
+            }
+            _ => {
+                let channels = pictures::decode(
+                    Path::new("image").with_extension(extension).as_path(),
+                    &bytes,
+                )?;
+                self.numbers_of(&channels, level)?
+            }
+        };
+        self.files.spend(size_of_val(raster.values()) as u64)?;
+        Ok(raster)
+    }
+
+    fn numbers_of(&self, channels: &Channels, level: Level) -> Result<Raster, String> {
+        let color = self.color;
+        let is_grey = channels.count == 1;
+        let raster = channels.raster(|rgb| match level {
+            // Rounding would move the luminance of three equal numbers off them.
+            Level::Color(factor) if is_grey => pictures::linear(rgb[0]) * color.of(factor),
+            Level::Color(factor) => {
+                let linear = rgb.map(pictures::linear);
+                color.of([0, 1, 2].map(|i| linear[i] * factor[i]))
+            }
+            Level::GreenSquared(factor) => (factor * rgb[1]) * (factor * rgb[1]),
+            Level::Blue(factor) => factor * rgb[2],
+            Level::Alpha { .. } => 1.0,
+        });
+        raster.map_err(|fault| fault.to_string())
+    }
+}

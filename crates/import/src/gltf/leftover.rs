@@ -1,0 +1,22 @@
+//! What files hold that a world does not.
+
+use super::reader::Reader;
+use crate::report::quoted;
+
+impl Reader<'_> {
+    /// Notes on parts of the file as a whole.
+    pub(super) fn tell_leftovers(&self) {
+        let root = self.root;
+        for (i, animation) in root.animations.iter().enumerate() {
+            let name = animation.name.as_deref().unwrap_or_default();
+            let message = format!(
+                "{} left out: the scene stands as its nodes say",
+                quoted(name)
+            );
+            self.note(&format!("animations[{i}]"), message);
+        }
+        for name in root.extensions.iter().flat_map(|of| of.others.keys()) {
+            self.note("extensions", format!("{} left out", quoted(name)));
+        }
+    }
+}

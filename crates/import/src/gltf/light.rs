@@ -1,0 +1,79 @@
+//! Lights of `KHR_lights_punctual`.
+
+use super::node::Placed;
+use super::reader::{MOST, Reader};
+use ::gltf::json::extensions::scene::khr_lights_punctual::{Light as Punctual, Spot, Type};
+use ::gltf::json::validation::Checked;
+use etendue_world::{Falloff, Light};
+use std::f64::consts::FRAC_PI_2;
+
+impl<'a> Reader<'a> {
+    pub(super) fn light_of(&mut self, placed: &Placed<'a>, number: usize) {
+        let path = format!("extensions.KHR_lights_punctual.lights[{number}]");
+        let extensions = self.root.extensions.as_ref();
+        let lights = extensions.and_then(|of| of.khr_lights_punctual.as_ref());
+        let Some(light) = lights.and_then(|of| of.lights.get(number)) else {
+            return self.cause(&placed.path, "a light that is not there");
+        };
+        if self.world.lights.len() >= MOST {
+            return self.cause(&placed.path, format!("more than {MOST} lights"));
+        }
+        if light.range.is_some() {
+            let message = "left out: light goes on without end";
+            self.note(&format!("{path}.range"), message);
+        }
+        if let Some(light) = self.light(light, placed, &path) {
+            self.world.lights.push(light);
+            self.note_once("strengths of lights are taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit of emission as 1 W m⁻² sr⁻¹");
+        }
+    }
+
+    fn light(&mut self, light: &Punctual, placed: &Placed<'a>, path: &str) -> Option<Light> {
+        let most = [0.0, 1e30];
+        let strength = self.within(&format!("{path}.intensity"), light.intensity, most)?;
+        for value in light.color {
+            self.within(&format!("{path}.color"), value, most)?;
+        }
+        let strength = strength * self.color.of(light.color.map(f64::from));
+        let Checked::Valid(kind) = light.type_ else {
+            return None;
+        };
+        let looking = placed.looking();
+        if looking.is_none() && kind != Type::Point {
+            self.cause(&placed.path, "scales a light to nothing");
+        }
+        match kind {
+            Type::Point => Some(Light::Point {
+                position: placed.to_world.translation,
+                intensity: strength,
+            }),
+            Type::Directional => Some(Light::Directional {
+                direction: looking?.matrix3.z_axis,
+                irradiance: strength,
+            }),
+            Type::Spot => {
+                let [beam, cutoff] = self.cone(light.spot.as_ref()?, &format!("{path}.spot"))?;
+                Some(Light::Spot {
+                    to_world: looking?,
+                    intensity: strength,
+                    beam,
+                    cutoff,
+                    falloff: Falloff::SquaredCosine,
+                })
+            }
+        }
+    }
+
+    /// Half the angles of both cones.
+    fn cone(&self, spot: &Spot, path: &str) -> Option<[f64; 2]> {
+        let [inner, outer] = [spot.inner_cone_angle, spot.outer_cone_angle].map(f64::from);
+        // π/2 in 32 bits is a little more.
+        let fits = 0.0 <= inner && inner < outer && outer <= FRAC_PI_2 + 1e-6;
+        if !fits {
+            let message =
+                format!("cones of {inner} and {outer}; allowed: 0 <= inner < outer <= π/2");
+            self.cause(path, message);
+        }
+        fits.then_some([inner, outer.min(FRAC_PI_2)])
+    }
+}

@@ -1,0 +1,183 @@
+//! Materials.
+
+use super::reader::Reader;
+use super::texture::Level;
+use crate::report::quoted;
+use ::gltf::json::Material as Source;
+use ::gltf::json::material::AlphaMode;
+use ::gltf::json::validation::Checked;
+use etendue_world::{Emission, Material, Texture};
+use std::collections::BTreeSet;
+
+/// What a surface is made of.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    /// The number of its material.
+    pub(super) material: usize,
+    pub(super) emission: Option<Emission>,
+    pub(super) is_double_sided: bool,
+    /// The texture coordinates that its pictures go by.
+    pub(super) set: Option<u32>,
+}
+
+/// A material while it is read.
+pub(super) struct Draft<'a> {
+    pub(super) source: &'a Source,
+    pub(super) path: String,
+    /// Texture coordinates that pictures ask for.
+    pub(super) sets: BTreeSet<u32>,
+}
+
+impl<'a> Reader<'a> {
+    /// A material by its number; without one that of the specification. `None` after a cause.
+    pub(super) fn material(&mut self, number: Option<usize>) -> Option<Surface> {
+        if let Some(known) = self.materials.get(&number) {
+            return known.clone();
+        }
+        let made = match number.map(|n| (n, self.root.materials.get(n))) {
+            Some((n, Some(source))) => self.surface(source, format!("materials[{n}]")),
+            _ => self.surface(&Source::default(), "the default material".to_owned()),
+        };
+        self.materials.insert(number, made.clone());
+        made
+    }
+
+    fn surface(&mut self, source: &Source, path: String) -> Option<Surface> {
+        let mut draft = Draft {
+            source,
+            path,
+            sets: BTreeSet::new(),
+        };
+        self.tell_dropped_of(&draft);
+        let scatter = self.scatter(&mut draft);
+        let emission = self.emission(&mut draft);
+        let opacity = self.opacity(&mut draft);
+        let (scatter, emission) = (scatter?, emission?);
+        let material = match opacity? {
+            None => scatter,
+            Some(opacity) => {
+                if emission.is_some() {
+                    let message = "does not weaken what the material emits";
+                    self.note(&format!("{}.alphaMode", draft.path), message);
+                }
+                let of = Box::new(scatter);
+                Material::Mask { opacity, of }
+            }
+        };
+        if draft.sets.len() > 1 {
+            let message = format!(
+                "pictures by several texture coordinates, {:?}; allowed: one of them",
+                draft.sets
+            );
+            self.cause(&draft.path, message);
+            return None;
+        }
+        self.world.materials.push(material);
+        Some(Surface {
+            material: self.world.materials.len() - 1,
+            emission,
+            is_double_sided: source.double_sided,
+            set: draft.sets.first().copied(),
+        })
+    }
+
+    /// What scatters light, on one side or both.
+    fn scatter(&mut self, draft: &mut Draft<'_>) -> Option<Material> {
+        let metallic_roughness = self.metallic_roughness(draft)?;
+        let opaque = match draft.source.double_sided {
+            // What shines on both sides is two surfaces, each with its front.
+            true if !is_lit(draft.source) => {
+                Material::TwoSided(Box::new([metallic_roughness.clone(), metallic_roughness]))
+            }
+            true => metallic_roughness,
+            false => {
+                self.note_once("surfaces that are not doubleSided scatter light on their front alone; their backs, which glTF does not show, are black");
+                metallic_roughness
+            }
+        };
+        self.with_glass(draft, opaque)
+    }
+
+    /// What is emitted on the front. The outer `None` is after a cause.
+    #[expect(clippy::option_option, reason = "the outer none is a cause")]
+    fn emission(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
+        let path = format!("{}.emissiveFactor", draft.path);
+        let factor = self.shares(&path, draft.source.emissive_factor.0)?;
+        let extensions = draft.source.extensions.as_ref();
+        let strength = extensions.and_then(|of| of.emissive_strength.as_ref());
+        let strength = match strength {
+            Some(of) => {
+                let path = format!("{}.extensions.KHR_materials_emissive_strength", draft.path);
+                self.within(&path, of.emissive_strength.0, [0.0, 1e30])?
+            }
+            None => 1.0,
+        };
+        if !is_lit(draft.source) {
+            return Some(None);
+        }
+        self.note_once("strengths of lights are taken as radiometric: 1 cd as 1 W/sr, 1 lx as 1 W/m², 1 nit of emission as 1 W m⁻² sr⁻¹");
+        let level = Level::Color(factor.map(|v| v * strength));
+        let source = draft.source;
+        match &source.emissive_texture {
+            Some(info) => self.bitmap(draft, info, "emissiveTexture", level).map(Some),
+            None => Some(Some(self.constant(&level))),
+        }
+    }
+
+    /// The share of light that does not pass; inner `None` for all of it. The outer `None` is after a cause.
+    #[expect(clippy::option_option, reason = "the outer none is a cause")]
+    fn opacity(&mut self, draft: &mut Draft<'_>) -> Option<Option<Texture>> {
+        let source = draft.source;
+        let factor = f64::from(source.pbr_metallic_roughness.base_color_factor.0[3]);
+        let cutoff = match source.alpha_mode {
+            Checked::Valid(AlphaMode::Opaque) | Checked::Invalid => return Some(None),
+            Checked::Valid(AlphaMode::Mask) => {
+                Some(source.alpha_cutoff.as_ref().map_or(0.5, |c| f64::from(c.0)))
+            }
+            Checked::Valid(AlphaMode::Blend) => None,
+        };
+        let level = Level::Alpha { factor, cutoff };
+        let texture = match &source.pbr_metallic_roughness.base_color_texture {
+            Some(info) => {
+                if cutoff.is_some() {
+                    let message = "approximated: pixels are let through or not, without what is between their centres";
+                    self.note(&format!("{}.alphaCutoff", draft.path), message);
+                }
+                self.bitmap(draft, info, "pbrMetallicRoughness.baseColorTexture", level)?
+            }
+            None => self.constant(&level),
+        };
+        Some(match texture {
+            Texture::Constant(1.0..) => None,
+            other => Some(other),
+        })
+    }
+
+    fn tell_dropped_of(&self, draft: &Draft<'_>) {
+        let (source, path) = (draft.source, &draft.path);
+        if source.normal_texture.is_some() {
+            let message = "left out: normals are those of the mesh";
+            self.note(&format!("{path}.normalTexture"), message);
+        }
+        if source.occlusion_texture.is_some() {
+            let message = "left out: light is followed instead";
+            self.note(&format!("{path}.occlusionTexture"), message);
+        }
+        let Some(extensions) = &source.extensions else {
+            return;
+        };
+        if extensions.unlit.is_some() {
+            let message = "left out: the surface is lit like others";
+            self.note(&format!("{path}.extensions.KHR_materials_unlit"), message);
+        }
+        for name in extensions.others.keys() {
+            let name = quoted(name);
+            self.note(&format!("{path}.extensions"), format!("{name} left out"));
+        }
+    }
+}
+
+/// Whether a material emits light.
+fn is_lit(source: &Source) -> bool {
+    source.emissive_factor.0.iter().any(|v| *v > 0.0)
+}

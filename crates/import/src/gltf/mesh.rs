@@ -1,0 +1,170 @@
+//! Primitives of meshes, as triangles.
+
+use super::reader::Reader;
+use crate::meshes::Parts;
+use ::gltf::json::mesh::{Mode, Primitive, Semantic};
+use ::gltf::json::validation::Checked;
+use ::gltf::json::{Accessor, Index};
+use glam::{DVec2, DVec3};
+use std::collections::BTreeMap;
+
+/// Most corners; their numbers are of 32 bits.
+const MOST: usize = u32::MAX as usize;
+
+fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
+    primitive.attributes.get(&Checked::Valid(of)).copied()
+}
+
+impl Reader<'_> {
+    /// The triangles of a primitive, with the texture coordinates that its material asks for; `None` if there are none, or after a cause.
+    pub(super) fn parts(
+        &mut self,
+        primitive: &Primitive,
+        path: &str,
+        set: Option<u32>,
+    ) -> Option<Parts> {
+        let Checked::Valid(mode) = primitive.mode else {
+            return None;
+        };
+        self.tell_dropped(primitive, path);
+        let vertices: Vec<[f64; 3]> = self.numbers(attribute(primitive, Semantic::Positions)?)?;
+        let vertices: Vec<DVec3> = vertices.into_iter().map(DVec3::from).collect();
+        let normals = match attribute(primitive, Semantic::Normals) {
+            Some(index) => Some(self.numbers::<3>(index)?),
+            None => None,
+        };
+        let uvs = match set {
+            Some(set) => Some(self.uvs(primitive, path, set)?),
+            None => None,
+        };
+        let listed = match primitive.indices {
+            Some(index) => self.indices(index)?,
+            None => self.all(vertices.len(), path)?,
+        };
+        let count = vertices.len();
+        if let Some(bad) = listed.iter().find(|i| **i as usize >= count) {
+            self.cause(path, format!("index {bad} among {count} vertices"));
+            return None;
+        }
+        let agrees = |length: usize| length == count;
+        if !normals.as_ref().is_none_or(|n| agrees(n.len()))
+            || !uvs.as_ref().is_none_or(|uvs| agrees(uvs.len()))
+        {
+            self.cause(path, "attributes of different lengths");
+            return None;
+        }
+        let mut parts = Parts {
+            vertices,
+            corners: corners(&listed, mode),
+            normals: normals.map(|n| n.into_iter().map(DVec3::from).collect()),
+            uvs: uvs.map(|uvs| uvs.into_iter().map(DVec2::from).collect()),
+        };
+        self.finish(&mut parts, path)?;
+        Some(parts)
+    }
+
+    /// Corners of a primitive without indices: all vertices in their order.
+    fn all(&self, count: usize, path: &str) -> Option<Vec<u32>> {
+        let count = u32::try_from(count.min(MOST)).ok()?;
+        let spent = self.files.spend(u64::from(count) * 4);
+        spent.map_err(|error| self.cause(path, error)).ok()?;
+        Some((0..count).collect())
+    }
+
+    fn uvs(&mut self, primitive: &Primitive, path: &str, set: u32) -> Option<Vec<[f64; 2]>> {
+        let Some(index) = attribute(primitive, Semantic::TexCoords(set)) else {
+            let message = format!("has no TEXCOORD_{set}, which its material asks for");
+            self.cause(path, message);
+            return None;
+        };
+        self.numbers(index)
+    }
+
+    /// Drops what no ray meets, and turns normals to the front.
+    fn finish(&self, parts: &mut Parts, path: &str) -> Option<()> {
+        let spent = self.files.spend(parts.bytes());
+        spent.map_err(|error| self.cause(path, error)).ok()?;
+        parts.drop_empty();
+        if parts.corners.is_empty() {
+            self.note(path, "has no triangle with an area: left out");
+            return None;
+        }
+        let mended = parts.mend_normals();
+        if mended {
+            let message = "approximated: vertices without a normal have that of a triangle";
+            self.note(path, message);
+        }
+        let turned = parts.turn_normals();
+        if turned > 0 {
+            let message = format!(
+                "{turned} normals point away from the front of their triangles, and are turned over"
+            );
+            self.note(path, message);
+        }
+        Some(())
+    }
+
+    fn tell_dropped(&self, primitive: &Primitive, path: &str) {
+        if primitive.targets.is_some() {
+            self.note(
+                &format!("{path}.targets"),
+                "left out: the mesh is as it is without",
+            );
+        }
+        if attribute(primitive, Semantic::Colors(0)).is_some() {
+            self.note(&format!("{path}.attributes.COLOR_0"), "left out");
+        }
+        let others = primitive.extensions.iter().flat_map(|of| of.others.keys());
+        for name in others {
+            let name = crate::report::quoted(name);
+            self.note(&format!("{path}.extensions"), format!("{name} left out"));
+        }
+    }
+}
+
+/// Triangles of a list, a strip or a fan; a strip turns every second one over.
+fn corners(listed: &[u32], mode: Mode) -> Vec<[u32; 3]> {
+    match mode {
+        Mode::Triangles => listed.as_chunks().0.to_vec(),
+        Mode::TriangleStrip => {
+            let turned = |(i, w): (usize, &[u32])| match i % 2 {
+                0 => [w[0], w[1], w[2]],
+                _ => [w[0], w[2], w[1]],
+            };
+            listed.windows(3).enumerate().map(turned).collect()
+        }
+        Mode::TriangleFan => {
+            let pairs = listed.get(1..).unwrap_or_default().windows(2);
+            pairs.map(|pair| [pair[0], pair[1], listed[0]]).collect()
+        }
+        _ => Vec::new(),
+    }
+}
+
+/// The same triangles with their back for a front, `gap` behind them. Corners at one place move together.
+pub(super) fn back_of(parts: &etendue_world::Triangles, gap: f64) -> Parts {
+    let bits = |v: DVec3| v.to_array().map(|x| (x + 0.0).to_bits());
+    let mut sums: BTreeMap<[u64; 3], DVec3> = BTreeMap::new();
+    let vertices = parts.vertices();
+    for corners in parts.corners() {
+        let [a, b, c] = corners.map(|i| vertices[i as usize]);
+        let normal = (b - a).cross(c - a).normalize_or_zero();
+        for corner in [a, b, c] {
+            *sums.entry(bits(corner)).or_default() += normal;
+        }
+    }
+    let moved = vertices.iter().map(|v| {
+        let sum = sums.get(&bits(*v)).copied().unwrap_or_default();
+        *v - gap * sum.normalize_or_zero()
+    });
+    Parts {
+        vertices: moved.collect(),
+        corners: parts
+            .corners()
+            .iter()
+            .map(|[a, b, c]| [*a, *c, *b])
+            .collect(),
+        normals: parts.normals().map(|n| n.iter().map(|n| -*n).collect()),
+        uvs: parts.uvs().map(<[DVec2]>::to_vec),
+    }
+}

@@ -1,0 +1,184 @@
+//! Nodes: where everything is.
+
+use super::reader::Reader;
+use crate::report::quoted;
+use ::gltf::json::Node;
+use glam::{DAffine3, DMat3, DQuat, DVec3};
+
+/// By how much the length of a turn may be off 1.
+const UNIT: f64 = 1e-3;
+
+/// A node and where it is.
+pub(super) struct Placed<'a> {
+    pub(super) node: &'a Node,
+    pub(super) path: String,
+    pub(super) to_world: DAffine3,
+}
+
+impl<'a> Reader<'a> {
+    /// Adds all that the nodes of the scene hold. Without recursion: each node is met once.
+    pub(super) fn nodes(&mut self) {
+        let mut met = vec![false; self.root.nodes.len()];
+        let mut open: Vec<(usize, DAffine3)> = Vec::new();
+        let first = self.tops();
+        open.extend(first.iter().rev().map(|top| (*top, DAffine3::IDENTITY)));
+        while let Some((number, outer)) = open.pop() {
+            let path = format!("nodes[{number}]");
+            let Some(node) = self.root.nodes.get(number) else {
+                continue;
+            };
+            if std::mem::replace(&mut met[number], true) {
+                self.cause(&path, "is below two nodes, or below itself");
+                continue;
+            }
+            let Some(own) = self.own(node, &path) else {
+                continue;
+            };
+            let to_world = outer * own;
+            let children = node.children.iter().flatten().rev();
+            open.extend(children.map(|child| (child.value(), to_world)));
+            let placed = Placed {
+                node,
+                path,
+                to_world,
+            };
+            self.hold(&placed);
+        }
+        self.tell_unmet(&met);
+    }
+
+    /// The nodes of the scene to be shown; without scenes those that are below no other.
+    fn tops(&self) -> Vec<usize> {
+        let chosen = self.root.scene.map_or(0, |scene| scene.value());
+        let Some(scene) = self.root.scenes.get(chosen) else {
+            let mut is_top = vec![true; self.root.nodes.len()];
+            let children = self.root.nodes.iter().flat_map(|node| &node.children);
+            for child in children.flatten() {
+                if let Some(top) = is_top.get_mut(child.value()) {
+                    *top = false;
+                }
+            }
+            return (0..is_top.len()).filter(|i| is_top[*i]).collect();
+        };
+        if self.root.scenes.len() > 1 {
+            let others = self.root.scenes.len() - 1;
+            let message = format!("is shown; {others} other scenes are left out");
+            self.note(&format!("scenes[{chosen}]"), message);
+        }
+        scene.nodes.iter().map(|node| node.value()).collect()
+    }
+
+    /// Nodes that no scene shows. Without scenes only nodes that are below themselves are below no top.
+    fn tell_unmet(&self, met: &[bool]) {
+        let unmet = met.iter().filter(|met| !**met).count();
+        match (met.iter().position(|met| !met), self.root.scenes.is_empty()) {
+            (Some(first), true) => {
+                self.cause(
+                    &format!("nodes[{first}]"),
+                    "is below two nodes, or below itself",
+                );
+            }
+            (Some(_), false) => self.note("nodes", format!("{unmet} are not in the scene")),
+            (None, _) => {}
+        }
+    }
+
+    /// What is at a node.
+    fn hold(&mut self, placed: &Placed<'a>) {
+        let (node, path) = (placed.node, &placed.path);
+        if !placed.to_world.is_finite() {
+            return self.cause(path, "is placed without bounds");
+        }
+        if node.skin.is_some() {
+            self.note(
+                &format!("{path}.skin"),
+                "left out: the mesh is as it was bound",
+            );
+        }
+        if let Some(mesh) = node.mesh {
+            self.mesh_of(placed, mesh.value());
+        }
+        if let Some(camera) = node.camera {
+            self.camera_of(placed, camera.value());
+        }
+        let extensions = node.extensions.as_ref();
+        if let Some(light) = extensions.and_then(|of| of.khr_lights_punctual.as_ref()) {
+            self.light_of(placed, light.light.value());
+        }
+        for name in extensions.iter().flat_map(|of| of.others.keys()) {
+            self.note(
+                &format!("{path}.extensions"),
+                format!("{} left out", quoted(name)),
+            );
+        }
+    }
+
+    /// What a node does to its contents; `None` after a cause.
+    fn own(&self, node: &Node, path: &str) -> Option<DAffine3> {
+        let is_split =
+            node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
+        match node.matrix {
+            Some(_) if is_split => {
+                self.cause(path, "matrix beside translation, rotation or scale");
+                None
+            }
+            Some(matrix) => self.matrix(matrix, path),
+            None => self.split(node, path),
+        }
+    }
+
+    /// Sixteen numbers, one column after the other.
+    fn matrix(&self, matrix: [f32; 16], path: &str) -> Option<DAffine3> {
+        let m = matrix.map(f64::from);
+        let is_affine = [m[3], m[7], m[11], m[15] - 1.0]
+            .iter()
+            .all(|v| v.abs() < 1e-6);
+        if !is_affine {
+            self.cause(&format!("{path}.matrix"), "its last row is not 0 0 0 1");
+            return None;
+        }
+        let column = |i: usize| DVec3::new(m[4 * i], m[4 * i + 1], m[4 * i + 2]);
+        let linear = DMat3::from_cols(column(0), column(1), column(2));
+        Some(DAffine3::from_mat3_translation(linear, column(3)))
+    }
+
+    /// Scale first, then the turn, then the move.
+    fn split(&self, node: &Node, path: &str) -> Option<DAffine3> {
+        let three = |v: Option<[f32; 3]>, or| v.map_or(or, |v| DVec3::from(v.map(f64::from)));
+        let turn = match &node.rotation {
+            Some(rotation) => {
+                let turn = DQuat::from_array(rotation.0.map(f64::from));
+                let length = turn.length();
+                if !(length.is_finite() && length > 1e-6) {
+                    self.cause(&format!("{path}.rotation"), "has no length");
+                    return None;
+                }
+                if (length - 1.0).abs() > UNIT {
+                    let message = format!("has length {length}, and is brought to 1");
+                    self.note(&format!("{path}.rotation"), message);
+                }
+                turn.normalize()
+            }
+            None => DQuat::IDENTITY,
+        };
+        Some(DAffine3::from_scale_rotation_translation(
+            three(node.scale, DVec3::ONE),
+            turn,
+            three(node.translation, DVec3::ZERO),
+        ))
+    }
+}
+
+impl Placed<'_> {
+    /// Where it is and how it is turned, looking along −Z with Y up, as a camera or light of a world looks along Z. Scale is left out, a mirror too.
+    pub(super) fn looking(&self) -> Option<DAffine3> {
+        let linear = self.to_world.matrix3;
+        let ahead = (-linear.z_axis).try_normalize()?;
+        let left = linear.y_axis.cross(ahead).try_normalize()?;
+        let frame = DMat3::from_cols(left, ahead.cross(left), ahead);
+        Some(DAffine3::from_mat3_translation(
+            frame,
+            self.to_world.translation,
+        ))
+    }
+}

@@ -1,0 +1,109 @@
+use super::container::Document;
+use super::image::RasterKey;
+use super::material::Surface;
+use crate::Color;
+use crate::files::Files;
+use crate::report::{Place, Report};
+use ::gltf::json::Root;
+use etendue_field::Raster;
+use etendue_world::{Triangles, World};
+use std::collections::{HashMap, HashSet};
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Most shapes, and most lights.
+pub(super) const MOST: usize = 1 << 20;
+
+/// Makes a world of a file.
+pub(super) struct Reader<'a> {
+    pub(super) root: &'a Root,
+    pub(super) chunk: Option<&'a [u8]>,
+    pub(super) files: &'a Files,
+    pub(super) report: &'a Report,
+    pub(super) place: Place,
+    pub(super) folder: PathBuf,
+    pub(super) color: Color,
+    pub(super) world: World,
+    /// Bytes of the buffers that were asked for; `None` after a cause.
+    pub(super) buffers: HashMap<usize, Option<Arc<[u8]>>>,
+    /// Meshes by their number and that of the primitive; `None` if there is nothing to see, or after a cause.
+    pub(super) meshes: HashMap<(usize, usize), Option<Arc<Triangles>>>,
+    /// The same with their back for a front, moved aside.
+    pub(super) backs: HashMap<(usize, usize), Option<Arc<Triangles>>>,
+    /// Materials by their number; `None` after a cause. The default one has no number.
+    pub(super) materials: HashMap<Option<usize>, Option<Surface>>,
+    pub(super) rasters: HashMap<RasterKey, Result<Arc<Raster>, String>>,
+    /// Notes that are told once.
+    pub(super) told: HashSet<&'static str>,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(
+        document: &'a Document,
+        files: &'a Files,
+        report: &'a Report,
+        place: Place,
+        folder: PathBuf,
+    ) -> Self {
+        Self {
+            root: &document.root,
+            chunk: document.chunk.as_deref(),
+            files,
+            report,
+            place,
+            folder,
+            color: Color::default(),
+            world: World::default(),
+            buffers: HashMap::new(),
+            meshes: HashMap::new(),
+            backs: HashMap::new(),
+            materials: HashMap::new(),
+            rasters: HashMap::new(),
+            told: HashSet::new(),
+        }
+    }
+
+    /// The world of the file.
+    pub(super) fn world(mut self) -> World {
+        self.tell_leftovers();
+        self.nodes();
+        self.world
+    }
+
+    /// The file is refused, because of what is at a path of its JSON.
+    pub(super) fn cause(&self, path: &str, message: impl AsRef<str>) {
+        self.report
+            .cause(&self.place, format!("{path}: {}", message.as_ref()));
+    }
+
+    /// What is at a path of the JSON is dropped or approximated.
+    pub(super) fn note(&self, path: &str, message: impl AsRef<str>) {
+        self.report
+            .note(&self.place, format!("{path}: {}", message.as_ref()));
+    }
+
+    /// A note on the file as a whole, told once.
+    pub(super) fn note_once(&mut self, message: &'static str) {
+        if self.told.insert(message) {
+            self.report.note(&self.place, message);
+        }
+    }
+
+    /// A number within range; `None` after a cause.
+    pub(super) fn within(&self, path: &str, value: f32, [low, high]: [f64; 2]) -> Option<f64> {
+        let value = f64::from(value);
+        if (low..=high).contains(&value) && value.is_finite() {
+            return Some(value);
+        }
+        self.cause(path, format!("is {value}; allowed: {low} to {high}"));
+        None
+    }
+
+    /// Numbers from 0 to 1; `None` after a cause.
+    pub(super) fn shares<const N: usize>(&self, path: &str, values: [f32; N]) -> Option<[f64; N]> {
+        for value in values {
+            self.within(path, value, [0.0, 1.0])?;
+        }
+        Some(values.map(f64::from))
+    }
+}

@@ -1,0 +1,147 @@
+//! Meshes of nodes, as shapes.
+
+use super::material::Surface;
+use super::mesh::back_of;
+use super::node::Placed;
+use super::reader::{MOST, Reader};
+use ::gltf::json::mesh::{Mode, Primitive};
+use ::gltf::json::validation::Checked;
+use etendue_world::{Geometry, Shape, Triangles};
+use glam::{DAffine3, DVec3};
+use std::sync::Arc;
+
+/// How far the back of a surface that shines on both sides is behind its front, over the size of its mesh.
+const GAP: f64 = 1e-5;
+
+/// Most characters of a name.
+const LONGEST: usize = 100;
+
+impl<'a> Reader<'a> {
+    /// Adds the shapes of a mesh, one for each primitive.
+    pub(super) fn mesh_of(&mut self, placed: &Placed<'a>, number: usize) {
+        let Some(mesh) = self.root.meshes.get(number) else {
+            return;
+        };
+        // A determinant of an f64 product may round to no exact 0.
+        let linear = placed.to_world.matrix3;
+        let size = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
+        if linear.determinant().abs() <= 1e-12 * size {
+            let message = "scales a mesh to nothing: left out";
+            return self.note(&placed.path, message);
+        }
+        let own = || mesh.name.clone();
+        let name = placed.node.name.clone().or_else(own).unwrap_or_default();
+        // Many nodes may show one mesh.
+        let name: String = name.chars().take(LONGEST).collect();
+        for (i, primitive) in mesh.primitives.iter().enumerate() {
+            self.primitive(placed, [number, i], primitive, &name);
+        }
+    }
+
+    fn primitive(
+        &mut self,
+        placed: &Placed<'a>,
+        key: [usize; 2],
+        primitive: &Primitive,
+        name: &str,
+    ) {
+        let path = format!("meshes[{}].primitives[{}]", key[0], key[1]);
+        if self.world.shapes.len() >= MOST {
+            // The first one says it.
+            if !self.report.has_causes() {
+                self.cause(&placed.path, format!("more than {MOST} shapes"));
+            }
+            return;
+        }
+        let key = (key[0], key[1]);
+        let surface = self.material(primitive.material.map(|m| m.value()));
+        let Some(surface) = surface else {
+            return;
+        };
+        let known = match self.meshes.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let made = self.triangles(primitive, &path, &surface);
+                self.meshes.insert(key, made.clone());
+                made
+            }
+        };
+        let Some(triangles) = known else {
+            return;
+        };
+        if surface.emission.is_some() && surface.is_double_sided {
+            self.add_back(key, &triangles, placed.to_world, name, &surface, &path);
+        }
+        self.add(triangles, placed.to_world, name, &surface);
+    }
+
+    fn triangles(
+        &mut self,
+        primitive: &Primitive,
+        path: &str,
+        surface: &Surface,
+    ) -> Option<Arc<Triangles>> {
+        let Checked::Valid(mode) = primitive.mode else {
+            return None;
+        };
+        if !matches!(
+            mode,
+            Mode::Triangles | Mode::TriangleStrip | Mode::TriangleFan
+        ) {
+            self.note(path, format!("{mode:?} left out; allowed: triangles"));
+            return None;
+        }
+        let parts = self.parts(primitive, path, surface.set)?;
+        parts.finish().map(Arc::new)
+    }
+
+    fn add(&mut self, mesh: Arc<Triangles>, to_world: DAffine3, name: &str, surface: &Surface) {
+        self.world.shapes.push(Shape {
+            name: name.to_owned(),
+            geometry: Geometry::Mesh(mesh),
+            to_world,
+            is_flipped: false,
+            material: surface.material,
+            emission: surface.emission.clone(),
+        });
+    }
+
+    /// A surface that shines on both sides is two: each shines on its front.
+    fn add_back(
+        &mut self,
+        key: (usize, usize),
+        front: &Triangles,
+        to_world: DAffine3,
+        name: &str,
+        surface: &Surface,
+        path: &str,
+    ) {
+        let known = match self.backs.get(&key) {
+            Some(known) => known.clone(),
+            None => {
+                let gap = GAP * extent(front);
+                let parts = back_of(front, gap);
+                let spent = self.files.spend(parts.bytes());
+                let fits = spent.map_err(|error| self.cause(path, error)).is_ok();
+                let made = parts.finish().filter(|_| fits).map(Arc::new);
+                let message = format!(
+                    "shines on both sides: its back is a surface of its own, {gap:.3e} behind"
+                );
+                self.note(path, message);
+                self.backs.insert(key, made.clone());
+                made
+            }
+        };
+        if let Some(back) = known {
+            self.add(back, to_world, name, surface);
+        }
+    }
+}
+
+/// The diagonal of the box around a mesh.
+fn extent(mesh: &Triangles) -> f64 {
+    let nothing = [DVec3::INFINITY, DVec3::NEG_INFINITY];
+    let grow = |[low, high]: [DVec3; 2], v: &DVec3| [low.min(*v), high.max(*v)];
+    let [low, high] = mesh.vertices().iter().fold(nothing, grow);
+    (high - low).length()
+}

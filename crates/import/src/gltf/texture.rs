@@ -1,0 +1,113 @@
+//! Textures, with how they are placed.
+
+use super::material::Draft;
+use super::reader::Reader;
+use ::gltf::json::extensions::texture::TextureTransform;
+use ::gltf::json::texture::{Info, MagFilter, Sampler, WrappingMode};
+use ::gltf::json::validation::Checked;
+use etendue_world::{Bitmap, Filter, Texture, Wrap};
+use glam::{DAffine2, DMat2, DVec2};
+
+/// The number that is taken from a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Level {
+    /// An sRGB colour, made linear, times these factors.
+    Color([f64; 3]),
+    /// The square of the second channel times a factor.
+    GreenSquared(f64),
+    /// The third channel times a factor.
+    Blue(f64),
+    /// Alpha times a factor; 0 or 1 with a cutoff.
+    Alpha { factor: f64, cutoff: Option<f64> },
+}
+
+impl Reader<'_> {
+    /// The number of a pixel that is white and opaque.
+    pub(super) fn constant(&self, level: &Level) -> Texture {
+        Texture::Constant(match *level {
+            Level::Color(factor) => self.color.of(factor),
+            Level::GreenSquared(factor) => factor * factor,
+            Level::Blue(factor) => factor,
+            Level::Alpha { factor, cutoff } => cut(factor, cutoff),
+        })
+    }
+
+    /// A picture of a material; `None` after a cause.
+    pub(super) fn bitmap(
+        &mut self,
+        draft: &mut Draft<'_>,
+        info: &Info,
+        field: &str,
+        level: Level,
+    ) -> Option<Texture> {
+        let path = format!("{}.{field}", draft.path);
+        let texture = self.root.get(info.index)?;
+        let extensions = info.extensions.as_ref();
+        let transform = extensions.and_then(|of| of.texture_transform.as_ref());
+        let set = transform.and_then(|of| of.tex_coord);
+        draft.sets.insert(set.unwrap_or(info.tex_coord));
+        let to_uv = match transform {
+            Some(transform) => self.to_uv(transform, &path)?,
+            None => DAffine2::IDENTITY,
+        };
+        let sampler = texture.sampler.and_then(|sampler| self.root.get(sampler));
+        let (wrap, filter) = self.sampler(sampler, &path);
+        let filter = match level {
+            // Between pixels that pass or do not, there is nothing.
+            Level::Alpha {
+                cutoff: Some(_), ..
+            } => Filter::Nearest,
+            _ => filter,
+        };
+        let pixels = self.raster(texture.source.value(), level)?;
+        Some(Texture::Bitmap(Bitmap {
+            to_uv,
+            pixels,
+            wrap,
+            filter,
+        }))
+    }
+
+    fn sampler(&self, sampler: Option<&Sampler>, path: &str) -> (Wrap, Filter) {
+        let Some(sampler) = sampler else {
+            return (Wrap::Repeat, Filter::Bilinear);
+        };
+        let wrap = |mode| match mode {
+            Checked::Valid(WrappingMode::ClampToEdge) => Wrap::Clamp,
+            Checked::Valid(WrappingMode::MirroredRepeat) => Wrap::Mirror,
+            _ => Wrap::Repeat,
+        };
+        let [across, down] = [wrap(sampler.wrap_s), wrap(sampler.wrap_t)];
+        if across != down {
+            let message = format!("approximated: wrapS, {across:?}, is taken for wrapT, {down:?}");
+            self.note(path, message);
+        }
+        let filter = match sampler.mag_filter {
+            Some(Checked::Valid(MagFilter::Nearest)) => Filter::Nearest,
+            _ => Filter::Bilinear,
+        };
+        (across, filter)
+    }
+
+    /// Scale first, then the turn, then the move. Turns are those of the Khronos viewer and three.js: u' = u cos r + v sin r.
+    fn to_uv(&self, of: &TextureTransform, path: &str) -> Option<DAffine2> {
+        let [scale, offset] = [of.scale.0, of.offset.0].map(|v| DVec2::from(v.map(f64::from)));
+        let (sine, cosine) = libm::sincos(f64::from(of.rotation.0));
+        let turn = DMat2::from_cols(DVec2::new(cosine, -sine), DVec2::new(sine, cosine));
+        let linear = turn * DMat2::from_diagonal(scale);
+        let map = DAffine2::from_mat2_translation(linear, offset);
+        if !map.is_finite() {
+            self.cause(path, "is transformed without bounds");
+        }
+        map.is_finite().then_some(map)
+    }
+}
+
+/// Alpha, or whether it reaches the cutoff.
+pub(super) fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
+    match cutoff {
+        Some(cutoff) if alpha >= cutoff => 1.0,
+        Some(_) => 0.0,
+        None => alpha.clamp(0.0, 1.0),
+    }
+}

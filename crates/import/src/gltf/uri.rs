@@ -1,0 +1,61 @@
+//! What `uri` names: data within the file, or another file.
+
+use base64::Engine;
+use base64::alphabet::STANDARD;
+use base64::engine::{DecodePaddingMode, GeneralPurpose, GeneralPurposeConfig};
+
+/// Base64 whose padding may be missing.
+const BASE64: GeneralPurpose = GeneralPurpose::new(
+    &STANDARD,
+    GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent),
+);
+
+/// Where the bytes are.
+pub(super) enum Source {
+    /// Here.
+    Data(Vec<u8>),
+    /// In a file of this name.
+    File(String),
+}
+
+/// Reads a URI; data may have at most `most` bytes.
+pub(super) fn source(uri: &str, most: u64) -> Result<Source, String> {
+    if let Some(data) = uri.strip_prefix("data:") {
+        let (kind, text) = data.split_once(',').ok_or("is data without a comma")?;
+        if !kind.ends_with(";base64") {
+            return Err("is data in another code; allowed: base64".to_owned());
+        }
+        // Four letters are three bytes.
+        if (text.len() as u64) / 4 * 3 > most {
+            return Err("is too much data".to_owned());
+        }
+        let bytes = BASE64.decode(text);
+        let bytes = bytes.map_err(|error| format!("is damaged base64 ({error})"))?;
+        return Ok(Source::Data(bytes));
+    }
+    if uri.contains("://") {
+        return Err("is on another machine; allowed: files and data".to_owned());
+    }
+    unescaped(uri).map(Source::File)
+}
+
+/// A name without its percent signs.
+fn unescaped(uri: &str) -> Result<String, String> {
+    let mut bytes = Vec::with_capacity(uri.len());
+    let mut rest = uri.as_bytes();
+    while let [first, after @ ..] = rest {
+        let code = after.get(..2).and_then(|two| str::from_utf8(two).ok());
+        let code = code.and_then(|two| u8::from_str_radix(two, 16).ok());
+        rest = match (first, code) {
+            (b'%', Some(byte)) => {
+                bytes.push(byte);
+                &after[2..]
+            }
+            _ => {
+                bytes.push(*first);
+                after
+            }
+        };
+    }
+    String::from_utf8(bytes).map_err(|_| "is no UTF-8".to_owned())
+}

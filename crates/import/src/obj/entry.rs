@@ -1,0 +1,47 @@
+use super::map::Map;
+use crate::report::Place;
+
+/// A material of an MTL file, as it is written.
+#[derive(Clone, Debug)]
+pub(super) struct Entry {
+    /// Where it begins.
+    pub(super) place: Place,
+    /// Diffuse reflectance.
+    pub(super) kd: Option<[f64; 3]>,
+    /// Specular reflectance.
+    pub(super) ks: Option<[f64; 3]>,
+    /// Emitted radiance.
+    pub(super) ke: Option<[f64; 3]>,
+    /// What is transmitted.
+    pub(super) tf: Option<[f64; 3]>,
+    /// Exponent of the specular lobe.
+    pub(super) ns: Option<f64>,
+    /// Index of refraction.
+    pub(super) ni: Option<f64>,
+    /// Opacity.
+    pub(super) d: Option<f64>,
+    /// Kind of illumination, 0 to 10.
+    pub(super) illum: Option<u32>,
+    pub(super) map_kd: Option<Map>,
+    pub(super) map_ke: Option<Map>,
+    pub(super) map_d: Option<Map>,
+}
+
+impl Entry {
+    pub(super) fn new(place: Place) -> Self {
+        Self {
+            place,
+            kd: None,
+            ks: None,
+            ke: None,
+            tf: None,
+            ns: None,
+            ni: None,
+            d: None,
+            illum: None,
+            map_kd: None,
+            map_ke: None,
+            map_d: None,
+        }
+    }
+}

@@ -1,0 +1,109 @@
+//! Statements of MTL files that name a picture.
+
+use crate::report::{Place, Report, quoted};
+use etendue_world::Wrap;
+use glam::{DAffine2, DVec2};
+use std::path::PathBuf;
+
+/// A picture and how it is placed.
+#[derive(Clone, Debug)]
+pub(super) struct Map {
+    pub(super) place: Place,
+    pub(super) file: String,
+    /// Where it is looked for.
+    pub(super) folder: PathBuf,
+    /// From a world's (u, v), v down, to the picture's.
+    pub(super) to_uv: DAffine2,
+    pub(super) wrap: Wrap,
+}
+
+/// Options and the most numbers or words after each.
+const OPTIONS: [(&str, usize); 13] = [
+    ("-o", 3),
+    ("-s", 3),
+    ("-t", 3),
+    ("-clamp", 1),
+    ("-blendu", 1),
+    ("-blendv", 1),
+    ("-boost", 1),
+    ("-bm", 1),
+    ("-cc", 1),
+    ("-imfchan", 1),
+    ("-mm", 2),
+    ("-texres", 1),
+    ("-type", 1),
+];
+
+impl Map {
+    /// Reads what follows the word; `None` after a cause.
+    pub(super) fn read(text: &str, place: Place, folder: PathBuf, report: &Report) -> Option<Self> {
+        let (mut scale, mut offset, mut wrap) = (DVec2::ONE, DVec2::ZERO, Wrap::Repeat);
+        let mut rest = text.trim();
+        while rest.starts_with('-') {
+            let (word, after) = cut(rest);
+            let Some((option, most)) = OPTIONS.iter().find(|(known, _)| *known == word) else {
+                // A file may be named like this.
+                break;
+            };
+            let (values, after) = arguments(after, *most, option);
+            rest = after;
+            match *option {
+                "-s" => scale = pair(&values, 1.0),
+                "-o" => offset = pair(&values, 0.0),
+                "-clamp" if values.first() == Some(&"on") => wrap = Wrap::Clamp,
+                "-clamp" | "-blendu" | "-blendv" => {}
+                _ => report.note(&place, format!("option {option} left out")),
+            }
+        }
+        if rest.is_empty() {
+            report.cause(&place, "names no file");
+            return None;
+        }
+        if !(scale.is_finite() && offset.is_finite()) {
+            report.cause(&place, "places its picture without bounds");
+            return None;
+        }
+        // v' = s v + o upwards is 1 − v' = s (1 − v) + 1 − s − o downwards.
+        let moved = DVec2::new(offset.x, 1.0 - scale.y - offset.y);
+        Some(Self {
+            place,
+            file: rest.replace('\\', "/"),
+            folder,
+            to_uv: DAffine2::from_scale_angle_translation(scale, 0.0, moved),
+            wrap,
+        })
+    }
+
+    /// A word for messages.
+    pub(super) fn name(&self) -> String {
+        quoted(&self.file)
+    }
+}
+
+/// The first word, and what follows it.
+fn cut(text: &str) -> (&str, &str) {
+    let end = text.find(char::is_whitespace).unwrap_or(text.len());
+    (&text[..end], text[end..].trim_start())
+}
+
+/// Up to so many values of an option. Options of several take numbers alone: a file follows them.
+fn arguments<'a>(mut rest: &'a str, most: usize, option: &str) -> (Vec<&'a str>, &'a str) {
+    let mut values = Vec::new();
+    let takes_words = most == 1;
+    while values.len() < most {
+        let (word, after) = cut(rest);
+        let is_value = takes_words || word.parse::<f64>().is_ok();
+        // The last word is the file.
+        if !is_value || after.is_empty() || option.is_empty() {
+            break;
+        }
+        values.push(word);
+        rest = after;
+    }
+    (values, rest)
+}
+
+fn pair(values: &[&str], or: f64) -> DVec2 {
+    let number = |i: usize| values.get(i).and_then(|v| v.parse().ok()).unwrap_or(or);
+    DVec2::new(number(0), number(1))
+}

@@ -1,0 +1,187 @@
+//! Materials of MTL files.
+
+use super::entry::Entry;
+use super::map::Map;
+use super::ply::diffuse;
+use super::reader::Reader;
+use crate::pictures::{decode, linear};
+use etendue_field::Raster;
+use etendue_world::{Bitmap, Conductor, Dielectric, Filter, Material, Texture};
+use std::sync::Arc;
+
+/// Index of refraction, if nothing is said.
+const INDEX: f64 = 1.5;
+
+/// What a part is made of.
+#[derive(Clone, Debug)]
+pub(super) struct Surface {
+    pub(super) material: usize,
+    pub(super) emission: Option<Texture>,
+    /// A picture that needs texture coordinates.
+    pub(super) has_picture: bool,
+}
+
+impl Reader<'_> {
+    /// The surface of parts without a material.
+    pub(super) fn default_surface(&mut self) -> Surface {
+        self.world.materials.push(diffuse());
+        Surface {
+            material: self.world.materials.len() - 1,
+            emission: None,
+            has_picture: false,
+        }
+    }
+
+    /// `None` after a cause.
+    pub(super) fn surface(&mut self, entry: &Entry) -> Option<Surface> {
+        let scatter = self.scatter(entry);
+        let emission = self.emission(entry);
+        let opacity = match &entry.map_d {
+            Some(map) => Some(self.bitmap(map, [entry.d.unwrap_or(1.0); 3], true)?),
+            None => entry.d.filter(|d| *d < 1.0).map(Texture::Constant),
+        };
+        let (scatter, emission) = (scatter?, emission?);
+        let material = match opacity {
+            Some(opacity) => Material::Mask {
+                opacity,
+                of: Box::new(scatter),
+            },
+            None => scatter,
+        };
+        self.world.materials.push(material);
+        let maps = [&entry.map_kd, &entry.map_ke, &entry.map_d];
+        Some(Surface {
+            material: self.world.materials.len() - 1,
+            emission,
+            has_picture: maps.iter().any(|map| map.is_some()),
+        })
+    }
+
+    fn scatter(&mut self, entry: &Entry) -> Option<Material> {
+        let note = |message: &str| self.report.note(&entry.place, message);
+        let ks = self.color.of(entry.ks.unwrap_or_default());
+        let illum = entry.illum.unwrap_or(if ks > 0.0 { 2 } else { 1 });
+        match illum {
+            0 => note("illum 0, a colour without light, is read as diffuse"),
+            10 => note("illum 10, which shows shadows alone, is read as diffuse"),
+            _ => {}
+        }
+        let side = match illum {
+            4 | 6 | 7 | 9 => return Some(self.glass(entry)),
+            3 | 5 | 8 => {
+                note("approximated: a mirror that reflects Ks at all angles; Kd and Ns left out");
+                Material::Conductor(Conductor {
+                    index: None,
+                    reflectance: Texture::Constant(self.color.of(entry.ks.unwrap_or([1.0; 3]))),
+                    roughness: None,
+                })
+            }
+            2 if ks > 0.0 => self.phong(entry, ks)?,
+            _ => Material::Diffuse {
+                reflectance: self.diffuse(entry)?,
+            },
+        };
+        Some(Material::TwoSided(Box::new([side.clone(), side])))
+    }
+
+    /// `Kd` times its picture.
+    fn diffuse(&mut self, entry: &Entry) -> Option<Texture> {
+        match &entry.map_kd {
+            Some(map) => self.bitmap(map, entry.kd.unwrap_or([1.0; 3]), false),
+            None => {
+                let factor = entry.kd.unwrap_or([0.5; 3]);
+                Some(Texture::Constant(self.color.of(factor)))
+            }
+        }
+    }
+
+    fn phong(&mut self, entry: &Entry, ks: f64) -> Option<Material> {
+        let diffuse = self.diffuse(entry)?;
+        let exponent = entry.ns.unwrap_or(1.0);
+        let note = |message: &str| self.report.note(&entry.place, message);
+        if entry.ns.is_none() {
+            note("Ks without Ns: 1 is taken");
+        }
+        note(
+            "approximated: Ks and Ns are the modified Phong lobe ks (n + 2)/(2π) cosⁿ α about the mirror direction",
+        );
+        let all = diffuse.largest() + ks;
+        if all > 1.0 + 1e-9 {
+            note(&format!(
+                "Kd and Ks reflect up to {all:.4} of the light, more than there is"
+            ));
+        }
+        Some(Material::Phong {
+            diffuse,
+            specular: Texture::Constant(ks),
+            exponent: Texture::Constant(exponent),
+        })
+    }
+
+    fn glass(&self, entry: &Entry) -> Material {
+        let index = entry.ni.unwrap_or(INDEX);
+        if entry.ni.is_none() {
+            let message = format!("transmits without Ni: {INDEX} is taken");
+            self.report.note(&entry.place, message);
+        }
+        let message = "approximated: a smooth interface; Kd, Ks and Ns left out";
+        self.report.note(&entry.place, message);
+        Material::Dielectric(Dielectric {
+            index,
+            reflectance: Texture::Constant(1.0),
+            transmittance: Texture::Constant(self.color.of(entry.tf.unwrap_or([1.0; 3]))),
+            roughness: None,
+            is_thin: false,
+        })
+    }
+
+    /// The outer `None` is after a cause.
+    #[expect(clippy::option_option, reason = "the outer none is a cause")]
+    fn emission(&mut self, entry: &Entry) -> Option<Option<Texture>> {
+        if let Some(map) = &entry.map_ke {
+            return self
+                .bitmap(map, entry.ke.unwrap_or([1.0; 3]), false)
+                .map(Some);
+        }
+        let factor = self.color.of(entry.ke.unwrap_or_default());
+        Some((factor > 0.0).then_some(Texture::Constant(factor)))
+    }
+
+    /// A picture times factors; levels are sRGB unless they are `raw`. `None` after a cause.
+    fn bitmap(&mut self, map: &Map, factor: [f64; 3], raw: bool) -> Option<Texture> {
+        let read = self.pixels(map, factor, raw);
+        let refuse = |error: String| {
+            let message = format!("file {} {error}", map.name());
+            self.report.cause(&map.place, message);
+        };
+        let pixels = read.map_err(refuse).ok()?;
+        Some(Texture::Bitmap(Bitmap {
+            to_uv: map.to_uv,
+            pixels: Arc::new(pixels),
+            wrap: map.wrap,
+            filter: Filter::Bilinear,
+        }))
+    }
+
+    fn pixels(&self, map: &Map, factor: [f64; 3], raw: bool) -> Result<Raster, String> {
+        let path = self
+            .files
+            .find(std::slice::from_ref(&map.folder), &map.file)?;
+        let bytes = self.files.read(&path)?;
+        let channels = decode(&path, &bytes)?;
+        let is_curved = channels.are_levels && !raw;
+        let light = |level: f64| if is_curved { linear(level) } else { level };
+        let is_grey = channels.count == 1;
+        let raster = channels.raster(|rgb| match is_grey {
+            true => light(rgb[0]) * self.color.of(factor),
+            false => self.color.of([0, 1, 2].map(|i| factor[i] * light(rgb[i]))),
+        });
+        let raster = raster.map_err(|fault| fault.to_string())?;
+        let values = raster.values();
+        if !values.iter().all(|v| v.is_finite() && *v >= 0.0) {
+            return Err("has pixels below 0 or without bounds".to_owned());
+        }
+        self.files.spend(size_of_val(values) as u64)?;
+        Ok(raster)
+    }
+}

@@ -1,0 +1,180 @@
+//! MTL files, statement by statement.
+
+use super::entry::Entry;
+use super::map::Map;
+use crate::report::{Place, Report, quoted};
+use crate::spectrum::from_xyz;
+use std::collections::HashMap;
+use std::collections::hash_map::Entry as Slot;
+use std::path::Path;
+
+/// The highest kind of illumination.
+const MOST_ILLUM: f64 = 10.0;
+
+/// Reads the materials of a file. Those that are known already stay.
+pub(super) fn read(
+    text: &str,
+    name: &str,
+    folder: &Path,
+    report: &Report,
+    entries: &mut HashMap<String, Entry>,
+) {
+    let mut left_out: Vec<(Place, String, usize)> = Vec::new();
+    let mut open: Option<(String, Entry)> = None;
+    for (i, line) in text.lines().enumerate() {
+        let line = line.split('#').next().unwrap_or_default().trim();
+        let end = line.find(char::is_whitespace).unwrap_or(line.len());
+        let (word, rest) = (&line[..end], line[end..].trim());
+        let place = Place {
+            file: name.into(),
+            line: i + 1,
+            column: 1,
+        };
+        if word.is_empty() {
+            continue;
+        }
+        if word.eq_ignore_ascii_case("newmtl") {
+            close(open.take(), report, entries);
+            open = Some((rest.to_owned(), Entry::new(place)));
+            continue;
+        }
+        let Some((_, entry)) = &mut open else {
+            report.note(&place, format!("{} before newmtl left out", quoted(word)));
+            continue;
+        };
+        let statement = Statement {
+            word,
+            rest,
+            place,
+            report,
+        };
+        if !statement.apply(entry, folder) {
+            let known = left_out.iter_mut().find(|(_, known, _)| known == word);
+            match known {
+                Some((_, _, count)) => *count += 1,
+                None => left_out.push((statement.place, word.to_owned(), 1)),
+            }
+        }
+    }
+    close(open, report, entries);
+    for (place, word, count) in left_out {
+        let times = if count > 1 {
+            format!(", {count} times")
+        } else {
+            String::new()
+        };
+        report.note(&place, format!("{} left out{times}", quoted(&word)));
+    }
+}
+
+fn close(open: Option<(String, Entry)>, report: &Report, entries: &mut HashMap<String, Entry>) {
+    let Some((name, entry)) = open else {
+        return;
+    };
+    match entries.entry(name) {
+        Slot::Occupied(known) => {
+            let message = format!(
+                "material {} again: the first one counts",
+                quoted(known.key())
+            );
+            report.note(&entry.place, message);
+        }
+        Slot::Vacant(slot) => {
+            slot.insert(entry);
+        }
+    }
+}
+
+struct Statement<'a> {
+    word: &'a str,
+    rest: &'a str,
+    place: Place,
+    report: &'a Report,
+}
+
+impl Statement<'_> {
+    /// Whether the statement is known.
+    fn apply(&self, entry: &mut Entry, folder: &Path) -> bool {
+        let infinity = f64::INFINITY;
+        match self.word.to_ascii_lowercase().as_str() {
+            "kd" => entry.kd = self.color(1.0).or(entry.kd),
+            "ks" => entry.ks = self.color(1.0).or(entry.ks),
+            "ke" => entry.ke = self.color(infinity).or(entry.ke),
+            "tf" => entry.tf = self.color(1.0).or(entry.tf),
+            "ns" => entry.ns = self.number(0.0, 1e9).or(entry.ns),
+            "ni" => entry.ni = self.number(0.001, 10.0).or(entry.ni),
+            "d" => entry.d = self.opacity().or(entry.d),
+            "tr" => entry.d = self.number(0.0, 1.0).map(|tr| 1.0 - tr).or(entry.d),
+            "illum" => {
+                let illum = self.number(0.0, MOST_ILLUM);
+                let whole = (0..=10).find(|n| illum == Some(f64::from(*n)));
+                if illum.is_some() && whole.is_none() {
+                    self.refuse("a whole number from 0 to 10");
+                }
+                entry.illum = whole.or(entry.illum);
+            }
+            "map_kd" => entry.map_kd = self.map(folder).or(entry.map_kd.take()),
+            "map_ke" => entry.map_ke = self.map(folder).or(entry.map_ke.take()),
+            "map_d" => entry.map_d = self.map(folder).or(entry.map_d.take()),
+            _ => return false,
+        }
+        true
+    }
+
+    fn refuse(&self, allowed: &str) {
+        let message = format!("{} is {}; allowed: {allowed}", self.word, quoted(self.rest));
+        self.report.cause(&self.place, message);
+    }
+
+    fn map(&self, folder: &Path) -> Option<Map> {
+        Map::read(
+            self.rest,
+            self.place.clone(),
+            folder.to_owned(),
+            self.report,
+        )
+    }
+
+    fn opacity(&self) -> Option<f64> {
+        let Some(after) = self.rest.strip_prefix("-halo") else {
+            return self.number(0.0, 1.0);
+        };
+        self.report.note(&self.place, "-halo left out");
+        let inner = Statement {
+            rest: after.trim(),
+            place: self.place.clone(),
+            ..*self
+        };
+        inner.number(0.0, 1.0)
+    }
+
+    fn number(&self, low: f64, high: f64) -> Option<f64> {
+        let parsed: Option<f64> = self.rest.parse().ok();
+        let found = parsed.filter(|v| (low..=high).contains(v));
+        if found.is_none() {
+            self.refuse(&format!("a number from {low} to {high}"));
+        }
+        found
+    }
+
+    /// One number for all channels, three, or `xyz` and three of CIE.
+    fn color(&self, most: f64) -> Option<[f64; 3]> {
+        let is_xyz = self.rest.starts_with("xyz");
+        let text = self.rest.strip_prefix("xyz").unwrap_or(self.rest);
+        let words: Vec<&str> = text.split_whitespace().take(4).collect();
+        let numbers: Option<Vec<f64>> = words.iter().map(|word| word.parse().ok()).collect();
+        let color = match numbers.as_deref() {
+            Some([x]) => Some([*x; 3]),
+            Some([x, y, z]) => Some([*x, *y, *z]),
+            _ => None,
+        };
+        let color = color.map(|color| if is_xyz { from_xyz(color) } else { color });
+        let is_sound = |v: &f64| v.is_finite() && (0.0..=most).contains(v);
+        let found = color.filter(|color| color.iter().all(is_sound));
+        if found.is_none() {
+            let range = if most.is_finite() { "to 1" } else { "on" };
+            self.refuse(&format!("one number or three, from 0 {range}"));
+        }
+        found
+    }
+}

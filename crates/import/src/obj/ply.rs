@@ -1,0 +1,52 @@
+//! PLY files: one mesh.
+
+use crate::files::Files;
+use crate::meshes::Parts;
+use crate::report::{Place, Report};
+use crate::{Imported, Options, Refused};
+use etendue_scene::DetailedMesh;
+use etendue_world::{Geometry, Material, Shape, Texture, World};
+use glam::DAffine3;
+use std::path::Path;
+use std::sync::Arc;
+
+/// One diffuse surface of reflectance 0.5 on both sides.
+pub(crate) fn import(file: &Path, options: &Options) -> Result<Imported, Refused> {
+    let (_, _, bytes) = Files::open(file, options)?;
+    let unsound = |error: String| Refused::because(file, format!("is no sound mesh: {error}"));
+    let read = DetailedMesh::parse(file, &bytes).map_err(|fault| unsound(fault.to_string()))?;
+    let mut parts = Parts::from(read);
+    parts.drop_empty();
+    parts.face_normals();
+    let mended = parts.mend_normals();
+    let mesh = parts.finish();
+    let mesh = mesh.ok_or_else(|| unsound("no triangle with an area".to_owned()))?;
+    let name = file.file_name().unwrap_or_default().to_string_lossy();
+    let report = Report::default();
+    let place = Place::whole(&name);
+    if mended {
+        let message = "approximated: vertices without a normal have that of a triangle";
+        report.note(&place, message);
+    }
+    report.note(&place, "has no material: diffuse, 0.5 on both sides");
+    let world = World {
+        shapes: vec![Shape {
+            name: String::new(),
+            geometry: Geometry::Mesh(Arc::new(mesh)),
+            to_world: DAffine3::IDENTITY,
+            is_flipped: false,
+            material: 0,
+            emission: None,
+        }],
+        materials: vec![diffuse()],
+        ..World::default()
+    };
+    report.finish(world)
+}
+
+/// What surfaces without a material are made of.
+pub(super) fn diffuse() -> Material {
+    let reflectance = Texture::Constant(0.5);
+    let side = Material::Diffuse { reflectance };
+    Material::TwoSided(Box::new([side.clone(), side]))
+}

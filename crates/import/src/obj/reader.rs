@@ -1,0 +1,224 @@
+//! Parts of OBJ files, as shapes.
+
+use super::entry::Entry;
+use super::material::Surface;
+use super::mtl;
+use crate::Color;
+use crate::files::Files;
+use crate::meshes::Parts;
+use crate::report::{Place, Report, quoted};
+use etendue_scene::{DetailedMesh, ObjFile, ObjPart};
+use etendue_world::{Geometry, Shape, World};
+use glam::DAffine3;
+use std::collections::HashMap;
+use std::path::PathBuf;
+use std::sync::Arc;
+
+/// Makes a world of a file.
+pub(super) struct Reader<'a> {
+    pub(super) files: &'a Files,
+    pub(super) report: &'a Report,
+    pub(super) color: Color,
+    pub(super) world: World,
+    place: Place,
+    folder: PathBuf,
+    entries: HashMap<String, Entry>,
+    /// Surfaces by the name of their material; `None` after a cause.
+    surfaces: HashMap<Option<String>, Option<Surface>>,
+}
+
+impl<'a> Reader<'a> {
+    pub(super) fn new(
+        files: &'a Files,
+        report: &'a Report,
+        place: Place,
+        folder: PathBuf,
+        color: Color,
+    ) -> Self {
+        Self {
+            files,
+            report,
+            color,
+            world: World::default(),
+            place,
+            folder,
+            entries: HashMap::new(),
+            surfaces: HashMap::new(),
+        }
+    }
+
+    pub(super) fn world(mut self, file: ObjFile) -> World {
+        for (line, names) in &file.libraries {
+            self.library(*line, names);
+        }
+        for (line, word, count) in &file.left_out {
+            let times = if *count > 1 {
+                format!(", {count} times")
+            } else {
+                String::new()
+            };
+            self.report
+                .note(&self.at(*line), format!("{word} left out{times}"));
+        }
+        for part in joined(file.parts) {
+            self.part(&file.mesh, &part);
+        }
+        self.world
+    }
+
+    fn at(&self, line: usize) -> Place {
+        Place {
+            line,
+            column: 1,
+            ..self.place.clone()
+        }
+    }
+
+    /// One file with spaces in its name, or several.
+    fn library(&mut self, line: usize, names: &str) {
+        let folders = [self.folder.clone()];
+        if self.files.find(&folders, names).is_ok() {
+            return self.read(line, names);
+        }
+        for name in names.split_whitespace() {
+            self.read(line, name);
+        }
+    }
+
+    fn read(&mut self, line: usize, name: &str) {
+        let found = self.files.find(std::slice::from_ref(&self.folder), name);
+        let read = found.and_then(|path| Ok((self.files.read(&path)?, path)));
+        match read {
+            Ok((bytes, path)) => {
+                let folder = path.parent().unwrap_or(&self.folder);
+                let text = String::from_utf8_lossy(&bytes);
+                mtl::read(&text, name, folder, self.report, &mut self.entries);
+            }
+            Err(error) => {
+                let message = format!("file {} {error}", quoted(name));
+                self.report.cause(&self.at(line), message);
+            }
+        }
+    }
+
+    fn part(&mut self, mesh: &DetailedMesh, part: &Part) {
+        let Some(surface) = self.surface_of(&part.material, part.line) else {
+            return;
+        };
+        let Some(mut parts) = self.parts(mesh, part) else {
+            return;
+        };
+        parts.drop_empty();
+        parts.face_normals();
+        let place = self.at(part.line);
+        if parts.mend_normals() {
+            let message = "approximated: vertices without a normal have that of a triangle";
+            self.report.note(&place, message);
+        }
+        if surface.has_picture && parts.uvs.is_none() {
+            let message = "faces without texture coordinates, which their material asks for";
+            return self.report.cause(&place, message);
+        }
+        let Some(mesh) = parts.finish() else {
+            return self
+                .report
+                .note(&place, "no triangle with an area: left out");
+        };
+        self.world.shapes.push(Shape {
+            name: part.material.clone().unwrap_or_default(),
+            geometry: Geometry::Mesh(Arc::new(mesh)),
+            to_world: DAffine3::IDENTITY,
+            is_flipped: false,
+            material: surface.material,
+            emission: surface.emission,
+        });
+    }
+
+    fn surface_of(&mut self, name: &Option<String>, line: usize) -> Option<Surface> {
+        if let Some(known) = self.surfaces.get(name) {
+            return known.clone();
+        }
+        let made = match name {
+            None => {
+                self.report
+                    .note(&self.place, "has faces without a material: diffuse, 0.5");
+                Some(self.default_surface())
+            }
+            Some(known) => match self.entries.get(known).cloned() {
+                Some(entry) => self.surface(&entry),
+                None => {
+                    let message = format!("material {} is in no mtllib", quoted(known));
+                    self.report.cause(&self.at(line), message);
+                    None
+                }
+            },
+        };
+        self.surfaces.insert(name.clone(), made.clone());
+        made
+    }
+
+    /// The triangles of a part with their own vertices, v of pictures downwards.
+    fn parts(&self, mesh: &DetailedMesh, part: &Part) -> Option<Parts> {
+        let mut known: HashMap<u32, u32> = HashMap::new();
+        let mut order: Vec<usize> = Vec::new();
+        let mut corner = |i: u32| {
+            let next = u32::try_from(order.len()).unwrap_or(u32::MAX);
+            *known.entry(i).or_insert_with(|| {
+                order.push(i as usize);
+                next
+            })
+        };
+        let corners = part
+            .triangles
+            .iter()
+            .map(|i| mesh.triangles[*i].map(&mut corner))
+            .collect();
+        let parts = Parts {
+            vertices: order.iter().map(|i| mesh.vertices[*i]).collect(),
+            corners,
+            normals: some(&mesh.normals, &order),
+            uvs: some(&mesh.uvs, &order).map(|mut uvs| {
+                uvs.iter_mut().for_each(|uv| uv.y = 1.0 - uv.y);
+                uvs
+            }),
+        };
+        let fits = self.files.spend(parts.bytes());
+        fits.map_err(|error| self.report.cause(&self.place, error))
+            .ok()?;
+        Some(parts)
+    }
+}
+
+/// What vertices have, unless none has any.
+fn some<T: Copy + Default + PartialEq>(all: &Option<Vec<T>>, order: &[usize]) -> Option<Vec<T>> {
+    let found: Vec<T> = order
+        .iter()
+        .map(|i| all.as_ref().map(|all| all[*i]))
+        .collect::<Option<_>>()?;
+    found.iter().any(|v| *v != T::default()).then_some(found)
+}
+
+/// All triangles of one material.
+struct Part {
+    material: Option<String>,
+    line: usize,
+    triangles: Vec<usize>,
+}
+
+/// Parts of the same material as one, in the order of the first.
+fn joined(parts: Vec<ObjPart>) -> Vec<Part> {
+    let mut joined: Vec<Part> = Vec::new();
+    let mut known: HashMap<Option<String>, usize> = HashMap::new();
+    for part in parts {
+        let at = *known.entry(part.material.clone()).or_insert(joined.len());
+        if at == joined.len() {
+            joined.push(Part {
+                material: part.material,
+                line: part.line,
+                triangles: Vec::new(),
+            });
+        }
+        joined[at].triangles.extend(part.triangles);
+    }
+    joined
+}

@@ -1,0 +1,332 @@
+//! Scenes of glTF: each convention, with what would be wrong.
+
+#![allow(clippy::unwrap_used, reason = "helpers of tests")]
+
+mod common;
+mod gltf_scene;
+
+use common::assert_close;
+use etendue_world::{Distribution, Light, Material, Projection, Texture};
+use glam::{DVec2, DVec3};
+use gltf_scene::{BASE, causes, mesh, notes, read, with, world};
+
+/// The value of a texture that is the same everywhere.
+fn constant(texture: &Texture) -> f64 {
+    match texture {
+        Texture::Constant(value) => *value,
+        other => panic!("{other:?}"),
+    }
+}
+
+#[test]
+fn cameras_look_along_minus_z_with_y_up() {
+    let camera = r#""cameras":[{"type":"perspective","perspective":{"yfov":0.8,"aspectRatio":2,"znear":0.5,"zfar":9}}]"#;
+    let file = with(
+        r#"{"camera":0,"translation":[1,2,3],"scale":[5,5,5]}"#,
+        camera,
+    );
+    let camera = &world(&file).cameras[0];
+    assert_eq!(camera.size, [512, 256]);
+    let middle = camera.look([256.0, 128.0], [0.5; 2]);
+    assert_close(&middle.from.to_array(), &[1.0, 2.0, 3.0], 1e-12);
+    assert_close(&middle.along.to_array(), &[0.0, 0.0, -1.0], 1e-12);
+    // To the right of the picture is X, up is Y; yfov is from the top to the bottom.
+    let top = camera.look([256.0, 0.0], [0.5; 2]).along;
+    assert_close(&[top.y / -top.z, top.x], &[libm::tan(0.4), 0.0], 1e-7);
+    let right = camera.look([512.0, 128.0], [0.5; 2]).along;
+    assert_close(
+        &[right.x / -right.z, right.y],
+        &[2.0 * libm::tan(0.4), 0.0],
+        1e-7,
+    );
+    assert_close(&camera.clip, &[0.5, 9.0], 0.0);
+}
+
+#[test]
+fn orthographic_cameras_show_xmag_to_both_sides() {
+    let camera = r#""cameras":[{"type":"orthographic","orthographic":{"xmag":4,"ymag":2,"znear":0,"zfar":9}}]"#;
+    let camera = &world(&with(r#"{"camera":0}"#, camera)).cameras[0];
+    assert!(matches!(camera.projection, Projection::Orthographic));
+    assert_eq!(camera.size, [512, 256]);
+    let corner = camera.look([512.0, 0.0], [0.5; 2]);
+    assert_close(&corner.from.to_array(), &[4.0, 2.0, 0.0], 1e-12);
+}
+
+#[test]
+fn matrices_are_columns_and_parts_are_scaled_first() {
+    let of = |node: &str| {
+        let file = mesh(node, "", "");
+        let shape = world(&file).shapes.remove(0);
+        shape.to_world.transform_point3(DVec3::new(1.0, 0.0, 0.0))
+    };
+    let matrix = of(r#"{"mesh":0,"matrix":[0,2,0,0, -1,0,0,0, 0,0,1,0, 5,6,7,1]}"#);
+    assert_close(&matrix.to_array(), &[5.0, 8.0, 7.0], 1e-12);
+    // A quarter turn about Z takes X, which is twice as long, to Y.
+    let parts = of(
+        r#"{"mesh":0,"translation":[5,6,7],"rotation":[0,0,0.70710678,0.70710678],"scale":[2,3,4]}"#,
+    );
+    assert_close(&parts.to_array(), &[5.0, 8.0, 7.0], 1e-6);
+    let both = mesh(
+        r#"{"mesh":0,"matrix":[1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,1],"scale":[1,1,1]}"#,
+        "",
+        "",
+    );
+    assert!(
+        causes(&both)[0].contains("nodes[0]: matrix beside"),
+        "{:?}",
+        causes(&both)
+    );
+}
+
+#[test]
+fn children_are_placed_within_their_parents() {
+    let nodes = r#"{"children":[1],"scale":[2,2,2]},{"mesh":0,"translation":[1,0,0]}"#;
+    let shape = &world(&mesh(nodes, "", "")).shapes[0];
+    assert_close(
+        &shape.to_world.translation.to_array(),
+        &[2.0, 0.0, 0.0],
+        1e-12,
+    );
+    let circle = r#"{"children":[1]},{"children":[0]}"#;
+    let found = causes(&mesh(circle, "", ""));
+    assert!(
+        found[0].contains("nodes[0]: is below two nodes, or below itself"),
+        "{found:?}"
+    );
+}
+
+#[test]
+fn the_front_is_where_corners_run_counterclockwise() {
+    let world = world(&mesh(r#"{"mesh":0},{"mesh":0,"scale":[-1,1,1]}"#, "", ""));
+    let etendue_world::Geometry::Mesh(first) = &world.shapes[0].geometry else {
+        panic!("no mesh");
+    };
+    // X to the right and Y up: the front is towards Z.
+    let [a, b, c] = first.corners()[0].map(|i| first.vertices()[i as usize]);
+    assert!((b - a).cross(c - a).z > 0.0);
+    // A mirror leaves the front where the mirrored surface has it, by the normals' inverse transpose.
+    let mirrored = &world.shapes[1];
+    assert!(!mirrored.is_flipped && mirrored.to_world.matrix3.determinant() < 0.0);
+    let etendue_world::Geometry::Mesh(second) = &mirrored.geometry else {
+        panic!("no mesh");
+    };
+    assert!(
+        std::sync::Arc::ptr_eq(first, second),
+        "instances share their mesh"
+    );
+}
+
+#[test]
+fn base_colours_are_linear_and_their_pictures_srgb() {
+    let texture = r#","baseColorTexture":{"index":0}"#;
+    let matte = r#","extensions":{"KHR_materials_specular":{"specularFactor":0}}"#;
+    let material = format!(
+        r#"{{"doubleSided":true,"pbrMetallicRoughness":{{"metallicFactor":0,"baseColorFactor":[0.5,0.5,0.5,1]{texture}}}{matte}}}"#
+    );
+    let world = world(&mesh(r#"{"mesh":0}"#, &material, BASE));
+    let Material::TwoSided(sides) = &world.materials[0] else {
+        panic!("{:?}", world.materials);
+    };
+    let Material::Diffuse { reflectance } = &sides[0] else {
+        panic!("{:?}", sides[0]);
+    };
+    // v = 0 is the row above, which is white; level 188 below is 0.502886 of the light.
+    let at = |u, v| reflectance.value(DVec2::new(u, v));
+    assert_close(
+        &[at(0.5, 0.25), at(0.5, 0.75)],
+        &[0.5, 0.5 * 0.502_886],
+        1e-6,
+    );
+}
+
+#[test]
+fn alpha_is_the_square_of_roughness() {
+    let material = r#"{"pbrMetallicRoughness":{"metallicFactor":1,"roughnessFactor":0.5}}"#;
+    let world = world(&mesh(r#"{"mesh":0}"#, material, ""));
+    let Material::Conductor(metal) = &world.materials[0] else {
+        panic!("{:?}", world.materials);
+    };
+    let roughness = metal.roughness.as_ref().unwrap();
+    assert_eq!(roughness.distribution, Distribution::Ggx);
+    assert_close(&[constant(&roughness.alpha[0])], &[0.25], 1e-12);
+    assert!(metal.index.is_none());
+}
+
+#[test]
+fn what_is_no_metal_is_coated_and_what_is_between_is_mixed() {
+    let of = |factor: f64| {
+        let material = format!(
+            r#"{{"pbrMetallicRoughness":{{"metallicFactor":{factor}}},"extensions":{{"KHR_materials_ior":{{"ior":1.3}}}}}}"#
+        );
+        world(&mesh(r#"{"mesh":0}"#, &material, ""))
+            .materials
+            .remove(0)
+    };
+    let Material::Plastic(coat) = of(0.0) else {
+        panic!("{:?}", of(0.0));
+    };
+    assert_close(&[coat.index], &[1.3], 1e-6);
+    let Material::Blend { weight, of: parts } = of(0.25) else {
+        panic!("{:?}", of(0.25));
+    };
+    assert_close(&[constant(&weight)], &[0.25], 1e-12);
+    assert!(matches!(
+        &parts[..],
+        [Material::Plastic(_), Material::Conductor(_)]
+    ));
+}
+
+#[test]
+fn double_sided_lamps_are_two_surfaces() {
+    let material = |sides: bool| {
+        format!(
+            r#"{{"doubleSided":{sides},"emissiveFactor":[1,0.5,0],"extensions":{{"KHR_materials_emissive_strength":{{"emissiveStrength":4}}}}}}"#
+        )
+    };
+    let one = world(&mesh(r#"{"mesh":0}"#, &material(false), ""));
+    let radiance = 4.0 * (0.212_671 + 0.5 * 0.715_160);
+    assert_close(
+        &[constant(one.shapes[0].emission.as_ref().unwrap())],
+        &[radiance],
+        1e-9,
+    );
+    assert_eq!(one.shapes.len(), 1);
+    let two = world(&mesh(r#"{"mesh":0}"#, &material(true), ""));
+    let fronts = two.shapes.iter().map(|shape| {
+        let etendue_world::Geometry::Mesh(mesh) = &shape.geometry else {
+            panic!("no mesh");
+        };
+        let [a, b, c] = mesh.corners()[0].map(|i| mesh.vertices()[i as usize]);
+        ((b - a).cross(c - a).normalize().z, a.z)
+    });
+    let fronts: Vec<(f64, f64)> = fronts.collect();
+    // The back faces away, and is behind.
+    assert_close(&[fronts[0].0, fronts[1].0], &[-1.0, 1.0], 1e-9);
+    assert!(fronts[0].1 < fronts[1].1, "{fronts:?}");
+}
+
+#[test]
+fn lights_shine_along_minus_z() {
+    let lights = r#""extensions":{"KHR_lights_punctual":{"lights":[
+        {"type":"point","intensity":3,"color":[0,1,0]},{"type":"directional","intensity":2},
+        {"type":"spot","intensity":5,"spot":{"innerConeAngle":0.2,"outerConeAngle":0.4}}]}}"#;
+    let node = |light: u32, more: &str| {
+        format!(r#"{{"extensions":{{"KHR_lights_punctual":{{"light":{light}}}}}{more}}}"#)
+    };
+    let down = r#","rotation":[-0.70710678,0,0,0.70710678],"scale":[3,3,3]"#;
+    let nodes = [
+        node(0, r#","translation":[1,2,3]"#),
+        node(1, down),
+        node(2, down),
+    ]
+    .join(",");
+    let found = world(&with(&nodes, lights)).lights;
+    let Light::Point {
+        position,
+        intensity,
+    } = found[0]
+    else {
+        panic!("{found:?}");
+    };
+    assert_close(&position.to_array(), &[1.0, 2.0, 3.0], 1e-12);
+    assert_close(&[intensity], &[3.0 * 0.715_160], 1e-9);
+    let Light::Directional {
+        direction,
+        irradiance,
+    } = found[1]
+    else {
+        panic!("{found:?}");
+    };
+    assert_close(&direction.to_array(), &[0.0, -1.0, 0.0], 1e-7);
+    assert_close(&[irradiance], &[2.0], 1e-9);
+    let Light::Spot {
+        to_world,
+        beam,
+        cutoff,
+        ..
+    } = found[2]
+    else {
+        panic!("{found:?}");
+    };
+    assert_close(&to_world.matrix3.z_axis.to_array(), &[0.0, -1.0, 0.0], 1e-7);
+    assert_close(&[beam, cutoff], &[0.2, 0.4], 1e-7);
+}
+
+#[test]
+fn alpha_lets_light_through_where_the_mode_says_so() {
+    let of = |mode: &str| {
+        let material = format!(
+            r#"{{"alphaMode":"{mode}","alphaCutoff":0.3,"pbrMetallicRoughness":{{"baseColorFactor":[1,1,1,0.25]}}}}"#
+        );
+        world(&mesh(r#"{"mesh":0}"#, &material, ""))
+            .materials
+            .remove(0)
+    };
+    let opacity = |material: Material| match material {
+        Material::Mask { opacity, .. } => constant(&opacity),
+        _ => 1.0,
+    };
+    let found = ["OPAQUE", "MASK", "BLEND"].map(|mode| opacity(of(mode)));
+    assert_close(&found, &[1.0, 0.0, 0.25], 1e-9);
+}
+
+#[test]
+fn what_is_left_out_is_told_with_its_path() {
+    let material = r#"{"normalTexture":{"index":0},"occlusionTexture":{"index":0},"extensions":{"KHR_materials_unlit":{},"KHR_materials_sheen":{}}}"#;
+    let found = notes(&mesh(r#"{"mesh":0}"#, material, BASE));
+    for expected in [
+        "a.gltf: materials[0].normalTexture: left out",
+        "a.gltf: materials[0].occlusionTexture: left out",
+        "a.gltf: materials[0].extensions.KHR_materials_unlit: left out",
+        "a.gltf: materials[0].extensions: `KHR_materials_sheen` left out",
+    ] {
+        assert!(
+            found.iter().any(|note| note.starts_with(expected)),
+            "{expected}: {found:#?}"
+        );
+    }
+}
+
+#[test]
+fn accessors_stay_within_their_buffers() {
+    let sound = mesh(r#"{"mesh":0}"#, "", "");
+    for (from, to, expected) in [
+        (
+            r#""byteOffset":0,"byteLength":36"#,
+            r#""byteOffset":99999,"byteLength":36"#,
+            "reaches beyond",
+        ),
+        (
+            r#""count":3,"type":"VEC3""#,
+            r#""count":18446744073709551615,"type":"VEC3""#,
+            "reaches beyond",
+        ),
+        (r#""POSITION":0"#, r#""POSITION":77"#, "an index of nothing"),
+        (r#""type":"VEC3""#, r#""type":"VEC2""#, "has type Vec2"),
+        (r#""buffer":0"#, r#""buffer":9"#, "an index of nothing"),
+        (
+            r#""bufferView":0,"#,
+            r#""bufferView":0,"sparse":{"count":1,"indices":{"bufferView":0,"componentType":5121},"values":{"bufferView":0}},"#,
+            "sparse",
+        ),
+    ] {
+        let file = sound.replace(from, to);
+        assert_ne!(file, sound, "{from}");
+        let found = causes(&file);
+        assert!(
+            found.iter().any(|cause| cause.contains(expected)),
+            "{expected}: {found:?}"
+        );
+    }
+    let wrong = sound.replace("\"version\":\"2.0\"", "\"version\":\"1.0\"");
+    assert!(causes(&wrong)[0].contains("asset.version"));
+    assert!(read(b"glTF\x01\0\0\0").is_err());
+}
+
+#[test]
+fn binary_files_bring_their_buffer() {
+    let text = mesh(r#"{"mesh":0}"#, "", "");
+    let bytes = gltf_scene::binary(&text);
+    let imported = read(&bytes).unwrap();
+    assert_eq!(imported.world.shapes.len(), 1);
+}
