@@ -45,6 +45,9 @@ impl Point {
     };
 }
 
+/// A number of each pixel.
+type Layer = fn(&Point) -> f64;
+
 /// `etendue probe --map`: returns the exit code.
 pub(super) fn map(case: &Case<'_>, [w, h]: [usize; 2]) -> Result<u8, Failure> {
     let name = format!("{}-map", case.name());
@@ -99,7 +102,7 @@ fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, 
 
 fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(), Failure> {
     let (h, w) = map.dim();
-    let layers: [(&'static str, fn(&Point) -> f64); 4] = [
+    let layers: [(&'static str, Layer); 4] = [
         ("measured", |point| point.measured),
         ("error", |point| point.error),
         ("criterion", |point| point.criterion),
@@ -129,7 +132,7 @@ fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(
 
 fn drawn(case: &Case<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure, Failure> {
     // Pictures have y upwards.
-    let of = |value: fn(&Point) -> f64| {
+    let of = |value: Layer| {
         let mut rows = map.map(value);
         rows.invert_axis(ArrayAxis(0));
         rows.reversed_axes()
@@ -168,13 +171,13 @@ fn said(map: &Array2<Point>) -> String {
         map.len()
     )];
     if all > 0 {
-        let at = |share: f64| ratios[((all - 1) as f64 * share) as usize];
+        let at = |tenths: usize| ratios[(all - 1) * tenths / 10];
         let above = ratios.iter().filter(|ratio| **ratio > 1.1).count();
         lines.push(format!(
             "measured over criterion: median {:.3}, tenths {:.3} and {:.3}; under-predicted by more than a tenth: {:.1} %",
-            at(0.5),
-            at(0.1),
-            at(0.9),
+            at(5),
+            at(1),
+            at(9),
             100.0 * above as f64 / all as f64
         ));
     }
