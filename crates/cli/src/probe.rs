@@ -52,6 +52,7 @@ struct Case<'a> {
 /// `etendue probe`: returns the exit code.
 pub(crate) fn probe(args: &ProbeArgs) -> Result<u8, Failure> {
     let imported = world::load(&args.scene)?;
+    world::require_light(&imported.world)?;
     let case = Case {
         args,
         camera: world::camera(&imported.world, &args.camera)?,
@@ -127,7 +128,7 @@ impl Case<'_> {
         let verdict = self.written(results, &note, pixel, &probe, &found)?;
         if !self.args.quiet {
             let found: Vec<&Found> = found.iter().map(|(found, _)| found).collect();
-            deliver(&said(&self.imported.world, &probe, &found).join("\n"))?;
+            deliver(&said(&self.imported.world, &probe, &found, self.args.surfaces).join("\n"))?;
             deliver(&format!("results: {}", folder.display()))?;
         }
         Ok(match verdict {

@@ -167,8 +167,8 @@ pub(crate) struct RenderArgs {
 Follows the ray through a pixel from the camera to the surface it meets, and on as a mirror would send it. At the camera, where light
 leaves each surface and where it arrives there, the light field is measured: by rays traced back, and by photons from the lights. The
 verdict is theirs against each other, so a sky or a mirror that photons cannot connect to leaves it undecided.
-Leaves in its folder what `run` does for each plane, and probe.json. Exit codes are those of run.
-A map leaves map.exr and map.npz with measured, error, criterion and samples (a pixel and direction), and map.png, .svg and .csv.")]
+Leaves in its folder the arrays and pictures that `run` makes of each plane, and probe.json. Exit codes are those of run.
+A map leaves map.exr and map.npz with measured, error, criterion, window and samples (a pixel and direction), and map.png, .svg and .csv.")]
 pub(crate) struct ProbeArgs {
     #[command(flatten)]
     pub(crate) scene: WorldArgs,
@@ -192,12 +192,12 @@ pub(crate) struct ProbeArgs {
     #[arg(long, value_name = "PIXELS", default_value = "16", value_parser = window)]
     pub(crate) window: f64,
 
-    /// Rays traced back for each plane [default: 2^20; for a map, 2^14]
-    #[arg(long, value_name = "N", value_parser = whole_number)]
+    /// Rays traced back for each plane [default: 2^20; for a map, 2^15]
+    #[arg(long, value_name = "N", value_parser = enough)]
     pub(crate) rays: Option<u64>,
 
     /// Photons that check them
-    #[arg(long, value_name = "N", default_value = "2^25", value_parser = whole_number)]
+    #[arg(long, value_name = "N", default_value = "2^25", value_parser = enough)]
     pub(crate) photons: u64,
 
     /// Seed of both
@@ -222,8 +222,17 @@ pub(crate) struct ProbeArgs {
 impl ProbeArgs {
     /// Rays traced back for each plane.
     pub(crate) fn rays(&self) -> u64 {
-        let default = if self.map.is_some() { 1 << 14 } else { 1 << 20 };
+        let default = if self.map.is_some() { 1 << 15 } else { 1 << 20 };
         self.rays.unwrap_or(default)
+    }
+}
+
+/// At least one in each of 64 batches.
+fn enough(text: &str) -> Result<u64, String> {
+    let number = whole_number(text)?;
+    match number {
+        64.. => Ok(number),
+        _ => Err("allowed: from 64 on, one for each batch".to_owned()),
     }
 }
 

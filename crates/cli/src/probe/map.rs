@@ -1,6 +1,6 @@
 //! How fast light changes with angle at the camera, over a picture: measured, and by the criterion of Durand et al. 2005.
 
-use super::said::criterion;
+use super::said::{criterion, of_window};
 use super::{BATCHES, Case};
 use crate::failure::Failure;
 use crate::results::Results;
@@ -12,14 +12,14 @@ use crate::{deliver, pictures, progress};
 use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
 use etendue_paths::{BackwardProbe, Budget, Probe};
 use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu};
-use etendue_spectrum::{CrossPower, measure};
+use etendue_spectrum::{CrossPower, estimate, measure};
 use ndarray::{Array2, Axis as ArrayAxis};
 use rayon::prelude::*;
 use serde_json::json as tree_of;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
-/// What the estimator gives for even light, in half-widths of the window: nothing is measured below it.
-const WINDOW: f64 = 0.43;
+/// Nor is one of a spectrum with more noise than this share.
+const NOISY: f64 = 0.6;
 
 /// A bandwidth with a larger standard error, as a share of it, is not shown: few rays make its jackknife unsafe.
 const UNSURE: f64 = 0.2;
@@ -30,8 +30,10 @@ struct Point {
     /// The frequency below which 95 % of the power in the window lies, cycles per slope, with its standard error.
     measured: f64,
     error: f64,
-    /// Eq. 20, corrected, and not below what the window has alone.
+    /// Eq. 20, corrected.
     criterion: f64,
+    /// What the window has alone: nothing is measured below it.
+    window: f64,
     /// Shading samples along a direction.
     samples: f64,
 }
@@ -41,6 +43,7 @@ impl Point {
         measured: f64::NAN,
         error: f64::NAN,
         criterion: f64::NAN,
+        window: f64::NAN,
         samples: f64::NAN,
     };
 }
@@ -90,22 +93,25 @@ fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, 
     let power = CrossPower::new(&found, 0).map_err(Failure::cannot_run)?;
     let plane = &probe.planes[0];
     let nu = power.statistic(|p| bandwidth_nu(p, &plane.grid, BANDWIDTH_FRACTION));
-    let nu = nu.filter(|nu| nu.error <= UNSURE * nu.value);
-    let own = WINDOW / plane.window.u.half_width();
+    let noise = estimate::noise(&found, 0).map_err(Failure::cannot_run)?;
+    let is_clear = noise.is_some_and(|noise| noise <= NOISY);
+    let nu = nu.filter(|nu| is_clear && nu.error <= UNSURE * nu.value);
     Ok(Point {
         measured: nu.map_or(f64::NAN, |nu| nu.value),
         error: nu.map_or(f64::NAN, |nu| nu.error),
-        criterion: criterion(&probe.stops[0]).map_or(f64::NAN, |cycles| cycles.max(own)),
+        criterion: criterion(&probe.stops[0]).unwrap_or(f64::NAN),
+        window: of_window(&probe, 0.0).0,
         samples: nu.map_or(f64::NAN, |nu| 2.0 * nu.value * probe.pixel_slope),
     })
 }
 
 fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(), Failure> {
     let (h, w) = map.dim();
-    let layers: [(&'static str, Layer); 4] = [
+    let layers: [(&'static str, Layer); 5] = [
         ("measured", |point| point.measured),
         ("error", |point| point.error),
         ("criterion", |point| point.criterion),
+        ("window", |point| point.window),
         ("samples", |point| point.samples),
     ];
     let mut made_from = case.made_from();
@@ -142,7 +148,7 @@ fn drawn(case: &Case<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure
     comparison(&Comparison {
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
-            "95 % of the power in windows {} pixels wide; right: Eq. 20, corrected, for light of all frequencies",
+            "95 % of the power in windows {} pixels wide; predicted: Eq. 20, corrected, for light of all frequencies, or what the window has alone",
             case.args.window
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
@@ -150,10 +156,20 @@ fn drawn(case: &Case<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure
         quantity: Quantity::new("*B*", "cycles/slope"),
         scale: Scale::Linear,
         measured: of(|point| point.measured).view(),
-        predicted: of(|point| point.criterion).view(),
-        z: of(|point| (point.measured - point.criterion) / point.error).view(),
+        predicted: of(expected).view(),
+        z: of(|point| (point.measured - expected(point)) / point.error).view(),
     })
     .map_err(Failure::cannot_run)
+}
+
+/// What is to be measured: by the criterion, or by the window where that has more.
+fn expected(point: &Point) -> f64 {
+    // NaN stays.
+    if point.criterion < point.window {
+        point.window
+    } else {
+        point.criterion
+    }
 }
 
 /// How measured and predicted bandwidths are to each other.
@@ -162,12 +178,14 @@ fn said(map: &Array2<Point>) -> String {
         .iter()
         .filter(|point| point.measured.is_finite())
         .count();
-    let ratio = |point: &Point| point.measured / point.criterion;
-    let mut ratios: Vec<f64> = map.iter().map(ratio).filter(|x| x.is_finite()).collect();
+    let is_told = |point: &&Point| expected(point).max(point.measured) > 1.15 * point.window;
+    let told = map.iter().filter(is_told);
+    let ratio = |point: &Point| point.measured / expected(point);
+    let mut ratios: Vec<f64> = told.map(ratio).filter(|x| x.is_finite()).collect();
     ratios.sort_unstable_by(f64::total_cmp);
     let all = ratios.len();
     let mut lines = vec![format!(
-        "{seen} of {} bandwidths measured, {all} of them on a lobe; the rest is dark or too noisy",
+        "{seen} of {} bandwidths measured, the rest is dark or too noisy; {all} are on a lobe and above what the window has alone",
         map.len()
     )];
     if all > 0 {

@@ -2,6 +2,7 @@
 
 use super::{Found, verdict};
 use crate::table::aligned;
+use etendue_compare::Verdict;
 use etendue_field::{Lobe, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
 use etendue_spectrum::Uncertain;
@@ -74,7 +75,7 @@ fn word(reflects: Reflects) -> String {
 }
 
 /// The surfaces, the planes, and how densely the picture is to be sampled.
-pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found]) -> Vec<String> {
+pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16) -> Vec<String> {
     let header = [
         "surface",
         "shape",
@@ -102,8 +103,8 @@ pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found]) -> Vec<St
         "plane",
         "noise alone",
         "p",
-        "95 % of ν",
-        "95 % of ρ [1/m]",
+        "95 % of ν [cycles/slope]",
+        "95 % of ρ [cycles/m]",
         "verdict",
     ];
     let shown =
@@ -127,18 +128,55 @@ pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found]) -> Vec<St
     let header = vec![header.map(str::to_owned).to_vec()];
     lines.extend(aligned(header.into_iter().chain(planes).collect()));
     lines.push(String::new());
+    let open = found.iter().filter(|found| verdict(found) != Verdict::Pass);
+    lines.extend(open.filter_map(|found| {
+        let report = &found.comparison.report;
+        // How many photons it counts there are rays here, and both may be too few.
+        let why = report.undecided.as_ref()?.split("; needs").next()?;
+        Some(format!("{}: {why}; more --rays or --photons", report.name))
+    }));
+    if probe.stops.len() < usize::from(most) {
+        let count = probe.stops.len();
+        lines.push(format!("The ray leaves the scene after surface {count}."));
+    }
     if let Some(nu) = found.first().and_then(|camera| camera.nu) {
-        let samples = |cycles: f64| 2.0 * cycles * probe.pixel_slope;
-        lines.push(format!(
-            "shading samples a pixel and direction: measured {:.4}{}",
-            samples(nu.value),
-            criterion(&probe.stops[0]).map_or(String::new(), |cycles| {
-                format!(
-                    "; by Eq. 20, corrected, for light of all frequencies {:.4}",
-                    samples(cycles)
-                )
-            })
-        ));
+        lines.extend(bandwidths(probe, nu));
+    }
+    lines
+}
+
+/// What the window alone gives, in cycles per slope: the estimator of even light, whose product with the half-width is always this.
+const OWN: f64 = 0.43;
+
+/// The bandwidth that a window has alone, and whether a measured one is no more than that.
+pub(super) fn of_window(probe: &Probe<'_>, measured: f64) -> (f64, bool) {
+    let own = OWN / probe.planes[0].window.u.half_width();
+    // Noise and the light's own shape move it by some per cent.
+    (own, measured < 1.15 * own)
+}
+
+/// Bandwidths at the camera, and the shading samples that they ask for.
+fn bandwidths(probe: &Probe<'_>, measured: Uncertain) -> Vec<String> {
+    let samples = |cycles: f64| 2.0 * cycles * probe.pixel_slope;
+    let line = |what: &str, cycles: f64| {
+        let samples = samples(cycles);
+        format!(
+            "  {what:38}{cycles:10.3} cycles/slope  {samples:8.4} shading samples a pixel along a direction"
+        )
+    };
+    let (own, is_own) = of_window(probe, measured.value);
+    let mut lines = vec!["bandwidth at the camera".to_owned()];
+    lines.push(line("measured, 95 % of the power", measured.value));
+    lines.push(line("of the window alone", own));
+    lines.push(match criterion(&probe.stops[0]) {
+        Some(cycles) => line("by Eq. 20, light of all frequencies", cycles),
+        None => "  Eq. 20 is about lobes: it says nothing of this surface".to_owned(),
+    });
+    if is_own {
+        lines.push(
+            "  What is measured is the window: a wider one (--window) shows what the light has."
+                .to_owned(),
+        );
     }
     lines
 }

@@ -95,27 +95,13 @@ impl Lamp {
 }
 
 impl Draw<'_> {
-    /// The target that this photon is aimed at.
     fn target(&self) -> Option<&Target> {
         let [.., by] = self.random;
-        // Half of the photons, shared by the targets.
-        let number = (2.0 * by - 1.0) * self.targets.len() as f64;
-        #[expect(
-            clippy::cast_possible_truncation,
-            clippy::cast_sign_loss,
-            reason = "a number of a target, from 0"
-        )]
-        let found = (number >= 0.0).then_some(number as usize);
-        found.and_then(|number| self.targets.get(number))
+        chosen(self.targets, by)
     }
 
-    /// The density of what is drawn by `plain` for half of the photons, and by `aimed` for each target's share of the rest.
     fn density(&self, plain: f64, aimed: impl Fn(&Target) -> f64) -> f64 {
-        if self.targets.is_empty() {
-            return plain;
-        }
-        let aimed: f64 = self.targets.iter().map(aimed).sum();
-        0.5 * plain + 0.5 * aimed / self.targets.len() as f64
+        mixed(plain, self.targets, aimed)
     }
 
     /// A photon from a place of a surface: by the cosine, or aimed.
@@ -201,6 +187,27 @@ impl Draw<'_> {
     }
 }
 
+/// The target that a photon is aimed at: half of them are, each target by as many.
+pub(crate) fn chosen(targets: &[Target], by: f64) -> Option<&Target> {
+    let number = (2.0 * by - 1.0) * targets.len() as f64;
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a number of a target, from 0"
+    )]
+    let found = (number >= 0.0).then_some(number as usize);
+    found.and_then(|number| targets.get(number))
+}
+
+/// The density of what is drawn by `plain` for half of the photons, and by `aimed` for each target's share of the rest.
+pub(crate) fn mixed(plain: f64, targets: &[Target], aimed: impl Fn(&Target) -> f64) -> f64 {
+    if targets.is_empty() {
+        return plain;
+    }
+    let aimed: f64 = targets.iter().map(aimed).sum();
+    0.5 * plain + 0.5 * aimed / targets.len() as f64
+}
+
 impl Target {
     /// 1 − cos of half of the cone in which it is seen; all around from within.
     fn cone(&self, from: DVec3) -> f64 {
@@ -212,12 +219,12 @@ impl Target {
         }
     }
 
-    fn toward(&self, from: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+    pub(crate) fn toward(&self, from: DVec3, [a, b]: [f64; 2]) -> DVec3 {
         let axis = (self.center - from).normalize_or(DVec3::Z);
         about(axis, 1.0 - a * self.cone(from), b)
     }
 
-    fn density(&self, from: DVec3, along: DVec3) -> f64 {
+    pub(crate) fn density(&self, from: DVec3, along: DVec3) -> f64 {
         let axis = (self.center - from).normalize_or(DVec3::Z);
         let cone = self.cone(from);
         if axis.dot(along) >= 1.0 - cone {

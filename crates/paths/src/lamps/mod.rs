@@ -7,7 +7,7 @@ mod sky;
 
 use crate::space::{Hit, Space};
 use ball::Ball;
-pub(crate) use emit::{Emitted, Flash, Target};
+pub(crate) use emit::{Emitted, Flash, Target, chosen, mixed};
 use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
 use glam::{DAffine3, DVec2, DVec3};
 use shape::Surface;

@@ -1,7 +1,7 @@
 use super::lines::Leg;
 use super::lines::seen_by;
 use super::{Budget, Probe, Stop};
-use crate::lamps::{Emitted, Flash, Target};
+use crate::lamps::{Emitted, Flash, Target, chosen, mixed};
 use crate::numbers::Numbers;
 use crate::paths::ROULETTE;
 use crate::space::{Hit, Ray};
@@ -137,17 +137,10 @@ impl<'a> PhotonProbe<'a> {
                     record,
                 );
             }
-            let Some(bounce) = scatter.sample(hit.uv, wi, numbers.draw()) else {
+            let Some((along, share)) = self.onward(&hit, ray.along, &mut numbers) else {
                 return;
             };
-            let along = (hit.frame * bounce.wi).normalize();
-            flux *= match bounce.density {
-                Some(density) => {
-                    scatter.value(hit.uv, wi, bounce.wi) * tilt(&hit, ray.along, along) / density
-                }
-                // A mirror or smooth glass, for which power is not counted over squared indices.
-                None => bounce.weight * scatter.squared_index(wi, bounce.wi),
-            };
+            flux *= share;
             let [survives] = numbers.draw();
             let share = (flux / first).min(0.95);
             if met >= ROULETTE {
@@ -161,6 +154,38 @@ impl<'a> PhotonProbe<'a> {
                 along,
             };
         }
+    }
+
+    /// Where a photon goes on to from a hit, and the share of its flux: half of the time as the material sends it, half aimed at what the windows see.
+    fn onward(&self, hit: &Hit, arriving: DVec3, numbers: &mut Numbers) -> Option<(DVec3, f64)> {
+        let scatter = self.probe.paths.scatter(hit);
+        let wi = hit.frame.transpose() * -arriving;
+        let [a, b, pick] = numbers.draw();
+        let target = match scatter.is_smooth() {
+            true => None,
+            false => chosen(&self.targets, pick),
+        };
+        let along = match target {
+            Some(target) => target.toward(hit.position, [a, b]),
+            None => {
+                let bounce = scatter.sample(hit.uv, wi, numbers.draw())?;
+                let along = (hit.frame * bounce.wi).normalize();
+                if bounce.density.is_none() {
+                    // A mirror or smooth glass, for which power is not counted over squared indices. What is aimed never goes this way.
+                    let half = if scatter.is_smooth() { 1.0 } else { 2.0 };
+                    let share = half * bounce.weight * scatter.squared_index(wi, bounce.wi);
+                    return Some((along, share));
+                }
+                along
+            }
+        };
+        let wo = hit.frame.transpose() * along;
+        let plain = scatter.density(hit.uv, wo, wi);
+        let density = mixed(plain, &self.targets, |target| {
+            target.density(hit.position, along)
+        });
+        let share = scatter.value(hit.uv, wi, wo) * tilt(hit, arriving, along) / density;
+        (share > 0.0).then_some((along, share))
     }
 
     /// Draws a way from a place through the windows of each leg, and records it where nothing is in between.
@@ -214,7 +239,8 @@ impl<'a> PhotonProbe<'a> {
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
         let line = legs[leg].through(&paths.space, position, along);
-        let is_before = (position - line.from).dot(line.along) > 0.0;
+        // The line may begin at that very place: then light leaves on the other side of the surface.
+        let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].reach;
         is_before && paths.space.is_clear(line.from, position)
     }
 }

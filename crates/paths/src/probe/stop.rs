@@ -84,23 +84,31 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
     stops
 }
 
-/// Curvatures by the normals at a step to either side.
-fn curvature(space: &Space, hit: &Hit, normal: DVec3, leaving: DVec3, step: f64) -> [f64; 2] {
+/// Times that the step of a curvature is halved.
+const HALVINGS: i32 = 16;
+
+/// Curvatures by the normals at a step to either side: at the largest step that is still on the surface.
+fn curvature(space: &Space, hit: &Hit, normal: DVec3, leaving: DVec3, largest: f64) -> [f64; 2] {
     let tangent = super::across(leaving, normal).unwrap_or_else(|| normal.any_orthonormal_vector());
     [tangent, normal.cross(tangent)].map(|axis| {
-        let at = |side: f64| {
-            let from = hit.position + side * step * axis + 4.0 * step * normal;
-            let ray = Ray {
-                from,
-                along: -normal,
-            };
-            let met = space.meets(hit.shape, &ray, [0.0, 8.0 * step])?;
-            let facing = met.frame.z_axis.dot(normal).signum();
-            Some((met.position, facing * met.frame.z_axis))
-        };
-        let Some(((p, m), (q, n))) = at(1.0).zip(at(-1.0)) else {
-            return 0.0;
-        };
-        (m - n).dot(axis) / (p - q).dot(axis)
+        let steps = (0..HALVINGS).map(|i| largest * 0.5_f64.powi(i));
+        let mut found = steps.filter_map(|step| between(space, hit, normal, step * axis));
+        found.next().unwrap_or(0.0)
     })
+}
+
+/// The curvature between the places of a shape a step to either side; `None` where one of them is beside it.
+fn between(space: &Space, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
+    let height = 4.0 * step.length();
+    let at = |side: f64| {
+        let ray = Ray {
+            from: hit.position + side * step + height * normal,
+            along: -normal,
+        };
+        let met = space.meets(hit.shape, &ray, [0.0, 2.0 * height])?;
+        let facing = met.frame.z_axis.dot(normal).signum();
+        Some((met.position, facing * met.frame.z_axis))
+    };
+    let ((p, m), (q, n)) = (at(1.0)?, at(-1.0)?);
+    Some((m - n).dot(step) / (p - q).dot(step))
 }
