@@ -153,10 +153,11 @@ fn drawn(case: &Case<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
         y: Axis::edges("row from below", "pixels", [0.0, h]),
-        quantity: Quantity::new("*B*", "cycles/slope"),
+        // A few pixels at the edges of what is curved would take the whole scale.
+        quantity: Quantity::new("log_{10} *B*", "cycles/slope"),
         scale: Scale::Linear,
-        measured: of(|point| point.measured).view(),
-        predicted: of(expected).view(),
+        measured: of(|point| libm::log10(point.measured)).view(),
+        predicted: of(|point| libm::log10(expected(point))).view(),
         z: of(|point| (point.measured - expected(point)) / point.error).view(),
     })
     .map_err(Failure::cannot_run)
