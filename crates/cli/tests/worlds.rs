@@ -1,0 +1,179 @@
+//! `etendue import`, `render` and `probe`.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{etendue, files, json};
+use std::fs;
+use std::path::Path;
+use std::process::Output;
+
+const ROOM: &str = r#"<scene version="3.0.0">
+  <sensor type="perspective" id="front">
+    <float name="fov" value="40"/>
+    <transform name="to_world"><lookat origin="0, -4, 2" target="0, 0, 0.3" up="0, 0, 1"/></transform>
+    <film type="hdrfilm"><integer name="width" value="24"/><integer name="height" value="16"/><rfilter type="box"/></film>
+  </sensor>
+  <shape type="rectangle"><transform name="to_world"><scale value="3"/></transform></shape>
+  <shape type="sphere" id="ball">
+    <point name="center" x="0" y="0" z="0.5"/><float name="radius" value="0.5"/>
+    <bsdf type="roughconductor"><float name="alpha" value="0.3"/><string name="material" value="none"/></bsdf>
+  </shape>
+  <emitter type="point"><point name="position" x="1" y="-2" z="3"/><float name="intensity" value="9"/></emitter>
+</scene>
+"#;
+
+/// The room with something in it replaced.
+fn folder(from: &str, to: &str) -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    assert!(ROOM.contains(from));
+    fs::write(folder.path().join("room.xml"), ROOM.replace(from, to)).unwrap();
+    folder
+}
+
+fn room() -> tempfile::TempDir {
+    folder("ball", "ball")
+}
+
+fn call(path: &Path, line: &str) -> Output {
+    let arguments = line.split_whitespace();
+    etendue()
+        .current_dir(path)
+        .args(arguments)
+        .output()
+        .unwrap()
+}
+
+/// What a command says that succeeds.
+fn done(path: &Path, line: &str) -> String {
+    let output = call(path, line);
+    assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
+    String::from_utf8(output.stdout).unwrap()
+}
+
+/// What a command says that refuses its input.
+fn refused(path: &Path, line: &str) -> String {
+    let output = call(path, line);
+    assert_eq!(output.status.code(), Some(2), "{line}: {output:?}");
+    String::from_utf8(output.stderr).unwrap()
+}
+
+#[test]
+fn import_says_what_there_is_and_what_is_left_out() {
+    let folder = folder("<rfilter type=\"box\"/>", "<rfilter type=\"gaussian\"/>");
+    let said = done(folder.path(), "import room.xml");
+    for part in [
+        "spheres",
+        "point lights",
+        "camera front: 24 × 16 pixels",
+        "room.xml:5:",
+    ] {
+        assert!(said.contains(part), "{part}: {said}");
+    }
+}
+
+#[test]
+fn what_cannot_be_followed_is_refused_with_all_causes() {
+    let folder = folder("type=\"sphere\" id=\"ball\"", "type=\"blob\"");
+    fs::write(
+        folder.path().join("worse.xml"),
+        ROOM.replace("sphere", "blob")
+            .replace("\"point\"", "\"sun\""),
+    )
+    .unwrap();
+    for (line, parts) in [
+        (
+            "import worse.xml",
+            vec!["worse.xml:8:", "`blob`", "worse.xml:12:", "`sun`"],
+        ),
+        ("render room.xml --out out", vec!["room.xml:8:"]),
+        ("probe room.xml --pixel 1,1 --out out", vec!["room.xml:8:"]),
+    ] {
+        let message = refused(folder.path(), line);
+        for part in parts {
+            assert!(message.contains(part), "{line}, {part}: {message}");
+        }
+    }
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
+fn pictures_and_probes_have_the_same_bytes_on_any_threads() {
+    let folder = room();
+    let path = folder.path();
+    for threads in [1, 2] {
+        done(
+            path,
+            &format!("render room.xml --samples 4 --threads {threads} --out r{threads}"),
+        );
+        let probe = "probe room.xml --pixel 12,8 --rays 2^12 --photons 2^13 --quiet";
+        call(
+            path,
+            &format!("{probe} --threads {threads} --out p{threads}"),
+        );
+        done(
+            path,
+            &format!("probe room.xml --map 3x2 --rays 2^10 --threads {threads} --out m{threads}"),
+        );
+    }
+    for name in ["r", "p", "m"] {
+        let [one, two] = [1, 2].map(|threads| files(&path.join(format!("{name}{threads}"))));
+        assert!(one.len() > 3, "{name}: {:?}", one.keys());
+        assert!(one == two, "{name}");
+    }
+}
+
+#[test]
+fn a_probe_names_surfaces_and_judges_planes() {
+    let folder = room();
+    let path = folder.path();
+    let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^14 --photons 2^20 --out p";
+    let output = call(path, line);
+    // Chance fails one probe in a hundred; these bytes never change.
+    assert!(matches!(output.status.code(), Some(0 | 4)), "{output:?}");
+    let found = json(&path.join("p/probe.json"));
+    let surface = &found["surfaces"][0];
+    assert_eq!(surface["shape"], "ball");
+    let curvature = surface["curvature"][0].as_f64().unwrap();
+    // By finite differences over a few pixels.
+    assert!((curvature - 2.0).abs() < 0.05, "{curvature}");
+    let names = found["planes"].as_array().unwrap().iter();
+    let names: Vec<&str> = names
+        .map(|plane| plane["report"]["name"].as_str().unwrap())
+        .collect();
+    assert_eq!(names, ["camera", "leaving_1", "arriving_1"]);
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains("of the window alone") && said.contains("by Eq. 20"),
+        "{said}"
+    );
+}
+
+#[test]
+fn what_is_asked_must_be_there() {
+    let folder = room();
+    let path = folder.path();
+    for (line, part) in [
+        ("probe room.xml --pixel 24,0", "allowed: 0,0 to 23,15"),
+        ("probe room.xml", "--pixel"),
+        ("probe room.xml --pixel 1,1 --rays 3", "from 64 on"),
+        ("render room.xml --camera side", "allowed: front"),
+        ("render room.xml --size 0x5", "two whole numbers"),
+        ("render room.xml --samples 1", "--samples"),
+    ] {
+        let message = refused(path, line);
+        assert!(message.contains(part), "{line}: {message}");
+    }
+    fs::write(
+        path.join("plane.obj"),
+        "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n",
+    )
+    .unwrap();
+    let message = refused(path, "render plane.obj");
+    assert!(message.contains("--look-from"), "{message}");
+    let view = "--look-from 0.3,0.3,2 --look-at 0.3,0.3,0 --size 4x4 --samples 2";
+    let message = refused(path, &format!("render plane.obj {view}"));
+    assert!(message.contains("--sky"), "{message}");
+    done(path, &format!("render plane.obj {view} --sky 1 --out sky"));
+}
