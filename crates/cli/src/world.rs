@@ -161,5 +161,10 @@ fn of_camera(camera: &Camera) -> String {
         }
         Projection::Orthographic => "orthographic".to_owned(),
     };
+    let name = if name.is_empty() {
+        "without a name"
+    } else {
+        name
+    };
     format!("camera {name}: {w} × {h} pixels, {kind}")
 }

@@ -89,7 +89,10 @@ pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16
         let [along, across] = stop.curvature;
         vec![
             (i + 1).to_string(),
-            world.shapes[stop.shape].name.clone(),
+            match world.shapes[stop.shape].name.as_str() {
+                "" => format!("number {}", stop.shape + 1),
+                name => name.to_owned(),
+            },
             word(stop.reflects),
             format!("{:.4}", stop.distance),
             format!("{angle:.2}"),
