@@ -19,15 +19,18 @@ from etendue.rays import Spectrum, spectrum
 from etendue.result import LightField, Plane, Radial, Result, Slices
 from etendue.scene import PlaneInfo, Scene
 from etendue.stages import Measurement, Photons, Prediction, check, compare, measure, merge, photons, predict, run
+from etendue.worlds import Picture, Probe, probe, render
 
 __all__ = [
     "CannotRun",
     "LightField",
     "Measurement",
     "Photons",
+    "Picture",
     "Plane",
     "PlaneInfo",
     "Prediction",
+    "Probe",
     "Radial",
     "Result",
     "Scene",
@@ -41,6 +44,8 @@ __all__ = [
     "merge",
     "photons",
     "predict",
+    "probe",
+    "render",
     "run",
     "spectrum",
     "sweep",

@@ -197,6 +197,19 @@ def test_progress_and_pictures(result):
         result["nowhere"]
 
 
+def test_scenes_of_other_programs(tmp_path: Path) -> None:
+    scene = FIG9B.parent / "worlds" / "glossy.xml"
+    picture = etendue.render(scene, out=tmp_path / "picture", samples=4, size="16x12")
+    assert picture.radiance.shape == picture.error.shape == (12, 16)
+    assert picture.radiance.mean() > 0
+    found = etendue.probe(scene, (70, 95), out=tmp_path / "probe", rays=2**12, photons=2**14)
+    assert found.surfaces[0]["shape"] == "metal"
+    assert abs(found.surfaces[0]["curvature"][0] - 1 / 0.7) < 0.01  # by finite differences
+    assert found.slices("camera")["measured"].shape == (4, 25, 25)
+    with pytest.raises(etendue.SceneError, match="allowed"):
+        etendue.probe(scene, (256, 0), out=tmp_path / "none")
+
+
 def test_commands_as_functions(tmp_path):
     table = etendue.sweep(FIG9B, {"blockers.0.pitch": [0.1, 0.2]}, photons=2**14, out=tmp_path / "sweep")
     assert set(table["blockers.0.pitch"]) == {0.1, 0.2} and "receiver" in table["plane"]
