@@ -31,13 +31,6 @@ pub fn criterion(
         return None;
     }
     let chain = scattering::chain(view)?;
-    let lobe_cutoff = match system.reflectance.brdf.lobe {
-        Lobe::Phong { exponent } => cutoff(shading::Lobe::Phong { exponent }),
-        Lobe::Beckmann { roughness } => cutoff(shading::Lobe::Beckmann { roughness }),
-        Lobe::Ggx { roughness } => cutoff(shading::Lobe::Ggx { roughness }),
-        // It is about the normal.
-        _ => 0.0,
-    };
     let last = system.layers.last().map(|(distance, _)| *distance);
     let edge = if system.light.is_distant() {
         last
@@ -50,13 +43,23 @@ pub fn criterion(
         outgoing: chain.outgoing[0],
         distance: scene.path.along(plane),
         blocker_distance: edge.map(|distance| chain.distance - distance),
-        lobe_cutoff,
+        // A lobe about the normal has none.
+        lobe_cutoff: lobe_cutoff(system.reflectance.brdf.lobe).unwrap_or(0.0),
         environment_cutoff: f64::INFINITY,
     })
 }
 
-fn cutoff(lobe: shading::Lobe) -> f64 {
-    lobe.cutoff(BANDWIDTH_FRACTION)
+/// Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles per radian. `None` of a lobe about
+/// the normal.
+#[must_use]
+pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
+    let lobe = match lobe {
+        Lobe::Phong { exponent } => shading::Lobe::Phong { exponent },
+        Lobe::Beckmann { roughness } => shading::Lobe::Beckmann { roughness },
+        Lobe::Ggx { roughness } => shading::Lobe::Ggx { roughness },
+        Lobe::Lambertian => return None,
+    };
+    Some(lobe.cutoff(BANDWIDTH_FRACTION))
 }
 
 /// The bandwidth along ν of the exact prediction of such a plane, by the estimator that is used for

@@ -31,7 +31,7 @@ mod ways;
 mod work;
 
 pub use applicability::{Applicability, Theory};
-pub use bandwidth::{criterion, exact_bandwidth, measured_bandwidth};
+pub use bandwidth::{criterion, exact_bandwidth, lobe_cutoff, measured_bandwidth};
 pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};

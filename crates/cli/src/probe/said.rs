@@ -2,12 +2,11 @@
 
 use super::{Found, verdict};
 use crate::table::aligned;
-use etendue_compare::Verdict;
+use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{Lobe, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
 use etendue_spectrum::Uncertain;
-use etendue_spectrum::moments::BANDWIDTH_FRACTION;
-use etendue_theory::shading::{self, Criterion};
+use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
 
@@ -17,13 +16,6 @@ pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
         return None;
     };
-    let cutoff = match lobe {
-        Lobe::Phong { exponent } => shading::Lobe::Phong { exponent },
-        Lobe::Beckmann { roughness } => shading::Lobe::Beckmann { roughness },
-        Lobe::Ggx { roughness } => shading::Lobe::Ggx { roughness },
-        Lobe::Lambertian => return None,
-    }
-    .cutoff(BANDWIDTH_FRACTION);
     let angle = libm::acos(stop.cosine().clamp(-1.0, 1.0));
     let of = Criterion {
         curvature: stop.curvature[0],
@@ -31,7 +23,7 @@ pub(super) fn criterion(stop: &Stop) -> Option<f64> {
         outgoing: angle,
         distance: stop.distance,
         blocker_distance: None,
-        lobe_cutoff: cutoff,
+        lobe_cutoff: lobe_cutoff(lobe)?,
         environment_cutoff: f64::INFINITY,
     };
     Some(of.environment())

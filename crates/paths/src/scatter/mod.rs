@@ -33,6 +33,15 @@ pub enum Reflects {
     Lobe(Lobe),
 }
 
+impl Reflects {
+    fn facets(distribution: Distribution, roughness: f64) -> Self {
+        Self::Lobe(match distribution {
+            Distribution::Beckmann => Lobe::Beckmann { roughness },
+            Distribution::Ggx => Lobe::Ggx { roughness },
+        })
+    }
+}
+
 /// A material, ready to scatter.
 #[derive(Clone, Debug)]
 pub(crate) enum Scatter {
@@ -245,10 +254,7 @@ impl Scatter {
                 let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
                 // Of the same area as the ellipse of both.
                 let roughness = (a * b).sqrt();
-                Reflects::Lobe(match of.distribution {
-                    Distribution::Beckmann => Lobe::Beckmann { roughness },
-                    Distribution::Ggx => Lobe::Ggx { roughness },
-                })
+                Reflects::facets(of.distribution, roughness)
             })
         };
         match self {

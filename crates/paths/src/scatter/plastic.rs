@@ -2,7 +2,6 @@ use super::Reflects;
 use super::bounce::{Bounce, by_cosine, cosine_density};
 use super::fresnel::{dielectric, diffuse_reflectance};
 use super::microfacet::Microfacets;
-use etendue_field::Lobe;
 use etendue_world::{Distribution, Plastic, Texture};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;
@@ -53,11 +52,7 @@ impl Coated {
     /// What its coat does, in a word.
     pub(super) fn kind(&self) -> Reflects {
         self.facets.map_or(Reflects::Mirror, |facets| {
-            let roughness = facets.alpha[0];
-            Reflects::Lobe(match facets.distribution {
-                Distribution::Beckmann => Lobe::Beckmann { roughness },
-                Distribution::Ggx => Lobe::Ggx { roughness },
-            })
+            Reflects::facets(facets.distribution, facets.alpha[0])
         })
     }
 
