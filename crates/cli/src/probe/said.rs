@@ -10,13 +10,18 @@ use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
 
+/// The angle of the central ray to the normal of a surface, radians.
+fn angle(stop: &Stop) -> f64 {
+    libm::acos(stop.cosine().clamp(-1.0, 1.0))
+}
+
 /// The paper's criterion for light that leaves a surface, in cycles per radian at the camera (Durand et al. 2005, Eq. 20, corrected); `None` where it has
 /// no lobe.
 pub(super) fn criterion(stop: &Stop) -> Option<f64> {
     let Reflects::Lobe(lobe) = stop.reflects else {
         return None;
     };
-    let angle = libm::acos(stop.cosine().clamp(-1.0, 1.0));
+    let angle = angle(stop);
     let of = Criterion {
         curvature: stop.curvature[0],
         incidence: angle,
@@ -35,7 +40,7 @@ pub(super) fn of_stop(world: &World, stop: &Stop) -> Value {
         "position": stop.position.to_array(),
         "normal": stop.normal.to_array(),
         "distance": stop.distance,
-        "angle": libm::acos(stop.cosine().clamp(-1.0, 1.0)),
+        "angle": angle(stop),
         "curvature": stop.curvature,
         "reflects": word(stop.reflects),
         "criterion": criterion(stop),
@@ -68,60 +73,9 @@ fn word(reflects: Reflects) -> String {
 
 /// The surfaces, the planes, and how densely the picture is to be sampled.
 pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16) -> Vec<String> {
-    let header = [
-        "surface",
-        "shape",
-        "reflects",
-        "distance",
-        "angle [°]",
-        "curvatures [1/m]",
-    ];
-    let surfaces = probe.stops.iter().enumerate().map(|(i, stop)| {
-        let angle = libm::acos(stop.cosine().clamp(-1.0, 1.0)).to_degrees();
-        let [along, across] = stop.curvature;
-        vec![
-            (i + 1).to_string(),
-            match world.shapes[stop.shape].name.as_str() {
-                "" => format!("number {}", stop.shape + 1),
-                name => name.to_owned(),
-            },
-            word(stop.reflects),
-            format!("{:.4}", stop.distance),
-            format!("{angle:.2}"),
-            format!("{along:.4}, {across:.4}"),
-        ]
-    });
-    let header = vec![header.map(str::to_owned).to_vec()];
-    let mut lines = aligned(header.into_iter().chain(surfaces).collect());
+    let mut lines = surfaces(world, probe);
     lines.push(String::new());
-    let header = [
-        "plane",
-        "noise alone",
-        "p",
-        "95 % of ν [cycles/slope]",
-        "95 % of ρ [cycles/m]",
-        "verdict",
-    ];
-    let shown =
-        |of: &Option<Uncertain>| of.map_or("–".to_owned(), |of| uncertain(of.value, of.error));
-    let planes = found.iter().map(|found| {
-        let report = &found.comparison.report;
-        let share = |x: Option<f64>| x.map_or("–".to_owned(), |x| percent(x, 3));
-        vec![
-            report.name.clone(),
-            share(report.noise_limit),
-            report.p_value.map_or("–".to_owned(), |p| format!("{p:.5}")),
-            shown(&found.nu),
-            shown(&found.rho),
-            match found.misses {
-                Some(what) => format!("undecided: photons do not find light from {what}"),
-                None if found.is_dark() => "dark".to_owned(),
-                None => format!("{:?}", report.verdict).to_lowercase(),
-            },
-        ]
-    });
-    let header = vec![header.map(str::to_owned).to_vec()];
-    lines.extend(aligned(header.into_iter().chain(planes).collect()));
+    lines.extend(planes(found));
     lines.push(String::new());
     let open = found.iter().filter(|found| verdict(found) != Verdict::Pass);
     lines.extend(open.filter_map(|found| {
@@ -138,6 +92,68 @@ pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16
         lines.extend(bandwidths(probe, nu));
     }
     lines
+}
+
+/// A table below its head.
+fn table(head: [&str; 6], rows: impl Iterator<Item = [String; 6]>) -> Vec<String> {
+    let head = head.map(str::to_owned);
+    aligned(std::iter::once(head).chain(rows).map(Vec::from).collect())
+}
+
+fn surfaces(world: &World, probe: &Probe<'_>) -> Vec<String> {
+    let head = [
+        "surface",
+        "shape",
+        "reflects",
+        "distance",
+        "angle [°]",
+        "curvatures [1/m]",
+    ];
+    let rows = probe.stops.iter().enumerate().map(|(i, stop)| {
+        let [along, across] = stop.curvature;
+        [
+            (i + 1).to_string(),
+            match world.shapes[stop.shape].name.as_str() {
+                "" => format!("number {}", stop.shape + 1),
+                name => name.to_owned(),
+            },
+            word(stop.reflects),
+            format!("{:.4}", stop.distance),
+            format!("{:.2}", angle(stop).to_degrees()),
+            format!("{along:.4}, {across:.4}"),
+        ]
+    });
+    table(head, rows)
+}
+
+fn planes(found: &[&Found]) -> Vec<String> {
+    let head = [
+        "plane",
+        "noise alone",
+        "p",
+        "95 % of ν [cycles/slope]",
+        "95 % of ρ [cycles/m]",
+        "verdict",
+    ];
+    let shown =
+        |of: &Option<Uncertain>| of.map_or("–".to_owned(), |of| uncertain(of.value, of.error));
+    let rows = found.iter().map(|found| {
+        let report = &found.comparison.report;
+        let share = |x: Option<f64>| x.map_or("–".to_owned(), |x| percent(x, 3));
+        [
+            report.name.clone(),
+            share(report.noise_limit),
+            report.p_value.map_or("–".to_owned(), |p| format!("{p:.5}")),
+            shown(&found.nu),
+            shown(&found.rho),
+            match found.misses {
+                Some(what) => format!("undecided: photons do not find light from {what}"),
+                None if found.is_dark() => "dark".to_owned(),
+                None => format!("{:?}", report.verdict).to_lowercase(),
+            },
+        ]
+    });
+    table(head, rows)
 }
 
 /// What the window alone gives, in cycles per slope: the estimator of even light, whose product with the half-width is always this.
