@@ -9,7 +9,9 @@ use std::time::Duration;
 
 mod world;
 
-pub(crate) use world::{CameraArgs, ImportArgs, ProbeArgs, RenderArgs, ViewArgs, WorldArgs};
+pub(crate) use world::{
+    CameraArgs, ImportArgs, ProbeArgs, RenderArgs, RenderMethod, ViewArgs, WorldArgs,
+};
 
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]

@@ -1,6 +1,8 @@
 //! What a camera of a scene sees.
 
-use crate::args::RenderArgs;
+mod adaptive;
+
+use crate::args::{RenderArgs, RenderMethod};
 use crate::failure::Failure;
 use crate::results::exr::{Part, exr};
 use crate::results::npz::Npz;
@@ -26,22 +28,20 @@ pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
         .out
         .clone()
         .unwrap_or_else(|| Path::new("out").join(name));
+    let method = method(args);
+    let of_adaptive = method.map(|_| adaptive::FILES).unwrap_or_default();
     let plan = Plan {
         index: PICTURE,
-        files: FILES.map(str::to_owned).to_vec(),
+        files: FILES
+            .iter()
+            .chain(of_adaptive)
+            .map(|name| (*name).to_owned())
+            .collect(),
         inputs: vec![args.scene.path.clone()],
         force: args.force.force,
     };
     let mut results = Results::claim(&folder, plan)?;
-    let picture = on_threads(&args.threads, || {
-        let paths = Paths::new(&imported.world);
-        let pixels = camera.size[0] * camera.size[1];
-        let bar = progress::steps("rendering", pixels, "pixels", args.quiet);
-        let picture = paths.picture(&camera, args.samples, args.seed, &|done| bar.inc(done));
-        bar.finish_and_clear();
-        Ok(picture)
-    })?;
-    let made_from = tree_of!({
+    let mut made_from = tree_of!({
         "scene": args.scene.path.file_name().map(|name| name.to_string_lossy()),
         "camera": camera.name,
         "camera_to_world": camera.to_world.to_cols_array(),
@@ -49,11 +49,28 @@ pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
         "depth": imported.world.depth,
         "hides_sources": imported.world.hides_sources,
         "size": camera.size,
-        "samples": args.samples,
         "seed": args.seed,
         "version": VERSION,
     });
-    write(&mut results, &picture, &made_from)?;
+    let said = on_threads(&args.threads, || {
+        let paths = Paths::new(&imported.world);
+        if let Some(method) = method {
+            return adaptive::render(
+                args,
+                method,
+                (&paths, &camera),
+                &mut results,
+                &mut made_from,
+            );
+        }
+        made_from["samples"] = tree_of!(args.samples);
+        let pixels = camera.size[0] * camera.size[1];
+        let bar = progress::steps("rendering", pixels, "pixels", args.quiet);
+        let picture = paths.picture(&camera, args.samples, args.seed, &|done| bar.inc(done));
+        bar.finish_and_clear();
+        write(&mut results, &picture, &made_from)?;
+        Ok(String::new())
+    })?;
     let finished = results.finish(|files| {
         let mut index = made_from.clone();
         index["files"] = tree_of!(files);
@@ -65,13 +82,25 @@ pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
             say(&format!("note: {note}"));
         }
         say(&format!(
-            "{} × {} pixels in {}",
+            "{} × {} pixels{said} in {}",
             camera.size[0],
             camera.size[1],
             folder.display()
         ));
     }
     Ok(0)
+}
+
+/// How few shading samples are spent; `None` for a reference.
+fn method(args: &RenderArgs) -> Option<etendue_adaptive::Method> {
+    use etendue_adaptive::Method;
+    match (args.method, args.shading_samples) {
+        (Some(RenderMethod::Reference), _) | (None, None) => None,
+        (Some(RenderMethod::Predicted) | None, _) => Some(Method::Predicted),
+        (Some(RenderMethod::Uniform), _) => Some(Method::Uniform),
+        (Some(RenderMethod::Weighted), _) => Some(Method::Weighted),
+        (Some(RenderMethod::Variance), _) => Some(Method::Variance),
+    }
 }
 
 /// Radiance and its standard error, for programs; and a picture to look at.

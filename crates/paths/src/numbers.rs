@@ -1,16 +1,22 @@
+use etendue_field::Net;
 use etendue_field::random::{Stream, unit, words};
 
 /// The random numbers of one path, in (0, 1), drawn one after another.
 #[derive(Debug)]
-pub(crate) struct Numbers {
+pub(crate) struct Numbers<'a> {
     seed: u64,
     path: u64,
     block: u32,
     left: [u32; 4],
     used: usize,
+    /// Where the first numbers are a point of a net: the net, and the point's number.
+    net: Option<(&'a Net, u32)>,
 }
 
-impl Numbers {
+/// Blocks of four numbers that a net has.
+pub(crate) const JOINT: u32 = 2;
+
+impl<'a> Numbers<'a> {
     pub(crate) fn new(seed: u64, path: u64) -> Self {
         Self {
             seed,
@@ -18,12 +24,24 @@ impl Numbers {
             block: 0,
             left: [0; 4],
             used: 4,
+            net: None,
+        }
+    }
+
+    /// The first numbers are a point of a net with [`JOINT`] blocks.
+    pub(crate) fn of_net(self, net: &'a Net, point: u32) -> Self {
+        Self {
+            net: Some((net, point)),
+            ..self
         }
     }
 
     fn next(&mut self) -> f64 {
         if self.used == 4 {
-            self.left = words(self.seed, Stream::Backward, self.path, self.block);
+            self.left = match self.net {
+                Some((net, point)) if self.block < JOINT => net.words(point, self.block),
+                _ => words(self.seed, Stream::Backward, self.path, self.block),
+            };
             self.block += 1;
             self.used = 0;
         }

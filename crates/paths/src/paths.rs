@@ -44,26 +44,46 @@ impl Paths {
     /// between there and the camera.
     pub(crate) fn radiance(
         &self,
-        mut ray: Ray,
-        mut seen: [f64; 2],
+        ray: Ray,
+        seen: [f64; 2],
         before: u32,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
     ) -> f64 {
-        let (mut sum, mut weight) = (0.0, 1.0);
-        // Density of the last direction; `None` where no light was looked for.
-        let mut last: Option<f64> = None;
-        for met in before..=self.depth {
-            let hit = self.space.first(&ray, seen);
-            if met > 0 || !self.hides_sources {
-                sum += weight * self.emitted(&ray, hit.as_ref(), last);
-            }
-            let Some(hit) = hit.filter(|_| met < self.depth) else {
-                break;
-            };
+        let hit = self.space.first(&ray, seen);
+        let mut sum = self.shown(&ray, hit.as_ref(), before);
+        if let Some(hit) = hit {
+            self.scattered(ray, hit, before, numbers, &mut |_, light| sum += light);
+        }
+        sum
+    }
+
+    /// What sources themselves send along a ray, as a camera behind `before` surfaces sees it.
+    pub(crate) fn shown(&self, ray: &Ray, hit: Option<&Hit>, before: u32) -> f64 {
+        if before > 0 || !self.hides_sources {
+            self.emitted(ray, hit, None)
+        } else {
+            0.0
+        }
+    }
+
+    /// The radiance that what a ray hits scatters back along it, in parts that one path finds, each told with the direction that it arrives there from, in
+    /// the frame of the hit. `before` surfaces are between there and the camera.
+    pub(crate) fn scattered(
+        &self,
+        mut ray: Ray,
+        mut hit: Hit,
+        before: u32,
+        numbers: &mut Numbers<'_>,
+        found: &mut dyn FnMut(DVec3, f64),
+    ) {
+        let mut weight = 1.0;
+        let mut first: Option<DVec3> = None;
+        for met in before..self.depth {
             let scatter = self.scatter(&hit);
             let wo = hit.frame.transpose() * -ray.along;
             if !scatter.is_smooth() {
-                sum += weight * self.looked_for(&hit, scatter, wo, numbers.draw());
+                let (wi, light) = self.looked_for(&hit, scatter, wo, numbers.draw());
+                found(first.unwrap_or(wi), weight * light);
             }
             let Some(bounce) = scatter.sample(hit.uv, wo, numbers.draw()) else {
                 break;
@@ -78,10 +98,17 @@ impl Paths {
                 weight /= share;
             }
             ray = onward(&hit, &bounce);
-            seen = [0.0, f64::INFINITY];
-            last = bounce.density;
+            let next = self.space.first(&ray, [0.0, f64::INFINITY]);
+            let from = *first.get_or_insert(bounce.wi);
+            found(
+                from,
+                weight * self.emitted(&ray, next.as_ref(), bounce.density),
+            );
+            let Some(next) = next else {
+                break;
+            };
+            hit = next;
         }
-        sum
     }
 
     /// The material of what is hit.
@@ -106,27 +133,33 @@ impl Paths {
         }
     }
 
-    /// Light that is looked for at the lights.
-    fn looked_for(&self, hit: &Hit, scatter: &Scatter, wo: DVec3, random: [f64; 4]) -> f64 {
+    /// Light that is looked for at the lights, and the direction in the frame of the hit that it comes from.
+    fn looked_for(
+        &self,
+        hit: &Hit,
+        scatter: &Scatter,
+        wo: DVec3,
+        random: [f64; 4],
+    ) -> (DVec3, f64) {
         let Some(light) = self.lamps.sample(&self.space, hit.position, random) else {
-            return 0.0;
+            return (DVec3::Z, 0.0);
         };
         let wi = hit.frame.transpose() * light.toward;
         let value = scatter.value(hit.uv, wi, wo);
         if value <= 0.0 {
-            return 0.0;
+            return (wi, 0.0);
         }
         let ray = Ray {
             from: hit.position,
             along: light.toward,
         };
         if !self.space.is_free(&ray, light.distance) {
-            return 0.0;
+            return (wi, 0.0);
         }
         let share = light.density.map_or(1.0, |looked| {
             looked / (looked + scatter.density(hit.uv, wi, wo))
         });
-        value * light.weight * share
+        (wi, value * light.weight * share)
     }
 }
 

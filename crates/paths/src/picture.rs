@@ -64,7 +64,7 @@ impl Paths {
     }
 
     /// One path to somewhere in a pixel.
-    fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut Numbers) -> f64 {
+    fn seen(&self, camera: &Camera, pixel: [f64; 2], numbers: &mut Numbers<'_>) -> f64 {
         let [x, y, a, b] = numbers.draw();
         let (sin, cos) = libm::sincos(TAU * b);
         let radius = a.sqrt();

@@ -94,6 +94,16 @@ impl WorldArgs {
     }
 }
 
+/// How samples of a picture are spent.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum RenderMethod {
+    Reference,
+    Uniform,
+    Predicted,
+    Weighted,
+    Variance,
+}
+
 /// What a colour becomes.
 #[derive(Clone, Copy, Debug, ValueEnum)]
 pub(crate) enum Channel {
@@ -121,12 +131,21 @@ pub(crate) struct ImportArgs {
   etendue render cbox.xml
   etendue render cbox.xml --size 64x64 --samples 1024 --bounces 1 --out out/direct
   etendue render bunny.obj --look-from 0,1,4 --look-at 0,0.5,0 --fov 30 --sky 1
+  etendue render scenes/worlds/creatures.xml --shading-samples 20000
+  etendue render scenes/worlds/creatures.xml --shading-samples 20000 --method uniform --out out/uniform
 
 Leaves in its folder
   picture.exr    radiance and its standard error, as two parts of one channel Y
   picture.npz    the same as arrays radiance and error [row, column], float64
   picture.png    to look at: its brightest hundredth is white
 Scenes of OBJ, of PLY and often of glTF have no camera, and may have no light: --look-from with --look-at, and --sky.
+With few shading samples (Durand et al. 2005, section 6.2), the same and more: picture.exr and picture.npz have the maps that led to the
+samples (bandwidth, blockers, shadow, density, samples, variance), picture.npz their places (points), bandwidth.png and samples.png show
+two of them, and timing.json says how long each stage took. Methods:
+  uniform     blue noise, even over all that is shaded
+  predicted   by the criteria of the paper, Eqs. 20 and 21, corrected
+  weighted    by these and by how much light varies among a first quarter of the samples
+  variance    by how much it varies alone
 Pixels are boxes, whatever filter the file names: each is the mean of the radiance over its area.")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]
@@ -135,9 +154,26 @@ pub(crate) struct RenderArgs {
     #[command(flatten)]
     pub(crate) camera: CameraArgs,
 
-    /// Paths for each pixel, at least 2
+    /// How samples are spent: all over (reference), or few shading samples where the method puts them [default: reference, or predicted
+    /// with --shading-samples]
+    #[arg(long, value_name = "METHOD")]
+    pub(crate) method: Option<RenderMethod>,
+
+    /// Paths for each pixel of a reference, at least 2
     #[arg(long, value_name = "N", default_value = "64", value_parser = clap::value_parser!(u32).range(2..))]
     pub(crate) samples: u32,
+
+    /// Shading samples of the whole picture, for all methods but reference [default: one for each 20 pixels]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000_000))]
+    pub(crate) shading_samples: Option<u32>,
+
+    /// Paths of each shading sample
+    #[arg(long, value_name = "N", default_value = "64", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    pub(crate) paths: u32,
+
+    /// Samples denser along the direction in which light changes faster; without it as dense along all, as in the paper
+    #[arg(long)]
+    pub(crate) anisotropic: bool,
 
     /// Seed of the paths
     #[arg(long, value_name = "N", default_value = "1")]

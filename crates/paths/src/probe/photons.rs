@@ -157,7 +157,12 @@ impl<'a> PhotonProbe<'a> {
     }
 
     /// Where a photon goes on to from a hit, and the share of its flux: half of the time as the material sends it, half aimed at what the windows see.
-    fn onward(&self, hit: &Hit, arriving: DVec3, numbers: &mut Numbers) -> Option<(DVec3, f64)> {
+    fn onward(
+        &self,
+        hit: &Hit,
+        arriving: DVec3,
+        numbers: &mut Numbers<'_>,
+    ) -> Option<(DVec3, f64)> {
         let scatter = self.probe.paths.scatter(hit);
         let wi = hit.frame.transpose() * -arriving;
         let [a, b, pick] = numbers.draw();
@@ -192,7 +197,7 @@ impl<'a> PhotonProbe<'a> {
     fn pass(
         &self,
         source: &Source<'_>,
-        numbers: &mut Numbers,
+        numbers: &mut Numbers<'_>,
         record: &mut dyn FnMut(usize, Crossing),
     ) {
         let Probe {

@@ -272,6 +272,34 @@ impl Scatter {
         }
     }
 
+    /// The factors of its two parts, as textures have them: of the base, and of the lobe or mirror above it. What has one part only has that as its base.
+    pub(crate) fn factors(&self, uv: DVec2, wo: DVec3) -> [f64; 2] {
+        match self {
+            Self::TwoSided(sides) => {
+                let (side, turned) = side_of(sides, wo);
+                side.factors(uv, turned(wo))
+            }
+            Self::Diffuse(reflectance) => [reflectance.value(uv), 0.0],
+            Self::Conductor(of) => [of.reflectance.value(uv), 0.0],
+            Self::Plastic(of) => of.factors(uv),
+            Self::Phong([diffuse, specular, _]) => [diffuse.value(uv), specular.value(uv)],
+            _ => [1.0, 0.0],
+        }
+    }
+
+    /// The share of the base in what leaves to `wo` of light from `wi`.
+    pub(crate) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+        match self {
+            Self::TwoSided(sides) => {
+                let (side, turned) = side_of(sides, wo);
+                side.base_share(uv, turned(wi), turned(wo))
+            }
+            Self::Plastic(of) => of.base_share(uv, wi, wo),
+            Self::Phong(of) => phong::base_share(of, uv, wi, wo),
+            _ => 1.0,
+        }
+    }
+
     /// Whether some of what leaves it goes one way only.
     pub(crate) fn has_mirror(&self) -> bool {
         match self {

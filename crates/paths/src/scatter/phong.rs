@@ -18,6 +18,16 @@ pub(super) fn value(
     (diffuse.value(uv) / PI + specular.value(uv) * lobe) * wi.z
 }
 
+/// The share of the diffuse part in what leaves.
+pub(super) fn base_share(of: &[Texture; 3], uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+    let all = value(of, uv, wi, wo);
+    if all > 0.0 {
+        of[0].value(uv) / PI * wi.z / all
+    } else {
+        0.0
+    }
+}
+
 /// The share of samples about the mirror direction.
 fn share([diffuse, specular, _]: &[Texture; 3], uv: DVec2) -> f64 {
     let (kd, ks) = (diffuse.value(uv), specular.value(uv));

@@ -81,14 +81,38 @@ impl Coated {
 
     /// What the base scatters, times the cosine of wi.
     fn base(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+        let through = self.through(wi.z) * self.through(wo.z) / (self.index * self.index);
+        self.albedo(uv) * through * wi.z / PI
+    }
+
+    /// What the base reflects of light that has come to it, and back from the coat again and again.
+    fn albedo(&self, uv: DVec2) -> f64 {
         let diffuse = self.diffuse.value(uv);
         let again = if self.is_nonlinear {
             diffuse * self.within
         } else {
             self.within
         };
-        let through = self.through(wi.z) * self.through(wo.z) / (self.index * self.index);
-        diffuse / (1.0 - again) * through * wi.z / PI
+        diffuse / (1.0 - again)
+    }
+
+    /// Those of base and coat.
+    pub(super) fn factors(&self, uv: DVec2) -> [f64; 2] {
+        [self.albedo(uv), self.specular.value(uv)]
+    }
+
+    /// The share of the base in what leaves; of light in the mirror direction of a smooth coat none is the base's, but for what has no size.
+    pub(super) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+        let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
+        if self.facets.is_none() && is_mirrored {
+            return 0.0;
+        }
+        let value = self.value(uv, wi, wo);
+        if value > 0.0 {
+            self.base(uv, wi, wo) / value
+        } else {
+            0.0
+        }
     }
 
     /// The share of samples that the coat gets.

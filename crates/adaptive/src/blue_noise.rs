@@ -1,0 +1,266 @@
+//! Blue noise of a density: points that are random but keep their distance (Yuksel 2015, *Sample Elimination for Generating Poisson Disk Sample Sets*).
+//!
+//! More candidates than needed are drawn by the density. The one whose neighbours crowd it most is left out again and again, until as many are left as are
+//! asked for. Distances are those of the metric, in which the density is 1 everywhere.
+
+use crate::metric::Metric;
+use etendue_field::random::{Stream, unit, words};
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
+/// Candidates for each point that is kept.
+const CANDIDATES: f64 = 4.0;
+
+/// The power of Yuksel 2015, Eq. 3.
+fn eighth(x: f64) -> f64 {
+    let square = x * x;
+    let fourth = square * square;
+    fourth * fourth
+}
+
+/// A point of the picture, pixels to the right and down from its top left.
+pub(crate) type At = [f64; 2];
+
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Point {
+    pub(crate) at: At,
+    pub(crate) metric: Metric,
+}
+
+/// Points over a picture `wide` pixels across, `count` of them at most, in order of pixels.
+pub(crate) fn blue_noise(
+    metrics: &[Option<Metric>],
+    wide: usize,
+    count: usize,
+    seed: u64,
+) -> Vec<Point> {
+    let candidates = candidates(metrics, wide, count, seed);
+    let mut is_kept = vec![true; candidates.len()];
+    let mut crowd = Crowd::new(&candidates, wide, metrics.len() / wide.max(1));
+    let mut left = candidates.len();
+    while left > count
+        && let Some(out) = crowd.most_crowded(&is_kept)
+    {
+        is_kept[out] = false;
+        crowd.leave(out);
+        left -= 1;
+    }
+    let kept = candidates.into_iter().zip(is_kept);
+    kept.filter_map(|(point, is_kept)| is_kept.then_some(point))
+        .collect()
+}
+
+/// Random points by the density: as many in a run of pixels as that has, to one.
+fn candidates(metrics: &[Option<Metric>], wide: usize, count: usize, seed: u64) -> Vec<Point> {
+    let density = |metric: &Metric| metric.determinant().max(0.0).sqrt();
+    let total: f64 = metrics.iter().flatten().map(density).sum();
+    if total <= 0.0 {
+        return Vec::new();
+    }
+    let scale = CANDIDATES * count as f64 / total;
+    let mut points = Vec::new();
+    let mut sum = 0.5;
+    for (pixel, metric) in metrics.iter().enumerate() {
+        let Some(metric) = metric else { continue };
+        sum += scale * density(metric);
+        let mut drawn = 0;
+        while sum >= 1.0 {
+            sum -= 1.0;
+            let [x, y, ..] = words(seed, Stream::Jitter, pixel as u64, drawn).map(unit);
+            drawn += 1;
+            points.push(Point {
+                at: [(pixel % wide) as f64 + x, (pixel / wide) as f64 + y],
+                metric: *metric,
+            });
+        }
+    }
+    points
+}
+
+/// How crowded each candidate is.
+#[derive(Debug)]
+struct Crowd {
+    /// Neighbours of each, with what they add to its weight.
+    neighbours: Vec<Vec<(u32, f64)>>,
+    weights: Vec<f64>,
+    queue: BinaryHeap<Entry>,
+}
+
+/// A candidate with a weight that it had once; weights only shrink.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    weight: f64,
+    index: u32,
+}
+
+impl PartialEq for Entry {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl Eq for Entry {}
+
+impl PartialOrd for Entry {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Entry {
+    fn cmp(&self, other: &Self) -> Ordering {
+        let by_weight = self.weight.total_cmp(&other.weight);
+        by_weight.then(other.index.cmp(&self.index))
+    }
+}
+
+/// The largest radius that discs of density 1 can have (Yuksel 2015, Eq. 1).
+fn largest_radius() -> f64 {
+    (2.0 * 3.0_f64.sqrt()).recip().sqrt()
+}
+
+impl Crowd {
+    fn new(points: &[Point], wide: usize, high: usize) -> Self {
+        let most = 2.0 * largest_radius();
+        let grid = Grid::new(points, wide, high);
+        let of = |i: usize| {
+            let point = &points[i];
+            let mut found = Vec::new();
+            grid.near(point, 2.0 * most, |j| {
+                let other = &points[j as usize];
+                if j as usize == i {
+                    return;
+                }
+                let step = [0, 1].map(|k: usize| other.at[k] - point.at[k]);
+                let square = 0.5 * (point.metric.square(step) + other.metric.square(step));
+                let distance = square.sqrt();
+                if distance < most {
+                    found.push((j, eighth(1.0 - distance / most)));
+                }
+            });
+            found
+        };
+        let neighbours: Vec<Vec<(u32, f64)>> = (0..points.len()).map(of).collect();
+        let weights: Vec<f64> = neighbours
+            .iter()
+            .map(|near| near.iter().map(|(_, weight)| weight).sum())
+            .collect();
+        let entries = weights.iter().zip(0..).map(|(weight, index)| Entry {
+            weight: *weight,
+            index,
+        });
+        Self {
+            queue: entries.collect(),
+            neighbours,
+            weights,
+        }
+    }
+
+    fn most_crowded(&mut self, is_kept: &[bool]) -> Option<usize> {
+        loop {
+            let entry = self.queue.pop()?;
+            let index = entry.index as usize;
+            if !is_kept[index] {
+                continue;
+            }
+            let weight = self.weights[index];
+            if weight >= entry.weight {
+                return Some(index);
+            }
+            self.queue.push(Entry { weight, ..entry });
+        }
+    }
+
+    fn leave(&mut self, out: usize) {
+        for (neighbour, weight) in std::mem::take(&mut self.neighbours[out]) {
+            self.weights[neighbour as usize] -= weight;
+        }
+    }
+}
+
+/// Which points are in which square of the picture.
+#[derive(Debug)]
+struct Grid {
+    cells: Vec<Vec<u32>>,
+    size: [usize; 2],
+}
+
+/// Pixels along a square.
+const CELL: f64 = 3.0;
+
+impl Grid {
+    fn new(points: &[Point], wide: usize, high: usize) -> Self {
+        let size = [wide, high].map(|n| (n as f64 / CELL) as usize + 1);
+        let mut cells = vec![Vec::new(); size[0] * size[1]];
+        for (point, index) in points.iter().zip(0..) {
+            let [x, y] = [0, 1].map(|k: usize| cell(point.at[k], size[k]));
+            cells[y * size[0] + x].push(index);
+        }
+        Self { cells, size }
+    }
+
+    /// The points of all squares that a distance from a point reaches.
+    fn near(&self, point: &Point, radius: f64, mut found: impl FnMut(u32)) {
+        let reach = point.metric.reach(radius);
+        let [columns, rows] = [0, 1].map(|k: usize| {
+            let at = |side: f64| cell(point.at[k] + side * reach[k], self.size[k]);
+            at(-1.0)..=at(1.0)
+        });
+        for row in rows {
+            for column in columns.clone() {
+                self.cells[row * self.size[0] + column]
+                    .iter()
+                    .for_each(|index| found(*index));
+            }
+        }
+    }
+}
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a number of a cell, clamped"
+)]
+fn cell(at: f64, cells: usize) -> usize {
+    ((at / CELL).max(0.0) as usize).min(cells - 1)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn nearest(points: &[Point], i: usize) -> f64 {
+        let others = points.iter().enumerate().filter(|(j, _)| *j != i);
+        let squares = others.map(|(_, other)| {
+            let step = [0, 1].map(|k: usize| other.at[k] - points[i].at[k]);
+            points[i].metric.square(step)
+        });
+        squares.fold(f64::INFINITY, f64::min).sqrt()
+    }
+
+    /// Random points have some nearest neighbours at distance 0; those of Yuksel keep three quarters of the largest radius (his Table 1 has 0.73 to 0.82 of 2 r).
+    #[test]
+    fn points_keep_their_distance() {
+        let even = vec![Some(Metric::even(0.05)); 100 * 80];
+        let points = blue_noise(&even, 100, 400, 3);
+        assert_eq!(points.len(), 400);
+        let inside = |at: At| at[0] > 5.0 && at[0] < 95.0 && at[1] > 5.0 && at[1] < 75.0;
+        let all = (0..points.len()).filter(|i| inside(points[*i].at));
+        let closest = all
+            .map(|i| nearest(&points, i))
+            .fold(f64::INFINITY, f64::min);
+        // Random points of this number are at some 0.03 once.
+        assert!(closest > 0.6 * 2.0 * largest_radius(), "{closest}");
+    }
+
+    #[test]
+    fn density_is_followed() {
+        let metrics: Vec<Option<Metric>> = (0..120 * 100)
+            .map(|i| Some(Metric::even(if i % 120 < 60 { 0.02 } else { 0.18 })))
+            .collect();
+        let points = blue_noise(&metrics, 120, 1200, 5);
+        let left = points.iter().filter(|point| point.at[0] < 60.0).count();
+        // 0.02 · 6000; elimination moves some across the edge.
+        assert!((left as f64 - 120.0).abs() < 12.0, "{left}");
+    }
+}

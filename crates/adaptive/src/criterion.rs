@@ -1,0 +1,141 @@
+//! How fast light may change across the picture, by the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
+//!
+//! A lobe shows light about its axis, up to its cutoff Ω_ρ. From pixel to pixel the axis turns by ∂r, and what is at a distance d' moves before it by the
+//! part of the step ∂p on the surface that is across r, over d'. So the bandwidth along a direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the
+//! plane of incidence of a sphere that is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with what its print lacks, and without d'
+//! it is Eq. 20. What is found by finite differences on the screen has the angle of view, the distance and both curvatures in it, as the paper says.
+
+use crate::metric::Metric;
+use crate::visible::{OFFSETS, Place, Surface, Visible};
+use etendue_compare::lobe_cutoff;
+use etendue_field::Lobe;
+use etendue_paths::{Nearness, Reflects};
+use etendue_theory::shading::COSINE_CUTOFF;
+use glam::DVec3;
+use std::collections::BTreeMap;
+use std::sync::Mutex;
+
+/// Cycles per radian of what has no lobe but shows things as they are: more than any picture has pixels for.
+const MIRROR: f64 = 1e4;
+
+/// The cutoffs of lobes, each found once.
+#[derive(Debug, Default)]
+pub(crate) struct Cutoffs {
+    known: Mutex<BTreeMap<[u64; 2], f64>>,
+}
+
+impl Cutoffs {
+    /// Cycles per radian.
+    pub(crate) fn of(&self, reflects: Reflects) -> f64 {
+        match reflects {
+            Reflects::Nothing => 0.0,
+            Reflects::Diffuse => COSINE_CUTOFF,
+            Reflects::Mirror => MIRROR,
+            Reflects::Lobe(lobe) => self.of_lobe(lobe),
+        }
+    }
+
+    fn of_lobe(&self, lobe: Lobe) -> f64 {
+        let (kind, lobe): (u64, Lobe) = match lobe {
+            Lobe::Lambertian => return COSINE_CUTOFF,
+            Lobe::Phong { exponent } => (
+                0,
+                Lobe::Phong {
+                    exponent: rounded(exponent),
+                },
+            ),
+            Lobe::Beckmann { roughness } => (
+                1,
+                Lobe::Beckmann {
+                    roughness: rounded(roughness),
+                },
+            ),
+            Lobe::Ggx { roughness } => (
+                2,
+                Lobe::Ggx {
+                    roughness: rounded(roughness),
+                },
+            ),
+        };
+        let width = match lobe {
+            Lobe::Phong { exponent } => exponent,
+            Lobe::Beckmann { roughness } | Lobe::Ggx { roughness } => roughness,
+            Lobe::Lambertian => 0.0,
+        };
+        let find = || {
+            let found = lobe_cutoff(lobe).filter(|cutoff| cutoff.is_finite());
+            found.unwrap_or(COSINE_CUTOFF).min(MIRROR)
+        };
+        let Ok(mut known) = self.known.lock() else {
+            return find();
+        };
+        *known.entry([kind, width.to_bits()]).or_insert_with(find)
+    }
+}
+
+/// To a few per cent, so that textures on roughness have few lobes.
+fn rounded(width: f64) -> f64 {
+    let steps = 16.0;
+    libm::exp2((steps * libm::log2(width.max(1e-4))).round() / steps)
+}
+
+/// The squared bandwidth of a pixel, (cycles per pixel)²; `None` where nothing is to be shaded.
+pub(crate) fn criterion(
+    visible: &Visible,
+    pixel: [usize; 2],
+    nearness: Nearness,
+) -> Option<Metric> {
+    let places = visible.of_pixel(pixel);
+    let first = places.iter().find_map(shaded)?;
+    let [right, down] = steps(places, first.shape);
+    let turned = |step: &Step| step.axis + nearness.reflected * across(step.position, first.axis);
+    let lobe = of_columns(turned(&right), turned(&down)).times(first.cutoff * first.cutoff);
+    let shadow = of_columns(right.position, down.position).times(nearness.shadow * nearness.shadow);
+    Some(lobe.plus(shadow))
+}
+
+/// The surface of a place, if light is scattered there at all.
+pub(crate) fn shaded(place: &Place) -> Option<&Surface> {
+    place
+        .surface
+        .as_ref()
+        .filter(|surface| surface.cutoff > 0.0 && surface.factors != [0.0; 2])
+}
+
+/// How things change from one pixel to the next.
+#[derive(Clone, Copy, Debug, Default)]
+struct Step {
+    axis: DVec3,
+    position: DVec3,
+}
+
+/// Steps to the right and down: slopes of the plane through the places of a pixel, when all are on one shape.
+fn steps(places: &[Place], shape: usize) -> [Step; 2] {
+    let mut steps = [Step::default(); 2];
+    for (place, offset) in places.iter().zip(OFFSETS) {
+        let Some(surface) = shaded(place).filter(|surface| surface.shape == shape) else {
+            return [Step::default(); 2];
+        };
+        for (step, at) in steps.iter_mut().zip(offset) {
+            // The offsets are orthogonal, and the squares of each sum to 5/16.
+            let weight = (at - 0.5) * 16.0 / 5.0;
+            step.axis += weight * surface.axis;
+            step.position += weight * surface.position;
+        }
+    }
+    steps
+}
+
+/// The part of a step that is across a direction.
+fn across(step: DVec3, along: DVec3) -> DVec3 {
+    step - step.dot(along) * along
+}
+
+/// JᵀJ of a Jacobian by its columns.
+fn of_columns(right: DVec3, down: DVec3) -> Metric {
+    Metric {
+        xx: right.length_squared(),
+        xy: right.dot(down),
+        yy: down.length_squared(),
+    }
+}

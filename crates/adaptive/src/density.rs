@@ -1,0 +1,98 @@
+//! How densely each pixel is sampled, so that a number of samples is spent where the criterion is high.
+
+use crate::metric::Metric;
+
+/// Samples are no denser than this many a pixel, which is what a pixel's places tell apart.
+const DENSEST: f64 = 4.0;
+
+/// Nor are they farther apart than this many pixels.
+const FARTHEST: f64 = 32.0;
+
+/// No direction is sampled this many times denser than another: finite differences are not better known.
+const LONGEST: f64 = 3.0;
+
+/// Metrics whose squares of determinants, samples a pixel, add up to `samples`, in proportion to what is wanted as far as bounds allow.
+pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metric>> {
+    let rates: Vec<Option<f64>> = wanted
+        .iter()
+        .map(|metric| metric.map(|metric| metric.determinant().max(0.0).sqrt()))
+        .collect();
+    let sparsest = FARTHEST.powi(-2);
+    let bounded = |rate: f64, scale: f64| (scale * rate).clamp(sparsest, DENSEST);
+    let total = |scale: f64| -> f64 {
+        let rates = rates.iter().flatten();
+        rates.map(|rate| bounded(*rate, scale)).sum()
+    };
+    // The sum grows with the scale: halving until it is rounding.
+    let [mut low, mut high] = [-100.0, 100.0];
+    for _ in 0..60 {
+        let middle = 0.5 * (low + high);
+        if total(libm::exp2(middle)) < samples {
+            low = middle;
+        } else {
+            high = middle;
+        }
+    }
+    let scale = libm::exp2(high);
+    let of = |(wanted, rate): (&Option<Metric>, &Option<f64>)| {
+        let (wanted, rate) = ((*wanted)?, (*rate)?);
+        let density = bounded(rate, scale);
+        Some(if rate > 0.0 {
+            wanted.times(density / rate)
+        } else {
+            Metric::even(density)
+        })
+    };
+    wanted.iter().zip(&rates).map(of).collect()
+}
+
+/// What a squared bandwidth asks for: the same in all directions by its larger one, as the paper does, or by both.
+pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
+    // Twice the bandwidth along each direction, as Shannon has it.
+    let shannon = squared.plus(Metric::even(FARTHEST.powi(-2))).times(4.0);
+    if is_even {
+        Metric::even(shannon.largest())
+    } else {
+        shannon.rounder(LONGEST)
+    }
+}
+
+/// The same with its density raised to a power.
+pub(crate) fn to_power(metric: Metric, power: f64) -> Metric {
+    let density = metric.determinant().max(0.0).sqrt();
+    if density > 0.0 {
+        metric.times(libm::pow(density, power - 1.0))
+    } else {
+        metric
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn densities_add_up_in_proportion() {
+        let wanted: Vec<Option<Metric>> = (0..1000)
+            .map(|i| (i % 10 > 0).then(|| Metric::even(f64::from(i % 10))))
+            .collect();
+        let found = scaled(&wanted, 45.0);
+        let density = |i: usize| found[i].map(|metric| metric.determinant().sqrt());
+        let total: f64 = (0..1000).filter_map(density).sum();
+        assert!((total - 45.0).abs() < 1e-9, "{total}");
+        let ratio = density(9).unwrap() / density(3).unwrap();
+        assert!((ratio - 3.0).abs() < 1e-9, "{ratio}");
+        assert_eq!(found[10], None);
+    }
+
+    #[test]
+    fn what_is_beyond_all_bounds_ends_there() {
+        let wanted = [Some(Metric::even(1e8)), Some(Metric::even(1e-8))];
+        let found = scaled(&wanted, 1.0);
+        let [dense, sparse] = [0, 1].map(|i| found[i].unwrap().determinant().sqrt());
+        assert!(
+            dense <= DENSEST && sparse >= 0.999 * FARTHEST.powi(-2),
+            "{dense} {sparse}"
+        );
+    }
+}

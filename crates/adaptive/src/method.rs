@@ -1,0 +1,377 @@
+//! The ways to spend shading samples, from a camera to a picture.
+
+use crate::blockers::nearness;
+use crate::blue_noise::{Point, blue_noise};
+use crate::criterion::{Cutoffs, criterion, shaded};
+use crate::density::{scaled, to_power, wanted};
+use crate::metric::Metric;
+use crate::reconstruct::{Fit, Sample, reconstruct};
+use crate::shading::Shader;
+use crate::visible::{FOUR, Surface, Visible, at};
+use etendue_paths::Paths;
+use etendue_world::Camera;
+
+/// Where shading samples go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// Evenly over all that is shaded.
+    Uniform,
+    /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
+    Predicted,
+    /// By the criteria, and by how much the light that is really there varies among a first quarter of the samples.
+    Weighted,
+    /// By that alone: the standard deviation of a first quarter of the samples, which are even.
+    Variance,
+}
+
+/// What is asked for.
+#[derive(Clone, Copy, Debug)]
+pub struct Plan {
+    /// Where samples go.
+    pub method: Method,
+    /// Shading samples.
+    pub samples: usize,
+    /// Paths of each.
+    pub each: u32,
+    /// Samples are as dense along all directions, as in the paper, or along each as it needs.
+    pub is_even: bool,
+    /// Of all random numbers.
+    pub seed: u64,
+}
+
+/// A part of the work, told before it begins.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Stage {
+    /// What is seen, four places a pixel.
+    Visibility,
+    /// How near blockers are.
+    Blockers,
+    /// The criteria.
+    Criterion,
+    /// Which points are shaded.
+    Samples,
+    /// Their light.
+    Shading,
+    /// What lies between.
+    Reconstruction,
+}
+
+/// Numbers of each pixel, rows from the top; NaN where nothing is shaded.
+#[derive(Clone, Debug, Default)]
+pub struct Layers {
+    /// The larger bandwidth by the criterion, cycles per pixel.
+    pub bandwidth: Vec<f64>,
+    /// 1/distance of what is reflected, per unit of length.
+    pub blockers: Vec<f64>,
+    /// The highest frequency of half shadows, cycles per unit of length.
+    pub shadow: Vec<f64>,
+    /// Shading samples a pixel that were asked for.
+    pub density: Vec<f64>,
+    /// Shading samples in the pixel.
+    pub samples: Vec<f64>,
+    /// The variance of shading samples about the pixel, their noise taken off.
+    pub variance: Vec<f64>,
+}
+
+/// A picture from few samples.
+#[derive(Clone, Debug)]
+pub struct Rendered {
+    /// Pixels in a row, and rows.
+    pub size: [usize; 2],
+    /// W m⁻² sr⁻¹, rows from the top.
+    pub radiance: Vec<f64>,
+    /// Where samples were taken: pixels to the right and down from the top left.
+    pub points: Vec<[f64; 2]>,
+    /// Of these, samples of places that no other sample was near.
+    pub added: usize,
+    /// What led to it.
+    pub layers: Layers,
+}
+
+/// The share of samples that are taken first where they decide on the others.
+const FIRST: f64 = 0.25;
+
+/// What a plane through samples leaves falls as the fourth power of their distance, its square as the inverse square of their density n. Its sum over the
+/// picture is least for a fixed number of samples where n ∝ (c² B⁴)^(1/3), c being the contrast and B the bandwidth.
+const POWER: f64 = 2.0 / 3.0;
+
+/// Renders a picture; `stage` is told what begins with how many steps, `progress` of steps.
+#[must_use]
+pub fn render(
+    paths: &Paths,
+    camera: &Camera,
+    plan: &Plan,
+    stage: &dyn Fn(Stage, usize),
+    progress: &(dyn Fn(u64) + Sync),
+) -> Rendered {
+    let cutoffs = Cutoffs::default();
+    let [w, h] = camera.size;
+    stage(Stage::Visibility, w * h);
+    let visible = Visible::new(paths, camera, &cutoffs, progress);
+    let shader = Shader {
+        paths,
+        camera,
+        cutoffs: &cutoffs,
+        each: plan.each,
+        seed: plan.seed,
+    };
+    let mut work = Work {
+        visible: &visible,
+        shader,
+        plan,
+        stage,
+        progress,
+        layers: Layers::default(),
+    };
+    let samples = work.samples();
+    work.picture(samples)
+}
+
+struct Work<'a> {
+    visible: &'a Visible,
+    shader: Shader<'a>,
+    plan: &'a Plan,
+    stage: &'a dyn Fn(Stage, usize),
+    progress: &'a (dyn Fn(u64) + Sync),
+    layers: Layers,
+}
+
+impl Work<'_> {
+    /// All samples of the method, each with the metric of all.
+    fn samples(&mut self) -> Vec<Sample> {
+        let even = self.visible.pixels(|pixel| {
+            let places = self.visible.of_pixel(pixel);
+            let is_shaded = places.iter().any(|place| shaded(place).is_some());
+            is_shaded.then_some(Metric::even(1.0))
+        });
+        let method = self.plan.method;
+        let wanted = match method {
+            Method::Uniform | Method::Variance => even,
+            Method::Predicted | Method::Weighted => self.predicted(),
+        };
+        let count = self.plan.samples as f64;
+        if matches!(method, Method::Uniform | Method::Predicted) {
+            let metrics = scaled(&wanted, count);
+            self.told(&metrics);
+            let points = self.points(&metrics, count, 0);
+            let found = self.shaded(&points, 0);
+            return found.into_iter().map(|(sample, _)| sample).collect();
+        }
+        let first = scaled(&wanted, FIRST * count);
+        let points = self.points(&first, FIRST * count, 0);
+        let pilot = self.shaded(&points, 0);
+        let contrast = self.contrast(&pilot);
+        let power = if method == Method::Weighted {
+            POWER
+        } else {
+            0.0
+        };
+        let wanted: Vec<Option<Metric>> = wanted
+            .iter()
+            .zip(&contrast)
+            .map(|(metric, contrast)| {
+                let metric = to_power((*metric)?, power);
+                // Of the standard deviation itself, or of its share in the rule above.
+                let power = if method == Method::Weighted {
+                    2.0 / 3.0
+                } else {
+                    1.0
+                };
+                Some(metric.times(libm::pow(contrast.max(LEAST), power)))
+            })
+            .collect();
+        let rest = (1.0 - FIRST) * count;
+        let then = scaled(&wanted, rest);
+        let points = self.points(&then, rest, 1);
+        let later = self.shaded(&points, pilot.len() as u64);
+        let both: Vec<Option<Metric>> = first
+            .iter()
+            .zip(&then)
+            .map(|(first, then)| Some(first.as_ref()?.plus(*then.as_ref()?)))
+            .collect();
+        self.told(&both);
+        let all = pilot.into_iter().chain(later);
+        all.map(|(sample, _)| Sample {
+            metric: both[pixel_of(sample.at, self.visible.size)].unwrap_or(sample.metric),
+            ..sample
+        })
+        .collect()
+    }
+
+    /// What the criteria ask for.
+    fn predicted(&mut self) -> Vec<Option<Metric>> {
+        let [w, h] = self.visible.size;
+        let Shader {
+            paths,
+            camera,
+            cutoffs,
+            seed,
+            ..
+        } = self.shader;
+        (self.stage)(Stage::Blockers, w.div_ceil(4) * h.div_ceil(4));
+        let near = nearness(self.visible, (paths, camera, cutoffs, seed), self.progress);
+        (self.stage)(Stage::Criterion, 1);
+        let squared = self
+            .visible
+            .pixels(|[column, row]| criterion(self.visible, [column, row], near[row * w + column]));
+        let root = |metric: &Option<Metric>| metric.map_or(f64::NAN, |m| m.largest().sqrt());
+        self.layers.bandwidth = squared.iter().map(root).collect();
+        self.layers.blockers = near.iter().map(|near| near.reflected).collect();
+        self.layers.shadow = near.iter().map(|near| near.shadow).collect();
+        let wanted_of = |metric: &Option<Metric>| metric.map(|m| wanted(m, self.plan.is_even));
+        squared.iter().map(wanted_of).collect()
+    }
+
+    fn points(&self, metrics: &[Option<Metric>], count: f64, round: u64) -> Vec<Point> {
+        (self.stage)(Stage::Samples, 1);
+        #[expect(
+            clippy::cast_possible_truncation,
+            clippy::cast_sign_loss,
+            reason = "a number of samples"
+        )]
+        let count = count.round() as usize;
+        let seed = self.plan.seed.wrapping_add(round << 32);
+        blue_noise(metrics, self.visible.size[0], count, seed)
+    }
+
+    fn shaded(&self, points: &[Point], first: u64) -> Vec<(Sample, f64)> {
+        (self.stage)(Stage::Shading, points.len());
+        self.shader.shade(points, first, self.progress)
+    }
+
+    /// The standard deviation of samples about each pixel over their mean, noise taken off.
+    fn contrast(&mut self, samples: &[(Sample, f64)]) -> Vec<f64> {
+        let wider: Vec<Sample> = samples
+            .iter()
+            .map(|(sample, noise)| {
+                // Textures are no contrast of what has one part: their factor is put back later.
+                let factors = match sample.surface.factors {
+                    [base, 0.0] => [1.0, base],
+                    [base, lobe] => [base, lobe],
+                };
+                let light = factors[0] * sample.value[0] + factors[1] * sample.value[1];
+                let noise = if sample.surface.factors[1] > 0.0 {
+                    *noise
+                } else {
+                    noise / (factors[1] * factors[1])
+                };
+                Sample {
+                    metric: sample.metric.times(WIDER.powi(-2)),
+                    value: [light, light * light - noise],
+                    ..*sample
+                }
+            })
+            .collect();
+        let places = reconstruct(self.visible, &wider, Fit::Mean);
+        let found = self.visible.pixels(|pixel| {
+            let mut of = places[self.visible.range(pixel)].iter().flatten();
+            let spread = |[mean, square]: &[f64; 2]| [*mean, (square - mean * mean).max(0.0)];
+            of.next().map_or([f64::NAN; 2], spread)
+        });
+        self.layers.variance = found.iter().map(|[_, variance]| *variance).collect();
+        let of_all: Vec<f64> = found.iter().map(|[mean, _]| *mean).collect();
+        let seen = of_all.iter().filter(|mean| mean.is_finite());
+        let typical = seen.clone().sum::<f64>() / seen.count().max(1) as f64;
+        let relative = |[mean, variance]: &[f64; 2]| {
+            let over = mean.abs() + 0.01 * typical;
+            if variance.is_finite() && over > 0.0 {
+                variance.sqrt() / over
+            } else {
+                0.0
+            }
+        };
+        found.iter().map(relative).collect()
+    }
+
+    fn told(&mut self, metrics: &[Option<Metric>]) {
+        let density = |metric: &Option<Metric>| metric.map_or(f64::NAN, |m| m.determinant().sqrt());
+        self.layers.density = metrics.iter().map(density).collect();
+    }
+
+    /// The picture that samples make.
+    fn picture(mut self, mut samples: Vec<Sample>) -> Rendered {
+        (self.stage)(Stage::Reconstruction, 1);
+        let mut values = reconstruct(self.visible, &samples, Fit::Plane);
+        let added = self.fill(&mut values, &mut samples);
+        let [w, h] = self.visible.size;
+        let radiance = self.visible.pixels(|pixel| {
+            let places = self.visible.of_pixel(pixel).iter();
+            let light = places.zip(&values[self.visible.range(pixel)]);
+            let light = light.map(|(place, value)| match (place.surface, value) {
+                (Some(Surface { factors, .. }), Some(value)) => {
+                    place.emitted + factors[0] * value[0] + factors[1] * value[1]
+                }
+                _ => place.emitted,
+            });
+            light.sum::<f64>() / FOUR as f64
+        });
+        let mut counts = vec![0.0; w * h];
+        for sample in &samples {
+            counts[pixel_of(sample.at, self.visible.size)] += 1.0;
+        }
+        self.layers.samples = counts;
+        Rendered {
+            size: self.visible.size,
+            radiance,
+            points: samples.iter().map(|sample| sample.at).collect(),
+            added,
+            layers: self.layers,
+        }
+    }
+
+    /// Shades one place of each small patch that no sample is near, and gives its value to the patch.
+    fn fill(&self, values: &mut [Option<[f64; 2]>], samples: &mut Vec<Sample>) -> usize {
+        let wide = self.visible.size[0];
+        let mut added: Vec<Sample> = Vec::new();
+        for i in 0..values.len() {
+            let Some(surface) = shaded(&self.visible.places[i]).filter(|_| values[i].is_none())
+            else {
+                continue;
+            };
+            let pixel = i / FOUR;
+            let at = at([pixel % wide, pixel / wide], i % FOUR);
+            let is_near = |sample: &&Sample| {
+                let far = [0, 1].map(|k: usize| (sample.at[k] - at[k]).abs());
+                sample.surface.shape == surface.shape && far[0] < PATCH && far[1] < PATCH
+            };
+            if let Some(near) = added.iter().rev().take(RECENT).find(is_near) {
+                values[i] = Some(near.value);
+                continue;
+            }
+            let point = Point {
+                at,
+                metric: Metric::even(PATCH.powi(-2)),
+            };
+            let number = (self.plan.samples + added.len()) as u64;
+            if let Some((sample, _)) = self.shader.one(&point, number) {
+                values[i] = Some(sample.value);
+                added.push(sample);
+            }
+        }
+        let count = added.len();
+        samples.append(&mut added);
+        count
+    }
+}
+
+/// Pixels across a patch that no sample was near.
+const PATCH: f64 = 2.0;
+
+/// So many of the last samples are asked whether a place is near them: those of some rows.
+const RECENT: usize = 256;
+
+/// Contrasts are taken over neighbours this many times farther than the reconstruction's.
+const WIDER: f64 = 2.0;
+
+/// No contrast counts as less: a first sample in four may have missed it.
+const LEAST: f64 = 0.02;
+
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "a number of a pixel, clamped"
+)]
+fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
+    let [column, row] = [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1));
+    row * size[0] + column
+}

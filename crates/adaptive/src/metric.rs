@@ -1,0 +1,78 @@
+/// A symmetric 2 × 2 matrix over the picture, columns to the right and rows down, per pixel².
+///
+/// Of a criterion it is the square of a bandwidth in cycles per pixel along each direction; of samples it makes distances: neighbours are about 1 apart.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Metric {
+    /// Along columns.
+    pub xx: f64,
+    /// Of both.
+    pub xy: f64,
+    /// Along rows.
+    pub yy: f64,
+}
+
+impl Metric {
+    /// The same along all directions.
+    #[must_use]
+    pub fn even(square: f64) -> Self {
+        Self {
+            xx: square,
+            xy: 0.0,
+            yy: square,
+        }
+    }
+
+    #[must_use]
+    pub(crate) fn plus(self, other: Self) -> Self {
+        Self {
+            xx: self.xx + other.xx,
+            xy: self.xy + other.xy,
+            yy: self.yy + other.yy,
+        }
+    }
+
+    #[must_use]
+    pub(crate) fn times(self, factor: f64) -> Self {
+        Self {
+            xx: factor * self.xx,
+            xy: factor * self.xy,
+            yy: factor * self.yy,
+        }
+    }
+
+    /// The square of the length of a step.
+    #[must_use]
+    pub(crate) fn square(&self, [x, y]: [f64; 2]) -> f64 {
+        x * (self.xx * x + self.xy * y) + y * (self.xy * x + self.yy * y)
+    }
+
+    #[must_use]
+    pub(crate) fn determinant(&self) -> f64 {
+        self.xx * self.yy - self.xy * self.xy
+    }
+
+    /// The larger eigenvalue.
+    #[must_use]
+    pub fn largest(&self) -> f64 {
+        let (mean, off) = (0.5 * (self.xx + self.yy), 0.5 * (self.xx - self.yy));
+        mean + (off * off + self.xy * self.xy).sqrt()
+    }
+
+    /// Half the extents of the ellipse of steps no longer than `radius`, along columns and rows.
+    #[must_use]
+    pub(crate) fn reach(&self, radius: f64) -> [f64; 2] {
+        let determinant = self.determinant();
+        [self.yy, self.xx].map(|across| radius * (across / determinant).sqrt())
+    }
+
+    /// The same, made rounder until no direction has more than `most` times the length of another.
+    #[must_use]
+    pub(crate) fn rounder(self, most: f64) -> Self {
+        let large = self.largest();
+        let small = self.xx + self.yy - large;
+        let wanted = large / (most * most);
+        // Adding the same to all directions.
+        let added = (wanted - small) / (1.0 - (most * most).recip());
+        self.plus(Self::even(added.max(0.0)))
+    }
+}

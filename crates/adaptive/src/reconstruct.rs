@@ -1,0 +1,221 @@
+//! What lies between samples: at each place a plane is fitted to the samples about it, those alike in shape, normal and position counting most (a bilateral
+//! filter, Tomasi and Manduchi 1998, whose width is that of the samples' metric, as Durand et al. 2005, section 6.2, have it).
+
+use crate::blue_noise::At;
+use crate::criterion::shaded;
+use crate::metric::Metric;
+use crate::visible::{FOUR, Surface, Visible, at};
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// A value at a place of the picture.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Sample {
+    pub(crate) at: At,
+    pub(crate) metric: Metric,
+    pub(crate) surface: Surface,
+    /// Of base and lobe.
+    pub(crate) value: [f64; 2],
+}
+
+/// Standard deviation of the filter where neighbours are about 1 apart: with less, some places see one sample alone; with more, detail that was paid for is lost.
+const WIDTH: f64 = 0.5;
+
+/// Beyond this many standard deviations a sample does not count, in the first round and in those for places that no sample reached.
+const REACHES: [f64; 3] = [3.0, 9.0, 27.0];
+
+/// Standard deviation of normals: a right angle is another face, what a metric's distance turns by is not.
+const NORMALS: f64 = 0.35;
+
+/// Standard deviation of the angle at which a sample stands above the surface of a place.
+const HEIGHTS: f64 = 0.2;
+
+/// Rows of pixels of a band, which one thread works on.
+const BAND: usize = 8;
+
+/// How a value is found from samples.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Fit {
+    /// Their mean.
+    Mean,
+    /// A plane through them.
+    Plane,
+}
+
+/// The values at all places; `None` where nothing is shaded or no sample is near.
+pub(crate) fn reconstruct(
+    visible: &Visible,
+    samples: &[Sample],
+    fit: Fit,
+) -> Vec<Option<[f64; 2]>> {
+    let bands = visible.size[1].div_ceil(BAND);
+    let of = |band: usize| Band::new(visible, band).filled(samples, fit);
+    (0..bands).into_par_iter().flat_map_iter(of).collect()
+}
+
+/// Sums over samples at one place, of positions from there in units of the metric.
+#[derive(Clone, Copy, Debug)]
+struct Sums {
+    weight: f64,
+    x: [f64; 2],
+    xx: [f64; 3],
+    values: [Values; 2],
+}
+
+/// The sums of one value.
+#[derive(Clone, Copy, Debug)]
+struct Values {
+    value: f64,
+    xv: [f64; 2],
+    range: [f64; 2],
+}
+
+impl Sums {
+    const NOTHING: Self = Self {
+        weight: 0.0,
+        x: [0.0; 2],
+        xx: [0.0; 3],
+        values: [Values {
+            value: 0.0,
+            xv: [0.0; 2],
+            range: [f64::INFINITY, f64::NEG_INFINITY],
+        }; 2],
+    };
+
+    fn add(&mut self, weight: f64, [x, y]: [f64; 2], values: [f64; 2]) {
+        self.weight += weight;
+        self.x = [self.x[0] + weight * x, self.x[1] + weight * y];
+        self.xx = [
+            self.xx[0] + weight * x * x,
+            self.xx[1] + weight * x * y,
+            self.xx[2] + weight * y * y,
+        ];
+        for (of, value) in self.values.iter_mut().zip(values) {
+            of.value += weight * value;
+            of.xv = [of.xv[0] + weight * x * value, of.xv[1] + weight * y * value];
+            of.range = [of.range[0].min(value), of.range[1].max(value)];
+        }
+    }
+
+    fn values(&self, fit: Fit) -> Option<[f64; 2]> {
+        (self.weight > 0.0).then(|| match fit {
+            Fit::Mean => self.values.map(|of| of.value / self.weight),
+            Fit::Plane => self.values.map(|of| self.plane(&of)),
+        })
+    }
+
+    /// The plane through a value, where the place is.
+    fn plane(&self, of: &Values) -> f64 {
+        // About the mean of positions, with as much spread added as makes the slope of few samples small.
+        let [x, y] = self.x.map(|x| x / self.weight);
+        let mean = of.value / self.weight;
+        let ridge = 0.1 * WIDTH * WIDTH;
+        let xx = self.xx[0] / self.weight - x * x + ridge;
+        let xy = self.xx[1] / self.weight - x * y;
+        let yy = self.xx[2] / self.weight - y * y + ridge;
+        let [xv, yv] = [0, 1].map(|i: usize| of.xv[i] / self.weight - [x, y][i] * mean);
+        let determinant = xx * yy - xy * xy;
+        let slope = [yy * xv - xy * yv, xx * yv - xy * xv].map(|s| s / determinant);
+        let found = mean - slope[0] * x - slope[1] * y;
+        found.clamp(of.range[0], of.range[1])
+    }
+}
+
+struct Band<'a> {
+    visible: &'a Visible,
+    first_row: usize,
+    rows: usize,
+    sums: Vec<Sums>,
+}
+
+impl<'a> Band<'a> {
+    fn new(visible: &'a Visible, band: usize) -> Self {
+        let first_row = band * BAND;
+        let rows = BAND.min(visible.size[1] - first_row);
+        Self {
+            visible,
+            first_row,
+            rows,
+            sums: vec![Sums::NOTHING; FOUR * rows * visible.size[0]],
+        }
+    }
+
+    fn filled(mut self, samples: &[Sample], fit: Fit) -> Vec<Option<[f64; 2]>> {
+        let first = self.visible.range([0, self.first_row]).start;
+        let places = &self.visible.places[first..][..self.sums.len()];
+        for reach in REACHES {
+            let is_empty = |sums: &Sums| sums.weight <= 0.0;
+            let missing: Vec<bool> = places
+                .iter()
+                .zip(&self.sums)
+                .map(|(place, sums)| shaded(place).is_some() && is_empty(sums))
+                .collect();
+            if !missing.contains(&true) {
+                break;
+            }
+            for sample in samples {
+                self.splat(sample, reach * WIDTH, &missing);
+            }
+        }
+        self.sums.iter().map(|sums| sums.values(fit)).collect()
+    }
+
+    /// Adds a sample to all places it reaches.
+    fn splat(&mut self, sample: &Sample, radius: f64, missing: &[bool]) {
+        let size = self.visible.size;
+        let reach = sample.metric.reach(radius);
+        let [columns, rows] = [0, 1].map(|k: usize| {
+            let ends = [-1.0, 1.0].map(|side| sample.at[k] + side * reach[k]);
+            pixels(ends, size[k])
+        });
+        let rows = rows.start.max(self.first_row)..rows.end.min(self.first_row + self.rows);
+        let unit = sample.metric.determinant().sqrt().sqrt();
+        let first = self.visible.range([0, self.first_row]).start;
+        for row in rows {
+            let pixels = columns.clone().map(|column| [column, row]);
+            for (pixel, i) in pixels.flat_map(|pixel| (0..FOUR).map(move |i| (pixel, i))) {
+                let index = self.visible.range(pixel).start + i;
+                if !missing[index - first] {
+                    continue;
+                }
+                let place = at(pixel, i);
+                let step = [0, 1].map(|k: usize| sample.at[k] - place[k]);
+                let square = sample.metric.square(step);
+                if square < radius * radius
+                    && let Some(surface) = shaded(&self.visible.places[index])
+                    && surface.shape == sample.surface.shape
+                {
+                    let near = square / (WIDTH * WIDTH);
+                    let weight = libm::exp(-0.5 * (near + unlike(surface, &sample.surface)));
+                    let step = step.map(|s| unit * s);
+                    self.sums[index - first].add(weight, step, sample.value);
+                }
+            }
+        }
+    }
+}
+
+/// How unlike two places of a shape are, in squares of standard deviations.
+fn unlike(place: &Surface, sample: &Surface) -> f64 {
+    let turned = (place.normal - sample.normal).length_squared() / (NORMALS * NORMALS);
+    let between = sample.position - place.position;
+    let length = between.length_squared();
+    if length <= 0.0 {
+        return turned;
+    }
+    let height = between.dot(place.normal);
+    // On a curved surface normals turn by twice that angle; beyond it the sample is on another sheet.
+    turned + height * height / (length * HEIGHTS * HEIGHTS)
+}
+
+/// Pixels that are at least in part between two ends.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "numbers of pixels, clamped"
+)]
+fn pixels([low, high]: [f64; 2], count: usize) -> Range<usize> {
+    let low = low.max(0.0) as usize;
+    let high = (high.floor() + 1.0).max(0.0) as usize;
+    low.min(count)..high.min(count)
+}

@@ -1,0 +1,57 @@
+use crate::blue_noise::Point;
+use crate::criterion::Cutoffs;
+use crate::reconstruct::Sample;
+use crate::visible::Surface;
+use etendue_paths::Paths;
+use etendue_world::Camera;
+use rayon::prelude::*;
+
+/// What shading needs to know.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Shader<'a> {
+    pub(crate) paths: &'a Paths,
+    pub(crate) camera: &'a Camera,
+    pub(crate) cutoffs: &'a Cutoffs,
+    /// Paths of each sample.
+    pub(crate) each: u32,
+    pub(crate) seed: u64,
+}
+
+impl Shader<'_> {
+    /// The shading of points, without the factors of their surface, and the variance of each with them; points where nothing is seen are left out. Point i is number
+    /// `first` + i to the random numbers.
+    pub(crate) fn shade(
+        &self,
+        points: &[Point],
+        first: u64,
+        progress: &(dyn Fn(u64) + Sync),
+    ) -> Vec<(Sample, f64)> {
+        let of = |(i, point): (usize, &Point)| {
+            let found = self.one(point, first + i as u64);
+            progress(1);
+            found
+        };
+        points.par_iter().enumerate().filter_map(of).collect()
+    }
+
+    pub(crate) fn one(&self, point: &Point, number: u64) -> Option<(Sample, f64)> {
+        let seen = self
+            .paths
+            .view(&self.camera.look(point.at, [0.0; 2]))
+            .surface?;
+        let surface = Surface::new(self.paths, &seen, self.cutoffs);
+        if surface.cutoff <= 0.0 {
+            return None;
+        }
+        let (parts, variance) = self.paths.shade(&seen, self.each, self.seed, number);
+        let [base, lobe] = surface.factors;
+        let without = |part: f64, factor: f64| if factor > 0.0 { part / factor } else { 0.0 };
+        let sample = Sample {
+            at: point.at,
+            metric: point.metric,
+            surface,
+            value: [without(parts[0], base), without(parts[1], lobe)],
+        };
+        Some((sample, variance))
+    }
+}

@@ -1,0 +1,172 @@
+//! Pictures with few shading samples, their maps, and how long each stage took.
+
+use crate::args::RenderArgs;
+use crate::failure::Failure;
+use crate::progress;
+use crate::results::exr::{Part, exr};
+use crate::results::npz::Npz;
+use crate::results::sealed::json;
+use crate::results::{Results, TIMING};
+use etendue_adaptive::{Layers, Method, Plan, Rendered, Stage};
+use etendue_paths::Paths;
+use etendue_world::{Camera, Projection};
+use indicatif::ProgressBar;
+use ndarray::Array2;
+use serde_json::{Value, json as tree_of};
+use std::cell::RefCell;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// Files beside those of a reference.
+pub(super) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
+
+/// Renders and writes; returns what is to be said of it.
+pub(super) fn render(
+    args: &RenderArgs,
+    method: Method,
+    (paths, camera): (&Paths, &Camera),
+    results: &mut Results,
+    made_from: &mut Value,
+) -> Result<String, Failure> {
+    if let Projection::Perspective { lens: Some(_), .. } = camera.projection {
+        return Err(Failure::bad_input(
+            "the camera has a lens, and the criteria of few shading samples are about a pinhole: allowed is --method reference",
+        ));
+    }
+    let pixels = camera.size[0] * camera.size[1];
+    let samples = args
+        .shading_samples
+        .map_or(pixels.div_ceil(20), |n| n as usize);
+    let plan = Plan {
+        method,
+        samples,
+        each: args.paths,
+        is_even: !args.anisotropic,
+        seed: args.seed,
+    };
+    let watch = Watch::new(args.quiet);
+    let rendered = etendue_adaptive::render(
+        paths,
+        camera,
+        &plan,
+        &|stage, steps| watch.begin(stage, steps),
+        &|done| watch.bar.inc(done),
+    );
+    let seconds = watch.end();
+    made_from["method"] = tree_of!(format!("{method:?}").to_lowercase());
+    made_from["shading_samples"] = tree_of!(samples);
+    made_from["shading_samples_added"] = tree_of!(rendered.added);
+    made_from["paths"] = tree_of!(args.paths);
+    made_from["anisotropic"] = tree_of!(args.anisotropic);
+    write(results, &rendered, made_from)?;
+    let total: f64 = seconds.values().sum();
+    results.write_unlisted(
+        TIMING,
+        &json(&tree_of!({
+            "seconds": seconds,
+            "threads": rayon::current_num_threads(),
+        })),
+    )?;
+    Ok(format!(
+        " from {} shading samples in {total:.1} s",
+        rendered.points.len()
+    ))
+}
+
+/// What is being done, and for how long each stage was.
+struct Watch {
+    bar: ProgressBar,
+    now: RefCell<Option<(&'static str, Instant)>>,
+    seconds: RefCell<BTreeMap<&'static str, f64>>,
+}
+
+impl Watch {
+    fn new(quiet: bool) -> Self {
+        Self {
+            bar: progress::steps("rendering", 1, "steps", quiet),
+            now: RefCell::new(None),
+            seconds: RefCell::new(BTreeMap::new()),
+        }
+    }
+
+    fn begin(&self, stage: Stage, steps: usize) {
+        self.lap();
+        let name = match stage {
+            Stage::Visibility => "visibility",
+            Stage::Blockers => "blockers",
+            Stage::Criterion => "criterion",
+            Stage::Samples => "samples",
+            Stage::Shading => "shading",
+            Stage::Reconstruction => "reconstruction",
+        };
+        *self.now.borrow_mut() = Some((name, Instant::now()));
+        self.bar.set_message(name);
+        self.bar.set_position(0);
+        self.bar.set_length(steps as u64);
+        self.bar.reset_eta();
+    }
+
+    fn lap(&self) {
+        if let Some((name, begun)) = self.now.borrow_mut().take() {
+            *self.seconds.borrow_mut().entry(name).or_default() += begun.elapsed().as_secs_f64();
+        }
+    }
+
+    fn end(self) -> BTreeMap<&'static str, f64> {
+        self.lap();
+        self.bar.finish_and_clear();
+        self.seconds.into_inner()
+    }
+}
+
+fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Result<(), Failure> {
+    let [w, h] = rendered.size;
+    let Layers {
+        bandwidth,
+        blockers,
+        shadow,
+        density,
+        samples,
+        variance,
+    } = &rendered.layers;
+    let layers = [
+        ("radiance", &rendered.radiance),
+        ("bandwidth", bandwidth),
+        ("blockers", blockers),
+        ("shadow", shadow),
+        ("density", density),
+        ("samples", samples),
+        ("variance", variance),
+    ];
+    let mut parts = Vec::new();
+    let mut npz = Npz::new();
+    // A method has the maps that it needs.
+    for (name, values) in layers.into_iter().filter(|(_, of)| !of.is_empty()) {
+        #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
+        let samples = values.iter().map(|x| *x as f32).collect();
+        parts.push(Part { name, samples });
+        let rows = Array2::from_shape_vec((h, w), values.clone());
+        npz = npz.add(name, &rows.map_err(Failure::cannot_run)?)?;
+    }
+    let points = rendered.points.concat();
+    let points = Array2::from_shape_vec((rendered.points.len(), 2), points);
+    npz = npz.add("points", &points.map_err(Failure::cannot_run)?)?;
+    results.write("picture.exr", &exr([w, h], parts, made_from)?)?;
+    results.write("picture.npz", &npz.bytes()?)?;
+    let mut photograph = |name: &str, values: &[f64]| {
+        let png = etendue_figures::photograph([w, h], values).map_err(Failure::cannot_run)?;
+        results.write(name, &png)
+    };
+    photograph("picture.png", &rendered.radiance)?;
+    photograph("samples.png", samples)?;
+    let shown = if bandwidth.is_empty() {
+        density
+    } else {
+        bandwidth
+    };
+    let shown: Vec<f64> = shown
+        .iter()
+        .map(|x| if x.is_nan() { 0.0 } else { *x })
+        .collect();
+    photograph("bandwidth.png", &shown)
+}
