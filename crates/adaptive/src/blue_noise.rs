@@ -9,7 +9,7 @@ use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 /// Candidates for each point that is kept.
-const CANDIDATES: f64 = 4.0;
+const CANDIDATES: usize = 5;
 
 /// The power of Yuksel 2015, Eq. 3.
 fn eighth(x: f64) -> f64 {
@@ -50,31 +50,30 @@ pub(crate) fn blue_noise(
         .collect()
 }
 
-/// Random points by the density: as many in a run of pixels as that has, to one.
+/// Random points by the density. They are independent of each other: more even ones would be less crowded where they are dense, and elimination would
+/// leave too many there.
 fn candidates(metrics: &[Option<Metric>], wide: usize, count: usize, seed: u64) -> Vec<Point> {
-    let density = |metric: &Metric| metric.determinant().max(0.0).sqrt();
-    let total: f64 = metrics.iter().flatten().map(density).sum();
+    let mut total = 0.0;
+    let summed: Vec<f64> = metrics
+        .iter()
+        .map(|metric| {
+            total += metric.map_or(0.0, |metric| metric.determinant().max(0.0).sqrt());
+            total
+        })
+        .collect();
     if total <= 0.0 {
         return Vec::new();
     }
-    let scale = CANDIDATES * count as f64 / total;
-    let mut points = Vec::new();
-    let mut sum = 0.5;
-    for (pixel, metric) in metrics.iter().enumerate() {
-        let Some(metric) = metric else { continue };
-        sum += scale * density(metric);
-        let mut drawn = 0;
-        while sum >= 1.0 {
-            sum -= 1.0;
-            let [x, y, ..] = words(seed, Stream::Jitter, pixel as u64, drawn).map(unit);
-            drawn += 1;
-            points.push(Point {
-                at: [(pixel % wide) as f64 + x, (pixel / wide) as f64 + y],
-                metric: *metric,
-            });
-        }
-    }
-    points
+    let draw = |i: usize| {
+        let [at, x, y, _] = words(seed, Stream::Jitter, i as u64, 0).map(unit);
+        let pixel = summed.partition_point(|sum| *sum <= at * total);
+        let metric = (*metrics.get(pixel)?)?;
+        Some(Point {
+            at: [(pixel % wide) as f64 + x, (pixel / wide) as f64 + y],
+            metric,
+        })
+    };
+    (0..CANDIDATES * count).filter_map(draw).collect()
 }
 
 /// How crowded each candidate is.
@@ -122,6 +121,9 @@ fn largest_radius() -> f64 {
 impl Crowd {
     fn new(points: &[Point], wide: usize, high: usize) -> Self {
         let most = 2.0 * largest_radius();
+        // Candidates that chance has put close together do not crowd their region as a whole (Yuksel 2015, Eq. 4).
+        let kept = (CANDIDATES as f64).recip();
+        let least = most * (1.0 - kept * kept.sqrt()) * 0.65;
         let grid = Grid::new(points, wide, high);
         let of = |i: usize| {
             let point = &points[i];
@@ -133,7 +135,7 @@ impl Crowd {
                 }
                 let step = [0, 1].map(|k: usize| other.at[k] - point.at[k]);
                 let square = 0.5 * (point.metric.square(step) + other.metric.square(step));
-                let distance = square.sqrt();
+                let distance = square.sqrt().max(least);
                 if distance < most {
                     found.push((j, eighth(1.0 - distance / most)));
                 }
@@ -262,5 +264,36 @@ mod tests {
         let left = points.iter().filter(|point| point.at[0] < 60.0).count();
         // 0.02 · 6000; elimination moves some across the edge.
         assert!((left as f64 - 120.0).abs() < 12.0, "{left}");
+    }
+
+    /// Below the frequency of neighbours blue noise has next to no power, where random points have 1.
+    #[test]
+    fn low_frequencies_are_quiet() {
+        let even = vec![Some(Metric::even(0.1)); 100 * 100];
+        let points = blue_noise(&even, 100, 1000, 7);
+        let power = |frequency: [f64; 2]| {
+            // A window, so that the edge of the picture is no signal.
+            let hann = |x: f64| 1.0 - libm::cos(std::f64::consts::TAU * x / 100.0);
+            let [mut re, mut im, mut all] = [0.0; 3];
+            for Point { at, .. } in &points {
+                let weight = hann(at[0]) * hann(at[1]);
+                let phase = std::f64::consts::TAU * (frequency[0] * at[0] + frequency[1] * at[1]);
+                let (sin, cos) = libm::sincos(phase);
+                re += weight * cos;
+                im += weight * sin;
+                all += weight * weight;
+            }
+            (re * re + im * im) / all
+        };
+        let ring = |radius: f64| {
+            let at = |i: i32| {
+                let (sin, cos) = libm::sincos(0.1 + f64::from(i) * std::f64::consts::PI / 24.0);
+                power([radius * cos, radius * sin])
+            };
+            (0..24).map(at).sum::<f64>() / 24.0
+        };
+        // Neighbours in rows of triangles would be 3.4 pixels apart, and their rows repeat 0.34 times a pixel.
+        let [low, peak] = [ring(0.1), ring(0.34)];
+        assert!(low < 0.15 && peak > 1.5, "{low} {peak}");
     }
 }

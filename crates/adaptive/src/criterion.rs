@@ -139,3 +139,112 @@ fn of_columns(right: DVec3, down: DVec3) -> Metric {
         yy: down.length_squared(),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_paths::Paths;
+    use etendue_theory::shading::Criterion;
+    use etendue_world::{
+        Camera, Distribution, Geometry, Material, Projection, Roughness, Shape, Texture, World,
+    };
+    use glam::{DAffine3, DVec3};
+
+    const RADIUS: f64 = 0.5;
+    const DISTANCE: f64 = 3.0;
+    const ALPHA: f64 = 0.2;
+
+    /// A rough metal ball before a camera of narrow pixels.
+    fn seen() -> (Paths, Camera) {
+        let world = World {
+            shapes: vec![Shape {
+                name: "ball".to_owned(),
+                geometry: Geometry::Sphere,
+                to_world: DAffine3::from_scale(DVec3::splat(RADIUS)),
+                is_flipped: false,
+                material: 0,
+                emission: None,
+            }],
+            materials: vec![Material::Conductor(etendue_world::Conductor {
+                index: None,
+                reflectance: Texture::Constant(1.0),
+                roughness: Some(Roughness {
+                    distribution: Distribution::Beckmann,
+                    alpha: [Texture::Constant(ALPHA), Texture::Constant(ALPHA)],
+                }),
+            })],
+            ..World::default()
+        };
+        let camera = Camera {
+            name: "camera".to_owned(),
+            to_world: DAffine3::from_translation(DVec3::new(0.0, 0.0, -DISTANCE)),
+            size: [801, 801],
+            projection: Projection::Perspective {
+                half_width: 0.2,
+                shift: [0.0; 2],
+                lens: None,
+            },
+            clip: [1e-3, 1e6],
+        };
+        (Paths::new(&world), camera)
+    }
+
+    /// Eqs. 20 and 21 as theory has them, in the plane of incidence, against finite differences over one pixel.
+    #[test]
+    fn screen_differences_are_the_criteria() {
+        let (paths, camera) = seen();
+        let cutoffs = Cutoffs::default();
+        let visible = Visible::new(&paths, &camera, &cutoffs, &|_| {});
+        let slope = 0.4 / 801.0;
+        let mut farthest: f64 = 0.0;
+        for column in [400, 500, 600, 680] {
+            let surface = shaded(&visible.of_pixel([column, 400])[0])
+                .copied()
+                .unwrap();
+            let eye = DVec3::new(0.0, 0.0, -DISTANCE);
+            let view = eye - surface.position;
+            let angle = (surface.normal.dot(view) / view.length()).acos();
+            for nearness in [0.0, 2.0] {
+                let theory = Criterion {
+                    curvature: RADIUS.recip(),
+                    incidence: angle,
+                    outgoing: angle,
+                    distance: view.length(),
+                    blocker_distance: (nearness > 0.0).then_some(1.0 / nearness),
+                    lobe_cutoff: surface.cutoff,
+                    environment_cutoff: f64::INFINITY,
+                };
+                let expected = if nearness > 0.0 {
+                    theory.blocker()
+                } else {
+                    theory.environment()
+                };
+                let metric = criterion(
+                    &visible,
+                    [column, 400],
+                    Nearness {
+                        reflected: nearness,
+                        shadow: 0.0,
+                    },
+                )
+                .unwrap();
+                // A pixel's angle falls with the cosine of its direction, twice.
+                let off = (column as f64 - 400.0) * slope;
+                let found = metric.xx.sqrt() / (slope / (1.0 + off * off));
+                // Finite differences over a pixel, and the change of the cosine within it.
+                assert!(
+                    (found / expected - 1.0).abs() < 0.02,
+                    "{column} {nearness}: {found} {expected}"
+                );
+                let printed = if nearness > 0.0 {
+                    theory.printed_blocker()
+                } else {
+                    theory.printed_environment()
+                };
+                farthest = farthest.max((found / printed - 1.0).abs());
+            }
+        }
+        // As printed they lack the 1 and a cosine, which is seen.
+        assert!(farthest > 0.05, "{farthest}");
+    }
+}

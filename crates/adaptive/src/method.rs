@@ -151,6 +151,15 @@ impl Work<'_> {
         };
         let count = self.plan.samples as f64;
         if matches!(method, Method::Uniform | Method::Predicted) {
+            let power = if method == Method::Predicted {
+                POWER
+            } else {
+                1.0
+            };
+            let wanted: Vec<Option<Metric>> = wanted
+                .iter()
+                .map(|metric| metric.map(|metric| to_power(metric, power)))
+                .collect();
             let metrics = scaled(&wanted, count);
             self.told(&metrics);
             let points = self.points(&metrics, count, 0);

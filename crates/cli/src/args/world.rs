@@ -168,12 +168,12 @@ pub(crate) struct RenderArgs {
     pub(crate) shading_samples: Option<u32>,
 
     /// Paths of each shading sample
-    #[arg(long, value_name = "N", default_value = "64", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
+    #[arg(long, value_name = "N", default_value = "128", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub(crate) paths: u32,
 
-    /// Samples denser along the direction in which light changes faster; without it as dense along all, as in the paper
+    /// Samples as dense along all directions, as in the paper; without it denser along the direction in which light changes faster
     #[arg(long)]
-    pub(crate) anisotropic: bool,
+    pub(crate) isotropic: bool,
 
     /// Seed of the paths
     #[arg(long, value_name = "N", default_value = "1")]

@@ -41,7 +41,7 @@ pub(super) fn render(
         method,
         samples,
         each: args.paths,
-        is_even: !args.anisotropic,
+        is_even: args.isotropic,
         seed: args.seed,
     };
     let watch = Watch::new(args.quiet);
@@ -57,7 +57,7 @@ pub(super) fn render(
     made_from["shading_samples"] = tree_of!(samples);
     made_from["shading_samples_added"] = tree_of!(rendered.added);
     made_from["paths"] = tree_of!(args.paths);
-    made_from["anisotropic"] = tree_of!(args.anisotropic);
+    made_from["isotropic"] = tree_of!(args.isotropic);
     write(results, &rendered, made_from)?;
     let total: f64 = seconds.values().sum();
     results.write_unlisted(
