@@ -49,7 +49,9 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
 /// What a squared bandwidth asks for: the same in all directions by its larger one, as the paper does, or by both.
 pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     // Twice the bandwidth along each direction, as Shannon has it; and enough that what has none is sampled.
-    let shannon = squared.times(4.0).plus(Metric::even((4.0 * FARTHEST).powi(-2)));
+    let shannon = squared
+        .times(4.0)
+        .plus(Metric::even((4.0 * FARTHEST).powi(-2)));
     if is_even {
         Metric::even(shannon.largest())
     } else {

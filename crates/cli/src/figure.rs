@@ -1,5 +1,6 @@
 //! `etendue figure`: the figures of Durand et al. 2005, made anew from measurement and theory, and figures of the user's scenes.
 
+mod creatures;
 mod criteria;
 mod kernels;
 mod own;

@@ -1,6 +1,7 @@
 //! From values to colors.
 
 use crate::axis::Axis;
+use crate::image::level;
 use etendue_field::whole;
 use ndarray::ArrayView2;
 use serde::{Deserialize, Serialize};
@@ -36,6 +37,8 @@ pub enum Palette {
     Viridis,
     /// Blue, grey, yellow: nearly the same to all eyes.
     Cividis,
+    /// Black to white, by the transfer curve of sRGB: photographs.
+    Grey,
 }
 
 /// A family of colors over 0 ≤ t ≤ 1.
@@ -72,6 +75,7 @@ impl Colors {
             Self::Sequential(Palette::Magma) => colorous::MAGMA.eval_continuous(t),
             Self::Sequential(Palette::Viridis) => colorous::VIRIDIS.eval_continuous(t),
             Self::Sequential(Palette::Cividis) => colorous::CIVIDIS.eval_continuous(t),
+            Self::Sequential(Palette::Grey) => return [level(t); 3],
             Self::Diverging => colorous::RED_BLUE.eval_continuous(1.0 - t),
             Self::Cyclic => return on_circle(t),
         };

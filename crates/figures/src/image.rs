@@ -89,7 +89,7 @@ pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u
     clippy::cast_sign_loss,
     reason = "clamped to 0..=255"
 )]
-fn level(linear: f64) -> u8 {
+pub(crate) fn level(linear: f64) -> u8 {
     let linear = linear.clamp(0.0, 1.0);
     let curved = if linear <= 0.003_130_8 {
         12.92 * linear

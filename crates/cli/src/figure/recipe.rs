@@ -6,7 +6,7 @@ use crate::figure::shading::{adaptive, environment};
 use crate::figure::shot::{Shot, resolved};
 use crate::figure::spaces::{coordinates, directions};
 use crate::figure::table1::operators;
-use crate::figure::{Quality, Subject, kernels};
+use crate::figure::{Quality, Subject, creatures, kernels};
 use crate::pictures;
 use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
 use std::path::Path;
@@ -225,6 +225,22 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         has_table: true,
         draw: adaptive,
+    },
+    Recipe {
+        name: "16",
+        about: "the criteria of Fig. 17, and where they put shading samples",
+        scenes: &[],
+        also: &[],
+        has_table: false,
+        draw: creatures::criteria,
+    },
+    Recipe {
+        name: "17",
+        about: "a picture of few shading samples: even ones, by the criteria, and a reference",
+        scenes: &[],
+        also: &[],
+        has_table: false,
+        draw: creatures::pictures,
     },
     Recipe {
         name: "table1",

@@ -1,0 +1,263 @@
+//! Figs. 16 and 17: a picture of few shading samples, and the criteria that put them where they are.
+
+use crate::failure::Failure;
+use crate::figure::Quality;
+use crate::figure::recipe::Taken;
+use crate::progress;
+use etendue_adaptive::{Method, Plan, Rendered, render};
+use etendue_figures::{
+    Axis, Figure, Palette, Picture, Plate, PlateRow, Quantity, Scale, Style, plate, stacked,
+};
+use etendue_import::{Options, import};
+use etendue_paths::Paths;
+use etendue_world::Camera;
+use ndarray::{Array2, Axis as Along};
+use std::fs;
+
+/// The scene and its files.
+const FILES: [(&str, &[u8]); 4] = [
+    (
+        "creatures.xml",
+        include_bytes!("../../../../scenes/worlds/creatures.xml"),
+    ),
+    (
+        "hall.exr",
+        include_bytes!("../../../../scenes/worlds/hall.exr"),
+    ),
+    (
+        "hunter.ply",
+        include_bytes!("../../../../scenes/worlds/hunter.ply"),
+    ),
+    (
+        "grazer.ply",
+        include_bytes!("../../../../scenes/worlds/grazer.ply"),
+    ),
+];
+
+/// Pixels for each shading sample, as in the paper.
+const SPARSE: usize = 20;
+
+/// Paths of each shading sample.
+const EACH: u32 = 128;
+
+/// Paths of each pixel of the reference.
+const REFERENCE: u32 = 64;
+
+struct Scene {
+    paths: Paths,
+    camera: Camera,
+    samples: usize,
+}
+
+impl Scene {
+    /// The creatures, as large as the quality asks.
+    fn new(quality: Quality) -> Result<Self, Failure> {
+        let folder = tempfile::tempdir().map_err(Failure::cannot_run)?;
+        for (name, bytes) in FILES {
+            fs::write(folder.path().join(name), bytes).map_err(Failure::cannot_run)?;
+        }
+        let file = folder.path().join(FILES[0].0);
+        let world = import(&file, &Options::default())
+            .map_err(Failure::bad_input)?
+            .world;
+        let size = match quality {
+            Quality::Print => [800, 500],
+            Quality::Draft => [400, 250],
+            #[cfg(test)]
+            Quality::Sketch => [48, 30],
+        };
+        let camera = world
+            .cameras
+            .first()
+            .ok_or_else(|| Failure::cannot_run("no camera"))?;
+        Ok(Self {
+            camera: Camera {
+                size,
+                ..camera.clone()
+            },
+            samples: size[0] * size[1] / SPARSE,
+            paths: Paths::new(&world),
+        })
+    }
+
+    fn rendered(&self, method: Method, is_even: bool) -> Rendered {
+        let plan = Plan {
+            method,
+            samples: self.samples,
+            each: EACH,
+            is_even,
+            seed: 1,
+        };
+        render(&self.paths, &self.camera, &plan, &|_, _| {}, &|_| {})
+    }
+
+    /// Numbers of pixels as figures have them: columns first, and rows from below.
+    fn picture(&self, values: Vec<f64>) -> Result<Array2<f64>, Failure> {
+        let [w, h] = self.camera.size;
+        let mut rows = Array2::from_shape_vec((h, w), values).map_err(Failure::cannot_run)?;
+        rows.invert_axis(Along(0));
+        Ok(rows.reversed_axes())
+    }
+
+    fn shown<'a>(&self, values: &'a Array2<f64>) -> Picture<'a> {
+        let [w, h] = self.camera.size.map(|n| n as f64);
+        Picture {
+            x: Axis::edges("column", "pixels", [0.0, w]),
+            y: Axis::edges("row from below", "pixels", [0.0, h]),
+            values: values.view(),
+        }
+    }
+}
+
+/// Fig. 16.
+pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let scene = Scene::new(taken.quality)?;
+    let found = scene.rendered(Method::Predicted, false);
+    let layers = &found.layers;
+    let log = |values: &[f64]| {
+        // What has none is not on the scale.
+        let log = |x: &f64| {
+            if *x > 0.0 {
+                20.0 * libm::log10(*x)
+            } else {
+                f64::NAN
+            }
+        };
+        scene.picture(values.iter().map(log).collect())
+    };
+    let dots = scene.picture(layers.samples.iter().map(|n| n.min(1.0)).collect())?;
+    let power = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
+    let [bandwidth, blockers] = [power(&layers.bandwidth)?, power(&layers.blockers)?];
+    let density = log(&layers.density)?.mapv(|x| libm::pow(10.0, x / 10.0));
+    let row = |name, quantity: Quantity, scale, pictures| PlateRow {
+        name,
+        quantity,
+        scale,
+        shared: false,
+        pictures,
+    };
+    let decibel = Scale::Decibel { floor: -50.0 };
+    let one = |title: &str,
+               note: &str,
+               heads: [&str; 2],
+               values: [&Array2<f64>; 2],
+               scale,
+               style: &Style| {
+        let pictures = values.map(|values| scene.shown(values)).to_vec();
+        let of = Plate {
+            title,
+            note,
+            heads: heads.map(str::to_owned).to_vec(),
+            rows: vec![row(
+                "",
+                Quantity::new("of the largest", ""),
+                scale,
+                pictures,
+            )],
+            feet: Vec::new(),
+            bars: None,
+        };
+        plate(&of, style).map_err(Failure::cannot_run)
+    };
+    Ok(stacked(&[
+        one(
+            "Criteria and shading samples",
+            "Left: the nearness of what is reflected, 1/*d'*. Right: the bandwidth by Eq. 21, corrected, along its fastest direction. Both in decibels below the largest.",
+            ["blockers", "bandwidth"],
+            [&blockers, &bandwidth],
+            decibel,
+            &taken.style,
+        )?,
+        one(
+            "",
+            "Left: samples a pixel that are asked for. Right: the pixels that have one.",
+            ["density", "samples"],
+            [&density, &dots],
+            Scale::Linear,
+            &photographs(&taken.style),
+        )?,
+    ]))
+}
+
+/// Fig. 17.
+pub(super) fn pictures(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let scene = Scene::new(taken.quality)?;
+    let bar = progress::stage("rendering", taken.quiet);
+    let [uniform, printed, predicted] = [
+        (Method::Uniform, true),
+        (Method::Predicted, true),
+        (Method::Predicted, false),
+    ]
+    .map(|(method, is_even)| scene.rendered(method, is_even).radiance);
+    let reference = scene
+        .paths
+        .picture(&scene.camera, REFERENCE, 2, &|_| {})
+        .mean;
+    bar.finish_and_clear();
+    let white = bright(&reference);
+    let error = |radiance: &[f64]| {
+        let least = 0.01 * reference.iter().sum::<f64>() / reference.len() as f64;
+        let of = |(x, r): (&f64, &f64)| (x - r).powi(2) / (r * r + least * least);
+        radiance.iter().zip(&reference).map(of).sum::<f64>() / reference.len() as f64
+    };
+    let foot = |radiance: &[f64]| vec![format!("relMSE {:.4}", error(radiance))];
+    let feet = [&uniform, &printed, &predicted].map(|radiance| foot(radiance));
+    let [a, b, c, d] = [uniform, printed, predicted, reference]
+        .map(|of| scene.picture(of.into_iter().map(|x| (x / white).min(1.0)).collect()));
+    let all = [a?, b?, c?, d?];
+    let style = photographs(&taken.style);
+    let half =
+        |title: &str, note: &str, heads: [&str; 2], which: [usize; 2], feet: Vec<Vec<String>>| {
+            let of = Plate {
+                title,
+                note,
+                heads: heads.map(str::to_owned).to_vec(),
+                rows: vec![PlateRow {
+                    name: "",
+                    quantity: Quantity::new("radiance", "of white"),
+                    scale: Scale::Linear,
+                    shared: true,
+                    pictures: which.map(|i| scene.shown(&all[i])).to_vec(),
+                }],
+                feet,
+                bars: None,
+            };
+            plate(&of, &style).map_err(Failure::cannot_run)
+        };
+    let note = format!(
+        "{} shading samples of {EACH} paths, 0.05 a pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²), *ε* a hundredth of the mean, noise of the reference *r* included.",
+        scene.samples
+    );
+    let [first, second, third] = feet;
+    Ok(stacked(&[
+        half(
+            "A picture of few shading samples",
+            &note,
+            ["even samples", "by the criteria, alike in all directions"],
+            [0, 1],
+            vec![first, second],
+        )?,
+        half(
+            "",
+            "",
+            ["by the criteria, along each direction", "reference"],
+            [2, 3],
+            vec![third, vec![format!("{REFERENCE} paths a pixel")]],
+        )?,
+    ]))
+}
+
+/// The radiance above which a hundredth of the pixels lie.
+fn bright(radiance: &[f64]) -> f64 {
+    let mut sorted = radiance.to_vec();
+    sorted.sort_unstable_by(f64::total_cmp);
+    sorted[sorted.len() * 99 / 100].max(f64::MIN_POSITIVE)
+}
+
+/// The style with grey for photographs.
+fn photographs(style: &Style) -> Style {
+    Style {
+        palette: Palette::Grey,
+        ..style.clone()
+    }
+}
