@@ -129,8 +129,9 @@ impl Header {
         number * numbers + 4 * codes
     }
 
-    /// The bytes before the first particle.
-    pub(super) fn write(&self, count: u64) -> Vec<u8> {
+    /// The bytes before the first particle, for files that are written as they are made.
+    #[must_use]
+    pub fn bytes(&self, count: u64) -> Vec<u8> {
         let little = self.little_endian;
         let mut bytes =
             format!("MCPL{:03}{}", self.version, if little { 'L' } else { 'B' }).into_bytes();

@@ -1,7 +1,7 @@
 //! MCPL, the Monte Carlo Particle List, versions 2 and 3.
 //!
 //! Source: T. Kittelmann et al., "Monte Carlo Particle Lists: MCPL", Comput. Phys. Commun. 218 (2017) 17–42, and <https://mctools.github.io/mcpl>. Units: cm, MeV, ms.
-//! A photon (PDG code 22) of energy E has the wavelength h c / E, see [`PHOTON_ENERGY_LENGTH`](crate::PHOTON_ENERGY_LENGTH). The weight has no unit of
+//! A photon (PDG code 22) of energy E has the wavelength h c / E, see [`PHOTON_ENERGY_LENGTH`]. The weight has no unit of
 //! its own; files of Étendue say in a comment, [`WATTS`], that it is W.
 //!
 //! A file is read in either order of bytes and keeps its records as they are. Each is checked once.
@@ -83,9 +83,7 @@ impl McplFile {
             rest: Vec::new(),
         };
         for particle in particles {
-            let written = particle
-                .check()
-                .and_then(|()| particle.encode(&file.header, &mut file.records));
+            let written = particle.encode(&file.header, &mut file.records);
             written.map_err(|what| Fault::ray(file.count, what))?;
             file.count += 1;
         }
@@ -119,7 +117,7 @@ impl McplFile {
     /// The bytes of the file; those it was read from, if it was.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
-        let mut bytes = self.header.write(self.count as u64);
+        let mut bytes = self.header.bytes(self.count as u64);
         bytes.extend(&self.records);
         bytes.extend(&self.rest);
         bytes

@@ -90,8 +90,13 @@ impl Particle {
         direction::check(self.direction)
     }
 
-    /// Appends the record, which is packed as in version 3.
-    pub(super) fn encode(&self, header: &Header, records: &mut Vec<u8>) -> Result<(), String> {
+    /// Appends the record of a file with this header, packed as in version 3.
+    ///
+    /// # Errors
+    /// Why no such file may hold it: a number that is not finite or not in its precision, a negative energy, a direction that is no unit
+    /// vector, or another weight or PDG code than the universal one.
+    pub fn encode(&self, header: &Header, records: &mut Vec<u8>) -> Result<(), String> {
+        self.check()?;
         if header
             .universal_weight
             .is_some_and(|w| w.to_bits() != self.weight.to_bits())

@@ -382,8 +382,9 @@ impl Header {
         Ok(())
     }
 
-    /// The bytes before the first ray.
-    pub(super) fn write(&self, rays: u64) -> Vec<u8> {
+    /// The bytes before the first ray, for files that are written as they are made.
+    #[must_use]
+    pub fn bytes(&self, rays: u64) -> Vec<u8> {
         // Lengths that do not fit came from no file: none is longer than one.
         let short = |length: usize| u32::try_from(length).unwrap_or(u32::MAX).to_le_bytes();
         let mut bytes = b"TM25".to_vec();

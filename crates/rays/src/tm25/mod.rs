@@ -117,7 +117,7 @@ impl Tm25File {
     /// The bytes of the file.
     #[must_use]
     pub fn write(&self) -> Vec<u8> {
-        let mut bytes = self.header.write(self.len() as u64);
+        let mut bytes = self.header.bytes(self.len() as u64);
         bytes.reserve(4 * self.numbers.len());
         bytes.extend(self.numbers.iter().flat_map(|v| v.to_le_bytes()));
         bytes
