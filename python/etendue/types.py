@@ -321,6 +321,25 @@ class LightProjectorFields(TypedDict):
     """Intensity where the picture is 1, W sr⁻¹. 1e-9 to 1e9"""
 
 
+class LightRays(TypedDict):
+    """The rays of a file, as they go through the plane across `path.direction` at the centre; those that go back from it are left out."""
+
+    Rays: "LightRaysFields"
+
+
+class LightRaysFields(TypedDict):
+    center: Sequence[float]
+    """Where the origin of the file is, and where the central ray begins, world coordinates"""
+    file: str
+    """IES TM-25, MCPL or NPY; the path is relative to the scene file, and stays inside its folder"""
+    flux: NotRequired[Union[float, None]]
+    """Flux of all rays of the file, W. Left out: what the file says; it must say so in W, or in lm with its total in W and lm. 1e-9 to 1e9"""
+    front: NotRequired[Union[Sequence[float], None]]
+    """Direction of the file's Z axis, any length. Left out: `path.direction`"""
+    up: NotRequired[Union[Sequence[float], None]]
+    """Direction of the file's Y axis, any length: its part orthogonal to `front` is used. Left out: that of the central ray's frame"""
+
+
 class LightRectangle(TypedDict):
     """A Lambertian rectangle orthogonal to the central ray, edges along X and Y, dark on its back."""
 
@@ -715,7 +734,7 @@ Fresnel = Union[Literal["White"], "FresnelDielectric", "FresnelConductor"]
 HalfName = Union[Literal["Below"], Literal["Above"]]
 """A side of a line."""
 
-Light = Union["LightRectangle", "LightDisc", "LightPoint", "LightSpot", "LightProjector", "LightBeam", "LightEnvironment"]
+Light = Union["LightRectangle", "LightDisc", "LightPoint", "LightSpot", "LightProjector", "LightBeam", "LightEnvironment", "LightRays"]
 """The light. The central ray leaves its centre."""
 
 Lobe = Union[Literal["Lambertian"], "LobePhong", "LobeBeckmann", "LobeGgx"]

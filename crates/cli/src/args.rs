@@ -7,8 +7,10 @@ use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
 
+mod rays;
 mod world;
 
+pub(crate) use rays::RaysArgs;
 pub(crate) use world::{
     CameraArgs, ImportArgs, ProbeArgs, RenderArgs, RenderMethod, ViewArgs, WorldArgs,
 };
@@ -65,6 +67,8 @@ pub(crate) enum Command {
     Render(RenderArgs),
     /// Measure the light field behind a pixel of such a scene, along the ray through it.
     Probe(ProbeArgs),
+    /// Say what a ray file holds (IES TM-25, MCPL, NPY), and write its rays in another of these formats.
+    Rays(RaysArgs),
     /// Print the JSON schema of scene files, or what it says as a page: each field with its range, default and an example.
     Schema(SchemaArgs),
 }
@@ -74,6 +78,7 @@ pub(crate) enum Command {
   etendue run scenes/fig9b.ron
   etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
   etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
+  etendue run scenes/fig9b.ron --save mcpl,tm25                        rays for other programs (docs/rays.md)
   etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      again and again, until it is done
 
 Photon counts may be written 10_000_000, 1e7 or 2^23.
@@ -526,6 +531,10 @@ pub(crate) enum Program {
 pub(crate) enum Save {
     /// Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each
     Photons,
+    /// The same photons as rays of the world with their power in W, photons.mcpl: 64 bytes for each
+    Mcpl,
+    /// The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each
+    Tm25,
     /// The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz; takes two more passes
     /// over the photons for each plane
     Field,

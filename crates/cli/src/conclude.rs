@@ -47,9 +47,7 @@ pub(crate) struct Ending<'a> {
 pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> Plan {
     let of_plane = |plane: &VirtualPlane| {
         let mut names = [arrays::NAMES.as_slice(), pictures::NAMES.as_slice()].concat();
-        if save.contains(&Save::Photons) {
-            names.extend(photons::NAMES);
-        }
+        names.extend(save.iter().flat_map(|save| photons::names(*save)));
         if save.contains(&Save::Field) {
             names.extend(field::NAMES);
         }
@@ -194,8 +192,8 @@ pub(crate) fn written(
     if explorer::fragment(&summary.scene_file).is_some() {
         results.write(explorer::NAME, explorer::PAGE)?;
     }
-    if ending.save.contains(&Save::Photons) {
-        photons::save(&mut results, case)?;
+    for save in ending.save {
+        photons::save(&mut results, case, *save)?;
     }
     if ending.save.contains(&Save::Field) {
         field::save(&mut results, case, ending.quiet)?;

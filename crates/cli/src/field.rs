@@ -97,6 +97,9 @@ fn predicted(
     let Theory::Parallel(chain) = &applicability.theory else {
         return None;
     };
+    if matches!(chain.source.light, etendue_field::Light::Rays { .. }) {
+        return None;
+    }
     let axes = [0, 1, 2, 3];
     let spacing = axes.map(|axis| grid.spacing(axis));
     let half = axes.map(|axis| grid.cells[axis] / 2);

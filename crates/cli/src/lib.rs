@@ -32,6 +32,7 @@ mod pictures;
 mod predict;
 mod probe;
 mod progress;
+mod rays;
 mod render;
 mod report;
 mod results;
@@ -86,6 +87,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Import(args) => world::report(&args),
         Command::Render(args) => render::render(&args),
         Command::Probe(args) => probe::probe(&args),
+        Command::Rays(args) => rays::rays(&args),
         Command::Schema(args) => schema::schema(&args),
     });
     ended(outcome, false)

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::machine;
 use etendue_compare::{Applicability, Memory, too_much_work};
+use etendue_field::Light;
 use etendue_scene::Scene;
 
 /// Fails where a run of the scene on so many threads would not end, or not fit into this machine.
@@ -18,8 +19,26 @@ pub(crate) fn check(
 
 /// Fails where a prediction of the scene would not end.
 pub(crate) fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
+    check_rays(scene, theories)?;
     match too_much_work(scene, theories) {
         Some(too_much) => Err(Failure::cannot_run(format!("{}: {too_much}", scene.name))),
+        None => Ok(()),
+    }
+}
+
+/// Fails where a plane would have nothing to be held against: rays traced back do not find those of a file.
+fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
+    if !matches!(scene.light, Light::Rays { .. }) {
+        return Ok(());
+    }
+    let mut planes = scene.planes.iter().zip(theories);
+    match planes.find(|(_, theory)| !theory.reasons.is_empty()) {
+        Some((plane, theory)) => Err(Failure::bad_input(format!(
+            "{}: plane {}: the light is a ray file, and there is no prediction ({}); allowed: planes across the central ray before the first surface, behind flat blockers across it. `etendue measure` takes any",
+            scene.name,
+            plane.name,
+            theory.reasons.join(", ")
+        ))),
         None => Ok(()),
     }
 }

@@ -1,5 +1,8 @@
-//! `--save photons`: every photon that crossed a plane, in batch order.
+//! `--save photons`, `mcpl` and `tm25`: every photon that crossed a plane, in batch order.
 
+mod file;
+
+use crate::args::Save;
 use crate::case::Case;
 use crate::failure::Failure;
 use crate::method::source;
@@ -7,11 +10,32 @@ use crate::results::Results;
 use crate::results::sealed::json;
 use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::Scene;
+use file::{Content, Rays};
 use serde::Serialize;
-use std::io::{self, Write};
+use std::io;
+
+/// The index of a plane's NPY file.
+const INDEX: &str = "photons.json";
 
 /// The files of a plane.
-pub(crate) const NAMES: [&str; 2] = ["photons.npy", "photons.json"];
+pub(crate) fn names(save: Save) -> Vec<&'static str> {
+    let index = (save == Save::Photons).then_some(INDEX);
+    file_of(save)
+        .map(|(name, ..)| name)
+        .into_iter()
+        .chain(index)
+        .collect()
+}
+
+/// The file of the photons of a plane, what stands in front of it on the command line, and the bytes of a photon in it.
+fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
+    match save {
+        Save::Photons => Some(("photons.npy", "photons", 40)),
+        Save::Mcpl => Some(("photons.mcpl", "mcpl", 64)),
+        Save::Tm25 => Some(("photons.tm25ray", "tm25", 28)),
+        Save::Field => None,
+    }
+}
 
 /// `photons.json`.
 #[derive(Serialize)]
@@ -23,15 +47,15 @@ struct Index {
     emitted: Vec<u64>,
 }
 
-/// Bytes of a photon in the file: five numbers.
-const ROW: u64 = 40;
-
 /// How large the files will be at most: if every photon crosses every plane.
-pub(crate) fn announcement(scene: &Scene) -> String {
+pub(crate) fn announcement(scene: &Scene, save: Save) -> Option<String> {
+    let (_, option, row) = file_of(save)?;
     let planes = scene.planes.len();
-    let each = ROW * scene.run.photons;
+    let each = row * scene.run.photons;
     let [all, each] = [each * planes as u64, each].map(size);
-    format!("--save photons: at most {all} on disk, {each} for each of {planes} planes")
+    Some(format!(
+        "--save {option}: at most {all} on disk, {each} for each of {planes} planes"
+    ))
 }
 
 fn size(bytes: u64) -> String {
@@ -44,66 +68,77 @@ fn size(bytes: u64) -> String {
 }
 
 /// Traces the photons again, one plane after the other, and streams them to disk: they are the same ones,
-/// and memory holds a block of them.
-pub(crate) fn save(results: &mut Results, case: &Case) -> Result<(), Failure> {
+/// and memory holds a block of them. A TM-25 file begins with their flux, for which they are traced once more.
+pub(crate) fn save(results: &mut Results, case: &Case, save: Save) -> Result<(), Failure> {
+    let Some((name, ..)) = file_of(save) else {
+        return Ok(());
+    };
     let source = source(&case.scene, case.method)?;
-    for (index, plane) in case.scene.planes.iter().enumerate() {
-        let mut offsets = vec![0];
-        let mut emitted = Vec::new();
-        let rows = case.measurement.tally(index).crossed;
-        results.stream(&format!("{}/photons.npy", plane.name), &mut |file| {
-            file.write_all(&npy_header(rows))?;
-            for batch in case.measurement.batches() {
-                let written = write_batch(file, &*source, batch.index, index)?;
-                offsets.push(offsets.last().copied().unwrap_or(0) + written);
-                emitted.push(batch.emitted);
-            }
+    for (plane, at) in case.scene.planes.iter().enumerate() {
+        let of_plane = OfPlane {
+            case,
+            source: &*source,
+            plane,
+        };
+        let rows = case.measurement.tally(plane).crossed;
+        let name = format!("{}/{name}", at.name);
+        let Some(rays) = Rays::of(case, plane) else {
+            continue;
+        };
+        let mut offsets = Vec::new();
+        results.stream(&name, &mut |file| {
+            let mut content = match save {
+                Save::Mcpl => Content::mcpl(&rays, rows),
+                Save::Tm25 => {
+                    let mut flux = 0.0;
+                    of_plane.trace(&mut |crossings| {
+                        flux += crossings.iter().map(|c| rays.watts(c)).sum::<f64>();
+                        Ok(())
+                    })?;
+                    Content::tm25(&rays, rows, flux)
+                }
+                Save::Photons | Save::Field => Content::npy(rows),
+            };
+            file.write_all(&content.begin())?;
+            offsets = of_plane.trace(&mut |crossings| file.write_all(&content.rows(crossings)?))?;
             Ok(())
         })?;
-        let index = Index {
-            columns: ["x", "y", "u", "v", "weight"],
-            batch_offsets: offsets,
-            emitted,
-        };
-        results.write(&format!("{}/photons.json", plane.name), &json(&index))?;
+        if save == Save::Photons {
+            let index = Index {
+                columns: ["x", "y", "u", "v", "weight"],
+                batch_offsets: offsets,
+                emitted: case.measurement.batches().map(|b| b.emitted).collect(),
+            };
+            results.write(&format!("{}/{INDEX}", at.name), &json(&index))?;
+        }
     }
     Ok(())
 }
 
-fn write_batch(
-    file: &mut dyn Write,
-    source: &dyn PhotonSource,
-    batch: u32,
+/// The photons of a measurement that cross a plane.
+struct OfPlane<'a> {
+    case: &'a Case,
+    source: &'a dyn PhotonSource,
     plane: usize,
-) -> io::Result<u64> {
-    let mut written = 0;
-    let mut outcome = Ok(());
-    let mut record = |at: usize, crossings: &[Crossing]| {
-        if at == plane && outcome.is_ok() {
-            written += crossings.len() as u64;
-            outcome = file.write_all(&rows(crossings));
+}
+
+impl OfPlane<'_> {
+    /// Hands them over, block by block in batch order. Returns the number of those before each batch, and of all.
+    fn trace(&self, take: &mut dyn FnMut(&[Crossing]) -> io::Result<()>) -> io::Result<Vec<u64>> {
+        let mut offsets = vec![0];
+        let mut done = 0;
+        for batch in self.case.measurement.batches() {
+            let mut outcome = Ok(());
+            let mut record = |at: usize, crossings: &[Crossing]| {
+                if at == self.plane && outcome.is_ok() {
+                    done += crossings.len() as u64;
+                    outcome = take(crossings);
+                }
+            };
+            self.source.emit(batch.index, &mut record, &|_| ());
+            outcome?;
+            offsets.push(done);
         }
-    };
-    source.emit(batch, &mut record, &|_| ());
-    outcome.map(|()| written)
-}
-
-fn rows(crossings: &[Crossing]) -> Vec<u8> {
-    crossings
-        .iter()
-        .flat_map(|c| [c.ray.x, c.ray.y, c.ray.u, c.ray.v, c.weight])
-        .flat_map(f64::to_le_bytes)
-        .collect()
-}
-
-/// Header of an NPY file, version 1.0, of f64 [rows, 5] in C order; padded to a multiple of 64 bytes.
-fn npy_header(rows: u64) -> Vec<u8> {
-    let fields = format!("{{'descr': '<f8', 'fortran_order': False, 'shape': ({rows}, 5), }}");
-    let preamble = 10;
-    let length = (preamble + fields.len() + 1).next_multiple_of(64) - preamble;
-    let mut header = b"\x93NUMPY\x01\x00".to_vec();
-    // The fields are about 80 bytes: the length fits 16 bits.
-    header.extend(u16::try_from(length).unwrap_or(u16::MAX).to_le_bytes());
-    header.extend(format!("{fields:<width$}\n", width = length - 1).bytes());
-    header
+        Ok(offsets)
+    }
 }

@@ -105,8 +105,11 @@ fn stages(
     place: Place<'_>,
 ) -> Result<u8, Failure> {
     let mut watch = Stopwatch::start();
-    if args.save.contains(&Save::Photons) && !args.quiet {
-        say(&photons::announcement(&scene));
+    if !args.quiet {
+        let kept = args.save.iter();
+        for announcement in kept.filter_map(|save| photons::announcement(&scene, *save)) {
+            say(&announcement);
+        }
     }
     let method = args.photons.method;
     let kept = Kept::of(place.folder, &scene, method);

@@ -28,6 +28,9 @@ pub(crate) fn obstacles_to_theory(scene: &Scene, plane: &VirtualPlane) -> Vec<St
     if matches!(scene.light, Light::Environment { .. }) {
         found.push("light of an environment".to_owned());
     }
+    if plane.leg > 0 && matches!(scene.light, Light::Rays { .. }) {
+        found.push("light of a ray file beyond the first surface".to_owned());
+    }
     if plane.orientation != Orientation::Orthogonal {
         found.push(format!("{:?}", plane.orientation));
     }

@@ -8,10 +8,10 @@ use etendue_theory::rays::{Element, Plane, System};
 use etendue_theory::{Observed, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
-/// where light comes from an environment, and where a surface is not specular.
+/// where light comes from an environment or a ray file, and where a surface is not specular.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
-    if matches!(scene.light, Light::Environment { .. }) {
+    if matches!(scene.light, Light::Environment { .. } | Light::Rays { .. }) {
         return None;
     }
     let path = &scene.path;
@@ -66,12 +66,12 @@ fn seen_from(event: Specular, back: bool) -> Specular {
 }
 
 /// The light, the masks and the surface with a BRDF before a plane, and the plane. `None` where the
-/// plane is not on the second leg, and where the first surface has no BRDF.
+/// plane is not on the second leg, where the first surface has no BRDF, and where light comes from a ray file.
 #[must_use]
 pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scattering::System>> {
     // A plane on the next surface has that one's coordinates.
     let is_on_next = plane.side == Side::Before && plane.orientation != Orientation::Orthogonal;
-    if plane.leg != 1 || is_on_next {
+    if plane.leg != 1 || is_on_next || matches!(scene.light, Light::Rays { .. }) {
         return None;
     }
     let Object::Patch(i) = scene.path.legs[1].leaves?.object else {

@@ -1,7 +1,8 @@
 //! Lights.
 
-use crate::{Environment, Image, Shape};
-use serde::Serialize;
+use crate::{Environment, Image, RayLight, Shape};
+use serde::{Serialize, Serializer};
+use std::sync::Arc;
 
 /// Widths at which a Gaussian picture is below 10⁻¹² of its peak, and where photons end.
 const PICTURE: f64 = 3.0;
@@ -42,6 +43,16 @@ pub enum Light {
         /// From where how much.
         environment: Environment,
     },
+    /// Finitely many rays, those of a ray file.
+    Rays {
+        /// The rays.
+        #[serde(serialize_with = "shared")]
+        rays: Arc<RayLight>,
+    },
+}
+
+fn shared<S: Serializer>(rays: &Arc<RayLight>, serializer: S) -> Result<S::Ok, S::Error> {
+    rays.as_ref().serialize(serializer)
 }
 
 impl Light {
@@ -90,6 +101,7 @@ impl Light {
             Self::Point { .. } | Self::Projector { .. } => 0.0,
             Self::Beam { image, .. } => PICTURE * image.width[axis],
             Self::Environment { .. } => f64::INFINITY,
+            Self::Rays { rays } => return rays.extent(axis),
         };
         [-half, half]
     }
@@ -100,6 +112,7 @@ impl Light {
         match self {
             Self::Projector { image, .. } => PICTURE * image.width[axis],
             Self::Beam { .. } => 0.0,
+            Self::Rays { rays } => rays.steepest(axis),
             Self::Area { .. } | Self::Point { .. } | Self::Environment { .. } => f64::INFINITY,
         }
     }

@@ -16,6 +16,8 @@ grating | a grating | (axis: X, frequency: 5)
 light.map | what comes from where | Lobes([(from: (0, 0, -1), width: 0.3)])
 light.map[] | a lobe | (from: (0, 0, -1), width: 0.3)
 light.front | a direction | (0, 0, 1)
+light.file | a ray file in quotes | "led.tm25ray"
+light.flux | a flux in watts | 0.5
 up | a direction | (0, 1, 0)
 from | a direction | (0, 0, -1)
 direction | a direction | (0, 0, 1)

@@ -11,6 +11,7 @@ mod patches;
 mod path;
 mod pictures;
 mod planes;
+mod rays;
 mod reflectance;
 mod surfaces;
 mod triangles;

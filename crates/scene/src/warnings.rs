@@ -3,7 +3,7 @@
 
 use crate::likely::mistakes;
 use crate::scene::{Leg, MeshObject, Object, Scene, SmoothMesh};
-use etendue_field::{Frame, TwoPlane, VirtualPlane, interpolated_normal};
+use etendue_field::{Frame, Light, TwoPlane, VirtualPlane, interpolated_normal, tidy};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -32,6 +32,7 @@ impl Scene {
     #[must_use]
     pub fn warnings(&self) -> Vec<String> {
         let mut warnings = mistakes(self);
+        warnings.extend(self.rays_behind());
         for leg in 1..self.path.legs.len() {
             let later = self.planes.iter().filter(|plane| plane.leg >= leg);
             let seen = later.filter_map(|plane| Some((self.mismatch(leg, plane)?, plane)));
@@ -52,6 +53,21 @@ impl Scene {
             }
         }
         warnings
+    }
+
+    /// What is left out of a ray file.
+    fn rays_behind(&self) -> Option<String> {
+        let Light::Rays { rays } = &self.light else {
+            return None;
+        };
+        let (behind, flux) = (rays.behind(), rays.flux());
+        (behind > 0.0).then(|| {
+            format!(
+                "light: {} W of the ray file's {} W do not go forward, along path.direction, and are left out",
+                tidy(behind),
+                tidy(behind + flux)
+            )
+        })
     }
 
     /// How far photons and backward rays may differ at a plane because a smooth mesh before it is

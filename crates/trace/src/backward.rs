@@ -122,9 +122,10 @@ impl Backward {
                 shape: *shape,
             },
             Light::Environment { environment } => Source::Sky(Sky::new(environment)),
-            Light::Point { .. } | Light::Projector { .. } | Light::Beam { .. } => {
-                Source::Narrow(scene.light.clone())
-            }
+            Light::Point { .. }
+            | Light::Projector { .. }
+            | Light::Beam { .. }
+            | Light::Rays { .. } => Source::Narrow(scene.light.clone()),
         };
         let planes = scene.planes.iter().enumerate();
         let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &light));

@@ -103,6 +103,8 @@ impl Emitter {
             // Pictures have their own proposal.
             Light::Projector { image, .. } => Way::Plain(Plain::Slopes(image)),
             Light::Beam { image, .. } => Way::Plain(Plain::Positions(image)),
+            // Rays have their own proposal too: none of them has another ray beside it to be aimed at.
+            Light::Rays { ref rays } => Way::Plain(Plain::Rays(rays.clone())),
             Light::Environment { ref environment } => Way::Sky(FromSky::new(scene, environment)),
         };
         Self {
@@ -250,7 +252,7 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
     lanes(|i| sums[i] / proposals.len() as f64)
 }
 
-/// Radiance on a ray given at the light; for a point, with respect to du dv alone, for a beam to dx dy: dω is
+/// Radiance on a ray given at the light; for a point, with respect to du dv alone, for a beam to dx dy, for rays of a file over the share of flux: dω is
 /// du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
 #[inline]
 pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
@@ -274,6 +276,8 @@ pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
         }
         Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
         Light::Environment { environment } => sky::radiance(environment, ray),
+        // By the share of the flux that a ray is drawn with.
+        Light::Rays { rays } => rays.flux() * ray.secant_squared() * ray.secant_squared(),
     }
 }
 
@@ -292,7 +296,7 @@ type Bounds = [[f64; 2]; 2];
 /// planes; none where that is not known.
 fn even(scene: &Scene) -> Vec<Bounds> {
     let light = &scene.light;
-    if light.has_extent() {
+    if light.has_extent() || matches!(light, Light::Rays { .. }) {
         return Vec::new();
     }
     let onto_surface = || {

@@ -27,7 +27,9 @@ mod sky;
 mod station;
 mod targets;
 mod tracer;
+mod world;
 
 pub use backward::{Backward, LightNotFound, finds};
 pub use emit::{ABREAST, Emitter};
 pub use tracer::Tracer;
+pub use world::PlaneInWorld;

@@ -115,6 +115,18 @@ impl Station {
         self.surface.as_ref()?.slopes(window)
     }
 
+    /// cos θ dω over du dv at a ray as the plane has it.
+    pub(crate) fn flux_per_radiance(&self, seen: &TwoPlane) -> f64 {
+        match &self.surface {
+            None => 1.0 / (seen.secant_squared() * seen.secant_squared()),
+            Some(view) => {
+                // As in `View::seen`: cos θ is cos(u) cos(v), and dω is cos(v) du dv.
+                let latitude = libm::cos(seen.v);
+                libm::cos(seen.u + view.longitude) * latitude * latitude
+            }
+        }
+    }
+
     /// A ray of the leg as the plane has it, with what it adds there; `None` when it does not meet the surface.
     #[inline]
     pub(crate) fn look(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {

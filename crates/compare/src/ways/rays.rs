@@ -172,6 +172,8 @@ pub(super) fn ray_to(light: &Light, point: DVec3, index: u32, r: [f64; 2]) -> Op
             let direction = direction.normalize();
             Ray { point, direction }.begun()
         }
+        // No theory that asks follows rays of a file.
+        Light::Rays { .. } => return None,
     };
     (ray.direction.z > 0.0).then(|| (ray, strength(light, &ray)))
 }
@@ -187,6 +189,7 @@ pub(super) fn strength(light: &Light, ray: &Ray) -> f64 {
         }
         Light::Beam { image, .. } => image.value(point.x, point.y),
         Light::Environment { environment } => environment.radiance(*direction),
+        Light::Rays { .. } => 0.0,
     }
 }
 

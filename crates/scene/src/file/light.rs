@@ -84,6 +84,22 @@ pub enum LightFile {
         /// How much comes from where.
         map: EnvironmentFile,
     },
+    /// The rays of a file, as they go through the plane across `path.direction` at the centre; those that go back from it are left out.
+    Rays {
+        /// Where the origin of the file is, and where the central ray begins, world coordinates.
+        center: [f64; 3],
+        /// IES TM-25, MCPL or NPY; the path is relative to the scene file, and stays inside its folder.
+        file: String,
+        /// Direction of the file's Z axis, any length. Left out: `path.direction`.
+        #[serde(default)]
+        front: Option<[f64; 3]>,
+        /// Direction of the file's Y axis, any length: its part orthogonal to `front` is used. Left out: that of the central ray's frame.
+        #[serde(default)]
+        up: Option<[f64; 3]>,
+        /// Flux of all rays of the file, W. Left out: what the file says; it must say so in W, or in lm with its total in W and lm.
+        #[serde(default)]
+        flux: Option<f64>,
+    },
 }
 
 /// Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`.

@@ -12,7 +12,8 @@ impl LightFile {
             | Self::Spot { center, .. }
             | Self::Projector { center, .. }
             | Self::Beam { center, .. }
-            | Self::Environment { center, .. } => *center,
+            | Self::Environment { center, .. }
+            | Self::Rays { center, .. } => *center,
         }
     }
 }
@@ -71,6 +72,13 @@ impl Resolver<'_> {
                 ref map,
                 ..
             } => self.environment([up, front], scale, map, frame),
+            LightFile::Rays {
+                file: ref name,
+                front,
+                up,
+                flux,
+                ..
+            } => self.rays(name, [front, up], flux, frame),
             LightFile::Spot {
                 bulb,
                 radiance,

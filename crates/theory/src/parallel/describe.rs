@@ -18,8 +18,8 @@ impl Chain {
 impl Source {
     fn describe(&self) -> String {
         let name = &self.name;
-        match self.light {
-            Light::Area {
+        match &self.light {
+            &Light::Area {
                 shape,
                 radiance,
                 exponent,
@@ -36,14 +36,18 @@ impl Source {
                 format!("source  {name}: point, intensity {intensity} W sr⁻¹")
             }
             Light::Projector { intensity, image } => {
-                let picture = picture(&image, ["u", "v"]);
+                let picture = picture(image, ["u", "v"]);
                 format!("source  {name}: projector, intensity {intensity} W sr⁻¹ × {picture}")
             }
             Light::Beam { irradiance, image } => {
-                let picture = picture(&image, ["x", "y"]);
+                let picture = picture(image, ["x", "y"]);
                 format!("source  {name}: beam, irradiance {irradiance} W m⁻² × {picture}")
             }
             Light::Environment { .. } => format!("source  {name}: environment"),
+            Light::Rays { rays } => {
+                let (count, flux) = (rays.rays().len(), tidy(rays.flux()));
+                format!("source  {name}: {count} rays of a file, {flux} W")
+            }
         }
     }
 }

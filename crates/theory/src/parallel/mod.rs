@@ -14,6 +14,7 @@
 //! | a diffuse receiver | `receiver` |
 //! | a curved glossy receiver, met head on, in flatland | `images`, `gloss` |
 //! | the same light by nets of rays | `sampled` |
+//! | light of finitely many rays | `given` |
 
 mod at;
 pub(crate) mod chain;
@@ -23,6 +24,7 @@ mod describe;
 mod disc;
 mod error;
 pub(crate) mod expansion;
+mod given;
 mod gloss;
 mod harmonics;
 mod images;

@@ -3,7 +3,7 @@
 use crate::model::{Model, Over};
 use crate::nets::{Budget, work_of_nets};
 use crate::parallel::weighted_rectangle::DiscResolution;
-use crate::parallel::{at, derivative, projection, quadrature_error, slices, work};
+use crate::parallel::{at, derivative, given, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
 use crate::predicted::Predicted;
 use crate::work::Work;
@@ -16,6 +16,10 @@ impl Model for Chain {
     }
 
     fn parameters(&self) -> Vec<Parameter> {
+        // What an edge lets through of finitely many rays has no derivative.
+        if self.given().is_some() {
+            return Vec::new();
+        }
         let mut all = Parameter::of_light(&self.source.light);
         // Closed forms have no pictures.
         all.retain(|parameter| *parameter != Parameter::ImageWidth);
@@ -79,8 +83,11 @@ impl Model for Chain {
         Some(())
     }
 
-    /// By closed forms, or by nets of rays where these take too long or do not resolve the scene.
+    /// By closed forms, or by nets of rays where these take too long or do not resolve the scene. Rays of a file are summed.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
+        if let Some(rays) = self.given() {
+            return given::predicted(self, rays, over);
+        }
         if self.is_sampled(over) {
             return self.sampled(parameters, over, budget);
         }
@@ -102,7 +109,9 @@ impl Model for Chain {
     }
 
     fn work(&self, over: Over<'_>, budget: Budget) -> Work {
-        if self.is_sampled(over) {
+        if let Some(rays) = self.given() {
+            given::work(rays, over.1)
+        } else if self.is_sampled(over) {
             work_of_nets(over.1, budget)
         } else {
             work(self, over.0, over.1, over.2)
@@ -122,6 +131,9 @@ impl Chain {
     /// long, or does not resolve a pattern.
     #[must_use]
     pub fn is_sampled(&self, (window, grid, picture): Over<'_>) -> bool {
+        if self.given().is_some() {
+            return false;
+        }
         let path = self.path();
         let work = work(self, window, grid, picture);
         let accepted = if path.reflection.is_some() {

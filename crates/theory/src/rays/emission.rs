@@ -95,6 +95,7 @@ pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
         Light::Environment { .. } => {
             panic!("rays of an environment are not followed from the light")
         }
+        Light::Rays { .. } => panic!("rays of a file are summed, not drawn"),
     }
 }
 

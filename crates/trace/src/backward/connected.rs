@@ -9,7 +9,7 @@ use glam::DVec3;
 
 /// Whether rays that are traced back from a plane find the light: light without extent only where
 /// nothing turns it before the plane, or before the first surface that scatters it, and a point not
-/// from where it is.
+/// from where it is. Rays of a file are never found.
 #[must_use]
 pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
     let first = scene.path.legs.get(1).and_then(|leg| leg.leaves.as_ref());
@@ -19,6 +19,10 @@ pub fn finds(scene: &Scene, plane: &VirtualPlane) -> bool {
         Object::Patch(i) => matches!(scene.patches[i].event, Event::Specular(_)),
     });
     let light = &scene.light;
+    // A ray that is drawn meets none of a file's.
+    if matches!(light, Light::Rays { .. }) {
+        return false;
+    }
     let is_at_point = plane.leg == 0 && plane.distance <= 0.0 && !light.is_distant();
     light.has_extent() || !is_at_point && (plane.leg == 0 || !turns)
 }

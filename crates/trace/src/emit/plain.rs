@@ -1,8 +1,9 @@
 //! Rays drawn as a light shines, wherever planes are.
 
 use super::point;
-use etendue_field::{Image, Shape, TwoPlane, power};
+use etendue_field::{Image, RayLight, Shape, TwoPlane, power};
 use std::f64::consts::{PI, TAU};
+use std::sync::Arc;
 
 /// What rays are drawn by.
 #[derive(Debug)]
@@ -15,7 +16,12 @@ pub(super) enum Plain {
     Slopes(Image),
     /// Positions of a beam by the envelope of its picture.
     Positions(Image),
+    /// Rays of a file by their flux.
+    Rays(Arc<RayLight>),
 }
+
+/// The number of values of a word of 32 bits.
+const WORD: f64 = 4_294_967_296.0;
 
 impl Plain {
     /// A ray, from four numbers in (0, 1).
@@ -40,12 +46,14 @@ impl Plain {
             }
             Self::Slopes(image) => [[0.0; 2], normal(image)],
             Self::Positions(image) => [normal(image), [0.0; 2]],
+            // The second number is the finer part of the first: a file may have as many rays as a word has values.
+            Self::Rays(rays) => return rays.at_share(r[0] + (r[1] - 0.5) / WORD).ray,
         };
         TwoPlane { x, y, u, v }
     }
 
     /// The density of [`Self::sample`] with respect to dx dy du dv; to du dv for a point or a
-    /// projector, to dx dy for a beam.
+    /// projector, to dx dy for a beam. Of a file it is 1: each ray is drawn by its share of the flux, and stands for all of it.
     #[inline]
     pub(super) fn density(&self, ray: &TwoPlane) -> f64 {
         let secant_squared = ray.secant_squared();
@@ -58,6 +66,7 @@ impl Plain {
             Self::Point => 1.0 / (TAU * secant_squared * secant_squared.sqrt()),
             Self::Slopes(image) => envelope(image, ray.u, ray.v),
             Self::Positions(image) => envelope(image, ray.x, ray.y),
+            Self::Rays(_) => 1.0,
         }
     }
 }

@@ -1,0 +1,290 @@
+//! A ray file as light: photons against the sum over its rays, planted faults, and what is refused.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{etendue, scene};
+use etendue_compare::{Applicability, Prediction, Test, Verdict, compare};
+use etendue_field::Light;
+use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
+use etendue_scene::{Scene, SceneError, SceneFile, resolve};
+use etendue_spectrum::measure;
+use etendue_trace::Tracer;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// Rays from a chip of 2 mm at heights of its own, a third of them going sideways or back, with power of their own.
+fn rays(unit: PowerUnit) -> RaySet {
+    let count = 3000;
+    let wave = |i: usize, step: f64| 2.0 * (i as f64 * step).fract() - 1.0;
+    let direction = |i: usize| {
+        let d = [
+            wave(i, 0.414_213_562),
+            wave(i, 0.236_067_977),
+            0.5 + wave(i, 0.732_050_808),
+        ];
+        let length = d.iter().map(|c| c * c).sum::<f64>().sqrt();
+        d.map(|c| c / length)
+    };
+    RaySet {
+        positions: (0..count)
+            .map(|i| {
+                [
+                    1e-3 * wave(i, 0.618_033_989),
+                    1e-3 * wave(i, 0.570_795),
+                    1e-4 * wave(i, 0.301_03),
+                ]
+            })
+            .collect(),
+        directions: (0..count).map(direction).collect(),
+        powers: (0..count).map(|i| 1e-4 * (1.0 + (i % 7) as f64)).collect(),
+        unit,
+        wavelengths: Wavelengths::One(500e-9),
+    }
+}
+
+/// The rays as files of every format.
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    for (name, format, unit) in [
+        ("led.tm25ray", Format::Tm25, PowerUnit::Watt),
+        ("led.mcpl.gz", Format::McplGz, PowerUnit::Watt),
+        ("lumens.tm25ray", Format::Tm25, PowerUnit::Lumen),
+        ("led.npy", Format::Npy, PowerUnit::Weight),
+    ] {
+        let bytes = convert(&RayFile::Npy(rays(unit)), format).unwrap().bytes;
+        fs::write(folder.path().join(name), bytes).unwrap();
+    }
+    fs::write(folder.path().join("none.mcpl"), "MCPL003L").unwrap();
+    folder
+}
+
+/// The scene of the repository with some of its text replaced, and as many photons as leave noise of a few per cent.
+fn text(edits: &[(&str, &str)]) -> String {
+    let mut text = fs::read_to_string(scene("ray_file.ron")).unwrap();
+    let edits = [
+        &[
+            ("rays/led.tm25ray", "led.tm25ray"),
+            ("photons: 4_194_304", "photons: 400_000"),
+        ],
+        edits,
+    ]
+    .concat();
+    for (from, to) in edits {
+        assert!(text.contains(from), "{from}");
+        text = text.replace(from, to);
+    }
+    text
+}
+
+fn resolved(folder: &Path, edits: &[(&str, &str)]) -> Result<Scene, SceneError> {
+    resolve(
+        "test",
+        SceneFile::parse(&text(edits)).unwrap(),
+        folder,
+        u64::MAX,
+    )
+}
+
+/// What photons of a scene come to against the prediction of another.
+fn verdicts(traced: &Scene, predicted: &Scene) -> Vec<Verdict> {
+    let measurement = measure(
+        &Tracer::new(traced),
+        &traced.planes,
+        0..traced.run.batches,
+        &|_| (),
+    );
+    let planes = predicted.planes.iter().enumerate();
+    planes
+        .map(|(i, plane)| {
+            let theory = Applicability::new(predicted, plane);
+            let prediction = Prediction::new(predicted, plane, &theory);
+            let compared = compare(&measurement, i, &prediction, &Test::of(traced));
+            compared.unwrap().report.verdict
+        })
+        .collect()
+}
+
+#[test]
+fn photons_agree_with_the_sum_over_rays() {
+    let folder = folder();
+    for edits in [
+        vec![],
+        vec![("run: (", "run: (sampling: Random, ")],
+        // Turned, and behind a grating.
+        vec![
+            (
+                "file: \"led.tm25ray\"",
+                "file: \"led.tm25ray\", front: (0.3, -0.2, 1), up: (0.2, 1, 0)",
+            ),
+            (
+                "blockers: [",
+                "blockers: [Grating(name: \"grating\", center: (0, 0, 0.03), axis: Y, frequency: 60),",
+            ),
+        ],
+        vec![(
+            "(name: \"arrival\", at: Before(\"screen\"))",
+            "(name: \"arrival\", at: Before(\"screen\"), quantity: DifferentialIrradiance)",
+        )],
+    ] {
+        let scene = resolved(folder.path(), &edits).unwrap();
+        assert_eq!(verdicts(&scene, &scene), [Verdict::Pass; 4], "{edits:?}");
+    }
+}
+
+/// Each fault is seen at the planes it is before, and at no other.
+#[test]
+fn planted_faults_are_seen() {
+    let folder = folder();
+    let sound = resolved(folder.path(), &[]).unwrap();
+    let [pass, fail] = [Verdict::Pass, Verdict::Fail];
+    for (edits, expected) in [
+        // A bar of 3 mm that is 1 mm wider.
+        (
+            [(
+                "center: (0, 0), size: (0.003, 0.06)",
+                "center: (0, 0), size: (0.004, 0.06)",
+            )],
+            [pass, pass, fail, fail],
+        ),
+        // The screen 0.5 mm further off.
+        (
+            [("center: (0, 0, 0.05)", "center: (0, 0, 0.0505)")],
+            [pass, pass, pass, fail],
+        ),
+        // One per cent more power.
+        (
+            [("file: \"led.tm25ray\"", "file: \"led.tm25ray\", flux: 0.8")],
+            [fail; 4],
+        ),
+        // Turned by six thousandths of a radian.
+        (
+            [(
+                "file: \"led.tm25ray\"",
+                "file: \"led.tm25ray\", up: (0.006, 1, 0)",
+            )],
+            [fail; 4],
+        ),
+    ] {
+        let faulty = resolved(folder.path(), &edits).unwrap();
+        assert_eq!(verdicts(&faulty, &sound), expected, "{edits:?}");
+    }
+}
+
+/// Power is that of the file, in W, whatever it states it in; rays that go back are left out.
+#[test]
+fn power_is_in_watts() {
+    let folder = folder();
+    let flux = |edits: &[(&str, &str)]| match resolved(folder.path(), edits).unwrap().light {
+        Light::Rays { rays } => [rays.flux(), rays.behind()],
+        other => panic!("{other:?}"),
+    };
+    let set = rays(PowerUnit::Watt);
+    let forward = set
+        .directions
+        .iter()
+        .zip(&set.powers)
+        .filter(|(d, _)| d[2] > 0.0);
+    let forward: f64 = forward.map(|(_, power)| power).sum();
+    let total = set.total_power();
+    let near = |[a, b]: [f64; 2], factor: f64| {
+        // f32 rounds each power by 6e-8.
+        assert!((a / (factor * forward) - 1.0).abs() < 1e-6, "{a} {forward}");
+        assert!((b / (factor * (total - forward)) - 1.0).abs() < 1e-6, "{b}");
+    };
+    near(flux(&[]), 1.0);
+    near(flux(&[("led.tm25ray", "led.mcpl.gz")]), 1.0);
+    near(
+        flux(&[("\"led.tm25ray\"", "\"led.npy\", flux: 3")]),
+        3.0 / total,
+    );
+    near(
+        flux(&[("\"led.tm25ray\"", "\"lumens.tm25ray\", flux: 3")]),
+        3.0 / total,
+    );
+}
+
+#[test]
+fn what_makes_no_light_is_refused() {
+    let folder = folder();
+    for (edits, parts) in [
+        ([("led.tm25ray", "none.mcpl")], ["light.file", "byte 8"]),
+        (
+            [("led.tm25ray", "missing.mcpl")],
+            ["light.file", "regular file"],
+        ),
+        (
+            [("led.tm25ray", "lumens.tm25ray")],
+            ["power in lm", "`flux`"],
+        ),
+        ([("led.tm25ray", "led.npy")], ["weight", "`flux`"]),
+        (
+            [("\"led.tm25ray\"", "\"led.tm25ray\", flux: -1")],
+            ["light.flux", "-1"],
+        ),
+        (
+            [("\"led.tm25ray\"", "\"led.tm25ray\", front: (0, 1, 0)")],
+            ["light.front and light.up", "not parallel"],
+        ),
+    ] {
+        let error = resolved(folder.path(), &edits).unwrap_err().to_string();
+        assert!(
+            parts.iter().all(|part| error.contains(part)),
+            "{edits:?}: {error}"
+        );
+    }
+}
+
+/// The command refuses planes that nothing could judge, warns of rays that go back, and leaves the same bytes on any number of threads.
+#[test]
+fn the_command_knows_what_it_can_judge() {
+    let folder = folder();
+    let call = |arguments: &str| {
+        let words = arguments.split_whitespace();
+        etendue()
+            .current_dir(folder.path())
+            .args(words)
+            .output()
+            .unwrap()
+    };
+    let write = |name: &str, edits: &[(&str, &str)]| {
+        fs::write(folder.path().join(name), text(edits)).unwrap()
+    };
+    write("led.ron", &[]);
+    write(
+        "beyond.ron",
+        &[(
+            "(name: \"after\"",
+            "(name: \"left\", at: After(\"screen\")), (name: \"after\"",
+        )],
+    );
+    for (arguments, part) in [
+        (
+            "check beyond.ron",
+            "plane left: the light is a ray file, and there is no prediction",
+        ),
+        (
+            "run beyond.ron --out out",
+            "plane left: the light is a ray file",
+        ),
+        ("run led.ron --method backward --out out", ""),
+    ] {
+        let output = call(arguments);
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{arguments}: {message}");
+        assert!(message.contains(part), "{arguments}: {message}");
+    }
+    let output = call("check led.ron");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("do not go forward"), "{message}");
+    for threads in 1..=2 {
+        let output = call(&format!(
+            "run led.ron --photons 20000 --set run.resolution=1 --threads {threads} --out out{threads} --save mcpl"
+        ));
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+    }
+    let of = |out: &str| fs::read(folder.path().join(out).join("arrival/photons.mcpl")).unwrap();
+    assert!(of("out1") == of("out2"));
+}

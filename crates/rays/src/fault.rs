@@ -1,0 +1,50 @@
+//! Why a ray file is refused, and where in it.
+
+use std::fmt;
+
+/// Where in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// An offset from the beginning of the file, unpacked; the first byte is 0.
+    Byte(u64),
+    /// A ray; the first is 0.
+    Ray(u64),
+}
+
+/// Why a file is refused.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub struct Fault {
+    /// Where.
+    pub place: Place,
+    /// What stands there, and what may.
+    pub message: String,
+}
+
+impl Fault {
+    pub(crate) fn file(message: impl Into<String>) -> Self {
+        let (place, message) = (Place::File, message.into());
+        Self { place, message }
+    }
+
+    pub(crate) fn byte(at: usize, message: impl Into<String>) -> Self {
+        let (place, message) = (Place::Byte(at as u64), message.into());
+        Self { place, message }
+    }
+
+    pub(crate) fn ray(index: usize, message: impl Into<String>) -> Self {
+        let (place, message) = (Place::Ray(index as u64), message.into());
+        Self { place, message }
+    }
+}
+
+impl fmt::Display for Fault {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.place {
+            Place::File => write!(f, "{}", self.message),
+            Place::Byte(at) => write!(f, "byte {at}: {}", self.message),
+            Place::Ray(index) => write!(f, "ray {index} (the first is 0): {}", self.message),
+        }
+    }
+}

@@ -1,0 +1,52 @@
+//! Gzip around a file.
+
+use crate::Fault;
+use flate2::Compression;
+use flate2::bufread::MultiGzDecoder;
+use flate2::write::GzEncoder;
+use std::borrow::Cow;
+use std::io::{Read, Write};
+
+/// Unpacked, a file may be so many times as long as packed, and [`FREE`] bytes longer. Rays pack to a half or less; those of test files, which repeat, to a tenth.
+pub const MOST_RATIO: usize = 64;
+
+/// Bytes that a packed file may unpack to whatever its length.
+pub const FREE: usize = 1 << 20;
+
+/// Whether a file begins as gzip does.
+#[must_use]
+pub fn is_packed(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1f, 0x8b])
+}
+
+/// The bytes in it; those of a file that is not packed are itself.
+///
+/// # Errors
+/// Bytes that gzip cannot read, or more of them than [`MOST_RATIO`] and [`FREE`] allow.
+pub fn unpack(bytes: &[u8]) -> Result<Cow<'_, [u8]>, Fault> {
+    if !is_packed(bytes) {
+        return Ok(Cow::Borrowed(bytes));
+    }
+    let most = bytes.len().saturating_mul(MOST_RATIO).saturating_add(FREE);
+    let mut unpacked = Vec::new();
+    let read = MultiGzDecoder::new(bytes)
+        .take(most as u64 + 1)
+        .read_to_end(&mut unpacked);
+    read.map_err(|e| Fault::file(format!("gzip: {e}")))?;
+    if unpacked.len() > most {
+        let message = format!(
+            "gzip: it unpacks to more than {most} bytes, {MOST_RATIO} times its length and {FREE} bytes"
+        );
+        return Err(Fault::file(message));
+    }
+    Ok(Cow::Owned(unpacked))
+}
+
+/// Packs bytes; no name and no time goes with them, so the same bytes give the same file.
+#[must_use]
+pub fn pack(bytes: &[u8]) -> Vec<u8> {
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
+    // Writing to memory does not fail.
+    let packed = encoder.write_all(bytes).and_then(|()| encoder.finish());
+    packed.unwrap_or_default()
+}

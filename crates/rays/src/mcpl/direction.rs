@@ -1,0 +1,118 @@
+//! Unit vectors in two numbers and a sign, as MCPL packs them.
+
+/// By how much |d|² of a direction may differ from 1: what the format's own writer accepts.
+const SLACK: f64 = 1e-5;
+
+/// Refuses a vector that is not of length 1.
+pub(super) fn check(d: [f64; 3]) -> Result<(), String> {
+    let squared: f64 = d.iter().map(|c| c * c).sum();
+    if (squared - 1.0).abs() <= SLACK {
+        Ok(())
+    } else {
+        let [x, y, z] = d;
+        Err(format!(
+            "direction ({x}, {y}, {z}); allowed: unit vectors, |d|² within {SLACK} of 1"
+        ))
+    }
+}
+
+/// Version 3, adaptive projection (Kittelmann et al. 2017, section 3.2): the component of largest modulus is left out but for its sign. Where it is not z,
+/// 1/z, larger than 1 in modulus, takes its place and says which it was.
+pub(super) fn pack(d: [f64; 3]) -> ([f64; 2], bool) {
+    let [x, y, z] = d;
+    if z.abs() >= x.abs().max(y.abs()) {
+        ([x, y], z.is_sign_negative())
+    } else if x.abs() >= y.abs() {
+        ([inverse(z), y], x.is_sign_negative())
+    } else {
+        ([x, inverse(z)], y.is_sign_negative())
+    }
+}
+
+/// 1/z; of either zero it is +∞.
+fn inverse(z: f64) -> f64 {
+    if z == 0.0 { f64::INFINITY } else { 1.0 / z }
+}
+
+/// The vector that [`pack`] made two numbers and a sign of.
+pub(super) fn unpack([a, b]: [f64; 2], negative: bool) -> Result<[f64; 3], String> {
+    let signed = |v: f64| if negative { -v } else { v };
+    // The component left out; of a vector as long as it should be, it is none of the smaller ones.
+    let missing = |c: f64, d: f64| {
+        let squared = 1.0 - (c * c + d * d);
+        if squared >= -SLACK {
+            Ok(signed(squared.max(0.0).sqrt()))
+        } else {
+            Err(format!(
+                "packed direction {a}, {b}; no unit vector has such"
+            ))
+        }
+    };
+    match [a.abs() > 1.0, b.abs() > 1.0] {
+        // NaN compares as neither, and is caught in `missing`: no comparison with it holds.
+        [false, false] => Ok([a, b, missing(a, b)?]),
+        [true, false] => Ok([missing(b, 1.0 / a)?, b, 1.0 / a]),
+        [false, true] => Ok([a, missing(a, 1.0 / b)?, 1.0 / b]),
+        [true, true] => missing(a, b).map(|_| [0.0; 3]),
+    }
+}
+
+/// Version 2: a point of the octahedron |x| + |y| + |z| = 1, its lower half folded out. `flat` says that z is 0.
+pub(super) fn unpack_octahedral([a, b]: [f64; 2], flat: bool) -> Result<[f64; 3], String> {
+    // Both are coordinates of a square; rounding to f32 may lead out of it by as much.
+    if !(a.abs() <= 1.0 + 1e-6 && b.abs() <= 1.0 + 1e-6) {
+        return Err(format!(
+            "packed direction {a}, {b}; allowed: −1 to 1 for both"
+        ));
+    }
+    let sign = |v: f64| if v >= 0.0 { 1.0 } else { -1.0 };
+    let z = 1.0 - a.abs() - b.abs();
+    let point = if z < 0.0 {
+        [(1.0 - b.abs()) * sign(a), (1.0 - a.abs()) * sign(b), z]
+    } else {
+        [a, b, z]
+    };
+    let [x, y, z] = crate::set::unit(point);
+    Ok([x, y, if flat { 0.0 } else { z }])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn directions_pack_and_unpack() {
+        let steps = -7..=7;
+        for x in steps.clone() {
+            for y in steps.clone() {
+                for z in steps.clone() {
+                    if [x, y, z] == [0; 3] {
+                        continue;
+                    }
+                    let d = crate::set::unit([x, y, z].map(f64::from));
+                    let (packed, negative) = pack(d);
+                    let again = unpack(packed, negative).unwrap();
+                    for (a, b) in again.iter().zip(d) {
+                        // Two roundings of numbers of at most 1; the root of a sum of 1/3 or more doubles them at most.
+                        assert!((a - b).abs() < 1e-15, "{d:?} {again:?}");
+                    }
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_no_vector_packs_to_is_refused() {
+        for packed in [
+            [f64::NAN, 0.0],
+            [0.0, f64::NAN],
+            [f64::INFINITY, 2.0],
+            [0.9, 0.9],
+            [f64::INFINITY, f64::NAN],
+        ] {
+            assert!(unpack(packed, false).is_err(), "{packed:?}");
+        }
+        assert!(unpack_octahedral([f64::NAN, 0.0], false).is_err());
+        assert!(unpack_octahedral([1.1, 0.0], false).is_err());
+    }
+}

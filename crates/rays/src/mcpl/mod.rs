@@ -1,0 +1,191 @@
+//! MCPL, the Monte Carlo Particle List, versions 2 and 3.
+//!
+//! Source: T. Kittelmann et al., "Monte Carlo Particle Lists: MCPL", Comput. Phys. Commun. 218 (2017) 17–42, and <https://mctools.github.io/mcpl>. Units: cm, MeV, ms.
+//! A photon (PDG code 22) of energy E has the wavelength h c / E, see [`PHOTON_ENERGY_LENGTH`]. The weight has no unit of
+//! its own; files of Étendue say in a comment, [`WATTS`], that it is W.
+//!
+//! A file is read in either order of bytes and keeps its records as they are. Each is checked once.
+
+mod direction;
+mod header;
+mod particle;
+mod stat;
+
+pub use header::{Header, WATTS};
+pub use particle::Particle;
+pub use stat::{StatSum, stat_sum_comment};
+
+use crate::cursor::Cursor;
+use crate::set::PHOTON_ENERGY_LENGTH;
+use crate::{Fault, PowerUnit, RaySet, Wavelengths};
+
+/// The PDG code of a photon.
+pub const PHOTON: i32 = 22;
+
+/// A file as it stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct McplFile {
+    header: Header,
+    count: usize,
+    records: Vec<u8>,
+    /// Bytes behind the last record, fewer than one takes: a public test file ends with a line feed.
+    rest: Vec<u8>,
+}
+
+impl McplFile {
+    /// Reads a file that is not packed.
+    ///
+    /// # Errors
+    /// Whatever is not as the format has it, the first such thing. A file that was not closed (no particles by its header, and records
+    /// behind it) is refused too, and so are more bytes after the last record than are too few for another.
+    pub fn read(bytes: &[u8]) -> Result<Self, Fault> {
+        let (header, count, start) = Header::read(bytes)?;
+        let size = header.record_size();
+        let records = bytes.get(start..).unwrap_or_default();
+        let needed = usize::try_from(count)
+            .ok()
+            .and_then(|count| count.checked_mul(size));
+        let rest = needed.and_then(|needed| records.len().checked_sub(needed));
+        let Some(rest) = rest.filter(|&rest| rest < size) else {
+            return Err(wrong_length(start, count, size, records.len()));
+        };
+        let (records, rest) = records.split_at(records.len() - rest);
+        let file = Self {
+            header,
+            count: records.len() / size,
+            records: records.to_vec(),
+            rest: rest.to_vec(),
+        };
+        for index in 0..file.count {
+            file.decode(index)
+                .and_then(|p| p.check())
+                .map_err(|what| Fault::ray(index, what))?;
+        }
+        Ok(file)
+    }
+
+    /// A file of version 3 with these particles, all of which the header's options must be able to hold.
+    ///
+    /// # Errors
+    /// A particle that no file may hold, or that differs from the universal weight or PDG code of the header.
+    pub fn new(
+        header: Header,
+        particles: impl IntoIterator<Item = Particle>,
+    ) -> Result<Self, Fault> {
+        header.check()?;
+        let mut file = Self {
+            header: Header {
+                version: 3,
+                ..header
+            },
+            count: 0,
+            records: Vec::new(),
+            rest: Vec::new(),
+        };
+        for particle in particles {
+            let written = particle.encode(&file.header, &mut file.records);
+            written.map_err(|what| Fault::ray(file.count, what))?;
+            file.count += 1;
+        }
+        Ok(file)
+    }
+
+    /// What the file says of all its particles.
+    #[must_use]
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// How many particles.
+    #[must_use]
+    pub fn len(&self) -> usize {
+        self.count
+    }
+
+    /// Whether there is none.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.count == 0
+    }
+
+    /// All particles, in their order.
+    pub fn particles(&self) -> impl Iterator<Item = Particle> {
+        // Each has been decoded before, so none is left out.
+        (0..self.count).filter_map(|index| self.decode(index).ok())
+    }
+
+    /// The bytes of the file; those it was read from, if it was.
+    #[must_use]
+    pub fn write(&self) -> Vec<u8> {
+        let mut bytes = self.header.bytes(self.count as u64);
+        bytes.extend(&self.records);
+        bytes.extend(&self.rest);
+        bytes
+    }
+
+    /// Its rays in metres; power is the weight of the particles, W where the comment [`WATTS`] says so.
+    /// Particles that are no photons, and photons of energy 0, have no wavelength.
+    #[must_use]
+    pub fn rays(&self) -> RaySet {
+        let watts = self.header.comments.iter().any(|c| c == WATTS.as_bytes());
+        let wavelength = |p: &Particle| {
+            let known = p.pdg == PHOTON && p.energy_mev > 0.0;
+            if known {
+                PHOTON_ENERGY_LENGTH / p.energy_mev
+            } else {
+                f64::NAN
+            }
+        };
+        let mut set = RaySet {
+            positions: Vec::with_capacity(self.count),
+            directions: Vec::with_capacity(self.count),
+            powers: Vec::with_capacity(self.count),
+            unit: if watts {
+                PowerUnit::Watt
+            } else {
+                PowerUnit::Weight
+            },
+            wavelengths: Wavelengths::Unknown,
+        };
+        let mut wavelengths = Vec::with_capacity(self.count);
+        for particle in self.particles() {
+            set.positions.push(particle.position_cm.map(|c| c / 100.0));
+            set.directions.push(particle.direction);
+            set.powers.push(particle.weight);
+            wavelengths.push(wavelength(&particle));
+        }
+        set.wavelengths = shared(wavelengths);
+        set
+    }
+
+    /// A particle, whose place is in the file.
+    fn decode(&self, index: usize) -> Result<Particle, String> {
+        let size = self.header.record_size();
+        let record = self.records.get(index * size..(index + 1) * size);
+        let mut cursor = Cursor::new(record.unwrap_or_default(), 0, self.header.little_endian);
+        Particle::decode(&self.header, &mut cursor)
+    }
+}
+
+/// One wavelength where all rays have the same.
+fn shared(each: Vec<f64>) -> Wavelengths {
+    let first = each.first().copied().unwrap_or(f64::NAN);
+    if each.iter().all(|w| w.is_nan()) {
+        Wavelengths::Unknown
+    } else if each.iter().all(|w| w.to_bits() == first.to_bits()) {
+        Wavelengths::One(first)
+    } else {
+        Wavelengths::Each(each)
+    }
+}
+
+fn wrong_length(start: usize, count: u64, size: usize, found: usize) -> Fault {
+    let message = if count == 0 {
+        format!(
+            "the header says 0 particles, and {found} bytes follow it: the file was not closed (`mcpltool --repair` counts its particles)"
+        )
+    } else {
+        format!("{count} particles of {size} bytes should follow, and {found} bytes do")
+    };
+    Fault::byte(start, message)
+}

@@ -1,0 +1,200 @@
+//! Light of finitely many rays: its windowed spectrum is a sum over them (docs/theory.md, section 2).
+//!
+//! Each ray goes through the chain by itself: travel moves it, a mask takes its share, the window weighs it. So the
+//! prediction has no error but that of the transform, and shares neither random numbers nor the tracer's hits with the photons.
+
+use crate::mask::Barrier;
+use crate::model::Over;
+use crate::predicted::Predicted;
+use crate::work::Work;
+use crate::{Chain, Operator};
+use etendue_field::transform::SliceTransform;
+use etendue_field::{
+    FluxRay, Light, Projection, ProjectionGrid, RayLight, SliceGrid, Slices, TwoPlane, Window,
+};
+use ndarray::Array2;
+
+impl Chain {
+    /// The rays that shine, if the light is made of such.
+    pub(crate) fn given(&self) -> Option<&RayLight> {
+        match &self.source.light {
+            Light::Rays { rays } => Some(rays),
+            _ => None,
+        }
+    }
+}
+
+/// A step of a chain, ready for many rays.
+enum Step<'a> {
+    Travel(f64),
+    Mask(Barrier<'a>),
+    Cosine,
+}
+
+/// The slices of rays that go through a chain, and their picture.
+///
+/// # Panics
+/// When the chain has a diffuse reflection.
+pub(super) fn predicted(
+    chain: &Chain,
+    rays: &RayLight,
+    (window, grid, picture): Over<'_>,
+) -> Predicted {
+    let steps: Vec<Step<'_>> = chain.operators.iter().map(step).collect();
+    let arriving = |given: &FluxRay| arrives(given, &steps, window);
+    let all = rays.rays().iter().filter_map(arriving);
+    let (slices, projection) = sums(all, grid, picture);
+    let open: Vec<Step<'_>> = chain
+        .operators
+        .iter()
+        .filter(|operator| !matches!(operator, Operator::Visibility { .. }))
+        .map(step)
+        .collect();
+    let unblocked = rays.rays().iter();
+    let unblocked = unblocked.filter_map(|given| arrives(given, &open, window));
+    Predicted {
+        slices,
+        replicates: Vec::new(),
+        error: None,
+        unblocked: unblocked.map(|(_, weight)| weight).sum(),
+        projection,
+        covariance: None,
+        derivatives: Vec::new(),
+        to_first_order: None,
+    }
+}
+
+/// What [`predicted`] takes: spreading a ray over 8 × 8 cells of each azimuth, and the transform.
+pub(super) fn work(rays: &RayLight, grid: &SliceGrid) -> Work {
+    let [azimuths, rows, columns] = grid.half_shape().map(|n| n as f64);
+    let spread = 100.0 * azimuths * rays.rays().len() as f64;
+    Work {
+        steps: spread + 1e3 * azimuths * rows * columns,
+        bytes: SliceTransform::new(grid).bytes(),
+        bytes_each: 0.0,
+        drivers: format!("{} rays of a file", rays.rays().len()),
+    }
+}
+
+fn step(operator: &Operator) -> Step<'_> {
+    match operator {
+        Operator::Travel { distance, .. } => Step::Travel(*distance),
+        Operator::Visibility { mask, .. } => Step::Mask(Barrier::new(0.0, mask)),
+        Operator::Cosine { .. } => Step::Cosine,
+        Operator::Diffuse { name, .. } => panic!("rays of a file end at the diffuse {name}"),
+    }
+}
+
+/// A ray at the end of a chain with what it adds to the windowed light field; `None` where that is nothing.
+fn arrives(
+    FluxRay { ray, flux }: &FluxRay,
+    steps: &[Step<'_>],
+    window: &Window,
+) -> Option<(TwoPlane, f64)> {
+    // Radiance is flux over dx dy cos θ dω, and cos θ dω = du dv / (1 + u² + v²)² (docs/conventions.md).
+    let secant_squared = 1.0 + ray.u * ray.u + ray.v * ray.v;
+    let measure = secant_squared * secant_squared;
+    let (mut ray, mut weight) = (*ray, flux * measure);
+    for step in steps {
+        match step {
+            Step::Travel(distance) => {
+                ray.x += distance * ray.u;
+                ray.y += distance * ray.v;
+            }
+            Step::Mask(barrier) => weight *= barrier.transmittance(ray.x, ray.y),
+            Step::Cosine => weight /= measure,
+        }
+        if weight == 0.0 {
+            return None;
+        }
+    }
+    let weight = weight * window.value(&ray);
+    (weight != 0.0).then_some((ray, weight))
+}
+
+fn sums(
+    all: impl Iterator<Item = (TwoPlane, f64)>,
+    grid: &SliceGrid,
+    picture: &ProjectionGrid,
+) -> (Slices, Projection) {
+    let transform = SliceTransform::new(grid);
+    let mut sum = transform.accumulator();
+    let mut values = Array2::zeros((picture.bins, picture.bins));
+    for (ray, weight) in all {
+        sum.deposit(&ray, weight);
+        if let Some(cell) = picture.cell(ray.x, ray.u) {
+            values[cell] += weight / picture.cell_area();
+        }
+    }
+    let grid = *picture;
+    (sum.finish(1.0), Projection { grid, values })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::*;
+    use etendue_field::{Complex, FrequencyAxis, Profile, cis};
+    use std::f64::consts::TAU;
+    use std::sync::Arc;
+
+    /// Rays that fill a square of a Lambertian light evenly make its field: the sum goes to the closed form, by a midpoint rule.
+    #[test]
+    fn many_rays_of_a_square_light_are_its_closed_form() {
+        let n = 24;
+        let (half, slope) = (0.1, 0.5);
+        let at = |i: i32| (2.0 * f64::from(i) + 1.0) / f64::from(n) - 1.0;
+        let mut rays = Vec::new();
+        let cell = (2.0 * half / f64::from(n)).powi(2) * (2.0 * slope / f64::from(n)).powi(2);
+        for (i, j) in (0..n).flat_map(|i| (0..n).map(move |j| (i, j))) {
+            for (k, l) in (0..n).flat_map(|k| (0..n).map(move |l| (k, l))) {
+                let ray = TwoPlane {
+                    x: half * at(i),
+                    y: half * at(j),
+                    u: slope * at(k),
+                    v: slope * at(l),
+                };
+                let flux = cell / (ray.secant_squared() * ray.secant_squared());
+                rays.push(FluxRay { ray, flux });
+            }
+        }
+        let rays = Arc::new(RayLight::new(rays, 0.0).unwrap());
+        let steps = [(0.5, None), (0.3, Some(grating(0, 2.0, 0.3))), (0.2, None)];
+        let closed = chain_of(lambertian(square([0.0; 2], 2.0 * half)), steps.clone());
+        let given = chain_of(Light::Rays { rays: rays.clone() }, steps);
+        let window = window(Profile::Hann(0.4), Profile::Hann(0.5));
+        let axis = |spacing| FrequencyAxis { half: 2, spacing };
+        let grid = SliceGrid {
+            azimuths: 2,
+            rho: axis(1.5),
+            nu: axis(1.0),
+        };
+        let picture = ProjectionGrid::new(&window, 4);
+        let over = (&window, &grid, &picture);
+        let expected = super::super::slices(&closed, &window, &grid);
+        let found = predicted(&given, &rays, over);
+        let off = |slices: &Slices| {
+            let pairs = slices.half.iter().zip(&expected.half);
+            let worst = pairs.map(|(a, b)| (a - b).norm_sqr().sqrt());
+            worst.fold(0.0, f64::max) / expected.at_zero()
+        };
+        // A midpoint rule of 24 cells on an edge of light: of the order of 1/24², the square of a cell.
+        assert!(off(&found.slices) < 4e-3, "{}", off(&found.slices));
+        // A fault is seen: travel left out.
+        let mut wrong = given.clone();
+        wrong.operators.remove(0);
+        assert!(off(&predicted(&wrong, &rays, over).slices) > 0.1);
+        // Against the plain sum at one frequency.
+        let (rho, nu) = (1.5, -1.0);
+        let mut plain = Complex::ZERO;
+        for FluxRay { ray, flux } in rays.rays() {
+            let [x, y] = [ray.x + ray.u, ray.y + ray.v];
+            let masked = 0.5 * (1.0 + libm::cos(TAU * 2.0 * (ray.x + 0.8 * ray.u) + 0.3));
+            let seen = TwoPlane { x, y, ..*ray };
+            let weight = flux * ray.secant_squared().powi(2) * masked * window.value(&seen);
+            plain += weight * cis(-TAU * (rho * x + nu * ray.u));
+        }
+        let fast = found.slices.half[[0, 1, 1]];
+        assert!((fast - plain).norm_sqr().sqrt() < 1e-6 * expected.at_zero()); // the bound of the transform is 2e-7 of the weights
+    }
+}

@@ -1,0 +1,50 @@
+//! Crossings of a plane as rays of the world.
+
+use crate::station::Station;
+use etendue_field::{Crossing, Frame, TwoPlane};
+use etendue_scene::Scene;
+use glam::DVec3;
+
+/// Turns crossings of a plane into rays of the world with their power.
+#[derive(Debug)]
+pub struct PlaneInWorld {
+    station: Station,
+    /// The frame of the leg, in the world.
+    leg: Frame,
+}
+
+impl PlaneInWorld {
+    /// The plane of a scene with this index; `None` if there is none.
+    #[must_use]
+    pub fn new(scene: &Scene, plane: usize) -> Option<Self> {
+        let at = scene.planes.get(plane)?;
+        let leg = &scene.path.legs[at.leg];
+        Some(Self {
+            station: Station::new(scene, plane, at),
+            leg: scene.path.frame.compose(&leg.frame),
+        })
+    }
+
+    /// Where a ray crosses the plane, in metres, and the unit vector along which light travels there. On a surface itself the point is
+    /// one of the surface. `None` for coordinates that no ray has.
+    #[must_use]
+    pub fn ray(&self, seen: &TwoPlane) -> Option<[DVec3; 2]> {
+        let (point, ..) = self.station.point([seen.x, seen.y])?;
+        let along = match self.station.view() {
+            None => DVec3::new(seen.u, seen.v, 1.0),
+            Some(view) => {
+                let away = view.direction(point, [seen.u, seen.v])?;
+                if view.is_arriving() { -away } else { away }
+            }
+        };
+        let along = self.leg.vector_to_world(along).normalize();
+        Some([self.leg.to_world(point), along])
+    }
+
+    /// The flux of a photon times the number of those emitted, W: its weight without what it was multiplied by for radiance space,
+    /// 1 over cos θ dω / du dv (docs/conventions.md).
+    #[must_use]
+    pub fn flux(&self, crossing: &Crossing) -> f64 {
+        crossing.weight * self.station.flux_per_radiance(&crossing.ray)
+    }
+}
