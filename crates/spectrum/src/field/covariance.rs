@@ -68,6 +68,14 @@ impl Moments {
         }
     }
 
+    /// Over frequencies half as far.
+    fn halved(&self) -> Self {
+        Self {
+            grid: self.grid,
+            band: self.band.map(|most| 0.5 * most),
+        }
+    }
+
     /// The moments of a power that is even in Ω, which is asked at indices of a transform, those along v from zero on.
     ///
     /// Summed by Ωx, and the sums in order: the same bits on any number of threads.
@@ -126,6 +134,8 @@ fn add(sums: &mut [f64; COUNT], p: f64, omega: [f64; 4]) {
 pub(crate) struct GroupMoments {
     share: f64,
     row: PowerMoments,
+    /// Over half of the band.
+    half: PowerMoments,
 }
 
 impl GroupMoments {
@@ -142,6 +152,7 @@ impl GroupMoments {
         Self {
             share,
             row: moments.of(crossed),
+            half: moments.halved().of(crossed),
         }
     }
 }
@@ -157,6 +168,8 @@ pub struct FieldCovariance {
     pub band: [f64; 4],
     /// The moments.
     pub moments: PowerMoments,
+    /// Those over half of the band.
+    half: PowerMoments,
     /// Those without each of the groups, up to a factor.
     without: Vec<PowerMoments>,
 }
@@ -175,11 +188,16 @@ impl FieldCovariance {
         moments: &Moments,
         groups: impl Iterator<Item = &'a GroupMoments> + Clone,
     ) -> Self {
-        let mut all = [0.0; COUNT];
-        for group in groups.clone() {
-            let row = entries(&group.row);
-            all.iter_mut().zip(row).for_each(|(sum, r)| *sum += r);
-        }
+        let sum = |of: fn(&GroupMoments) -> &PowerMoments| {
+            let mut all = [0.0; COUNT];
+            for group in groups.clone() {
+                let row = entries(of(group));
+                all.iter_mut().zip(row).for_each(|(sum, r)| *sum += r);
+            }
+            all
+        };
+        let all = sum(|group| &group.row);
+        let half = PowerMoments::new(sum(|group| &group.half));
         let squares: f64 = groups.clone().map(|group| group.share.powi(2)).sum();
         let without = groups.map(|group| {
             let mut left = all;
@@ -191,6 +209,7 @@ impl FieldCovariance {
         });
         Self {
             band: moments.band,
+            half,
             without: without.collect(),
             moments: PowerMoments::new(all.map(|sum| sum / (1.0 - squares))),
         }
@@ -200,6 +219,15 @@ impl FieldCovariance {
     #[must_use]
     pub fn estimate(&self) -> Option<MatrixEstimate> {
         self.estimate_of(|matrix| Some(*matrix))
+    }
+
+    /// How much each variance grows from half of the band to all of it: 1 where the band holds the spectrum, and up
+    /// to 2 where the field has an edge, whose spectrum has no second moment. `None` where there is no light beyond
+    /// noise.
+    #[must_use]
+    pub fn growth(&self) -> Option<[f64; 4]> {
+        let [all, half] = [self.moments.covariance()?, self.half.covariance()?];
+        Some([0, 1, 2, 3].map(|i: usize| all[i][i] / half[i][i]))
     }
 
     /// Of a matrix that is made of it, such as what a map makes of it. `None` where there is none of all groups, or

@@ -28,6 +28,15 @@ impl SpectralCovariance {
         }
     }
 
+    /// That of a matrix C.
+    #[must_use]
+    pub fn of(matrix: &Matrix<4>) -> Self {
+        Self {
+            p: *matrix,
+            q: diagonal([1.0; 4]),
+        }
+    }
+
     /// After a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. Where light is does not matter to
     /// its power. `None` if A has no inverse.
     #[must_use]
