@@ -101,7 +101,10 @@ fn planes_are_chosen_by_their_names() {
         .output()
         .unwrap();
     let said = String::from_utf8(output.stdout).unwrap();
-    assert!(said.contains("νu νu") && said.contains("full: |ρ| ≤ 40"), "{said}");
+    assert!(
+        said.contains("νu νu") && said.contains("full: |ρ| ≤ 40"),
+        "{said}"
+    );
     assert!(!folder.path().join("out/cut").exists());
 }
 
@@ -123,7 +126,10 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
     fs::write(folder.path().join("room.xml"), ROOM).unwrap();
     let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^16 --photons 2^16 --covariance --out out --quiet";
     let output = call(folder.path(), line);
-    assert!(matches!(output.status.code(), Some(0 | 1 | 4)), "{output:?}");
+    assert!(
+        matches!(output.status.code(), Some(0 | 1 | 4)),
+        "{output:?}"
+    );
     let probe = json(&folder.path().join("out/probe.json"));
     let camera = &probe["planes"][0]["spectral_covariance"];
     let number = |of: &str, key: &str, i: usize, j: usize| camera[of][key][i][j].as_f64().unwrap();
@@ -133,6 +139,9 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
         let both = error[0].hypot(error[1]);
         // The band cuts both windows off where they hold a few thousandths of their moments.
         let scale = (number("measured", "value", i, i) * number("measured", "value", j, j)).sqrt();
-        assert!((a - b).abs() < 4.0 * both + 0.01 * scale, "{i} {j}: {a} {b} ± {both}");
+        assert!(
+            (a - b).abs() < 4.0 * both + 0.01 * scale,
+            "{i} {j}: {a} {b} ± {both}"
+        );
     }
 }

@@ -176,16 +176,16 @@ impl CovarianceReport {
             .collect();
         if !axes.is_empty() {
             remarks.push(format!(
-                "the variance along {} still grows over the second half of the band: the spectrum has edges or goes on, \
-                 and its second moment is that of the band",
+                "the variance along {} grows over the second half of the band, where replicas, tails of edges or more of \
+                 the spectrum lie: it is that of the band",
                 axes.join(", ")
             ));
         }
         if let Some([off, error]) = self.off {
             remarks.push(format!(
                 "covariance tracing is off by {} of the variances; noise is {}",
-                percent(off, 3),
-                percent(error, 2)
+                percent(off, 1),
+                percent(error, 1)
             ));
         }
         remarks

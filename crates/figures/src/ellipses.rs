@@ -43,6 +43,23 @@ impl Ellipses<'_> {
         let all = self.ellipses.iter().zip(STROKES);
         all.filter_map(|(ellipse, (color, dash))| Some((ellipse.as_ref()?, color, dash)))
     }
+
+    /// What is drawn over the picture, in order: all halos, then unbroken lines, then dashes, so that ellipses which
+    /// coincide are all seen.
+    fn strokes(&self) -> impl Iterator<Item = (&Ellipse, Stroke)> {
+        let halo = Stroke::solid(HALO, 3.4);
+        let halos = self.drawn().map(move |(ellipse, ..)| (ellipse, halo));
+        let lines = |broken: bool| {
+            let drawn = self
+                .drawn()
+                .filter(move |(.., dash)| dash.is_empty() != broken);
+            drawn.map(|(ellipse, color, dash)| {
+                let width = 1.6;
+                (ellipse, Stroke { color, width, dash })
+            })
+        };
+        halos.chain(lines(false)).chain(lines(true))
+    }
 }
 
 const SIDE: f64 = 320.0;
@@ -85,25 +102,9 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
     let shading = shading.showing(values);
     panel.heat_map(&mut svg, values, &shading)?;
     svg.clipped(area, |svg| {
-        for (ellipse, color, dash) in of.drawn() {
-            let points = points(ellipse.covariance).map(|[x, y]| panel.point(x, y));
-            let points: Vec<_> = points.collect();
-            svg.polyline(
-                &points,
-                Stroke {
-                    color: HALO,
-                    width: 3.4,
-                    dash: "",
-                },
-            );
-            svg.polyline(
-                &points,
-                Stroke {
-                    color,
-                    width: 1.6,
-                    dash,
-                },
-            );
+        for stroke in of.strokes() {
+            let points = points(stroke.0.covariance).map(|[x, y]| panel.point(x, y));
+            svg.polyline(&points.collect::<Vec<_>>(), stroke.1);
         }
     });
     panel.axes(&mut svg);

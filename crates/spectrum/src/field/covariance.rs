@@ -221,9 +221,9 @@ impl FieldCovariance {
         self.estimate_of(|matrix| Some(*matrix))
     }
 
-    /// How much each variance grows from half of the band to all of it: 1 where the band holds the spectrum, and up
-    /// to 2 where the field has an edge, whose spectrum has no second moment. `None` where there is no light beyond
-    /// noise.
+    /// How much each variance grows from half of the band to all of it: 1 where the band holds the spectrum, about 2
+    /// where the field has an edge, whose spectrum has no second moment, and more where replicas lie in between. `None`
+    /// where there is no light beyond noise.
     #[must_use]
     pub fn growth(&self) -> Option<[f64; 4]> {
         let [all, half] = [self.moments.covariance()?, self.half.covariance()?];

@@ -43,9 +43,10 @@ pub fn grating(grating: &Grating) -> f64 {
     grating.frequency * grating.frequency * square / (2.0 + square)
 }
 
-/// Of a mask in the plane where light is now. An opaque one is an opening about the central ray, as
-/// wide along x and along y as nothing stands in the way (Belcour et al. 2013 speak of a window
-/// too). `None` if the central ray is blocked, or touches an edge.
+/// Of a mask in the plane where light is now. An opaque one is an opening about the central ray: the
+/// largest disc that is free of shapes, narrowed along an axis by half-planes (the course notes of
+/// Belcour 2016 take the largest unoccluded disc). `None` if the central ray is blocked, or touches
+/// an edge.
 #[must_use]
 pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
     let mut factor = [[0.0; 4]; 4];
@@ -55,43 +56,31 @@ pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
             shapes,
             half_planes,
         } => {
-            for (axis, row) in factor.iter_mut().enumerate().take(2) {
-                let of_shapes = shapes.iter().map(|shape| free(shape, axis));
-                let beside = half_planes.iter().map(|half| match half.axis == axis {
-                    true => half.edge.abs(),
-                    false => f64::INFINITY,
-                });
-                let nearest = of_shapes.chain(beside).fold(f64::INFINITY, f64::min);
-                row[axis] = opening(nearest);
-            }
             let blocked = shapes.iter().any(|shape| shape.contains(0.0, 0.0))
                 || half_planes.iter().any(|half| half.contains(0.0, 0.0));
             if blocked {
                 return None;
+            }
+            let disc = shapes.iter().map(distance).fold(f64::INFINITY, f64::min);
+            for (axis, row) in factor.iter_mut().enumerate().take(2) {
+                let edges = half_planes.iter().filter(|half| half.axis == axis);
+                let nearest = edges.map(|half| half.edge.abs()).fold(disc, f64::min);
+                row[axis] = opening(nearest);
             }
         }
     }
     Some(factor)
 }
 
-/// How far one goes from the central ray along an axis, either way, until a shape begins.
-fn free(shape: &Shape, axis: usize) -> f64 {
-    let across = 1 - axis;
-    let (center, half) = match shape {
+/// From the central ray to the nearest point of a shape that does not hold it.
+fn distance(shape: &Shape) -> f64 {
+    match shape {
         Shape::Rectangle(rectangle) => {
-            let half = 0.5 * rectangle.size[axis];
-            let passes = rectangle.center[across].abs() > 0.5 * rectangle.size[across];
-            (
-                rectangle.center[axis],
-                if passes { None } else { Some(half) },
-            )
+            let gap = |axis: usize| rectangle.center[axis].abs() - 0.5 * rectangle.size[axis];
+            libm::hypot(gap(0).max(0.0), gap(1).max(0.0))
         }
-        Shape::Disc(disc) => {
-            let chord = disc.radius * disc.radius - disc.center[across].powi(2);
-            (disc.center[axis], (chord >= 0.0).then(|| chord.sqrt()))
-        }
-    };
-    half.map_or(f64::INFINITY, |half| (center.abs() - half).max(0.0))
+        Shape::Disc(disc) => libm::hypot(disc.center[0], disc.center[1]) - disc.radius,
+    }
 }
 
 /// Of the cosine on a surface, cos⁺θ cos²φ over longitude and latitude: 1/4π² and 1/3π² cycles².

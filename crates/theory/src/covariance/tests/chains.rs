@@ -29,10 +29,11 @@ fn lamp() -> Light {
 /// S of that light.
 const LAMP: [f64; 4] = [0.01, 0.01, 1.0 / 30.0, 1.0 / 30.0];
 
-/// What an opaque disc leaves open along x, as a standard deviation.
+/// What an opaque disc leaves open, as standard deviations.
 fn open(half: f64) -> [f64; 4] {
     let endless = f64::INFINITY;
-    [half / 3.0_f64.sqrt(), endless, endless, endless]
+    let along = half / 3.0_f64.sqrt();
+    [along, along, endless, endless]
 }
 
 fn seen() -> Window {

@@ -119,25 +119,26 @@ fn blockers_are_openings_about_the_central_ray() {
         })
     };
     let of = |half: f64| 3.0 / (8.0 * PI * PI * half * half);
-    // The first is met along x at 0.4; the second is beside both axes.
+    // The first begins at 0.4 along x; the second at (0.2, 0.3), which is nearer.
     let beside = opaque(vec![wall(-0.5, 0.1), wall(0.3, 0.5)], vec![]).unwrap();
-    is(beside[0][0], of(0.4));
-    assert!(beside[1][1].abs() < f64::MIN_POSITIVE);
+    is(beside[0][0], of(0.13_f64.sqrt()));
+    is(beside[1][1], of(0.13_f64.sqrt()));
+    // A half-plane narrows along its own axis alone.
     let half = HalfPlane {
         axis: 1,
         edge: -0.3,
         above: false,
     };
+    let both = opaque(vec![wall(-0.5, 0.1)], vec![half]).unwrap();
+    is(both[0][0], of(0.4));
+    is(both[1][1], of(0.3));
     let edge = opaque(vec![], vec![half]).unwrap();
-    is(edge[1][1], of(0.3));
-    // A disc at (0.4, 0.1) of radius 0.2 begins at 0.4 − √0.03 along x, and is beside y.
+    assert!(edge[0][0].abs() < f64::MIN_POSITIVE);
     let disc = Shape::Disc(Disc {
-        center: [0.4, 0.1],
+        center: [0.4, 0.3],
         radius: 0.2,
     });
-    let factor = opaque(vec![disc], vec![]).unwrap();
-    is(factor[0][0], of(0.4 - 0.03_f64.sqrt()));
-    assert!(factor[1][1].abs() < f64::MIN_POSITIVE);
+    is(opaque(vec![disc], vec![]).unwrap()[0][0], of(0.3));
     // In the central ray, and with an edge on it.
     assert!(opaque(vec![wall(0.0, 0.1)], vec![]).is_none());
     assert!(opaque(vec![wall(0.1, 0.0)], vec![]).is_none());
