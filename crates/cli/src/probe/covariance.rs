@@ -14,6 +14,10 @@ use etendue_theory::covariance::{SpectralCovariance, window};
 use etendue_theory::geometry::Map;
 use serde_json::{Value, json as tree_of};
 
+/// Frequencies on either side of zero that covariances are over: the noise of a second moment grows as the fourth power
+/// of its band, and half of the plane's own holds the spectra of its windows.
+const BAND: usize = super::FREQUENCIES / 2;
+
 /// The covariance of the spectrum of a plane.
 #[derive(Clone, Debug)]
 pub(super) struct FoundCovariance {
@@ -55,10 +59,15 @@ pub(super) fn measured(
     budget: Budget,
     quiet: bool,
 ) -> Result<Vec<FoundCovariance>, Failure> {
-    check_memory(&probe.planes)?;
+    let mut planes = probe.planes.clone();
+    for plane in &mut planes {
+        plane.grid.rho.half = BAND;
+        plane.grid.nu.half = BAND;
+    }
+    check_memory(&planes)?;
     let rays = budget.each * u64::from(BATCHES);
     let mut all = Vec::new();
-    for (index, plane) in probe.planes.iter().enumerate() {
+    for (index, plane) in planes.iter().enumerate() {
         let source = BackwardProbe::new(probe, budget).at_plane(index);
         let options = fitting(plane);
         let bar = progress::photons(if options.keep { rays } else { 2 * rays }, quiet);
