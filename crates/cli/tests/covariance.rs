@@ -18,8 +18,8 @@ const LAMP: &str = r#"(
     path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"]),
     planes: [(name: "full", at: Before("edge")), (name: "cut", at: After("edge"))],
     window: (x: Hann(0.1), u: Hann(0.2)),
-    frequencies: (azimuths: 1, rho: (max: 40), nu: (max: 20)),
-    run: (photons: 200000, seed: 1),
+    frequencies: (azimuths: 1, rho: (max: 30), nu: (max: 15)),
+    run: (photons: 1048576, seed: 1),
 )"#;
 
 fn folder() -> TempDir {
@@ -50,8 +50,8 @@ fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
         // The lamp's own is 1/(8π² · 4/3), after travel of half a metre.
         assert!((traced / expected - 1.0).abs() < 2e-3, "{i}: {traced}");
         let exact = entry(full, "exact", i, i);
-        // Its spectrum falls as Ω⁻³: a few thousandths of the moment lie beyond eight half-cycles.
-        assert!((exact / expected - 1.0).abs() < 1e-2, "{i}: {exact}");
+        // On its own grid such a window has three frequencies, all within the band.
+        assert!((exact / expected - 1.0).abs() < 2e-3, "{i}: {exact}");
         let off = entry(full, "measured", i, i) - exact;
         assert!(off.abs() < 4.0 * entry(full, "error", i, i), "{i}: {off}");
     }
@@ -102,7 +102,7 @@ fn planes_are_chosen_by_their_names() {
         .unwrap();
     let said = String::from_utf8(output.stdout).unwrap();
     assert!(
-        said.contains("νu νu") && said.contains("full: |ρ| ≤ 40"),
+        said.contains("νu νu") && said.contains("full: |ρ| ≤ 30"),
         "{said}"
     );
     assert!(!folder.path().join("out/cut").exists());
@@ -124,7 +124,8 @@ const ROOM: &str = r#"<scene version="3.0.0">
 fn a_probe_propagates_the_covariance_to_the_camera() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("room.xml"), ROOM).unwrap();
-    let line = "probe room.xml --pixel 12,8 --window 4 --rays 2^16 --photons 2^16 --covariance --out out --quiet";
+    let line =
+        "probe room.xml --pixel 12,8 --window 4 --rays 2^16 --photons 2^16 --covariance --out out";
     let output = call(folder.path(), line);
     assert!(
         matches!(output.status.code(), Some(0 | 1 | 4)),
@@ -137,7 +138,7 @@ fn a_probe_propagates_the_covariance_to_the_camera() {
         let [a, b] = ["measured", "propagated"].map(|of| number(of, "value", i, j));
         let error = ["measured", "propagated"].map(|of| number(of, "error", i, j));
         let both = error[0].hypot(error[1]);
-        // The band cuts both windows off where they hold a few thousandths of their moments.
+        // Travel takes the window's own tails past the end of the band: a few thousandths of its moment.
         let scale = (number("measured", "value", i, i) * number("measured", "value", j, j)).sqrt();
         assert!(
             (a - b).abs() < 4.0 * both + 0.01 * scale,

@@ -164,11 +164,14 @@ impl CovarianceReport {
                     .to_owned(),
             );
         }
-        let grown = self
-            .growth
-            .iter()
-            .flat_map(|growth| growth.iter().zip(AXES));
-        let grown = grown.filter(|(growth, _)| **growth > ENDLESS);
+        let share = |axis: usize| Some(self.error?[axis][axis] / self.measured?[axis][axis]);
+        let is_grown = |axis: usize, growth: f64| {
+            let noise = share(axis).map(|share| NOISE * share * growth.abs());
+            noise.is_some_and(|noise| growth - noise > ENDLESS)
+        };
+        let grown = self.growth.iter().flatten().zip(AXES).enumerate();
+        let grown = grown.filter(|(axis, (growth, _))| is_grown(*axis, **growth));
+        let grown = grown.map(|(_, found)| found);
         let axes: Vec<String> = grown
             .map(|(growth, axis)| {
                 format!("{axis} (times {})", tidy((growth * 100.0).round() / 100.0))
@@ -191,6 +194,9 @@ impl CovarianceReport {
         remarks
     }
 }
+
+/// Standard errors that growth is beyond those of noise: one in a thousand is so by chance.
+const NOISE: f64 = 3.0;
 
 /// Names of the axes.
 pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
