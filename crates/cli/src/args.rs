@@ -59,6 +59,8 @@ pub(crate) enum Command {
     Sweep(SweepArgs),
     /// How fast a glossy reflection changes with angle: the paper's criteria, corrected and as printed, and measured.
     Bandwidth(BandwidthArgs),
+    /// Covariance tracing beside the spectra of a scene: 4 × 4 matrices traced along the chain, exact and measured.
+    Covariance(CovarianceArgs),
     /// Write a scene for another program, which then can be asked for the same light field.
     Export(ExportArgs),
     /// Read a scene of Mitsuba 3, and say what it holds and what is left out.
@@ -505,6 +507,45 @@ pub(crate) struct BandwidthArgs {
     pub(crate) threads: ThreadArgs,
 
     /// No progress bars
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue covariance scenes/table1/glossy.ron
+  etendue covariance scenes/fig9b.ron --plane receiver --photons 2^22 --out out/covariance
+
+The covariance of the power spectrum |L|² over (ρx, ρy, νu, νv): ∫ P Ω Ωᵀ/∫ P, cycles² over the units of the coordinates.
+  traced      by covariance tracing (Belcour et al. 2013) along the chain of the plane, its window last, at all frequencies
+  in band     the same Gaussian within the plane's frequencies, as all that follows
+  exact       of the predicted spectrum, between parallel planes; other planes have it at azimuth 0 alone
+  measured    of the photons, noise taken out by crossing groups of batches, with standard errors
+Light fields with edges have no such moments: theirs are of the band, and a remark says so. Photons are traced once, and once or twice
+more for each plane, onto a 4D grid.
+Leaves in its folder covariance.json, and for each plane covariance.png, .svg and .csv: the spectrum at azimuth 0 with ellipses.")]
+pub(crate) struct CovarianceArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// The planes, by name; may be repeated [default: all]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) plane: Vec<String>,
+
+    /// Folder for the results [default: out/NAME-covariance]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
 }

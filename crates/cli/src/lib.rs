@@ -11,6 +11,7 @@ mod check;
 mod compare;
 mod conclude;
 mod converge;
+mod covariance;
 mod crew;
 mod drawing;
 mod export;
@@ -83,6 +84,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Report(args) => report::report(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
+        Command::Covariance(args) => covariance::covariance(&args),
         Command::Export(args) => export::export(&args),
         Command::Import(args) => world::report(&args),
         Command::Render(args) => render::render(&args),

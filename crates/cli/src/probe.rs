@@ -1,5 +1,6 @@
 //! The light field behind a pixel, and how fast it changes over a picture.
 
+mod covariance;
 mod map;
 mod said;
 
@@ -10,6 +11,7 @@ use crate::results::stored::VERSION;
 use crate::results::{PROBE, Plan, Results, arrays};
 use crate::threads::on_threads;
 use crate::{deliver, pictures, progress, world};
+use covariance::FoundCovariance;
 use etendue_compare::{PlaneComparison, Prediction, Test, Verdict, compare, sidak};
 use etendue_field::PhotonSource;
 use etendue_import::Imported;
@@ -39,6 +41,8 @@ struct Found {
     rho: Option<Uncertain>,
     /// Why photons do not find all its light.
     misses: Option<&'static str>,
+    /// The covariance of its spectrum, if it was asked for.
+    covariance: Option<FoundCovariance>,
 }
 
 /// What is asked of which scene.
@@ -214,10 +218,19 @@ fn measured(args: &ProbeArgs, probe: &Probe<'_>) -> Result<Vec<(Found, Predictio
             nu: power.statistic(|p| bandwidth_nu(p, &grid, BANDWIDTH_FRACTION)),
             rho: power.statistic(|p| bandwidth_rho(p, &grid, BANDWIDTH_FRACTION)),
             misses: photons.misses(i),
+            covariance: None,
         };
         Ok((found, prediction))
     };
-    (0..probe.planes.len()).map(plane).collect()
+    let planes: Result<Vec<_>, Failure> = (0..probe.planes.len()).map(plane).collect();
+    let mut planes = planes?;
+    if args.covariance {
+        let all = covariance::measured(probe, budget(each(args.rays())), args.quiet)?;
+        for ((found, _), covariance) in planes.iter_mut().zip(all) {
+            found.covariance = Some(covariance);
+        }
+    }
+    Ok(planes)
 }
 
 /// Where photons do not find all light, nothing is judged. Where neither finds any, they agree.

@@ -45,6 +45,8 @@ pub(crate) const SWEEP: &str = "sweep.json";
 pub(crate) const PICTURE: &str = "picture.json";
 /// The index of `etendue probe`.
 pub(crate) const PROBE: &str = "probe.json";
+/// The index of `etendue covariance`.
+pub(crate) const COVARIANCE: &str = "covariance.json";
 /// Seconds of a comparison: beside the index, since they are never the same twice.
 pub(crate) const TIMING: &str = "timing.json";
 
@@ -257,6 +259,7 @@ impl Results {
             FIGURE,
             PICTURE,
             PROBE,
+            COVARIANCE,
         ]
         .into_iter();
         indices.find(|index| listed(&self.ready(index)).is_some())

@@ -15,6 +15,7 @@ mod budget;
 mod chain;
 mod class;
 mod converge;
+mod covariance;
 mod dark;
 mod first_order;
 mod memory;
@@ -35,6 +36,7 @@ pub use bandwidth::{criterion, exact_bandwidth, lobe_cutoff, measured_bandwidth}
 pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};
+pub use covariance::{AXES, CovarianceReport, SliceMoment, TracedPlane};
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use memory::Memory;
 pub use plane::{EACH, PlaneComparison, compare};

@@ -8,6 +8,7 @@
 //! * [`strip()`]: the scene cut along the central ray and, under each virtual plane, its light field and spectrum;
 //! * [`plate()`]: pictures in rows and columns;
 //! * [`section()`]: that cut alone;
+//! * [`ellipses()`]: a spectrum with covariances over it;
 //! * [`curves()`]: curves and measured points, panel beside panel;
 //! * [`stacked()`]: several of these on one page;
 //! * [`photograph()`]: what a camera sees.
@@ -43,6 +44,7 @@ mod color;
 mod comparison;
 mod curves;
 mod cut;
+mod ellipses;
 mod figure;
 mod grid;
 mod image;
@@ -59,6 +61,7 @@ pub use axis::{Axis, Quantity};
 pub use color::{Palette, Scale, palettes};
 pub use comparison::{Comparison, comparison};
 pub use curves::{Curve, CurveKind, CurvePanel, Curves, curves};
+pub use ellipses::{Ellipse, Ellipses, ellipses};
 pub use figure::{Error, Figure, stacked};
 pub use grid::{Guide, Picture};
 pub use image::photograph;

@@ -7,6 +7,7 @@
 mod aliasing;
 mod bins;
 mod cells;
+mod covariance;
 mod cross;
 mod fft;
 mod measure;
@@ -16,6 +17,7 @@ mod spline;
 pub use aliasing::Aliasing;
 pub use bins::{RadialBins, full_radial_of};
 pub use cells::{FieldCells, FieldTransform};
+pub use covariance::{FieldCovariance, MatrixEstimate, Moments, PowerMoments};
 pub use cross::FullRadial;
 pub use fft::{RealFft4, real, real_mut};
 pub use measure::{FieldMeasurement, FieldOptions, measure_field};

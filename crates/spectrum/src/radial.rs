@@ -2,7 +2,8 @@ use crate::estimate::TooFewBatches;
 use crate::jackknife::{Jackknife, Uncertain};
 use crate::measurement::Measurement;
 use etendue_field::{Complex, SliceGrid, Slices};
-use ndarray::{Array2, Array3, ArrayView2, Axis};
+use ndarray::{Array2, Array3, ArrayView2, Axis, Slice};
+use std::ops::Range;
 
 /// The measured radial power of a plane: |S_φ|² averaged over the azimuths, [ρ, ν] ascending.
 #[derive(Clone, Debug)]
@@ -33,6 +34,8 @@ pub struct CrossPower<'m> {
     sum: Array3<Complex>,
     /// T averaged over the azimuths, [ρ ≥ 0, ν].
     pairs: Array2<f64>,
+    /// The azimuths that are averaged.
+    azimuths: Range<usize>,
 }
 
 impl<'m> CrossPower<'m> {
@@ -42,6 +45,32 @@ impl<'m> CrossPower<'m> {
     ///
     /// With fewer than three batches, the least a jackknife can do with.
     pub fn new(measurement: &'m Measurement, plane: usize) -> Result<Self, TooFewBatches> {
+        let azimuths = 0..measurement.planes()[plane].grid.azimuths;
+        Self::over(measurement, plane, azimuths)
+    }
+
+    /// That of one slice, number `azimuth`.
+    ///
+    /// # Errors
+    ///
+    /// With fewer than three batches.
+    ///
+    /// # Panics
+    ///
+    /// When there are not so many slices.
+    pub fn of_slice(
+        measurement: &'m Measurement,
+        plane: usize,
+        azimuth: usize,
+    ) -> Result<Self, TooFewBatches> {
+        Self::over(measurement, plane, azimuth..azimuth + 1)
+    }
+
+    fn over(
+        measurement: &'m Measurement,
+        plane: usize,
+        azimuths: Range<usize>,
+    ) -> Result<Self, TooFewBatches> {
         TooFewBatches::check(measurement, 3)?;
         let grid = measurement.planes()[plane].grid;
         let batches: Vec<_> = measurement.at_plane(plane).map(|b| &b.slices).collect();
@@ -51,12 +80,13 @@ impl<'m> CrossPower<'m> {
             sum += &slices.half;
             squares.zip_mut_with(&slices.half, |sum: &mut f64, s| *sum += s.norm_sqr());
         }
-        let pairs = mean(&(sum.mapv(|s: Complex| s.norm_sqr()) - squares));
+        let pairs = mean(&(sum.mapv(|s: Complex| s.norm_sqr()) - squares), &azimuths);
         Ok(Self {
             grid,
             batches,
             sum,
             pairs,
+            azimuths,
         })
     }
 
@@ -81,7 +111,7 @@ impl<'m> CrossPower<'m> {
             .and(&self.batches[left_out].half)
             .and(&self.sum)
             .for_each(|row: &mut f64, s, sum| *row = (s.conj() * (sum - s)).re);
-        let power = (&self.pairs - mean(&row) * 2.0) / ((r - 1.0) * (r - 2.0));
+        let power = (&self.pairs - mean(&row, &self.azimuths) * 2.0) / ((r - 1.0) * (r - 2.0));
         self.grid.unfold_radial(power.view())
     }
 
@@ -90,7 +120,7 @@ impl<'m> CrossPower<'m> {
     pub fn radial(&self) -> RadialPower {
         let power = self.power();
         let r = self.batches.len() as f64;
-        let of_mean = mean(&self.sum.mapv(|s| s.norm_sqr() / (r * r)));
+        let of_mean = mean(&self.sum.mapv(|s| s.norm_sqr() / (r * r)), &self.azimuths);
         let mut jackknife = Jackknife::new(power.raw_dim());
         for left_out in 0..self.batches.len() {
             jackknife.add(&self.without(left_out));
@@ -119,6 +149,7 @@ impl<'m> CrossPower<'m> {
 }
 
 /// The mean over azimuths.
-fn mean(slices: &Array3<f64>) -> Array2<f64> {
-    slices.sum_axis(Axis(0)) / slices.len_of(Axis(0)) as f64
+fn mean(slices: &Array3<f64>, azimuths: &Range<usize>) -> Array2<f64> {
+    let over = slices.slice_axis(Axis(0), Slice::from(azimuths.clone()));
+    over.sum_axis(Axis(0)) / azimuths.len() as f64
 }

@@ -19,7 +19,8 @@
 //! refraction, lenses) as affine maps of rays, with what they do to spectra and covariances; a
 //! chain does not use them. [`rays`] predicts what is behind mirrors, refracting surfaces and
 //! lenses: exactly, by following rays, and to first order, by a chain of those maps read off the
-//! same surfaces. [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments,
+//! same surfaces. [`covariance`] follows second moments of spectra along the same paths.
+//! [`shading`] has cosines, BRDF lobes, Fresnel factors, textures and environments,
 //! in 2D.
 //!
 //! This crate never sees a scene, a photon or a measured spectrum; otherwise agreement would be no
@@ -50,6 +51,7 @@
 //! assert!((prediction.half[[1, 2, 3]] - plain).norm() < 1e-10 * prediction.at_zero());
 //! ```
 
+pub mod covariance;
 pub mod geometry;
 mod mask;
 mod model;

@@ -198,6 +198,7 @@ pub(crate) struct RenderArgs {
 #[command(after_help = "Examples:
   etendue probe cbox.xml --pixel 128,200
   etendue probe cbox.xml --pixel 128,200 --depth 2 --window 8 --rays 2^22
+  etendue probe cbox.xml --pixel 128,200 --covariance
   etendue probe cbox.xml --map 64x40
 
 Follows the ray through a pixel from the camera to the surface it meets, and on as a mirror would send it. At the camera, where light
@@ -239,6 +240,10 @@ pub(crate) struct ProbeArgs {
     /// Seed of both
     #[arg(long, value_name = "N", default_value = "1")]
     pub(crate) seed: u64,
+
+    /// Measure the covariance of each plane's spectrum too, and hold that of the camera against covariance tracing from the first surface
+    #[arg(long, conflicts_with = "map")]
+    pub(crate) covariance: bool,
 
     /// Folder for the results [default: out/NAME-X-Y]
     #[arg(long, value_name = "DIR")]

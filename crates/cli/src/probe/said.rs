@@ -1,6 +1,6 @@
 //! What a probe comes to, in words and in JSON.
 
-use super::{Found, verdict};
+use super::{Found, covariance, verdict};
 use crate::table::aligned;
 use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{Lobe, percent, uncertain};
@@ -49,12 +49,16 @@ pub(super) fn of_stop(world: &World, stop: &Stop) -> Value {
 
 pub(super) fn of_plane(found: &Found) -> Value {
     let number = |of: &Option<Uncertain>| of.map(|of| [of.value, of.error]);
-    tree_of!({
+    let mut tree = tree_of!({
         "report": found.comparison.report,
         "verdict": verdict(found),
         "photons_miss": found.misses,
         "bandwidth_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
-    })
+    });
+    if let Some(covariance) = &found.covariance {
+        tree["spectral_covariance"] = covariance.tree();
+    }
+    tree
 }
 
 fn word(reflects: Reflects) -> String {
@@ -91,6 +95,7 @@ pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16
     if let Some(nu) = found.first().and_then(|camera| camera.nu) {
         lines.extend(bandwidths(probe, nu));
     }
+    lines.extend(covariance::said(found));
     lines
 }
 

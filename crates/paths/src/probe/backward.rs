@@ -7,6 +7,8 @@ use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 pub struct BackwardProbe<'a> {
     probe: &'a Probe<'a>,
     budget: Budget,
+    /// The plane whose rays are traced; all without it.
+    only: Option<usize>,
 }
 
 /// Rays between two reports.
@@ -16,7 +18,20 @@ impl<'a> BackwardProbe<'a> {
     /// The rays of a probe.
     #[must_use]
     pub fn new(probe: &'a Probe<'a>, budget: Budget) -> Self {
-        Self { probe, budget }
+        Self {
+            probe,
+            budget,
+            only: None,
+        }
+    }
+
+    /// The same rays of one plane alone.
+    #[must_use]
+    pub fn at_plane(self, index: usize) -> Self {
+        Self {
+            only: Some(index),
+            ..self
+        }
     }
 
     /// One ray of a plane.
@@ -58,7 +73,8 @@ impl PhotonSource for BackwardProbe<'_> {
         for block in 0..self.budget.each.div_ceil(BLOCK) {
             let start = block * BLOCK;
             let count = BLOCK.min(self.budget.each - start);
-            for (i, plane) in planes.iter().enumerate() {
+            let wanted = |i: usize| self.only.is_none_or(|only| only == i);
+            for (i, plane) in planes.iter().enumerate().filter(|(i, _)| wanted(*i)) {
                 // Numbers of different planes are apart.
                 let of = |ray: u64| (first + start + ray) * planes.len() as u64 + i as u64;
                 let crossings: Vec<Crossing> = (0..count)

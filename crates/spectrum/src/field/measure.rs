@@ -1,5 +1,6 @@
 use super::bins::RadialBins;
 use super::cells::{FieldCells, FieldTransform};
+use super::covariance::{FieldCovariance, GroupMoments, Moments};
 use super::cross::{FullRadial, GroupPower, full_radial};
 use super::spectrum::FieldSpectrum;
 use crate::estimate::TooFewBatches;
@@ -21,20 +22,38 @@ pub struct FieldOptions {
     /// Keep the grids of all groups. Else photons are traced twice: once for the sum, once for the groups.
     /// The result is the same to the bit.
     pub keep: bool,
+    /// Take the covariance of the spectrum too, over the frequencies of the plane, on a grid that reaches half as
+    /// far again: what aliases into the highest frequencies is then an eighth of the spectrum at twice theirs.
+    pub covariance: bool,
 }
 
 impl Default for FieldOptions {
-    /// Triangular shaped clouds, 16 groups, not kept.
+    /// Triangular shaped clouds, 16 groups, not kept, no covariance.
     fn default() -> Self {
         Self {
             assignment: Assignment::Tsc,
             groups: 16,
             keep: false,
+            covariance: false,
         }
     }
 }
 
+/// How much farther than the frequencies of a covariance its grid reaches.
+const MARGIN: f64 = 1.5;
+
 impl FieldOptions {
+    /// The grid of a plane.
+    #[must_use]
+    pub fn grid(&self, plane: &VirtualPlane) -> FieldGrid {
+        let mut slices = plane.grid;
+        if self.covariance {
+            slices.rho.spacing *= MARGIN;
+            slices.nu.spacing *= MARGIN;
+        }
+        FieldGrid::new(&plane.window, &slices)
+    }
+
     /// Bytes that [`measure_field`] needs on `threads` threads: the field, its spectrum, and a grid for each group
     /// at work or kept. The caller's to compare with the memory there is, before measuring.
     #[must_use]
@@ -63,9 +82,11 @@ pub struct FieldMeasurement {
     pub spectrum: FieldSpectrum,
     /// Its full radial spectrum.
     pub full_radial: FullRadial,
+    /// The covariance of its spectrum, if it was asked for.
+    pub covariance: Option<FieldCovariance>,
 }
 
-/// Measures the light field of plane number `index` of `source` on the grid [`FieldGrid::new`] asks for.
+/// Measures the light field of plane number `index` of `source` on the grid [`FieldOptions::grid`] asks for.
 ///
 /// The batches are those [`measure`](crate::measure) takes, and so are the photons: field and spectrum are plain
 /// means over batches, as [`estimate::slices`](crate::estimate::slices) are. The i-th batch that emits anything
@@ -93,7 +114,7 @@ pub fn measure_field(
             need: LEAST,
         });
     }
-    let grid = FieldGrid::new(&plane.window, &plane.grid);
+    let grid = options.grid(plane);
     let run = Run {
         source,
         index,
@@ -107,8 +128,14 @@ pub fn measure_field(
     let field = sum.field();
     let spectrum = run.transform.spectrum(sum);
     let bins = RadialBins::new(&grid);
+    let moments = options.covariance.then(|| Moments::new(grid, &plane.grid));
+    let (powers, groups): (Vec<_>, Vec<_>) = run
+        .powers(&bins, moments.as_ref(), &spectrum, kept)
+        .into_iter()
+        .unzip();
     Ok(FieldMeasurement {
-        full_radial: full_radial(&bins, &run.powers(&bins, &spectrum, kept)),
+        full_radial: full_radial(&bins, &powers),
+        covariance: moments.map(|moments| FieldCovariance::new(&moments, groups.iter().flatten())),
         grid,
         tally,
         field,
@@ -153,9 +180,10 @@ impl Run<'_> {
     fn powers(
         &self,
         bins: &RadialBins,
+        moments: Option<&Moments>,
         all: &FieldSpectrum,
         kept: Vec<FieldCells>,
-    ) -> Vec<GroupPower> {
+    ) -> Vec<(GroupPower, Option<GroupMoments>)> {
         let mut kept = kept.into_iter();
         let mut powers = Vec::new();
         for wave in self.waves() {
@@ -163,7 +191,10 @@ impl Run<'_> {
             powers.par_extend(groups.into_par_iter().map(|(group, cells)| {
                 let cells = cells.unwrap_or_else(|| self.trace(group).0);
                 let share = self.members(group).len() as f64 / self.batches.len() as f64;
-                GroupPower::new(bins, share, &self.transform.spectrum(cells), all)
+                let group = self.transform.spectrum(cells);
+                let of_group =
+                    moments.map(|moments| GroupMoments::new(moments, share, &group, all));
+                (GroupPower::new(bins, share, &group, all), of_group)
             }));
         }
         powers

@@ -1,0 +1,223 @@
+//! Covariance tracing beside the spectra of a scene.
+
+mod said;
+
+use crate::args::CovarianceArgs;
+use crate::failure::Failure;
+use crate::measure::measured;
+use crate::method::source;
+use crate::predict::predicted;
+use crate::results::sealed::json;
+use crate::results::stored::VERSION;
+use crate::results::{COVARIANCE, Plan, Results};
+use crate::table::{grouped, spaced};
+use crate::threads::on_threads;
+use crate::{deliver, limits, load, machine, method, pictures, progress};
+use etendue_compare::{Applicability, CovarianceReport, Prediction, SliceMoment};
+use etendue_field::{PhotonSource, VirtualPlane};
+use etendue_figures::{Ellipse, Ellipses, Picture, Quantity, ellipses};
+use etendue_scene::Scene;
+use etendue_spectrum::field::{FieldOptions, measure_field};
+use etendue_spectrum::{CrossPower, Measurement};
+use serde_json::json as tree_of;
+use std::path::Path;
+
+/// The picture of a plane, and what is behind it.
+const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
+
+/// `etendue covariance`: returns the exit code.
+pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
+    let mut scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    choose(&mut scene, &args.plane)?;
+    let theories = Applicability::of_planes(&scene);
+    method::check(&scene, args.photons.method)?;
+    let default = || Path::new("out").join(format!("{}-covariance", scene.name));
+    let folder = args.out.clone().unwrap_or_else(default);
+    let planes = scene.planes.iter();
+    let files = planes.flat_map(|plane| NAMES.map(|file| format!("{}/{file}", plane.name)));
+    let plan = Plan {
+        index: COVARIANCE,
+        files: files.collect(),
+        inputs: load::inputs(&args.scene, &scene),
+        force: args.force.force,
+    };
+    let (results, reports) = on_threads(&args.threads, || {
+        limits::check(&scene, &theories, rayon::current_num_threads())?;
+        check_memory(&scene.planes)?;
+        let mut results = Results::claim(&folder, plan.clone())?;
+        let method = args.photons.method;
+        let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;
+        let predictions = predicted(&scene, &theories, method, args.quiet)?;
+        let source = source(&scene, method)?;
+        let mut reports = Vec::new();
+        for (index, prediction) in predictions.iter().enumerate() {
+            let report = of_plane(
+                (&*source, &measurement, index),
+                &theories[index],
+                prediction,
+                args.quiet,
+            )?;
+            draw(&mut results, &scene, &measurement, index, &report)?;
+            reports.push(report);
+        }
+        Ok((results, reports))
+    })?;
+    if !args.quiet {
+        deliver(&said::text(&reports))?;
+    }
+    let mut index = tree_of!({
+        "scene": scene.name,
+        "scene_hash": scene.hash(),
+        "scene_file": scene.file,
+        "version": VERSION,
+        "seed": scene.run.seed,
+        "method": args.photons.method,
+        "photons": scene.run.photons,
+        "axes": etendue_compare::AXES,
+        "planes": reports,
+    });
+    let finished = results.finish(|files| {
+        index["files"] = tree_of!(files);
+        json(&index)
+    })?;
+    finished.tell_replaced(args.quiet);
+    if !args.quiet {
+        deliver(&format!("results in {}", finished.folder.display()))?;
+    }
+    Ok(0)
+}
+
+/// Keeps the planes that are asked for.
+fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
+    let known = |name: &String| scene.planes.iter().any(|plane| plane.name == *name);
+    if let Some(name) = names.iter().find(|name| !known(name)) {
+        let all: Vec<&str> = scene.planes.iter().map(|p| p.name.as_str()).collect();
+        let all = all.join(", ");
+        return Err(Failure::bad_input(format!(
+            "--plane {name}: the planes are {all}"
+        )));
+    }
+    if !names.is_empty() {
+        scene.planes.retain(|plane| names.contains(&plane.name));
+    }
+    Ok(())
+}
+
+/// Groups of batches that errors come from, and the covariance.
+fn options() -> FieldOptions {
+    FieldOptions {
+        covariance: true,
+        ..FieldOptions::default()
+    }
+}
+
+/// How a plane is put on its grid: all groups are kept where half of the memory holds them, which saves a pass.
+pub(crate) fn fitting(plane: &VirtualPlane) -> FieldOptions {
+    let kept = FieldOptions {
+        keep: true,
+        ..options()
+    };
+    let threads = rayon::current_num_threads();
+    if kept.bytes(&kept.grid(plane), threads) <= machine::available_memory() / 2 {
+        kept
+    } else {
+        options()
+    }
+}
+
+/// Fails, before anything is traced, when the grid of a plane is larger than memory.
+pub(crate) fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
+    let memory = machine::available_memory();
+    for plane in planes {
+        let grid = options().grid(plane);
+        let bytes = options().bytes(&grid, rayon::current_num_threads());
+        if bytes > memory {
+            let [nx, ny, nu, nv] = grid.cells;
+            let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
+            let name = &plane.name;
+            return Err(Failure::cannot_run(format!(
+                "covariance: the grid of {name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; memory holds {memory:.1} GB here"
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The numbers of a plane: its photons once more, on a 4D grid.
+fn of_plane(
+    (source, measurement, index): (&dyn PhotonSource, &Measurement, usize),
+    applicability: &Applicability,
+    prediction: &Prediction,
+    quiet: bool,
+) -> Result<CovarianceReport, Failure> {
+    let plane = &measurement.planes()[index];
+    let options = fitting(plane);
+    let passes = if options.keep { 1 } else { 2 };
+    let bar = progress::photons(passes * measurement.emitted(), quiet);
+    let batches = 0..u32::try_from(measurement.batches().len()).unwrap_or(u32::MAX);
+    let field = measure_field(source, index, plane, batches, &options, &|photons| {
+        bar.inc(photons);
+    });
+    bar.finish_and_clear();
+    let field = field.map_err(Failure::cannot_run)?;
+    let Some(covariance) = &field.covariance else {
+        return Err(Failure::cannot_run("no covariance: a fault of etendue"));
+    };
+    CovarianceReport::new(
+        (measurement, index),
+        (&field.grid, covariance),
+        applicability,
+        prediction,
+    )
+    .map_err(Failure::cannot_run)
+}
+
+/// Lowest level of a spectrum's colors, in decibels below its peak.
+const FLOOR: f64 = -50.0;
+
+/// The spectrum at azimuth 0 with the ellipses of its second moments.
+fn draw(
+    results: &mut Results,
+    scene: &Scene,
+    measurement: &Measurement,
+    index: usize,
+    report: &CovarianceReport,
+) -> Result<(), Failure> {
+    let plane = &scene.planes[index];
+    let power = CrossPower::of_slice(measurement, index, 0).map_err(Failure::cannot_run)?;
+    let power = power.power();
+    let [x, y] = pictures::spectrum_axes(plane);
+    let ellipse = |name: &str, of: fn(&SliceMoment) -> Option<f64>| {
+        let [a, b, c] = report.slice.each_ref().map(of);
+        let covariance = [a?, b?, c?];
+        Some(Ellipse {
+            name: format!("{name}, two standard deviations"),
+            covariance,
+        })
+    };
+    let all = [
+        ellipse("covariance tracing", |m| m.traced),
+        ellipse("exact spectrum", |m| m.found.predicted),
+        ellipse("photons", |m| m.found.measured),
+    ];
+    let title = format!("{}: power at azimuth 0", spaced(&plane.name));
+    let photons = grouped(measurement.emitted());
+    let note = format!(
+        "{}, {photons} photons; moments over the frequencies shown",
+        scene.name
+    );
+    let figure = ellipses(&Ellipses {
+        title: &title,
+        note: &note,
+        picture: Picture {
+            x,
+            y,
+            values: power.view(),
+        },
+        quantity: Quantity::new("|*S*_{0}|^{2}", ""),
+        floor: FLOOR,
+        ellipses: all,
+    })
+    .map_err(Failure::cannot_run)?;
+    pictures::write(results, &format!("{}/covariance", plane.name), &figure)
+}

@@ -1,0 +1,69 @@
+//! Covariances as a table.
+
+use crate::table::aligned;
+use etendue_compare::{AXES, CovarianceReport};
+use etendue_field::{tidy, uncertain};
+
+/// The entries of a matrix that are shown: variances, and what travel makes.
+const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];
+
+/// A table for each plane, with what there is to say of it.
+pub(super) fn text(reports: &[CovarianceReport]) -> String {
+    let mut lines = vec![
+        "Covariance of the power spectrum, cycles² per m², per m of slope and per slope²."
+            .to_owned(),
+        "traced: at all frequencies; all others: within the band.".to_owned(),
+    ];
+    for report in reports {
+        lines.push(String::new());
+        lines.extend(plane(report));
+    }
+    lines.join("\n")
+}
+
+fn plane(report: &CovarianceReport) -> Vec<String> {
+    let [rho, _, nu, _] = report.band.map(tidy);
+    let mut lines = vec![format!(
+        "{}: |ρ| ≤ {rho} cycles/m, |ν| ≤ {nu} cycles/slope",
+        report.name
+    )];
+    let head = ["", "traced", "in band", "exact", "measured"].map(str::to_owned);
+    let entries = SHOWN.map(|[i, j]| {
+        let of = |matrix: &Option<[[f64; 4]; 4]>| number(matrix.map(|matrix| matrix[i][j]));
+        vec![
+            format!("{} {}", AXES[i], AXES[j]),
+            of(&report.traced),
+            of(&report.traced_in_band),
+            of(&report.exact),
+            measured(
+                report.measured.map(|matrix| matrix[i][j]),
+                report.error.map(|matrix| matrix[i][j]),
+            ),
+        ]
+    });
+    let slice = report.slice.iter().zip(["ρ ρ", "ρ ν", "ν ν"]);
+    let slice = slice.map(|(moment, name)| {
+        vec![
+            format!("azimuth 0: {name}"),
+            String::new(),
+            number(moment.traced),
+            number(moment.found.predicted),
+            measured(moment.found.measured, moment.found.error),
+        ]
+    });
+    let rows = std::iter::once(head.to_vec()).chain(entries).chain(slice);
+    lines.extend(aligned(rows.collect()));
+    lines.extend(report.remarks.iter().map(|remark| format!("  {remark}")));
+    lines
+}
+
+fn number(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |value| format!("{value:.4}"))
+}
+
+fn measured(value: Option<f64>, error: Option<f64>) -> String {
+    match (value, error) {
+        (Some(value), Some(error)) => uncertain(value, error),
+        _ => "–".to_owned(),
+    }
+}

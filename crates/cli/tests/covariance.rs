@@ -1,0 +1,148 @@
+//! `etendue covariance`, and `probe --covariance`.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{call, etendue, files, json, refused};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// A lamp that fills the window of its first plane, and is cut by that of the second.
+const LAMP: &str = r#"(
+    light: Rectangle(center: (0, 0, 0), size: (4, 4)),
+    blockers: [Shapes(name: "edge", center: (0, 0, 0.5), shapes: [HalfPlane(axis: X, edge: 0.02, opaque: Above)])],
+    surfaces: [Rectangle(name: "floor", center: (0, 0, 1), size: (6, 6), albedo: 0)],
+    path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"]),
+    planes: [(name: "full", at: Before("edge")), (name: "cut", at: After("edge"))],
+    window: (x: Hann(0.1), u: Hann(0.2)),
+    frequencies: (azimuths: 1, rho: (max: 30), nu: (max: 15)),
+    run: (photons: 1048576, seed: 1),
+)"#;
+
+fn folder() -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("lamp.ron"), LAMP).unwrap();
+    folder
+}
+
+fn entry(plane: &Value, matrix: &str, i: usize, j: usize) -> f64 {
+    plane[matrix][i][j].as_f64().unwrap()
+}
+
+fn done(path: &Path, line: &str) {
+    let output = call(path, line);
+    assert_eq!(output.status.code(), Some(0), "{line}: {output:?}");
+}
+
+#[test]
+fn light_that_fills_the_window_has_its_covariance_and_edges_are_told() {
+    let folder = folder();
+    done(folder.path(), "covariance lamp.ron --out out");
+    let index = json(&folder.path().join("out/covariance.json"));
+    let full = &index["planes"][0];
+    // Of a Hann window of half-width h: 1/12h².
+    for (i, h) in [0.1, 0.1, 0.2, 0.2].into_iter().enumerate() {
+        let expected = 1.0 / (12.0 * h * h);
+        let traced = entry(full, "traced", i, i);
+        // The lamp's own is 1/(8π² · 4/3), after travel of half a metre.
+        assert!((traced / expected - 1.0).abs() < 2e-3, "{i}: {traced}");
+        let exact = entry(full, "exact", i, i);
+        // On its own grid such a window has three frequencies, all within the band.
+        assert!((exact / expected - 1.0).abs() < 2e-3, "{i}: {exact}");
+        let off = entry(full, "measured", i, i) - exact;
+        assert!(off.abs() < 4.0 * entry(full, "error", i, i), "{i}: {off}");
+    }
+    let said = |plane: &Value| plane["remarks"].to_string();
+    assert!(!said(full).contains("edges"), "{}", said(full));
+    // The half-plane's edge is seen along x, and makes a tail without end.
+    let cut = &index["planes"][1];
+    assert!(said(cut).contains("edges"), "{}", said(cut));
+    assert!(cut["growth"][0].as_f64().unwrap() > 1.3);
+    assert!(cut["growth"][1].as_f64().unwrap() < 1.15);
+    for i in 0..4 {
+        let off = entry(cut, "measured", i, i) - entry(cut, "exact", i, i);
+        assert!(off.abs() < 4.0 * entry(cut, "error", i, i), "{i}: {off}");
+    }
+    let names = ["covariance.csv", "covariance.png", "covariance.svg"];
+    for plane in ["full", "cut"] {
+        for name in names {
+            assert!(folder.path().join("out").join(plane).join(name).is_file());
+        }
+    }
+}
+
+#[test]
+fn covariances_have_the_same_bytes_on_any_threads() {
+    let folder = folder();
+    for threads in [1, 2] {
+        let line = format!(
+            "covariance lamp.ron --plane cut --photons 20000 --threads {threads} --out c{threads}"
+        );
+        done(folder.path(), &line);
+    }
+    let of = |name: &str| files(&folder.path().join(name));
+    assert_eq!(of("c1"), of("c2"));
+}
+
+#[test]
+fn planes_are_chosen_by_their_names() {
+    let folder = folder();
+    refused(
+        folder.path(),
+        "covariance lamp.ron --plane none --out out",
+        &["--plane none", "full, cut"],
+    );
+    let output = etendue()
+        .current_dir(folder.path())
+        .args("covariance lamp.ron --plane full --photons 2^14 --out out".split(' '))
+        .output()
+        .unwrap();
+    let said = String::from_utf8(output.stdout).unwrap();
+    assert!(
+        said.contains("νu νu") && said.contains("full: |ρ| ≤ 30"),
+        "{said}"
+    );
+    assert!(!folder.path().join("out/cut").exists());
+}
+
+const ROOM: &str = r#"<scene version="3.0.0">
+  <sensor type="perspective" id="front">
+    <float name="fov" value="40"/>
+    <transform name="to_world"><lookat origin="0, -4, 2" target="0, 0, 0" up="0, 0, 1"/></transform>
+    <film type="hdrfilm"><integer name="width" value="24"/><integer name="height" value="16"/><rfilter type="box"/></film>
+  </sensor>
+  <shape type="rectangle"><transform name="to_world"><scale value="30"/></transform></shape>
+  <emitter type="point"><point name="position" x="1" y="-2" z="3"/><float name="intensity" value="9"/></emitter>
+</scene>
+"#;
+
+/// A diffuse floor lit evenly: what leaves it is the window, and travel to the camera shears it.
+#[test]
+fn a_probe_propagates_the_covariance_to_the_camera() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("room.xml"), ROOM).unwrap();
+    let line =
+        "probe room.xml --pixel 12,8 --window 4 --rays 2^16 --photons 2^16 --covariance --out out";
+    let output = call(folder.path(), line);
+    assert!(
+        matches!(output.status.code(), Some(0 | 1 | 4)),
+        "{output:?}"
+    );
+    let probe = json(&folder.path().join("out/probe.json"));
+    let camera = &probe["planes"][0]["spectral_covariance"];
+    let number = |of: &str, key: &str, i: usize, j: usize| camera[of][key][i][j].as_f64().unwrap();
+    for (i, j) in [(0, 0), (0, 2), (2, 2), (1, 1), (1, 3), (3, 3)] {
+        let [a, b] = ["measured", "propagated"].map(|of| number(of, "value", i, j));
+        let error = ["measured", "propagated"].map(|of| number(of, "error", i, j));
+        let both = error[0].hypot(error[1]);
+        // Travel takes the window's own tails past the end of the band: a few thousandths of its moment.
+        let scale = (number("measured", "value", i, i) * number("measured", "value", j, j)).sqrt();
+        assert!(
+            (a - b).abs() < 4.0 * both + 0.01 * scale,
+            "{i} {j}: {a} {b} ± {both}"
+        );
+    }
+}

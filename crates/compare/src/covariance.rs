@@ -1,0 +1,284 @@
+//! Covariance tracing beside the spectra it stands for: predicted along the chain, exact, measured.
+
+use crate::applicability::{Applicability, Theory};
+use crate::class::Class;
+use crate::prediction::Prediction;
+use crate::report::Pair;
+use etendue_field::{FieldGrid, SliceGrid, Slices, VirtualPlane, percent, tidy};
+use etendue_spectrum::estimate::TooFewBatches;
+use etendue_spectrum::field::{FieldCovariance, Moments, PowerMoments};
+use etendue_spectrum::moments::second_moment;
+use etendue_spectrum::{CrossPower, Measurement};
+use etendue_theory::Harmonics;
+use etendue_theory::covariance::{SpectralCovariance, Traced, Untraced, power, window};
+use etendue_theory::geometry::Matrix;
+use ndarray::{Array2, Axis};
+use serde::Serialize;
+
+/// The covariance of the power spectrum of a plane, ∫ P Ω Ωᵀ/∫ P over (ρx, ρy, νu, νv), by all ways there are.
+///
+/// Entries are in cycles² over the units of their coordinates. Second moments of a field with edges do not exist, so
+/// all but `traced` are over the same band of frequencies.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CovarianceReport {
+    /// Name of the plane.
+    pub name: String,
+    /// Kind of its prediction.
+    pub class: Class,
+    /// The largest frequency along each axis, cycles per metre and per unit slope.
+    pub band: [f64; 4],
+    /// What covariance tracing says, the window last. `None` where it says nothing or no end of the spectrum.
+    pub traced: Option<Matrix<4>>,
+    /// Why it says nothing, in words.
+    pub untraced: Option<String>,
+    /// That of the Gaussian it stands for, over the band.
+    pub traced_in_band: Option<Matrix<4>>,
+    /// That of the exact spectrum, where all four frequencies are known at once: between parallel planes.
+    pub exact: Option<Matrix<4>>,
+    /// That of the photons, without the bias of noise.
+    pub measured: Option<Matrix<4>>,
+    /// Its standard errors, by the jackknife over groups of batches.
+    pub error: Option<Matrix<4>>,
+    /// How much each measured variance grows from half of the band to all of it.
+    pub growth: Option<[f64; 4]>,
+    /// The largest difference of `traced_in_band` from `measured`, over the geometric mean of the two variances; and the
+    /// error of `measured` by the same measure.
+    pub off: Option<[f64; 2]>,
+    /// Moments ρρ, ρν and νν of the slice at azimuth 0, where positions and slopes along y have no frequency.
+    pub slice: [SliceMoment; 3],
+    /// What there is to say, in words.
+    pub remarks: Vec<String>,
+}
+
+/// A second moment of a slice.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct SliceMoment {
+    /// By covariance tracing.
+    pub traced: Option<f64>,
+    /// By the photons and by the exact prediction.
+    #[serde(flatten)]
+    pub found: Pair,
+}
+
+/// The Gaussian that covariance tracing has at a plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TracedPlane {
+    /// C, `None` where it has no end.
+    pub matrix: Option<Matrix<4>>,
+    /// S, the covariance of the Gaussian light field, `None` where that has no end.
+    field: Option<Matrix<4>>,
+}
+
+impl TracedPlane {
+    /// The covariance traced to a plane, its window last.
+    ///
+    /// # Errors
+    /// Where covariance tracing has nothing to say, with the reason.
+    pub fn new(plane: &VirtualPlane, applicability: &Applicability) -> Result<Self, String> {
+        let traced: Result<SpectralCovariance, Untraced> = match &applicability.theory {
+            Theory::Parallel(chain) => chain.spectral_covariance(),
+            Theory::Specular(view) => view.spectral_covariance(),
+            Theory::Scattering(view) => view.spectral_covariance(),
+            Theory::None => return Err("no chain leads to this plane".to_owned()),
+        };
+        let seen = traced.map_err(|reason| reason.to_string())?;
+        let seen = seen.multiplied(&window(&plane.window));
+        Ok(Self {
+            matrix: seen.matrix(),
+            field: seen.field(),
+        })
+    }
+
+    /// Its moments over a band.
+    fn in_band(&self, moments: &Moments) -> Option<Matrix<4>> {
+        let field = self.field.as_ref()?;
+        moments
+            .at_frequencies(|omega| power(field, omega))
+            .covariance()
+    }
+
+    /// Its power over the frequencies of a slice.
+    fn on_slice(&self, grid: &SliceGrid) -> Option<Array2<f64>> {
+        let field = self.field.as_ref()?;
+        let shape = (grid.rho.count(), grid.nu.count());
+        Some(Array2::from_shape_fn(shape, |(i, j)| {
+            power(field, [grid.rho.value(i), 0.0, grid.nu.value(j), 0.0])
+        }))
+    }
+}
+
+impl CovarianceReport {
+    /// Of plane `index` of a measurement, whose light field was measured on the grid `grid` too.
+    ///
+    /// # Errors
+    /// When the measurement has too few batches for errors.
+    pub fn new(
+        (measurement, index): (&Measurement, usize),
+        (grid, measured): (&FieldGrid, &FieldCovariance),
+        applicability: &Applicability,
+        prediction: &Prediction,
+    ) -> Result<Self, TooFewBatches> {
+        let plane = &measurement.planes()[index];
+        let traced = TracedPlane::new(plane, applicability);
+        let moments = Moments::new(*grid, &plane.grid);
+        let exact = exact(applicability, plane, grid, &moments);
+        let estimate = measured.estimate();
+        let found = estimate.map(|estimate| estimate.value);
+        let traced_in_band = traced
+            .as_ref()
+            .ok()
+            .and_then(|traced| traced.in_band(&moments));
+        let growth = measured.growth();
+        let mut report = Self {
+            name: plane.name.clone(),
+            class: prediction.class,
+            band: measured.band,
+            traced: traced.as_ref().ok().and_then(|traced| traced.matrix),
+            untraced: traced.as_ref().err().cloned(),
+            traced_in_band,
+            exact: exact.and_then(|exact| exact.covariance()),
+            measured: found,
+            error: estimate.map(|estimate| estimate.error),
+            growth,
+            off: None,
+            slice: slice(measurement, index, prediction, traced.as_ref().ok())?,
+            remarks: Vec::new(),
+        };
+        if let (Some(traced), Some(estimate)) = (traced_in_band, estimate) {
+            let value = &estimate.value;
+            let by = |of: &dyn Fn(usize, usize) -> f64| largest(value, of);
+            let off = by(&|i, j| traced[i][j] - value[i][j]);
+            report.off = Some([off, by(&|i, j| estimate.error[i][j])]);
+        }
+        report.remarks = report.remarks_of();
+        Ok(report)
+    }
+
+    /// What the numbers leave open.
+    fn remarks_of(&self) -> Vec<String> {
+        let mut remarks: Vec<String> = self.untraced.iter().cloned().collect();
+        if self.untraced.is_none() && self.traced.is_none() {
+            remarks.push(
+                "by covariance tracing the spectrum has no end, as of light from a point; \
+                 in the band it is a ridge"
+                    .to_owned(),
+            );
+        }
+        let share = |axis: usize| Some(self.error?[axis][axis] / self.measured?[axis][axis]);
+        let is_grown = |axis: usize, growth: f64| {
+            let noise = share(axis).map(|share| NOISE * share * growth.abs());
+            noise.is_some_and(|noise| growth - noise > ENDLESS)
+        };
+        let grown = self.growth.iter().flatten().zip(AXES).enumerate();
+        let grown = grown.filter(|(axis, (growth, _))| is_grown(*axis, **growth));
+        let grown = grown.map(|(_, found)| found);
+        let axes: Vec<String> = grown
+            .map(|(growth, axis)| {
+                format!("{axis} (times {})", tidy((growth * 100.0).round() / 100.0))
+            })
+            .collect();
+        if !axes.is_empty() {
+            remarks.push(format!(
+                "the variance along {} grows over the second half of the band, where replicas, tails of edges or more of \
+                 the spectrum lie: it is that of the band",
+                axes.join(", ")
+            ));
+        }
+        if let Some([off, error]) = self.off {
+            remarks.push(format!(
+                "covariance tracing is off by {} of the variances; noise is {}",
+                percent(off, 1),
+                percent(error, 1)
+            ));
+        }
+        remarks
+    }
+}
+
+/// Standard errors that growth is beyond those of noise: one in a thousand is so by chance.
+const NOISE: f64 = 3.0;
+
+/// Names of the axes.
+pub const AXES: [&str; 4] = ["ρx", "ρy", "νu", "νv"];
+
+/// A variance that grows by more from half of the band to all of it is that of the band. That of a Gaussian grows by 10 %
+/// where the band ends at five of its standard deviations, and by 3 % at six.
+const ENDLESS: f64 = 1.15;
+
+/// The largest of the entries over the geometric mean of the variances of a matrix.
+fn largest(of: &Matrix<4>, entry: &dyn Fn(usize, usize) -> f64) -> f64 {
+    let pairs = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
+    let shares = pairs.map(|(i, j)| entry(i, j).abs() / (of[i][i] * of[j][j]).abs().sqrt());
+    shares.fold(0.0, f64::max)
+}
+
+/// Of the exact spectrum, where theory has it at any frequency in closed form.
+fn exact(
+    applicability: &Applicability,
+    plane: &VirtualPlane,
+    grid: &FieldGrid,
+    moments: &Moments,
+) -> Option<PowerMoments> {
+    let Theory::Parallel(chain) = &applicability.theory else {
+        return None;
+    };
+    if applicability.dark.is_some() {
+        return None;
+    }
+    let axes = [0, 1, 2, 3];
+    let spacing = axes.map(|axis| grid.spacing(axis));
+    let half = axes.map(|axis| grid.cells[axis] / 2);
+    let harmonics = Harmonics::new(chain, &plane.window, spacing, half)?;
+    Some(moments.of(|index| {
+        let multiples = axes.map(|axis| grid.harmonic(axis, index[axis]));
+        harmonics.at(multiples).norm_sqr()
+    }))
+}
+
+/// The moments of the slice at azimuth 0.
+fn slice(
+    measurement: &Measurement,
+    index: usize,
+    prediction: &Prediction,
+    traced: Option<&TracedPlane>,
+) -> Result<[SliceMoment; 3], TooFewBatches> {
+    let grid = &measurement.planes()[index].grid;
+    let measured = CrossPower::of_slice(measurement, index, 0)?;
+    let predicted = predicted_slice(prediction);
+    let traced = traced.and_then(|traced| traced.on_slice(grid));
+    Ok([[2, 0], [1, 1], [0, 2]].map(|powers| {
+        let of = |power: &Array2<f64>| second_moment(power.view(), grid, powers);
+        let measured = measured.statistic(|power| second_moment(power, grid, powers));
+        SliceMoment {
+            traced: traced.as_ref().and_then(of),
+            found: Pair {
+                measured: measured.map(|m| m.value),
+                predicted: predicted.as_ref().and_then(of),
+                error: measured.map(|m| m.error),
+            },
+        }
+    }))
+}
+
+/// |F|² of theory at azimuth 0, [ρ, ν]; replicates are crossed, as batches are. `None` where another tracer stands for
+/// theory.
+fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
+    if prediction.class == Class::Reference {
+        return None;
+    }
+    let first = |slices: &Slices| slices.half.index_axis(Axis(0), 0).to_owned();
+    let grid = &prediction.slices.grid;
+    let count = prediction.replicates.len() as f64;
+    let power = if count > 1.0 {
+        let mut sum = first(&Slices::zeros(*grid));
+        let mut squares = Array2::<f64>::zeros(sum.raw_dim());
+        for replicate in prediction.replicates.iter().map(first) {
+            squares += &replicate.mapv(|s| s.norm_sqr());
+            sum += &replicate;
+        }
+        (sum.mapv(|s| s.norm_sqr()) - squares) / (count * (count - 1.0))
+    } else {
+        first(&prediction.slices).mapv(|s| s.norm_sqr())
+    };
+    Some(grid.unfold_radial(power.view()))
+}

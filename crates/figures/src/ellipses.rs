@@ -1,0 +1,202 @@
+//! A spectrum, and the ellipses of covariances over it.
+
+use crate::axis::Quantity;
+use crate::bar;
+use crate::color::{Colors, Shading, largest};
+use crate::figure::{Error, Figure, csv_text, decimal};
+use crate::grid::Picture;
+use crate::panel::Panel;
+use crate::style::{INK, LABEL_BASELINE, TICK_TEXT};
+use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use std::f64::consts::TAU;
+
+/// A covariance over the axes of a picture.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ellipse {
+    /// What it is, for the key.
+    pub name: String,
+    /// Its entries xx, xy and yy.
+    pub covariance: [f64; 3],
+}
+
+/// A spectrum with covariances, at most three.
+#[derive(Clone, Debug)]
+pub struct Ellipses<'a> {
+    /// What is shown; markup.
+    pub title: &'a str,
+    /// A line below the title, markup; may be empty.
+    pub note: &'a str,
+    /// The power, shown in decibels below its largest value.
+    pub picture: Picture<'a>,
+    /// What the picture holds.
+    pub quantity: Quantity,
+    /// Lower end of the decibels, below 0.
+    pub floor: f64,
+    /// Each drawn where it is two standard deviations, in the order of the key. One that is not there leaves its color
+    /// and dashes out.
+    pub ellipses: [Option<Ellipse>; 3],
+}
+
+impl Ellipses<'_> {
+    /// Those that are there, with color and dashes.
+    fn drawn(&self) -> impl Iterator<Item = (&Ellipse, &'static str, &'static str)> {
+        let all = self.ellipses.iter().zip(STROKES);
+        all.filter_map(|(ellipse, (color, dash))| Some((ellipse.as_ref()?, color, dash)))
+    }
+
+    /// What is drawn over the picture, in order: all halos, then unbroken lines, then dashes, so that ellipses which
+    /// coincide are all seen.
+    fn strokes(&self) -> impl Iterator<Item = (&Ellipse, Stroke)> {
+        let halo = Stroke::solid(HALO, 3.4);
+        let halos = self.drawn().map(move |(ellipse, ..)| (ellipse, halo));
+        let lines = |broken: bool| {
+            let drawn = self
+                .drawn()
+                .filter(move |(.., dash)| dash.is_empty() != broken);
+            drawn.map(|(ellipse, color, dash)| {
+                let width = 1.6;
+                (ellipse, Stroke { color, width, dash })
+            })
+        };
+        halos.chain(lines(false)).chain(lines(true))
+    }
+}
+
+const SIDE: f64 = 320.0;
+const LEFT: f64 = 66.0;
+/// Baselines of the key.
+const LINE: f64 = 17.0;
+/// How many standard deviations from the centre an ellipse is drawn.
+const DEVIATIONS: f64 = 2.0;
+/// The line below each ellipse, for pale colors.
+const HALO: &str = "#10304a";
+/// Color and dashes of the ellipses: they differ in both.
+const STROKES: [(&str, &str); 3] = [("#7fe0ff", "7 4"), ("#ffffff", ""), ("#8dff9c", "2 3")];
+
+/// Draws a spectrum with ellipses.
+///
+/// The CSV has a row for each covariance and, below, one for each cell.
+///
+/// # Errors
+/// When the heat map or the numbers cannot be written.
+pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
+    let mut svg = Svg::default();
+    let width = LEFT + SIDE + 10.0 + bar::WIDTH + 60.0;
+    let top = svg.title(LEFT, width - LEFT - 10.0, of.title, of.note) + 10.0;
+    let area = Area {
+        x: LEFT,
+        y: top,
+        width: SIDE,
+        height: SIDE,
+    };
+    let panel = Panel {
+        area,
+        x: &of.picture.x,
+        y: &of.picture.y,
+        label_x: true,
+        label_y: true,
+    };
+    let values = of.picture.values;
+    let name = format!("{} relative to its peak", of.quantity.name);
+    let shading = Shading::decibel(Colors::MAGNITUDES, &name, of.floor, largest(values));
+    let shading = shading.showing(values);
+    panel.heat_map(&mut svg, values, &shading)?;
+    svg.clipped(area, |svg| {
+        for stroke in of.strokes() {
+            let points = points(stroke.0.covariance).map(|[x, y]| panel.point(x, y));
+            svg.polyline(&points.collect::<Vec<_>>(), stroke.1);
+        }
+    });
+    panel.axes(&mut svg);
+    bar::draw(&mut svg, &shading, area.right() + 10.0, area, 12.0)?;
+    let mut baseline = area.bottom() + LABEL_BASELINE + 8.0;
+    for (ellipse, color, dash) in of.drawn() {
+        baseline += LINE;
+        let [from, to] = [LEFT, LEFT + 34.0].map(|x| [x, baseline - 4.0]);
+        svg.line(
+            from,
+            to,
+            Stroke {
+                color: HALO,
+                width: 5.0,
+                dash: "",
+            },
+        );
+        svg.line(
+            from,
+            to,
+            Stroke {
+                color,
+                width: 2.0,
+                dash,
+            },
+        );
+        let style = Text::new([LEFT + 44.0, baseline], TICK_TEXT, Anchor::Start).fill(INK);
+        svg.fitted(style, &ellipse.name, width - LEFT - 54.0);
+    }
+    Ok(Figure {
+        svg: svg.finish(width, baseline + 13.0),
+        csv: numbers(of)?,
+    })
+}
+
+/// Around the ellipse: a root of the covariance times points of a circle.
+fn points([xx, xy, yy]: [f64; 3]) -> impl Iterator<Item = [f64; 2]> {
+    const CORNERS: u32 = 180;
+    let a = xx.max(0.0).sqrt();
+    let b = if a > 0.0 { xy / a } else { 0.0 };
+    let c = (yy - b * b).max(0.0).sqrt();
+    (0..=CORNERS).map(move |i| {
+        let (sin, cos) = libm::sincos(TAU * f64::from(i) / f64::from(CORNERS));
+        [a * cos, b * cos + c * sin].map(|t| DEVIATIONS * t)
+    })
+}
+
+/// Two tables: covariances, and cells, x slowest.
+fn numbers(of: &Ellipses<'_>) -> Result<String, Error> {
+    let Picture { x, y, values } = &of.picture;
+    let [a, b] = [x, y].map(|axis| axis.quantity.heading());
+    let header = [
+        "covariance".to_owned(),
+        format!("{a}²"),
+        format!("{a} · {b}"),
+        format!("{b}²"),
+    ];
+    let rows = of.drawn().map(|(ellipse, ..)| {
+        let entries = ellipse.covariance.iter().map(decimal);
+        std::iter::once(ellipse.name.clone())
+            .chain(entries)
+            .collect()
+    });
+    let covariances = csv_text(&header, rows)?;
+    let (columns, rows) = values.dim();
+    let cells = values.indexed_iter().map(|((i, j), value)| {
+        [x.center(i, columns), y.center(j, rows), *value]
+            .iter()
+            .map(decimal)
+            .collect()
+    });
+    let cells = csv_text(&[a, b, of.quantity.heading()], cells)?;
+    Ok(format!("{covariances}\n{cells}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_lie_two_deviations_out() {
+        let [xx, xy, yy] = [4.0, -3.0, 9.0];
+        let determinant = xx * yy - xy * xy;
+        let mut highest = 0.0_f64;
+        for [x, y] in points([xx, xy, yy]) {
+            let square = (yy * x * x - 2.0 * xy * x * y + xx * y * y) / determinant;
+            assert!((square - 4.0).abs() < 1e-12); // rounding
+            highest = highest.max(y);
+        }
+        // Two deviations of y, but for the corners.
+        assert!((highest - 6.0).abs() < 6.0 * 2e-4, "{highest}");
+        // A line, of a spectrum without width.
+        assert!(points([1.0, -2.0, 4.0]).all(|[x, y]| (y + 2.0 * x).abs() < 1e-12)); // rounding
+    }
+}

@@ -1,0 +1,256 @@
+//! The covariance of a power spectrum over all four frequencies at once.
+
+use super::spectrum::FieldSpectrum;
+use crate::jackknife::Jackknife;
+use etendue_field::{FieldGrid, SliceGrid};
+use ndarray::Array2;
+use rayon::prelude::*;
+
+/// A matrix over (ρx, ρy, νu, νv).
+type Matrix = [[f64; 4]; 4];
+
+/// Entries of a symmetric matrix, and the power.
+const COUNT: usize = 11;
+
+/// ∫ P and ∫ P Ωᵢ Ωⱼ over a band of frequencies, for a power P = |ℓ̂|².
+///
+/// The covariance of the spectrum, ∫ P Ω Ωᵀ/∫ P, is also ∫ ∇ℓ ∇ℓᵀ/(4π² ∫ ℓ²) of the windowed light field if the
+/// band holds all of it. Where the field has an edge neither exists: P falls as Ω⁻² there, and the sum grows with
+/// the band. So a band is part of each number, and only numbers over the same band can be compared.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PowerMoments {
+    /// ∫ P, up to a factor that all moments have.
+    pub power: f64,
+    /// ∫ P Ωᵢ Ωⱼ, cycles² per unit of the coordinates, squared.
+    pub second: Matrix,
+}
+
+impl PowerMoments {
+    fn new([power, upper @ ..]: [f64; COUNT]) -> Self {
+        let mut second = [[0.0; 4]; 4];
+        for ((i, j), sum) in pairs().zip(upper) {
+            second[i][j] = sum;
+            second[j][i] = sum;
+        }
+        Self { power, second }
+    }
+
+    /// ∫ P Ω Ωᵀ/∫ P; `None` where there is no power, or noise has it below zero.
+    #[must_use]
+    pub fn covariance(&self) -> Option<Matrix> {
+        let of = |row: [f64; 4]| row.map(|sum| sum / self.power);
+        (self.power > 0.0).then(|| self.second.map(of))
+    }
+}
+
+/// (i, j) with i ≤ j, in order.
+fn pairs() -> impl Iterator<Item = (usize, usize)> {
+    (0..4).flat_map(|i| (i..4).map(move |j| (i, j)))
+}
+
+/// The frequencies that moments are over: those of a 4D grid within the largest ones of a plane's slices, |Ωx| and
+/// |Ωy| ≤ ρ_max, |Ωu| and |Ωv| ≤ ν_max. None at Nyquist is among them.
+#[derive(Clone, Debug)]
+pub struct Moments {
+    grid: FieldGrid,
+    /// The largest frequency along each axis, cycles per unit.
+    pub band: [f64; 4],
+}
+
+impl Moments {
+    /// Over the frequencies of `slices`.
+    #[must_use]
+    pub fn new(grid: FieldGrid, slices: &SliceGrid) -> Self {
+        let [rho, nu] = [slices.rho.max(), slices.nu.max()];
+        Self {
+            grid,
+            band: [rho, rho, nu, nu],
+        }
+    }
+
+    /// Over frequencies half as far.
+    fn halved(&self) -> Self {
+        Self {
+            grid: self.grid,
+            band: self.band.map(|most| 0.5 * most),
+        }
+    }
+
+    /// The moments of a power that is even in Ω, which is asked at indices of a transform, those along v from zero on.
+    ///
+    /// Summed by Ωx, and the sums in order: the same bits on any number of threads.
+    #[must_use]
+    pub fn of(&self, power: impl Fn([usize; 4]) -> f64 + Sync) -> PowerMoments {
+        let [xs, ys, us, vs] = [0, 1, 2, 3].map(|axis| self.along(axis));
+        let slab = |x: &(usize, f64)| {
+            let mut sums = [0.0; COUNT];
+            for y in &ys {
+                for u in &us {
+                    for v in vs.iter().filter(|(_, omega)| *omega >= 0.0) {
+                        // With 0 < Ωv its conjugate, too.
+                        let weight = if v.0 == 0 { 1.0 } else { 2.0 };
+                        let p = weight * power([x.0, y.0, u.0, v.0]);
+                        add(&mut sums, p, [x.1, y.1, u.1, v.1]);
+                    }
+                }
+            }
+            sums
+        };
+        let slabs: Vec<_> = xs.par_iter().map(slab).collect();
+        let mut all = [0.0; COUNT];
+        for slab in slabs {
+            all.iter_mut().zip(slab).for_each(|(sum, s)| *sum += s);
+        }
+        PowerMoments::new(all)
+    }
+
+    /// Those of a power at frequencies.
+    #[must_use]
+    pub fn at_frequencies(&self, power: impl Fn([f64; 4]) -> f64 + Sync) -> PowerMoments {
+        self.of(|index| power(self.grid.frequency(index)))
+    }
+
+    /// Indices and frequencies of the band along an axis.
+    fn along(&self, axis: usize) -> Vec<(usize, f64)> {
+        let (n, spacing) = (self.grid.cells[axis], self.grid.spacing(axis));
+        // The largest frequency may be a multiple of the spacing, but for rounding.
+        let most = self.band[axis] * (1.0 + 1e-9);
+        let all = (0..n).map(|i| (i, self.grid.harmonic(axis, i)));
+        let inside = all.filter(|(_, harmonic)| 2 * harmonic.unsigned_abs() < n);
+        let inside = inside.map(|(i, harmonic)| (i, harmonic as f64 * spacing));
+        inside.filter(|(_, omega)| omega.abs() <= most).collect()
+    }
+}
+
+fn add(sums: &mut [f64; COUNT], p: f64, omega: [f64; 4]) {
+    sums[0] += p;
+    for ((i, j), sum) in pairs().zip(&mut sums[1..]) {
+        *sum += p * omega[i] * omega[j];
+    }
+}
+
+/// What a group of batches says of the moments: Re(G_r conj(G − G_r)), as [`GroupPower`](super::cross::GroupPower) does.
+#[derive(Clone, Debug)]
+pub(crate) struct GroupMoments {
+    share: f64,
+    row: PowerMoments,
+    /// Over half of the band.
+    half: PowerMoments,
+}
+
+impl GroupMoments {
+    pub(crate) fn new(
+        moments: &Moments,
+        share: f64,
+        group: &FieldSpectrum,
+        all: &FieldSpectrum,
+    ) -> Self {
+        let crossed = |index: [usize; 4]| {
+            let g = group.values[index];
+            (g.conj() * (all.values[index] - g)).re
+        };
+        Self {
+            share,
+            row: moments.of(crossed),
+            half: moments.halved().of(crossed),
+        }
+    }
+}
+
+/// The covariance of a spectrum, measured without the bias of noise.
+///
+/// Noise is a floor of power under all frequencies, and second moments are mostly of that floor. So groups of
+/// batches are crossed: with Re(G_r conj G_s) over all pairs r ≠ s in place of |G|², both ∫ P and ∫ P Ω Ωᵀ are
+/// unbiased, however few photons there are (docs/theory.md (13)). Their ratio is off by the square of the noise.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldCovariance {
+    /// The largest frequency along each axis, cycles per unit.
+    pub band: [f64; 4],
+    /// The moments.
+    pub moments: PowerMoments,
+    /// Those over half of the band.
+    half: PowerMoments,
+    /// Those without each of the groups, up to a factor.
+    without: Vec<PowerMoments>,
+}
+
+/// A matrix with the standard error of each entry.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct MatrixEstimate {
+    /// [ρx, ρy, νu, νv], cycles² per unit of the coordinates, squared.
+    pub value: Matrix,
+    /// Its standard errors, by the delete-one jackknife over groups of batches.
+    pub error: Matrix,
+}
+
+impl FieldCovariance {
+    pub(crate) fn new<'a>(
+        moments: &Moments,
+        groups: impl Iterator<Item = &'a GroupMoments> + Clone,
+    ) -> Self {
+        let sum = |of: fn(&GroupMoments) -> &PowerMoments| {
+            let mut all = [0.0; COUNT];
+            for group in groups.clone() {
+                let row = entries(of(group));
+                all.iter_mut().zip(row).for_each(|(sum, r)| *sum += r);
+            }
+            all
+        };
+        let all = sum(|group| &group.row);
+        let half = PowerMoments::new(sum(|group| &group.half));
+        let squares: f64 = groups.clone().map(|group| group.share.powi(2)).sum();
+        let without = groups.map(|group| {
+            let mut left = all;
+            let row = entries(&group.row);
+            left.iter_mut()
+                .zip(row)
+                .for_each(|(sum, r)| *sum -= 2.0 * r);
+            PowerMoments::new(left)
+        });
+        Self {
+            band: moments.band,
+            half,
+            without: without.collect(),
+            moments: PowerMoments::new(all.map(|sum| sum / (1.0 - squares))),
+        }
+    }
+
+    /// The covariance; `None` where there is no light beyond noise.
+    #[must_use]
+    pub fn estimate(&self) -> Option<MatrixEstimate> {
+        self.estimate_of(|matrix| Some(*matrix))
+    }
+
+    /// How much each variance grows from half of the band to all of it: 1 where the band holds the spectrum, about 2
+    /// where the field has an edge, whose spectrum has no second moment, and more where replicas lie in between. `None`
+    /// where there is no light beyond noise.
+    #[must_use]
+    pub fn growth(&self) -> Option<[f64; 4]> {
+        let [all, half] = [self.moments.covariance()?, self.half.covariance()?];
+        Some([0, 1, 2, 3].map(|i: usize| all[i][i] / half[i][i]))
+    }
+
+    /// Of a matrix that is made of it, such as what a map makes of it. `None` where there is none of all groups, or
+    /// of all but one.
+    pub fn estimate_of(&self, of: impl Fn(&Matrix) -> Option<Matrix>) -> Option<MatrixEstimate> {
+        let value = of(&self.moments.covariance()?)?;
+        let mut jackknife = Jackknife::new(ndarray::Ix2(4, 4));
+        for without in &self.without {
+            let matrix = of(&without.covariance()?)?;
+            jackknife.add(&Array2::from_shape_fn((4, 4), |(i, j)| matrix[i][j]));
+        }
+        let variance = jackknife.variance();
+        let error = |i: usize, j: usize| variance[[i, j]].sqrt();
+        Some(MatrixEstimate {
+            value,
+            error: [0, 1, 2, 3].map(|i| [0, 1, 2, 3].map(|j| error(i, j))),
+        })
+    }
+}
+
+fn entries(moments: &PowerMoments) -> [f64; COUNT] {
+    let mut all = [moments.power; COUNT];
+    let upper = pairs().map(|(i, j)| moments.second[i][j]);
+    all[1..].iter_mut().zip(upper).for_each(|(a, b)| *a = b);
+    all
+}

@@ -1,0 +1,238 @@
+//! The covariance of spectra, measured on Gaussian light fields whose covariance is known.
+
+#![allow(clippy::unwrap_used, reason = "a test may panic")]
+
+mod common;
+
+use common::{Random, grid, plane};
+use etendue_field::{Crossing, Ledger, PhotonSource, Profile, TwoPlane, VirtualPlane, Window};
+use etendue_spectrum::field::{
+    FieldMeasurement, FieldOptions, FieldSpectrum, Moments, measure_field,
+};
+use std::f64::consts::{PI, TAU};
+
+/// A window that is a Gaussian of variance w²/2π.
+fn window() -> Window {
+    let gaussian = |width: f64, cut: f64| Profile::Gaussian { width, cut };
+    Window {
+        x: gaussian(0.5, 0.8),
+        y: gaussian(0.4, 0.7),
+        u: gaussian(0.3, 0.5),
+        v: gaussian(0.3, 0.5),
+    }
+}
+
+fn at() -> VirtualPlane {
+    let window = window();
+    plane("at", window, grid(&window, 1, [7, 7], 1.0))
+}
+
+/// How far light has travelled, metres.
+const TRAVEL: f64 = 0.8;
+/// Variances where it began, of x, y, u and v.
+const LIGHT: [f64; 4] = [0.02, 0.03, 0.03, 0.02];
+
+/// Photons drawn from a Gaussian light field that has travelled.
+struct Gaussian {
+    seed: u64,
+    each: u64,
+}
+
+impl PhotonSource for Gaussian {
+    fn emitted(&self, _: u32) -> u64 {
+        self.each
+    }
+
+    fn emit(
+        &self,
+        batch: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        _: &dyn Fn(u64),
+    ) -> Ledger {
+        let mut random = Random(self.seed.wrapping_mul(1_000_003) + u64::from(batch) * 7919);
+        let plane = at();
+        for _ in 0..self.each {
+            let mut pair = || {
+                let (r, turn) = (random.unit(), TAU * random.unit());
+                let r = (-2.0 * libm::log(1.0 - r)).sqrt();
+                [r * libm::cos(turn), r * libm::sin(turn)]
+            };
+            let ([x, y], [u, v]) = (pair(), pair());
+            let [x, y, u, v] = [x, y, u, v]
+                .iter()
+                .zip(LIGHT)
+                .map(|(n, s): (&f64, f64)| n * s.sqrt())
+                .collect::<Vec<_>>()
+                .try_into()
+                .unwrap();
+            let ray = TwoPlane {
+                x: x + TRAVEL * u,
+                y: y + TRAVEL * v,
+                u,
+                v,
+            };
+            // Drawn from radiance over (x, y, u, v): the factor that makes radiance of flux is taken off.
+            let weight = 1.0 / plane.factor(&ray);
+            record(0, &[Crossing { ray, weight }]);
+        }
+        Ledger::default()
+    }
+}
+
+/// 1/8π² S⁻¹ of the windowed field, over (x, u) or (y, v): entries of positions, both, slopes.
+fn expected(axis: usize) -> [f64; 3] {
+    let window = window();
+    let width = |profile: Profile| match profile {
+        Profile::Gaussian { width, .. } => width,
+        _ => unreachable!("the window is of Gaussians"),
+    };
+    let [x, u] = [[window.x, window.u], [window.y, window.v]][axis].map(width);
+    let [sx, su] = [LIGHT[axis], LIGHT[axis + 2]];
+    // exp(−½ ((x − d u)²/sx + u²/su) − π x²/wx² − π u²/wu²)
+    [
+        1.0 / sx + TAU / (x * x),
+        -TRAVEL / sx,
+        TRAVEL * TRAVEL / sx + 1.0 / su + TAU / (u * u),
+    ]
+    .map(|inverse| inverse / (8.0 * PI * PI))
+}
+
+fn measured(seed: u64, each: u64) -> FieldMeasurement {
+    let options = FieldOptions {
+        covariance: true,
+        ..FieldOptions::default()
+    };
+    let source = Gaussian { seed, each };
+    measure_field(&source, 0, &at(), 0..16, &options, &|_| ()).unwrap()
+}
+
+/// What of [[ρx²], ρx νu, νu²] and of the same along y is known; all else is zero.
+fn known() -> [[f64; 4]; 4] {
+    let mut matrix = [[0.0; 4]; 4];
+    for axis in 0..2 {
+        let [position, both, slope] = expected(axis);
+        matrix[axis][axis] = position;
+        matrix[axis][axis + 2] = both;
+        matrix[axis + 2][axis] = both;
+        matrix[axis + 2][axis + 2] = slope;
+    }
+    matrix
+}
+
+#[test]
+fn photons_have_the_covariance_of_their_field() {
+    let field = measured(3, 20_000);
+    let found = field.covariance.unwrap().estimate().unwrap();
+    let (mut most, mut signal) = (0.0_f64, f64::INFINITY);
+    for (i, row) in known().iter().enumerate() {
+        for (j, expected) in row.iter().enumerate() {
+            let off = (found.value[i][j] - expected) / found.error[i][j];
+            most = most.max(off.abs());
+        }
+        signal = signal.min(row[i] / found.error[i][i]);
+    }
+    // The largest of ten by errors from 16 groups, Student's t of 15: beyond 4.1 once in a hundred times.
+    assert!(most < 4.1, "{most}");
+    // A shear of the wrong sign, A for A⁻ᵀ and a factor 2 are all off by far more than errors.
+    assert!(signal > 20.0, "{signal}");
+    let wrong = (found.value[0][2] + expected(0)[1]) / found.error[0][2];
+    assert!(wrong.abs() > 20.0, "{wrong}");
+}
+
+/// With 20 photons in a group the floor of noise is a hundred times the moments, and is not in them.
+#[test]
+fn few_photons_have_no_bias() {
+    let (mut all, mut naive) = (Vec::new(), Vec::new());
+    for seed in 0..32 {
+        let field = measured(100 + seed, 20);
+        let moments = field.covariance.as_ref().unwrap().moments;
+        all.push([
+            moments.power,
+            moments.second[0][0],
+            moments.second[2][2],
+            moments.second[0][2],
+        ]);
+        let plain = with_noise(&field.spectrum);
+        naive.push([
+            plain.power,
+            plain.second[0][0],
+            plain.second[2][2],
+            plain.second[0][2],
+        ]);
+    }
+    let exact = exact_moments();
+    let exact = [
+        exact.power,
+        exact.second[0][0],
+        exact.second[2][2],
+        exact.second[0][2],
+    ];
+    let mean = |runs: &[[f64; 4]], k: usize| {
+        let n = runs.len() as f64;
+        let mean = runs.iter().map(|run| run[k]).sum::<f64>() / n;
+        let squares = runs.iter().map(|run| (run[k] - mean).powi(2)).sum::<f64>();
+        (mean, (squares / (n * (n - 1.0))).sqrt())
+    };
+    for k in 0..4 {
+        let (value, error) = mean(&all, k);
+        // One in a thousand by chance, of four.
+        assert!(
+            (value - exact[k]).abs() < 3.7 * error,
+            "{k}: {value} {error} {}",
+            exact[k]
+        );
+        if k < 3 {
+            let (value, error) = mean(&naive, k);
+            assert!(value - exact[k] > 30.0 * error, "{k}: noise would be seen");
+        }
+    }
+}
+
+/// The same moments of |ℓ̂|², noise and all.
+fn with_noise(spectrum: &FieldSpectrum) -> etendue_spectrum::field::PowerMoments {
+    let moments = Moments::new(spectrum.grid, &at().grid);
+    moments.of(|index| spectrum.values[index].norm_sqr())
+}
+
+/// Those of the spectrum of the windowed field, exp(−2π² Ωᵀ S Ω) times its integral.
+fn exact_moments() -> etendue_spectrum::field::PowerMoments {
+    let grid = FieldOptions {
+        covariance: true,
+        ..FieldOptions::default()
+    }
+    .grid(&at());
+    let section = |axis: usize| {
+        let [a, b, c] = expected(axis).map(|entry| 8.0 * PI * PI * entry);
+        let determinant = a * c - b * b;
+        let [sx, su] = [LIGHT[axis], LIGHT[axis + 2]];
+        // ∫ of the windowed Gaussian, over that of the density photons are drawn from.
+        let integral = 1.0 / (determinant * sx * su).sqrt();
+        (
+            [c / determinant, -b / determinant, a / determinant],
+            integral,
+        )
+    };
+    let sections = [section(0), section(1)];
+    Moments::new(grid, &at().grid).at_frequencies(|omega| {
+        let of = |axis: usize| {
+            let ([xx, xu, uu], integral) = sections[axis];
+            let [r, n] = [omega[axis], omega[axis + 2]];
+            integral * libm::exp(-2.0 * PI * PI * (xx * r * r + 2.0 * xu * r * n + uu * n * n))
+        };
+        (of(0) * of(1)).powi(2)
+    })
+}
+
+/// The band holds the spectrum: sums over its frequencies are the integrals.
+#[test]
+fn moments_of_a_gaussian_are_its_covariance() {
+    let found = exact_moments().covariance().unwrap();
+    for (i, row) in known().iter().enumerate() {
+        for (j, expected) in row.iter().enumerate() {
+            let scale = (known()[i][i] * known()[j][j]).sqrt();
+            let off = (found[i][j] - expected).abs() / scale;
+            // What lies beyond seven half-cycles of the narrowest axis.
+            assert!(off < 2e-3, "{i} {j} {off}");
+        }
+    }
+}

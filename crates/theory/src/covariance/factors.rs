@@ -1,0 +1,120 @@
+//! Covariances of what multiplies a light field, and of what it is convolved with.
+//!
+//! That of a factor f is its own second moment of power, ∫ f'²/(4π² ∫ f²), where that exists. A
+//! factor with edges has none: for it stands the Gaussian of the same variance, which is a choice.
+
+use crate::geometry::{Matrix, diagonal};
+use etendue_field::{Grating, Lobe, Mask, Profile, Shape, Window};
+use std::f64::consts::PI;
+
+/// Of a Gaussian exp(−t²/2s), in cycles per unit, squared.
+fn gaussian(variance: f64) -> f64 {
+    1.0 / (8.0 * PI * PI * variance)
+}
+
+/// Of an opening of half-width r: the Gaussian of its variance, r²/3.
+fn opening(half_width: f64) -> f64 {
+    gaussian(half_width * half_width / 3.0)
+}
+
+/// Of one profile of a window, cycles per unit, squared: 1/12h² of Hann's, 1/4πw² of exp(−πt²/w²),
+/// whose cut is left out. A box has edges.
+#[must_use]
+pub fn profile(profile: &Profile) -> f64 {
+    match *profile {
+        Profile::Hann(half) => 1.0 / (12.0 * half * half),
+        Profile::Box(half) => opening(half),
+        Profile::Gaussian { width, .. } => 1.0 / (4.0 * PI * width * width),
+    }
+}
+
+/// Of the window of a plane.
+#[must_use]
+pub fn window(window: &Window) -> Matrix<4> {
+    let Window { x, y, u, v } = window;
+    diagonal([x, y, u, v].map(profile))
+}
+
+/// Of a cosine grating ½(1 + m cos(2πft + p)), cycles per unit, squared: the variance f² m²/(2 + m²)
+/// of its three lines, weighted by their power. It adds up where replicas do not overlap.
+#[must_use]
+pub fn grating(grating: &Grating) -> f64 {
+    let square = grating.modulation * grating.modulation;
+    grating.frequency * grating.frequency * square / (2.0 + square)
+}
+
+/// Of a mask in the plane where light is now. An opaque one is an opening about the central ray: the
+/// largest disc that is free of shapes, narrowed along an axis by half-planes (the course notes of
+/// Belcour 2016 take the largest unoccluded disc). `None` if the central ray is blocked, or touches
+/// an edge.
+#[must_use]
+pub fn mask(mask: &Mask) -> Option<Matrix<4>> {
+    let mut factor = [[0.0; 4]; 4];
+    match mask {
+        Mask::Grating(lines) => factor[lines.axis][lines.axis] = grating(lines),
+        Mask::Opaque {
+            shapes,
+            half_planes,
+        } => {
+            let blocked = shapes.iter().any(|shape| shape.contains(0.0, 0.0))
+                || half_planes.iter().any(|half| half.contains(0.0, 0.0));
+            if blocked {
+                return None;
+            }
+            let disc = shapes.iter().map(distance).fold(f64::INFINITY, f64::min);
+            for (axis, row) in factor.iter_mut().enumerate().take(2) {
+                let edges = half_planes.iter().filter(|half| half.axis == axis);
+                let nearest = edges.map(|half| half.edge.abs()).fold(disc, f64::min);
+                row[axis] = opening(nearest);
+            }
+        }
+    }
+    Some(factor)
+}
+
+/// From the central ray to the nearest point of a shape that does not hold it.
+fn distance(shape: &Shape) -> f64 {
+    match shape {
+        Shape::Rectangle(rectangle) => {
+            let gap = |axis: usize| rectangle.center[axis].abs() - 0.5 * rectangle.size[axis];
+            libm::hypot(gap(0).max(0.0), gap(1).max(0.0))
+        }
+        Shape::Disc(disc) => libm::hypot(disc.center[0], disc.center[1]) - disc.radius,
+    }
+}
+
+/// Of the cosine on a surface, cos⁺θ cos²φ over longitude and latitude: 1/4π² and 1/3π² cycles².
+#[must_use]
+pub fn cosine() -> Matrix<4> {
+    let square = PI * PI;
+    diagonal([0.0, 0.0, 0.25 / square, 1.0 / (3.0 * square)])
+}
+
+/// Of the factor G = (1 + u² + v²)⁻² over slopes: 0.3/π² cycles² along both.
+#[must_use]
+pub fn slope_cosine() -> Matrix<4> {
+    let along = 0.3 / (PI * PI);
+    diagonal([0.0, 0.0, along, along])
+}
+
+/// The covariance of a lobe over (θ, φ), in radians squared, for light met at the angle θ₀ to the
+/// normal. `None` of Lambert's, which is even over all directions.
+///
+/// Phong's cosⁿ is a Gaussian of variance 1/n, to first order in 1/n. Microfacets that tilt by τ
+/// turn light by 2τ in the plane of incidence, and by 2τ cos θ₀ out of it, so Beckmann's is 2α² and
+/// 2α² cos² θ₀. GGX has no variance; that of its power spectrum makes it 5α²/3. Shadowing, the
+/// Fresnel factor and 1/(4 cos cos) are left out.
+#[must_use]
+pub fn lobe(lobe: &Lobe, theta0: f64) -> Option<Matrix<4>> {
+    let microfacets = |variance: f64| {
+        let cosine = libm::cos(theta0);
+        [variance, variance * cosine * cosine]
+    };
+    let [along, across] = match *lobe {
+        Lobe::Lambertian => return None,
+        Lobe::Phong { exponent } => [1.0 / exponent; 2],
+        Lobe::Beckmann { roughness } => microfacets(2.0 * roughness * roughness),
+        Lobe::Ggx { roughness } => microfacets(5.0 / 3.0 * roughness * roughness),
+    };
+    Some(diagonal([0.0, 0.0, along, across]))
+}

@@ -1,0 +1,30 @@
+//! Covariance tracing: the second moments of a spectrum, followed along a light path (Belcour et
+//! al. 2013, *5D Covariance Tracing for Efficient Defocus and Motion Blur*), without time.
+//!
+//! A [`SpectralCovariance`] is the 4 × 4 matrix C of a Gaussian light field, whose power spectrum
+//! is |L(Ω)|² ∝ exp(−½ Ωᵀ C⁻¹ Ω). Axes are (ρx, ρy, νu, νv): cycles per metre along x and y, cycles
+//! per unit slope, or per radian on surfaces, along u and v. So the blocks of C are in cycles²/m²,
+//! cycles²/m and cycles². In the light field the same Gaussian is exp(−½ zᵀ S⁻¹ z) with
+//! S⁻¹ = 8π² C (docs/theory.md, section 6).
+//!
+//! | what light meets | operator | what becomes of C |
+//! |---|---|---|
+//! | travel, lens, projection, curvature, mirror, refraction | [`mapped`](SpectralCovariance::mapped) by any [`Map`](crate::geometry::Map) z' = A z + t | A⁻ᵀ C A⁻¹ |
+//! | cosine, blocker, texture, the plane's window | [`multiplied`](SpectralCovariance::multiplied) | C + W |
+//! | lobe of a BRDF | [`convolved`](SpectralCovariance::convolved) | (C⁻¹ + B⁻¹)⁻¹ |
+//! | diffuse reflection | [`diffused`](SpectralCovariance::diffused) | the same with B = 0 along both angles |
+//!
+//! [`window`], [`mask`], [`grating`], [`cosine`] and [`lobe`] are W and B of what a scene may hold;
+//! [`Traced`] follows a whole chain.
+//! Moments of a field with edges do not exist, and it is taken for a Gaussian all the same: that is
+//! what covariance tracing does. docs/covariance.md shows where it holds.
+
+mod factors;
+mod pair;
+#[cfg(test)]
+mod tests;
+mod traced;
+
+pub use factors::{cosine, grating, lobe, mask, profile, slope_cosine, window};
+pub use pair::{SpectralCovariance, power};
+pub use traced::{Traced, Untraced};

@@ -1,0 +1,137 @@
+use crate::geometry::{Map, Matrix, diagonal, from_fn, inverse, product, sum, times, transpose};
+use std::f64::consts::PI;
+
+/// S⁻¹ = 8π² C, of the power; of |L| it would be 4π² C.
+const POWER: f64 = 8.0 * PI * PI;
+
+/// The covariance C of the power spectrum of a Gaussian light field, [ρx, ρy, νu, νv], cycles² per
+/// unit of the coordinates, squared.
+///
+/// Kept as C = P Q⁻¹. Light without end along a coordinate has a P without rank there, light of a
+/// point or of one direction a Q without rank. Both are as good as any other matrix, so no operator
+/// needs a smallest or a largest number. This is how rays stand for a Gaussian beam.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpectralCovariance {
+    p: Matrix<4>,
+    q: Matrix<4>,
+}
+
+impl SpectralCovariance {
+    /// Light with the variances S of a Gaussian over (x, y, u, v), in squares of metres and slopes.
+    /// Zero is a point, or one direction; infinite is light without end.
+    #[must_use]
+    pub fn new(variance: [f64; 4]) -> Self {
+        let is_flat = |s: f64| s == f64::INFINITY;
+        Self {
+            p: diagonal(variance.map(|s| if is_flat(s) { 0.0 } else { 1.0 })),
+            q: diagonal(variance.map(|s| if is_flat(s) { 1.0 } else { POWER * s })),
+        }
+    }
+
+    /// That of a matrix C.
+    #[must_use]
+    pub fn of(matrix: &Matrix<4>) -> Self {
+        Self {
+            p: *matrix,
+            q: diagonal([1.0; 4]),
+        }
+    }
+
+    /// After a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. Where light is does not matter to
+    /// its power. `None` if A has no inverse.
+    #[must_use]
+    pub fn mapped(&self, map: &Map<4>) -> Option<Self> {
+        let back = transpose(&inverse(&map.matrix)?);
+        Some(Self {
+            p: product(&back, &self.p),
+            q: product(&map.matrix, &self.q),
+        })
+    }
+
+    /// After a product with something whose power spectrum has the covariance W: C + W.
+    #[must_use]
+    pub fn multiplied(&self, factor: &Matrix<4>) -> Self {
+        Self {
+            p: sum(&self.p, &product(factor, &self.q)),
+            q: self.q,
+        }
+    }
+
+    /// After a convolution with a Gaussian of covariance s in the light field, in squares of metres
+    /// and radians: C⁻¹ grows by 8π² s. Zero, as of a mirror, changes nothing.
+    #[must_use]
+    pub fn convolved(&self, kernel: &Matrix<4>) -> Self {
+        let grown = product(kernel, &self.p).map(|row| row.map(|entry| POWER * entry));
+        Self {
+            p: self.p,
+            q: sum(&self.q, &grown),
+        }
+    }
+
+    /// After an integral over all directions, spread evenly over directions again: the spectrum at
+    /// ν = 0 alone. C⁻¹ keeps its block of positions, and is infinite along both angles.
+    #[must_use]
+    pub fn diffused(&self) -> Self {
+        // Columns of P and Q span the pairs (C w, w). Those without angular frequency stay.
+        let mut columns = [0, 1, 2, 3].map(|j| [&self.q, &self.p].map(|m| m.map(|row| row[j])));
+        let mut goes = [false; 4];
+        for row in [2, 3] {
+            let size = |j: usize| columns[j][1][row].abs();
+            let rest = (0..4).filter(|j| !goes[*j]);
+            let Some(pivot) = rest.max_by(|a, b| size(*a).total_cmp(&size(*b))) else {
+                break;
+            };
+            if size(pivot) <= 0.0 {
+                // It is even along this angle already.
+                continue;
+            }
+            goes[pivot] = true;
+            let taken = columns[pivot];
+            for j in (0..4).filter(|j| !goes[*j]) {
+                let share = columns[j][1][row] / taken[1][row];
+                columns[j] = [0, 1]
+                    .map(|m| [0, 1, 2, 3].map(|i: usize| columns[j][m][i] - share * taken[m][i]));
+                columns[j][1][row] = 0.0;
+            }
+        }
+        let even = |[_, p]: [[f64; 4]; 2]| [[0.0, 0.0, p[2], p[3]], [0.0; 4]];
+        let columns: [_; 4] = std::array::from_fn(|j| {
+            if goes[j] {
+                even(columns[j])
+            } else {
+                columns[j]
+            }
+        });
+        Self {
+            p: from_fn(|i, j| columns[j][1][i]),
+            q: from_fn(|i, j| columns[j][0][i]),
+        }
+    }
+
+    /// C. `None` where a spectrum has no end, as that of light from a point.
+    #[must_use]
+    pub fn matrix(&self) -> Option<Matrix<4>> {
+        Some(symmetric(&product(&self.p, &inverse(&self.q)?)))
+    }
+
+    /// S, the covariance of the Gaussian light field, in squares of metres and slopes. `None` where
+    /// the field has no end.
+    #[must_use]
+    pub fn field(&self) -> Option<Matrix<4>> {
+        let field = symmetric(&product(&self.q, &inverse(&self.p)?));
+        Some(field.map(|row| row.map(|entry| entry / POWER)))
+    }
+}
+
+/// Without what rounding leaves of an asymmetry.
+fn symmetric(a: &Matrix<4>) -> Matrix<4> {
+    from_fn(|i, j| 0.5 * (a[i][j] + a[j][i]))
+}
+
+/// |L(Ω)|²/|L(0)|² of a Gaussian light field of covariance S: exp(−4π² Ωᵀ S Ω).
+#[must_use]
+pub fn power(field: &Matrix<4>, omega: [f64; 4]) -> f64 {
+    let along = times(field, &omega);
+    let exponent: f64 = omega.iter().zip(along).map(|(a, b)| a * b).sum();
+    libm::exp(-0.5 * POWER * exponent)
+}

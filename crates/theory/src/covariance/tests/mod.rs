@@ -1,0 +1,22 @@
+//! Covariance tracing held against Gaussian fields followed as fields, and against quadrature.
+
+mod chains;
+mod factors;
+mod operators;
+
+use crate::geometry::{Map, Matrix};
+
+/// The largest difference of two matrices, relative to the geometric mean of their diagonals.
+fn apart(a: &Matrix<4>, b: &Matrix<4>) -> f64 {
+    let entries = (0..4).flat_map(|i| (0..4).map(move |j| (i, j)));
+    let off = entries.map(|(i, j)| (a[i][j] - b[i][j]).abs() / (b[i][i] * b[j][j]).sqrt());
+    off.fold(0.0, f64::max)
+}
+
+/// Onto a curved surface, off it as a mirror does, and on: twisted, so that no entry is zero.
+fn bent() -> Map<4> {
+    let shape = [[0.7, 0.2], [0.2, -0.4]];
+    Map::<4>::rotation(0.4)
+        .then(&Map::<4>::mirror_reflection(0.6, shape))
+        .then(&Map::travel(0.8))
+}

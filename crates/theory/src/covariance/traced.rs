@@ -1,0 +1,204 @@
+//! Covariance tracing along the chains of this crate, step by step in the order of light.
+
+use super::factors;
+use super::pair::SpectralCovariance;
+use crate::geometry::{Edition, Map, Matrix, diagonal};
+use crate::model::Observed;
+use crate::parallel::{Chain, Operator};
+use crate::{rays, scattering};
+use etendue_field::{
+    Disc, Environment, EnvironmentMap, Image, Light, Mask, Orientation, Pattern, Quantity, Shape,
+};
+use std::f64::consts::TAU;
+use std::fmt::{self, Display};
+
+/// Why there is no covariance to trace.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Untraced {
+    /// A mask stops the central ray, or has an edge on it: it is no window about the ray.
+    Blocked,
+    /// The light is a map, or several lobes: no Gaussian stands for it.
+    Light,
+    /// The reflectance varies by a picture, squares or another BRDF: no Gaussian stands for it.
+    Reflectance,
+    /// The central ray does not get there, or a map on its way has no inverse.
+    Lost,
+}
+
+impl Display for Untraced {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Blocked => "a blocker stands in the central ray or has an edge there",
+            Self::Light => "no Gaussian stands for this light",
+            Self::Reflectance => "no Gaussian stands for how this reflectance varies",
+            Self::Lost => "the central ray does not get there by maps that have an inverse",
+        })
+    }
+}
+
+/// Whatever has a light path along which covariance is traced.
+pub trait Traced {
+    /// The covariance of the spectrum before the window of the plane.
+    ///
+    /// # Errors
+    /// Where covariance tracing has nothing to say, with the reason.
+    fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced>;
+}
+
+impl Traced for Chain {
+    fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
+        let mut light = of_light(&self.source.light)?;
+        for operator in &self.operators {
+            light = match operator {
+                Operator::Travel { distance, .. } => moved(&light, &Map::travel(*distance))?,
+                Operator::Visibility { mask, .. } => masked(&light, mask)?,
+                Operator::Cosine { .. } => light.multiplied(&factors::slope_cosine()),
+                Operator::Diffuse { .. } => {
+                    let back = Map::linear(diagonal([-1.0, 1.0, -1.0, 1.0]));
+                    moved(&light.diffused(), &back)?
+                }
+            };
+        }
+        Ok(light)
+    }
+}
+
+impl Traced for Observed<rays::System> {
+    fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
+        let Self { system, plane } = self;
+        let chain = rays::chain(self, Edition::Corrected).ok_or(Untraced::Lost)?;
+        let (light, travelled) = past_masks(&system.light, &system.layers)?;
+        let rest = Map::travel(-travelled).then(&chain.map.rays());
+        let light = moved(&light, &rest)?;
+        Ok(counted(&light, plane.quantity, plane.orientation))
+    }
+}
+
+impl Traced for Observed<scattering::System> {
+    fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
+        let Self { system, plane } = self;
+        let chain = scattering::chain(self).ok_or(Untraced::Lost)?;
+        let reflectance = &system.reflectance;
+        if reflectance.blend.is_some() {
+            return Err(Untraced::Reflectance);
+        }
+        let (light, travelled) = past_masks(&system.light, &system.layers)?;
+        let onto = Map::travel(-travelled).then(&chain.onto);
+        let arriving = moved(&light, &onto)?.multiplied(&factors::cosine());
+        let turned = moved(&arriving, &Map::mirror())?;
+        let mut leaving = match factors::lobe(&reflectance.brdf.lobe, chain.incidence) {
+            Some(lobe) => turned.convolved(&lobe),
+            None => turned.diffused(),
+        };
+        if let Some(texture) = &reflectance.texture {
+            let Pattern::Cosine(lines) = texture else {
+                return Err(Untraced::Reflectance);
+            };
+            let axis = [system.patch.frame.x, system.patch.frame.y][lines.axis];
+            let along = [chain.frame.x, chain.frame.y].map(|t| axis.dot(t));
+            leaving = leaving.multiplied(&along_line(along, factors::grating(lines)));
+        }
+        let light = moved(&leaving, &chain.off)?;
+        Ok(counted(&light, plane.quantity, plane.orientation))
+    }
+}
+
+/// Of light where it begins: a Gaussian of its variances over positions and slopes.
+fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
+    let endless = f64::INFINITY;
+    let of_image = |image: &Image| image.width.map(|width| width * width / TAU);
+    let light_of = |[x, y]: [f64; 2], [u, v]: [f64; 2]| SpectralCovariance::new([x, y, u, v]);
+    Ok(match light {
+        Light::Area {
+            shape, exponent, ..
+        } => light_of(variances(shape), [1.0 / exponent; 2]),
+        Light::Point { .. } => light_of([0.0; 2], [endless; 2]),
+        Light::Projector { image, .. } => {
+            let light = light_of([0.0; 2], of_image(image));
+            lined(&light, image, 2)
+        }
+        Light::Beam { image, .. } => {
+            let light = light_of(of_image(image), [0.0; 2]);
+            lined(&light, image, 0)
+        }
+        Light::Environment { environment } => {
+            light_of([endless; 2], [sky_variance(environment)?; 2])
+        }
+    })
+}
+
+/// The second central moments of a uniform shape along x and y.
+fn variances(shape: &Shape) -> [f64; 2] {
+    match shape {
+        Shape::Rectangle(rectangle) => rectangle.size.map(|side| side * side / 12.0),
+        Shape::Disc(Disc { radius, .. }) => [0.25 * radius * radius; 2],
+    }
+}
+
+/// A picture's grating, over positions or, from the coordinate `first` on, over slopes.
+fn lined(light: &SpectralCovariance, image: &Image, first: usize) -> SpectralCovariance {
+    image.grating.map_or(*light, |lines| {
+        let mut factor = [[0.0; 4]; 4];
+        let axis = first + lines.axis;
+        factor[axis][axis] = factors::grating(&lines);
+        light.multiplied(&factor)
+    })
+}
+
+/// Of a single lobe of light, in radians squared.
+fn sky_variance(environment: &Environment) -> Result<f64, Untraced> {
+    match &environment.map {
+        EnvironmentMap::Lobes(lobes) if lobes.len() == 1 => Ok(lobes[0].width * lobes[0].width),
+        EnvironmentMap::Lobes(_) | EnvironmentMap::LatLong(_) => Err(Untraced::Light),
+    }
+}
+
+/// Light after the masks of the first leg, and how far it has come.
+fn past_masks(
+    light: &Light,
+    layers: &[(f64, Mask)],
+) -> Result<(SpectralCovariance, f64), Untraced> {
+    let start = (of_light(light)?, 0.0);
+    layers
+        .iter()
+        .try_fold(start, |(light, at), (distance, mask)| {
+            let arriving = moved(&light, &Map::travel(distance - at))?;
+            Ok((masked(&arriving, mask)?, *distance))
+        })
+}
+
+fn masked(light: &SpectralCovariance, mask: &Mask) -> Result<SpectralCovariance, Untraced> {
+    let factor = factors::mask(mask).ok_or(Untraced::Blocked)?;
+    Ok(light.multiplied(&factor))
+}
+
+fn moved(light: &SpectralCovariance, map: &Map<4>) -> Result<SpectralCovariance, Untraced> {
+    light.mapped(map).ok_or(Untraced::Lost)
+}
+
+/// With the cosine of a plane that counts differential irradiance.
+fn counted(
+    light: &SpectralCovariance,
+    quantity: Quantity,
+    orientation: Orientation,
+) -> SpectralCovariance {
+    match (quantity, orientation) {
+        (Quantity::DifferentialIrradiance, Orientation::Orthogonal) => {
+            light.multiplied(&factors::slope_cosine())
+        }
+        (Quantity::DifferentialIrradiance, _) => light.multiplied(&factors::cosine()),
+        _ => *light,
+    }
+}
+
+/// A covariance along one direction of positions.
+fn along_line([a, b]: [f64; 2], variance: f64) -> Matrix<4> {
+    let entry = |p: f64, q: f64| p * q * variance;
+    let none = [0.0; 4];
+    [
+        [entry(a, a), entry(a, b), 0.0, 0.0],
+        [entry(a, b), entry(b, b), 0.0, 0.0],
+        none,
+        none,
+    ]
+}
