@@ -10,7 +10,7 @@ import argparse, json, pathlib, re, sys, zlib
 import mitsuba as mi, numpy as np
 
 mi.set_variant("llvm_ad_mono")
-import etendue_fresnel
+import etendue_bsdfs
 from mitsuba_photons import Photons
 from mitsuba_planes import Plane, World
 from mitsuba_rays import Rays

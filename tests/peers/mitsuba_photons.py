@@ -42,6 +42,7 @@ class Photons:
             ray, start, normals = si.spawn_ray(si.to_world(drawn.wo)), rows(si.p), rows(si.sh_frame.n)
         return [seen[plane.name] for plane in self.planes]
 
+    @np.errstate(divide="ignore", invalid="ignore")  # of rays that have ended
     def slices(self, plane, start, along, flux, begun, si, normals):
         flux, reach = np.array(flux, float) * np.ones(len(start)), np.array(si.t, float)
         met_end = np.array(si.shape == mi.ShapePtr(self.world.shapes[plane.ends])) if plane.ends else np.zeros(len(start), bool)
@@ -68,7 +69,6 @@ class Photons:
             u, v, squared = plane.slopes(along)
             per_flux = squared**2
         rays = np.array([x, y, u, v])
-        with np.errstate(invalid="ignore"):
-            weight = np.where(begun, flux * per_flux * plane.in_window(rays) * plane.factor(rays), 0)
+        weight = np.where(begun, flux * per_flux * plane.in_window(rays) * plane.factor(rays), 0)
         kept = weight != 0
         return transform(rays[:, kept], weight[kept], plane.grid), np.count_nonzero(kept)

@@ -177,5 +177,8 @@ fn what_mitsuba_cannot_say_is_refused() {
     assert!(lens.to_string().contains("no lens without thickness"));
     let behind = stored("wild/behind_the_sky_plane");
     let error = mitsuba(&behind).unwrap_err();
-    assert!(matches!(error, NotInMitsuba::BehindTheSky { .. }), "{error}");
+    assert!(
+        matches!(error, NotInMitsuba::BehindTheSky { .. }),
+        "{error}"
+    );
 }

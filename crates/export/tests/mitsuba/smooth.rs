@@ -53,7 +53,10 @@ fn picture(export: &Export, name: &str) -> ([usize; 2], Vec<f32>) {
 #[test]
 fn every_lobe_has_its_word_and_its_numbers() {
     let parsed = |export: &Export| text(export, "scene.xml").to_owned();
-    let xml = parsed(&reflects("Sphere(0.5)", "brdf: (lobe: Phong(30), albedo: 0.8)"));
+    let xml = parsed(&reflects(
+        "Sphere(0.5)",
+        "brdf: (lobe: Phong(30), albedo: 0.8)",
+    ));
     let xml = Document::parse(&xml).unwrap();
     let [phong] = of_type(&xml, "phong").try_into().unwrap();
     assert!((number(&phong, "exponent") - 30.0).abs() < 1e-12); // rounding
@@ -61,19 +64,35 @@ fn every_lobe_has_its_word_and_its_numbers() {
     assert!((number(&phong, "specular_reflectance") - 0.8 * 31.0 / 32.0).abs() < 1e-12); // rounding
     assert!(number(&phong, "diffuse_reflectance").abs() < 1e-300); // the very number
     for (lobe, distribution) in [("Ggx(0.2)", "ggx"), ("Beckmann(0.2)", "beckmann")] {
-        let brdf = format!("brdf: (lobe: {lobe}, albedo: 0.9, fresnel: Conductor(n: 0.96, k: 6.69))");
+        let brdf =
+            format!("brdf: (lobe: {lobe}, albedo: 0.9, fresnel: Conductor(n: 0.96, k: 6.69))");
         let xml = parsed(&reflects("Plane", &brdf));
         let xml = Document::parse(&xml).unwrap();
         let [rough] = of_type(&xml, "roughconductor").try_into().unwrap();
-        assert_eq!(rough.children().find(|n| n.has_tag_name("string")).unwrap().attribute("value"), Some(distribution));
-        for (name, expected) in [("alpha", 0.2), ("eta", 0.96), ("k", 6.69), ("specular_reflectance", 0.9)] {
+        assert_eq!(
+            rough
+                .children()
+                .find(|n| n.has_tag_name("string"))
+                .unwrap()
+                .attribute("value"),
+            Some(distribution)
+        );
+        for (name, expected) in [
+            ("alpha", 0.2),
+            ("eta", 0.96),
+            ("k", 6.69),
+            ("specular_reflectance", 0.9),
+        ] {
             assert!((number(&rough, name) - expected).abs() < 1e-12, "{name}"); // the very number
         }
         // What is flat and uniform needs no triangles.
         assert_eq!(of_type(&xml, "disk").len(), 1);
     }
     // A dielectric reflects as a metal that absorbs nothing; without a factor, all of it.
-    let glass = parsed(&reflects("Plane", "brdf: (lobe: Ggx(0.2), fresnel: Dielectric(1.5))"));
+    let glass = parsed(&reflects(
+        "Plane",
+        "brdf: (lobe: Ggx(0.2), fresnel: Dielectric(1.5))",
+    ));
     assert!(glass.contains(r#"name="eta" value="1.5"/><spectrum name="k" value="0.0"/>"#));
     let white = parsed(&reflects("Plane", "brdf: (lobe: Ggx(0.2))"));
     assert!(white.contains(r#"name="material" value="none""#));
@@ -93,7 +112,10 @@ fn mirrors_work_on_both_sides_and_interfaces_have_their_front_outside() {
     let mirror = smooth(PROJECTOR, "Sphere(-0.5)", "Mirror").unwrap();
     let xml = Document::parse(text(&mirror, "scene.xml")).unwrap();
     let [twosided] = of_type(&xml, "twosided").try_into().unwrap();
-    assert_eq!(twosided.first_element_child().unwrap().attribute("type"), Some("conductor"));
+    assert_eq!(
+        twosided.first_element_child().unwrap().attribute("type"),
+        Some("conductor")
+    );
     let glass = smooth(PROJECTOR, "Sphere(0.5)", "Refraction(front: 1, back: 1.5)").unwrap();
     let xml = Document::parse(text(&glass, "scene.xml")).unwrap();
     let [glass] = of_type(&xml, "dielectric").try_into().unwrap();
@@ -113,9 +135,17 @@ fn patterns_become_pictures() {
         reflects("Plane", &brdf)
     };
     let board = texture("Checkerboard(0.2)");
-    assert_eq!(picture(&board, "smooth_0_reflectance.pfm"), ([2, 2], vec![0.0, 0.5, 0.5, 0.0]));
+    assert_eq!(
+        picture(&board, "smooth_0_reflectance.pfm"),
+        ([2, 2], vec![0.0, 0.5, 0.5, 0.0])
+    );
     let xml = Document::parse(text(&board, "scene.xml")).unwrap();
-    let [bitmap] = of_type(&xml, "bitmap").into_iter().filter(|n| n.attribute("name") == Some("reflectance")).collect::<Vec<_>>().try_into().unwrap();
+    let [bitmap] = of_type(&xml, "bitmap")
+        .into_iter()
+        .filter(|n| n.attribute("name") == Some("reflectance"))
+        .collect::<Vec<_>>()
+        .try_into()
+        .unwrap();
     assert_eq!(numbers(&bitmap, "scale", &["x", "y"]), [5.0, 5.0]);
     // Texture coordinates are metres, so that even what is flat is a mesh.
     assert!(file(&board, "smooth_0.ply").len() > 1000);
@@ -127,27 +157,53 @@ fn patterns_become_pictures() {
     assert!((f64::from(values[0]) - expected).abs() < 1e-7); // 32 bits
     let xml = Document::parse(text(&cosine, "scene.xml")).unwrap();
     let bitmaps = of_type(&xml, "bitmap");
-    let bitmap = bitmaps.iter().find(|n| n.attribute("name") == Some("reflectance")).unwrap();
+    let bitmap = bitmaps
+        .iter()
+        .find(|n| n.attribute("name") == Some("reflectance"))
+        .unwrap();
     assert_eq!(numbers(bitmap, "scale", &["x", "y"]), [0.0, 15.0]);
 }
 
 #[test]
 fn blends_are_of_two_lobes_or_of_two_albedos() {
-    let tiles = reflects("Plane", "brdf: (lobe: Phong(400)), other: (lobe: Phong(60), albedo: 0.6), blend: Checkerboard(0.1)");
+    let tiles = reflects(
+        "Plane",
+        "brdf: (lobe: Phong(400)), other: (lobe: Phong(60), albedo: 0.6), blend: Checkerboard(0.1)",
+    );
     let xml = Document::parse(text(&tiles, "scene.xml")).unwrap();
     let [blend] = of_type(&xml, "blendbsdf").try_into().unwrap();
     // Weight 0 is the first of them: the other.
-    let lobes: Vec<f64> = of_type(&xml, "phong").iter().map(|n| number(n, "exponent")).collect();
+    let lobes: Vec<f64> = of_type(&xml, "phong")
+        .iter()
+        .map(|n| number(n, "exponent"))
+        .collect();
     assert_eq!(lobes, [60.0, 400.0]);
-    assert!(blend.children().any(|n| n.attribute("name") == Some("weight")));
-    assert_eq!(picture(&tiles, "smooth_0_weight.pfm").1, [0.0, 1.0, 1.0, 0.0]);
-    let albedos = reflects("Plane", "brdf: (lobe: Lambertian, albedo: 0.8), other: (lobe: Lambertian, albedo: 0.2), blend: Cosine(axis: X, frequency: 3)");
+    assert!(
+        blend
+            .children()
+            .any(|n| n.attribute("name") == Some("weight"))
+    );
+    assert_eq!(
+        picture(&tiles, "smooth_0_weight.pfm").1,
+        [0.0, 1.0, 1.0, 0.0]
+    );
+    let albedos = reflects(
+        "Plane",
+        "brdf: (lobe: Lambertian, albedo: 0.8), other: (lobe: Lambertian, albedo: 0.2), blend: Cosine(axis: X, frequency: 3)",
+    );
     let (_, values) = picture(&albedos, "smooth_0_reflectance.pfm");
-    let (low, high) = values.iter().fold((1.0_f32, 0.0_f32), |(l, h), v| (l.min(*v), h.max(*v)));
+    let (low, high) = values
+        .iter()
+        .fold((1.0_f32, 0.0_f32), |(l, h), v| (l.min(*v), h.max(*v)));
     assert!((low - 0.2).abs() < 1e-4 && (high - 0.8).abs() < 1e-4); // half a pixel beside both ends
     let between = "Reflects(brdf: (lobe: Phong(400)), other: (lobe: Phong(60)), blend: Cosine(axis: X, frequency: 3))";
     let error = smooth(PROJECTOR, "Plane", between).unwrap_err();
-    assert_eq!(error, NotInMitsuba::Blend { name: "s".to_owned() });
+    assert_eq!(
+        error,
+        NotInMitsuba::Blend {
+            name: "s".to_owned()
+        }
+    );
 }
 
 #[test]
@@ -161,7 +217,12 @@ fn lights_shine_through_pictures() {
     let [light] = of_type(&xml, "projector").try_into().unwrap();
     let half = f64::tan((0.5 * number(&light, "fov")).to_radians());
     assert!((half - 0.36).abs() < 1e-12); // rounding
-    let beam = smooth("Beam(center: (0, 0, 0), irradiance: 3, image: (width: (0.1, 0.1)))", "Plane", "Mirror").unwrap();
+    let beam = smooth(
+        "Beam(center: (0, 0, 0), irradiance: 3, image: (width: (0.1, 0.1)))",
+        "Plane",
+        "Mirror",
+    )
+    .unwrap();
     let (_, values) = picture(&beam, "light_picture.pfm");
     assert!((values[512 * 1024 + 512] - 3.0).abs() < 1e-3); // half a pixel beside the middle
     let xml = Document::parse(text(&beam, "scene.xml")).unwrap();
@@ -171,7 +232,8 @@ fn lights_shine_through_pictures() {
 /// The sky is dark where it would shine against the central ray.
 #[test]
 fn environments_become_maps() {
-    let sky = "Environment(center: (0, 0, 0), map: Lobes([(from: (0, 0, -1), width: 0.5, radiance: 3)]))";
+    let sky =
+        "Environment(center: (0, 0, 0), map: Lobes([(from: (0, 0, -1), width: 0.5, radiance: 3)]))";
     let export = smooth(sky, "Sphere(0.5)", "Reflects(brdf: (lobe: Lambertian))").unwrap();
     let ([width, rows], values) = picture(&export, "light_sky.pfm");
     assert_eq!([width, rows], [4096, 2049]);
