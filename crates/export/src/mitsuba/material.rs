@@ -95,7 +95,7 @@ impl Writer {
                     format!("<bsdf type=\"diffuse\">{albedo}</bsdf>"),
                 )
             }
-            // Mitsuba's lobe is (n + 2)/2π cosⁿ, which is at most 1 of all light; ours is (n + 1)/2π cosⁿ.
+            // A word of Mitsuba 0.6, which tests/peers/etendue_bsdfs.py adds to Mitsuba 3. Its lobe is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
             Lobe::Phong { exponent } => {
                 let share = (exponent + 1.0) / (exponent + 2.0);
                 let albedo = self.varied("specular_reflectance", &albedo.times(share));
@@ -143,7 +143,7 @@ fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
 }
 
 /// A lobe times the Fresnel factor of the angle at which light arrives. Mitsuba has no word for it:
-/// `tests/peers/etendue_fresnel.py` adds one, without which the scene does not load.
+/// `tests/peers/etendue_bsdfs.py` adds one, without which the scene does not load.
 fn factored(fresnel: &Fresnel, lobe: String) -> String {
     match index(fresnel) {
         None => lobe,

@@ -149,7 +149,7 @@ fn patterns_become_pictures() {
     assert_eq!(numbers(&bitmap, "scale", &["x", "y"]), [5.0, 5.0]);
     // Texture coordinates are metres, so that even what is flat is a mesh.
     assert!(file(&board, "smooth_0.ply").len() > 1000);
-    let cosine = texture("Cosine(axis: Y, frequency: 15, modulation: 0.9, phase: 90)");
+    let cosine = texture("Cosine(axis: Y, frequency: 15, modulation: 0.9, phase: 1.5)");
     let ([width, rows], values) = picture(&cosine, "smooth_0_reflectance.pfm");
     assert_eq!([width, rows], [2, 512]);
     // The lowest row of the file is the last: half a pixel before a period is over, the cosine is nearly 1.
