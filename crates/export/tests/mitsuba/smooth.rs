@@ -121,6 +121,11 @@ fn mirrors_work_on_both_sides_and_interfaces_have_their_front_outside() {
     let [glass] = of_type(&xml, "dielectric").try_into().unwrap();
     assert!((number(&glass, "int_ior") - 1.5).abs() < 1e-12); // the very number
     assert!((number(&glass, "ext_ior") - 1.0).abs() < 1e-12); // the very number
+    let lens = smooth(PROJECTOR, "Plane", "ThinLens(0.5)").unwrap_err();
+    assert!(
+        lens.to_string().contains("no lens without thickness"),
+        "{lens}"
+    );
     let mesh = mitsuba(&stored("table1/mesh_mirror")).unwrap();
     let ply = String::from_utf8_lossy(file(&mesh, "mesh_0.ply"));
     assert!(ply.contains("element face 80000\n") && ply.contains("property double nx\n"));
