@@ -3,15 +3,21 @@
 //! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along X, Y and D of the
 //! central ray. They are written so that every f64 comes back the same.
 
+mod light;
+mod material;
+mod patch;
+mod picture;
 mod planes;
 mod ply;
+mod sky;
+mod texture;
 mod xml;
 
 use crate::Export;
 use etendue_field::{HalfPlane, Light, Mask, Rectangle, Shape};
-use etendue_scene::{BlockerLayer, Scene, Surface};
+use etendue_scene::{BlockerLayer, Event, MeshObject, Object, PatchObject, Scene, Surface};
 use glam::DVec3;
-use xml::{Xml, diffuse, emitter};
+use xml::{Xml, diffuse};
 
 /// What a scene says and Mitsuba cannot.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
@@ -33,121 +39,153 @@ pub enum NotInMitsuba {
         /// Name of its layer.
         name: String,
     },
-    /// Another light.
-    #[error("Mitsuba has no light that shines like this one: it cannot be exported")]
-    Light,
-    /// An environment.
+    /// Something behind the plane in which an environment begins.
     #[error(
-        "an environment cannot be exported: here light begins in the plane of `center`, in Mitsuba it comes from all around"
+        "light from far away begins in the plane of `center` here, and comes from all around in Mitsuba: \
+         {name:?}, which reaches behind that plane, would stand in its way, and cannot be exported"
     )]
-    Environment,
-    /// A smooth surface.
-    #[error(
-        "the smooth surface {name:?} cannot be exported: the light field behind it is compared here alone"
-    )]
-    Smooth {
+    BehindTheSky {
         /// Its name.
         name: String,
     },
-    /// A plane after several reflections.
-    #[error(
-        "Mitsuba sums over paths of all lengths: the plane {name:?}, after {leg} reflections, cannot be exported"
-    )]
-    Reflections {
+    /// A thin lens.
+    #[error("Mitsuba has no lens without thickness but in cameras: {name:?} cannot be exported")]
+    ThinLens {
         /// Its name.
         name: String,
-        /// Surfaces that light has left on its way.
-        leg: usize,
+    },
+    /// A pattern of parameters other than the albedo.
+    #[error(
+        "Mitsuba mixes the light of two lobes, and has no lobe between both: {name:?} cannot be exported; \
+         a Checkerboard of two lobes can, and any pattern of two albedos of one lobe"
+    )]
+    Blend {
+        /// Name of its surface.
+        name: String,
     },
 }
 
-/// The scene for Mitsuba 3: `scene.xml`, a `.ply` for each mesh and each layer of rectangles, and `planes.json` with
-/// the virtual planes, which Mitsuba has no word for.
+/// The scene for Mitsuba 3: `scene.xml`, the meshes and pictures it names, and `planes.json` with the virtual planes, which Mitsuba has
+/// no word for.
 ///
 /// A half-plane becomes a rectangle that ends beyond all light that reaches a window or a surface.
 ///
 /// # Errors
 /// When the scene holds something Mitsuba has no word for.
 pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
+    if let Light::Environment { .. } = scene.light
+        && let Some(name) = behind(scene)
+    {
+        return Err(NotInMitsuba::BehindTheSky { name });
+    }
     let mut writer = Writer {
         xml: Xml::new(scene),
-        meshes: Vec::new(),
+        files: Vec::new(),
+        owner: "light".to_owned(),
     };
     writer.light(&scene.light)?;
-    if let Some(patch) = scene.patches.first() {
-        let name = patch.name.clone();
-        return Err(NotInMitsuba::Smooth { name });
-    }
-    if let Some(plane) = scene.planes.iter().find(|plane| plane.leg > 1) {
-        let (name, leg) = (plane.name.clone(), plane.leg);
-        return Err(NotInMitsuba::Reflections { name, leg });
-    }
     let beyond = 2.0 * reach(scene);
     for (number, layer) in scene.blockers.iter().enumerate() {
         writer.layer(number, layer, beyond)?;
     }
     for (number, surface) in scene.surfaces.iter().enumerate() {
-        writer.xml.comment(&format!("surface {:?}", surface.name));
-        let looks = diffuse(surface.albedo);
-        let id = surface_id(number);
-        if let Some((distance, rectangle)) = surface.across() {
-            writer
-                .xml
-                .flat(&id, &Shape::Rectangle(rectangle), distance, &looks);
-        } else {
-            let [a, b, c, d] = surface.corners();
-            writer.mesh(&id, &[[a, b, c], [a, c, d]], &looks);
-        }
+        writer.surface(&id(Object::Surface(number)), surface);
+    }
+    for (number, patch) in scene.patches.iter().enumerate() {
+        writer.patch(id(Object::Patch(number)), patch)?;
     }
     for (number, mesh) in scene.meshes.iter().enumerate() {
-        writer.xml.comment(&format!("mesh {:?}", mesh.name));
-        let looks = mesh.albedo.map_or_else(xml::black, diffuse);
-        writer.mesh(&mesh_id(number), &mesh.triangles, &looks);
+        writer.triangles(&id(Object::Mesh(number)), mesh)?;
     }
     let mut files = vec![
         ("scene.xml".to_owned(), writer.xml.finish().into_bytes()),
         ("planes.json".to_owned(), planes::json(scene)),
     ];
-    files.append(&mut writer.meshes);
+    files.append(&mut writer.files);
     Ok(Export { files })
 }
 
 /// Names in the scene file may hold anything, identifiers may not.
-fn surface_id(number: usize) -> String {
-    format!("surface_{number}")
-}
-
-fn mesh_id(number: usize) -> String {
-    format!("mesh_{number}")
+fn id(object: Object) -> String {
+    match object {
+        Object::Surface(i) => format!("surface_{i}"),
+        Object::Mesh(i) => format!("mesh_{i}"),
+        Object::Patch(i) => format!("smooth_{i}"),
+    }
 }
 
 struct Writer {
     xml: Xml,
-    /// Files of meshes.
-    meshes: Vec<(String, Vec<u8>)>,
+    /// Files of meshes and pictures.
+    files: Vec<(String, Vec<u8>)>,
+    /// What the next of them are for.
+    owner: String,
 }
 
 impl Writer {
-    fn light(&mut self, light: &Light) -> Result<(), NotInMitsuba> {
-        match *light {
-            Light::Area { exponent, .. } if exponent > 0.0 => {
-                return Err(NotInMitsuba::Spot { exponent });
-            }
-            Light::Area {
-                shape, radiance, ..
-            } => {
-                self.xml
-                    .comment("the light shines along z, its back is dark");
-                let looks = [emitter(radiance), xml::black()].concat();
-                self.xml.flat("light", &shape, 0.0, &looks);
-            }
-            Light::Point { intensity } => {
-                self.xml.comment("the light");
-                self.xml.point_light(intensity);
-            }
-            Light::Environment { .. } => return Err(NotInMitsuba::Environment),
-            _ => return Err(NotInMitsuba::Light),
+    /// Another file, named after what it is for; returns its name.
+    fn file(&mut self, name: &str, bytes: Vec<u8>) -> String {
+        let taken = |name: &String| self.files.iter().any(|(other, _)| other == name);
+        let mut names = (0..).map(|number: u32| match number {
+            0 => format!("{}_{name}", self.owner),
+            _ => format!("{}_{number}_{name}", self.owner),
+        });
+        let name = names.find(|name| !taken(name)).unwrap_or_default();
+        self.files.push((name.clone(), bytes));
+        name
+    }
+
+    fn surface(&mut self, id: &str, surface: &Surface) {
+        self.xml.comment(&format!("surface {:?}", surface.name));
+        let looks = diffuse(surface.albedo);
+        if let Some((distance, rectangle)) = surface.across() {
+            self.xml
+                .flat(id, &Shape::Rectangle(rectangle), distance, &looks);
+        } else {
+            let [a, b, c, d] = surface.corners();
+            self.mesh(id, &[[a, b, c], [a, c, d]], &looks);
         }
+    }
+
+    fn patch(&mut self, id: String, object: &PatchObject) -> Result<(), NotInMitsuba> {
+        let PatchObject { name, patch, event } = object;
+        self.owner.clone_from(&id);
+        let (looks, is_uniform) = match event {
+            Event::Specular(event) => (Self::specular(event, name)?, true),
+            Event::Reflects(reflectance) => (
+                self.reflects(reflectance, patch.aperture, name)?,
+                reflectance.is_uniform(),
+            ),
+        };
+        if patch.curvature == [0.0; 3] && is_uniform {
+            self.xml.comment(&format!("smooth surface {name:?}"));
+            self.xml.disk(&id, &patch.frame, patch.aperture, &looks);
+            return Ok(());
+        }
+        let mesh = patch::mesh(patch);
+        self.xml.comment(&format!(
+            "smooth surface {name:?}: {} triangles, {:.1e} m from it at most",
+            mesh.faces.len(),
+            mesh.error
+        ));
+        let file = format!("{id}.ply");
+        self.xml.smooth_mesh(&id, &file, &looks);
+        self.files.push((file, ply::smooth(&mesh)));
+        Ok(())
+    }
+
+    fn triangles(&mut self, id: &str, mesh: &MeshObject) -> Result<(), NotInMitsuba> {
+        self.xml.comment(&format!("mesh {:?}", mesh.name));
+        let Some(smooth) = &mesh.smooth else {
+            let looks = mesh.albedo.map_or_else(xml::black, diffuse);
+            self.mesh(id, &mesh.triangles, &looks);
+            return Ok(());
+        };
+        let looks = Self::specular(&smooth.event, &mesh.name)?;
+        let file = format!("{id}.ply");
+        self.xml.smooth_mesh(id, &file, &looks);
+        let bytes = ply::shaded(&mesh.triangles, &smooth.normals);
+        self.files.push((file, bytes));
         Ok(())
     }
 
@@ -193,7 +231,7 @@ impl Writer {
     fn mesh(&mut self, id: &str, triangles: &[[DVec3; 3]], looks: &str) {
         let file = format!("{id}.ply");
         self.xml.mesh(id, &file, looks);
-        self.meshes.push((file, ply::ply(triangles)));
+        self.files.push((file, ply::ply(triangles)));
     }
 }
 
@@ -227,13 +265,35 @@ fn reach(scene: &Scene) -> f64 {
         .as_flattened()
         .iter()
         .fold(0.0, |most: f64, end| most.max(end.abs()));
+    // The sky has no end; what comes from further away comes at less than a thousandth of a right angle.
+    let light = if light.is_finite() {
+        light
+    } else {
+        1e3 * scene.path.first_hit().min(1e3)
+    };
     let windows = scene.planes.iter().filter(|plane| plane.leg == 0);
     let windows = windows.map(|p| p.window.x.half_width().max(p.window.y.half_width()));
-    let surfaces = scene.surfaces.iter().flat_map(Surface::corners);
-    let meshes = scene.meshes.iter().flat_map(|m| m.triangles.as_flattened());
-    let corners = surfaces.chain(meshes.copied());
+    let corners = bodies(scene).flat_map(|(_, corners)| corners);
     let corners = corners.map(|p| p.x.abs().max(p.y.abs()));
     windows.chain(corners).fold(light, f64::max)
+}
+
+/// The name of something that reaches behind the plane of the light.
+fn behind(scene: &Scene) -> Option<String> {
+    let mut bodies = bodies(scene);
+    let found = bodies.find(|(_, corners)| corners.iter().any(|p| p.z < 0.0));
+    found.map(|(name, _)| name.to_owned())
+}
+
+/// Surfaces, each with corners that are around it.
+fn bodies(scene: &Scene) -> impl Iterator<Item = (&str, Vec<DVec3>)> {
+    let surfaces = scene.surfaces.iter();
+    let surfaces = surfaces.map(|s| (s.name.as_str(), s.corners().to_vec()));
+    let patches = scene.patches.iter();
+    let patches = patches.map(|p| (p.name.as_str(), p.patch.corners().to_vec()));
+    let meshes = scene.meshes.iter();
+    let meshes = meshes.map(|m| (m.name.as_str(), m.triangles.as_flattened().to_vec()));
+    surfaces.chain(patches).chain(meshes)
 }
 
 #[cfg(test)]

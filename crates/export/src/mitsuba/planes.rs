@@ -1,8 +1,8 @@
 //! The virtual planes, for a script that records light fields with Mitsuba.
 
-use super::{mesh_id, surface_id};
-use etendue_field::{Frame, Quantity, Side, SliceGrid, Window};
-use etendue_scene::{Object, Scene};
+use super::id;
+use etendue_field::{Frame, Orientation, Quantity, Side, SliceGrid, Window};
+use etendue_scene::{Hit, Scene};
 use serde::Serialize;
 
 /// `planes.json`.
@@ -18,28 +18,42 @@ struct PlanesFile<'a> {
 #[derive(Serialize)]
 struct Plane<'a> {
     name: &'a str,
-    /// In the exported coordinates.
+    /// In the exported coordinates; on a surface X, Y and D are T, B and N.
     frame: Frame,
+    orientation: Orientation,
+    /// θ of the central ray on a surface.
+    longitude: f64,
     distance: f64,
     side: Side,
     leg: usize,
-    /// Identifier of the shape that light leaves last, if any reflects it.
-    leaves: Option<String>,
+    /// Identifiers of the shapes that light has left on its way, in its order.
+    visits: Vec<String>,
+    /// Of the shape that ends the leg, if any does.
+    ends: Option<String>,
     quantity: Quantity,
     window: Window,
     frequencies: SliceGrid,
 }
 
 pub(super) fn json(scene: &Scene) -> Vec<u8> {
+    let path = &scene.path;
+    let hit_id = |hit: &Hit| id(hit.object);
     let planes = scene.planes.iter().map(|plane| Plane {
         name: &plane.name,
-        frame: scene.path.frame_at(plane.distance, plane.leg),
+        frame: match plane.orientation {
+            Orientation::Orthogonal => path.frame_at(plane.distance, plane.leg),
+            _ => path.frame.decompose(&plane.frame),
+        },
+        orientation: plane.orientation,
+        longitude: plane.longitude,
         distance: plane.distance,
         side: plane.side,
         leg: plane.leg,
-        leaves: scene.path.legs[plane.leg]
-            .leaves
-            .and_then(|hit| shape_id(hit.object)),
+        visits: path.legs[..=plane.leg]
+            .iter()
+            .filter_map(|leg| leg.leaves.as_ref().map(hit_id))
+            .collect(),
+        ends: path.ends_at(plane.leg).map(hit_id),
         quantity: plane.quantity,
         window: plane.window,
         frequencies: plane.grid,
@@ -53,12 +67,4 @@ pub(super) fn json(scene: &Scene) -> Vec<u8> {
     let mut bytes = serde_json::to_vec_pretty(&file).unwrap_or_default();
     bytes.push(b'\n');
     bytes
-}
-
-fn shape_id(object: Object) -> Option<String> {
-    match object {
-        Object::Surface(i) => Some(surface_id(i)),
-        Object::Mesh(i) => Some(mesh_id(i)),
-        Object::Patch(_) => None,
-    }
 }

@@ -1,21 +1,60 @@
 //! Meshes as binary PLY files (Turk 1994).
 
+use super::patch::Mesh;
 use glam::DVec3;
 use std::collections::HashMap;
 
 /// A mesh; corners with the same coordinates become one vertex.
 pub(super) fn ply(triangles: &[[DVec3; 3]]) -> Vec<u8> {
-    let (vertices, faces) = indexed(triangles);
+    let corners = triangles.iter().map(|t| t.map(|p| p.to_array()));
+    let (vertices, faces) = indexed(corners);
+    written(&["x", "y", "z"], &vertices, &faces)
+}
+
+/// A mesh with normals at the corners of its triangles; corners that are the same in both become one vertex.
+pub(super) fn shaded(triangles: &[[DVec3; 3]], normals: &[[DVec3; 3]]) -> Vec<u8> {
+    let corners = triangles.iter().zip(normals).map(|(points, normals)| {
+        [0, 1, 2].map(|i| {
+            let (p, n) = (points[i], normals[i]);
+            [p.x, p.y, p.z, n.x, n.y, n.z]
+        })
+    });
+    let (vertices, faces) = indexed(corners);
+    written(&["x", "y", "z", "nx", "ny", "nz"], &vertices, &faces)
+}
+
+/// A mesh with normals and texture coordinates.
+pub(super) fn smooth(mesh: &Mesh) -> Vec<u8> {
+    let vertices: Vec<[f64; 8]> = mesh
+        .vertices
+        .iter()
+        .map(|v| {
+            let (p, n, uv) = (v.point, v.normal, v.uv);
+            [p.x, p.y, p.z, n.x, n.y, n.z, uv.x, uv.y]
+        })
+        .collect();
+    let names = ["x", "y", "z", "nx", "ny", "nz", "u", "v"];
+    written(&names, &vertices, &mesh.faces)
+}
+
+fn written<const N: usize>(
+    names: &[&str; N],
+    vertices: &[[f64; N]],
+    faces: &[[u32; 3]],
+) -> Vec<u8> {
+    let properties = names
+        .map(|name| format!("property double {name}\n"))
+        .concat();
     let header = format!(
         "ply\nformat binary_little_endian 1.0\n\
-         element vertex {}\nproperty double x\nproperty double y\nproperty double z\n\
+         element vertex {}\n{properties}\
          element face {}\nproperty list uchar uint vertex_indices\nend_header\n",
         vertices.len(),
         faces.len()
     );
     let mut bytes = header.into_bytes();
     for vertex in vertices {
-        bytes.extend(vertex.to_array().map(f64::to_le_bytes).as_flattened());
+        bytes.extend(vertex.map(f64::to_le_bytes).as_flattened());
     }
     for face in faces {
         bytes.push(3);
@@ -25,18 +64,20 @@ pub(super) fn ply(triangles: &[[DVec3; 3]]) -> Vec<u8> {
 }
 
 /// Vertices in the order in which they are first met, and the triangles over them.
-fn indexed(triangles: &[[DVec3; 3]]) -> (Vec<DVec3>, Vec<[u32; 3]>) {
+fn indexed<const N: usize>(
+    triangles: impl Iterator<Item = [[f64; N]; 3]>,
+) -> (Vec<[f64; N]>, Vec<[u32; 3]>) {
     let (mut vertices, mut next) = (Vec::new(), 0);
     let mut numbers = HashMap::new();
-    let mut number = |corner: DVec3| {
-        let bits = corner.to_array().map(f64::to_bits);
+    let mut number = |corner: [f64; N]| {
+        let bits = corner.map(f64::to_bits);
         *numbers.entry(bits).or_insert_with(|| {
             vertices.push(corner);
             next += 1;
             next - 1
         })
     };
-    let faces = triangles.iter().map(|t| t.map(&mut number)).collect();
+    let faces = triangles.map(|t| t.map(&mut number)).collect();
     (vertices, faces)
 }
 

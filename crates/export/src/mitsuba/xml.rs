@@ -1,6 +1,6 @@
 //! The text of `scene.xml`.
 
-use etendue_field::{Disc, Rectangle, Shape, VirtualPlane};
+use etendue_field::{Disc, Frame, Rectangle, Shape, VirtualPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
 
@@ -25,10 +25,14 @@ impl Xml {
         for plane in &scene.planes {
             xml.comment(&plane_text(plane));
         }
-        xml.comment("Light is followed from the light, over one surface at most.");
-        xml.line(
-            "<integrator type=\"path\"><integer name=\"max_depth\" value=\"2\"/></integrator>",
-        );
+        let surfaces = (scene.path.legs.len() - 1).max(1);
+        xml.comment(&format!(
+            "Light is followed over {surfaces} surfaces at most."
+        ));
+        xml.line(&format!(
+            "<integrator type=\"path\"><integer name=\"max_depth\" value=\"{}\"/></integrator>",
+            surfaces + 1
+        ));
         xml.line(&format!(
             "<bsdf type=\"diffuse\" id=\"black\">{}</bsdf>",
             spectrum("reflectance", 0.0)
@@ -56,6 +60,40 @@ impl Xml {
             "<shape type=\"{name}\" id=\"{id}\"><transform name=\"to_world\">\
              <scale x=\"{a:?}\" y=\"{b:?}\"/><translate x=\"{x:?}\" y=\"{y:?}\" z=\"{distance:?}\"/>\
              </transform>{looks}</shape>"
+        ));
+    }
+
+    /// A disc that faces along D of a frame.
+    pub(super) fn disk(&mut self, id: &str, frame: &Frame, radius: f64, looks: &str) {
+        let axes = [frame.x * radius, frame.y * radius, frame.d, frame.origin];
+        self.line(&format!(
+            "<shape type=\"disk\" id=\"{id}\">{}{looks}</shape>",
+            matrix(axes)
+        ));
+    }
+
+    /// A mesh with normals of its own.
+    pub(super) fn smooth_mesh(&mut self, id: &str, file: &str, looks: &str) {
+        self.line(&format!(
+            "<shape type=\"ply\" id=\"{id}\"><string name=\"filename\" value=\"{file}\"/>{looks}</shape>"
+        ));
+    }
+
+    /// A projector at the origin that shines along z, with y up and −x to the right in its square picture.
+    pub(super) fn projector(&mut self, file: &str, degrees: f64) {
+        self.line(&format!(
+            "<emitter type=\"projector\" id=\"light\"><float name=\"fov\" value=\"{degrees:?}\"/>\
+             <string name=\"fov_axis\" value=\"x\"/>{}</emitter>",
+            picture("irradiance", file)
+        ));
+    }
+
+    /// Light from far away, by a picture of all directions; Y of the frame is up, D in its middle.
+    pub(super) fn sky(&mut self, file: &str, frame: &Frame) {
+        let axes = [frame.x, frame.y, frame.d, DVec3::ZERO];
+        self.line(&format!(
+            "<emitter type=\"envmap\" id=\"light\"><string name=\"filename\" value=\"{file}\"/>{}</emitter>",
+            matrix(axes)
         ));
     }
 
@@ -103,7 +141,22 @@ pub(super) fn black() -> String {
     "<ref id=\"black\"/>".to_owned()
 }
 
-fn spectrum(name: &str, value: f64) -> String {
+/// A picture as it is, over all of a light.
+pub(super) fn picture(name: &str, file: &str) -> String {
+    format!(
+        "<texture type=\"bitmap\" name=\"{name}\"><string name=\"filename\" value=\"{file}\"/>\
+         <boolean name=\"raw\" value=\"true\"/><string name=\"wrap_mode\" value=\"clamp\"/></texture>"
+    )
+}
+
+/// Where the axes and the origin of a shape are.
+fn matrix([x, y, z, origin]: [DVec3; 4]) -> String {
+    let row = |i: usize| format!("{:?} {:?} {:?} {:?}", x[i], y[i], z[i], origin[i]);
+    let rows = [0, 1, 2].map(row).join(" ");
+    format!("<transform name=\"to_world\"><matrix value=\"{rows} 0 0 0 1\"/></transform>")
+}
+
+pub(super) fn spectrum(name: &str, value: f64) -> String {
     format!("<spectrum name=\"{name}\" value=\"{value:?}\"/>")
 }
 

@@ -1,5 +1,7 @@
 //! What is written for Mitsuba, read back.
 
+mod smooth;
+
 use etendue_export::{Export, NotInMitsuba, mitsuba};
 use etendue_scene::{Scene, SceneFile, resolve};
 use roxmltree::{Document, Node};
@@ -11,6 +13,7 @@ fn scene(name: &str, text: &str) -> Scene {
 
 fn stored(name: &str) -> Scene {
     let path = format!("{}/../../scenes/{name}.ron", env!("CARGO_MANIFEST_DIR"));
+    let name = name.rsplit('/').next().unwrap_or(name);
     scene(name, &std::fs::read_to_string(path).expect("scenes/"))
 }
 
@@ -125,7 +128,9 @@ fn planes_are_those_of_the_scene() {
     let plane = &planes["planes"][0];
     assert_eq!(plane["name"], "a--b-");
     assert_eq!(plane["frame"]["O"], serde_json::json!([0.0, 0.0, 0.3]));
-    assert_eq!(plane["leaves"], serde_json::Value::Null);
+    assert_eq!(plane["visits"], serde_json::json!([]));
+    assert_eq!(plane["ends"], "surface_0");
+    assert_eq!(plane["orientation"], "Orthogonal");
     assert_eq!(plane["window"]["v"]["Gaussian"]["cut"], 0.3);
     assert_eq!(
         plane["frequencies"]["rho"],
@@ -135,7 +140,8 @@ fn planes_are_those_of_the_scene() {
     assert_eq!(plane["frame"]["O"], serde_json::json!([0.0, 0.0, 2.0]));
     assert_eq!(plane["frame"]["D"], serde_json::json!([-0.0, -0.0, -1.0]));
     assert_eq!(plane["frame"]["X"], serde_json::json!([-1.0, -0.0, -0.0]));
-    assert_eq!(plane["leaves"], "surface_0");
+    assert_eq!(plane["visits"], serde_json::json!(["surface_0"]));
+    assert_eq!(plane["ends"], serde_json::Value::Null);
     assert_eq!(plane["leg"], 1);
     assert_eq!(plane["quantity"], "DifferentialIrradiance");
 }
@@ -153,8 +159,7 @@ fn points_and_meshes_are_said() {
         String::from_utf8_lossy(file(&export, "mesh_0.ply"))
             .contains(&format!("element face {faces}\n"))
     );
-    let mut wall = stored("two_bounces");
-    wall.planes.retain(|plane| plane.leg < 2);
+    let wall = stored("two_bounces");
     assert!(counts(&mitsuba(&wall).unwrap(), "surface_0.ply", [4, 2]));
 }
 
@@ -169,7 +174,10 @@ fn what_mitsuba_cannot_say_is_refused() {
     let grating = r#"Grating(name: "bars", center: (0, 1, 0), axis: X, frequency: 5)"#;
     let error = mitsuba(&of(SQUARE, grating)).unwrap_err();
     assert!(error.to_string().contains("\"bars\" cannot"));
-    let name = "leaving_floor".to_owned();
-    let error = mitsuba(&stored("two_bounces")).unwrap_err();
-    assert_eq!(error, NotInMitsuba::Reflections { name, leg: 2 });
+    let behind = stored("wild/behind_the_sky_plane");
+    let error = mitsuba(&behind).unwrap_err();
+    assert!(
+        matches!(error, NotInMitsuba::BehindTheSky { .. }),
+        "{error}"
+    );
 }

@@ -1,0 +1,96 @@
+//! Lights as Mitsuba's emitters.
+
+use super::picture::{pfm, sampled};
+use super::xml::{self, emitter};
+use super::{NotInMitsuba, Writer, sky};
+use etendue_field::{Image, Light, Rectangle, Shape};
+use std::f64::consts::PI;
+
+/// Pixels along a side of a picture.
+const PIXELS: usize = 1024;
+/// Widths of a picture at which it ends, where our photons end too.
+const WIDTHS: f64 = 3.0;
+
+impl Writer {
+    pub(super) fn light(&mut self, light: &Light) -> Result<(), NotInMitsuba> {
+        match light {
+            Light::Area { exponent, .. } if *exponent > 0.0 => {
+                return Err(NotInMitsuba::Spot {
+                    exponent: *exponent,
+                });
+            }
+            Light::Area {
+                shape, radiance, ..
+            } => {
+                self.xml
+                    .comment("the light shines along z, its back is dark");
+                let looks = [emitter(*radiance), xml::black()].concat();
+                self.xml.flat("light", shape, 0.0, &looks);
+            }
+            Light::Point { intensity } => {
+                self.xml.comment("the light");
+                self.xml.point_light(*intensity);
+            }
+            Light::Projector { intensity, image } => self.projector(*intensity, image),
+            Light::Beam { irradiance, image } => self.beam(*irradiance, image),
+            Light::Environment { environment } => {
+                let (width, values) = sky::map(environment);
+                let file = self.file("sky.pfm", pfm(width, &values));
+                self.xml.comment(
+                    "the sky; where it would shine against the central ray it is dark, as in Étendue",
+                );
+                self.xml.sky(&file, &environment.frame);
+            }
+        }
+        Ok(())
+    }
+
+    /// Mitsuba's irradiance is π (1 + u² + v²)^(3/2) times less than the intensity (measured with 3.9.1); its picture has −x to the right and y up.
+    fn projector(&mut self, intensity: f64, image: &Image) {
+        let half = WIDTHS * image.width[0].max(image.width[1]);
+        let picture = sampled([PIXELS; 2], |column, row| {
+            let [u, v] = [column, row].map(|at| half * (1.0 - 2.0 * at / PIXELS as f64));
+            let s2 = 1.0 + u * u + v * v;
+            intensity * image.value(u, v) / (PI * s2 * s2.sqrt())
+        });
+        self.xml.comment(&error_of(image, half));
+        let file = self.file("picture.pfm", pfm(picture.0, &picture.1));
+        let angle = 2.0 * libm::atan(half).to_degrees();
+        self.xml.projector(&file, angle);
+    }
+
+    /// A sheet that shines along its normal. Its picture has x to the right and y down.
+    fn beam(&mut self, irradiance: f64, image: &Image) {
+        let half = WIDTHS * image.width[0].max(image.width[1]);
+        let picture = sampled([PIXELS; 2], |column, row| {
+            let [x, y] = [column, row].map(|at| half * (2.0 * at / PIXELS as f64 - 1.0));
+            irradiance * image.value(x, y)
+        });
+        self.xml.comment(&error_of(image, half));
+        let file = self.file("picture.pfm", pfm(picture.0, &picture.1));
+        let looks = format!(
+            "<emitter type=\"directionalarea\">{}</emitter>{}",
+            xml::picture("radiance", &file),
+            xml::black()
+        );
+        let sheet = Shape::Rectangle(Rectangle {
+            center: [0.0; 2],
+            size: [2.0 * half; 2],
+        });
+        self.xml.flat("light", &sheet, 0.0, &looks);
+    }
+}
+
+/// How far a picture that is straight between pixels is from a smooth one: an eighth of the second derivative times the square of a pixel.
+fn error_of(image: &Image, half: f64) -> String {
+    let pixel = 2.0 * half / PIXELS as f64;
+    let narrow = image.width[0].min(image.width[1]);
+    // The second derivative of exp(−π a²/w²) is 2π/w² at most, of the grating (2πf)²/2.
+    let wave = image
+        .grating
+        .map_or(0.0, |g| 2.0 * PI * PI * g.frequency * g.frequency);
+    let error = pixel * pixel / 8.0 * (2.0 * PI / (narrow * narrow) + wave);
+    format!(
+        "the light: a picture of {PIXELS} by {PIXELS} pixels, off by {error:.1e} of its peak at most"
+    )
+}

@@ -1,0 +1,169 @@
+//! What surfaces do to light, as Mitsuba's BSDFs.
+
+use super::texture::Varied;
+use super::xml::{black, spectrum};
+use super::{NotInMitsuba, Writer};
+use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular};
+
+impl Writer {
+    /// A mirror, an interface.
+    pub(super) fn specular(event: &Specular, name: &str) -> Result<String, NotInMitsuba> {
+        match *event {
+            Specular::Mirror => Ok(format!(
+                "<bsdf type=\"twosided\"><bsdf type=\"conductor\">{NO_METAL}</bsdf></bsdf>"
+            )),
+            // Normals point to the front, which is Mitsuba's outside.
+            Specular::Refraction { front, back } => Ok(format!(
+                "<bsdf type=\"dielectric\">{}{}</bsdf>",
+                float("int_ior", back),
+                float("ext_ior", front)
+            )),
+            Specular::ThinLens { .. } => Err(NotInMitsuba::ThinLens {
+                name: name.to_owned(),
+            }),
+        }
+    }
+
+    /// A BRDF that may vary over a surface within `aperture` of its vertex. All are black on the back.
+    pub(super) fn reflects(
+        &mut self,
+        reflectance: &Reflectance,
+        aperture: f64,
+        name: &str,
+    ) -> Result<String, NotInMitsuba> {
+        let Reflectance {
+            brdf,
+            blend,
+            texture,
+        } = reflectance;
+        let textured = |brdf: &Brdf| Varied {
+            pattern: texture.as_ref(),
+            range: [0.0, brdf.albedo],
+        };
+        let (inside, pattern, outside) = match blend {
+            None => (self.brdf(brdf, textured(brdf)), texture.as_ref(), black()),
+            // One or the other, each with the texture.
+            Some((other, tiles @ Pattern::Checkerboard { .. })) => {
+                let weight = Varied {
+                    pattern: Some(tiles),
+                    range: [0.0, 1.0],
+                };
+                let weight = self.varied("weight", &weight);
+                let [other, brdf] = [other, brdf].map(|brdf| self.brdf(brdf, textured(brdf)));
+                let both = blended(&weight, &other, &brdf);
+                (both, texture.as_ref(), black())
+            }
+            // Albedos alone differ: a mixture of both is one between.
+            Some((other, pattern))
+                if other.lobe == brdf.lobe
+                    && other.fresnel == brdf.fresnel
+                    && texture.is_none() =>
+            {
+                let varied = |pattern| Varied {
+                    pattern,
+                    range: [other.albedo, brdf.albedo],
+                };
+                let constant = Varied {
+                    pattern: None,
+                    range: [other.albedo; 2],
+                };
+                let outside = self.brdf(brdf, constant);
+                let inside = self.brdf(brdf, varied(Some(pattern)));
+                (inside, Some(pattern), outside)
+            }
+            Some(_) => {
+                let name = name.to_owned();
+                return Err(NotInMitsuba::Blend { name });
+            }
+        };
+        // Mitsuba has nothing beyond the edge of a picture but more of it.
+        Ok(match pattern {
+            Some(Pattern::Picture(picture)) if !covers(picture, aperture) => {
+                let weight = self.within("weight", picture);
+                blended(&weight, &outside, &inside)
+            }
+            _ => inside,
+        })
+    }
+
+    fn brdf(&mut self, brdf: &Brdf, albedo: Varied<'_>) -> String {
+        match brdf.lobe {
+            Lobe::Lambertian => {
+                let albedo = self.varied("reflectance", &albedo);
+                factored(
+                    &brdf.fresnel,
+                    format!("<bsdf type=\"diffuse\">{albedo}</bsdf>"),
+                )
+            }
+            // A word of Mitsuba 0.6, which tests/peers/etendue_bsdfs.py adds to Mitsuba 3. Its lobe is (n + 2)/2π cosⁿ, ours (n + 1)/2π cosⁿ.
+            Lobe::Phong { exponent } => {
+                let share = (exponent + 1.0) / (exponent + 2.0);
+                let albedo = self.varied("specular_reflectance", &albedo.times(share));
+                let lobe = format!(
+                    "<bsdf type=\"phong\">{}{}{albedo}</bsdf>",
+                    float("exponent", exponent),
+                    spectrum("diffuse_reflectance", 0.0),
+                );
+                factored(&brdf.fresnel, lobe)
+            }
+            Lobe::Beckmann { roughness } => self.rough("beckmann", roughness, brdf, &albedo),
+            Lobe::Ggx { roughness } => self.rough("ggx", roughness, brdf, &albedo),
+        }
+    }
+
+    fn rough(
+        &mut self,
+        distribution: &str,
+        roughness: f64,
+        brdf: &Brdf,
+        albedo: &Varied<'_>,
+    ) -> String {
+        let metal = match index(&brdf.fresnel) {
+            None => NO_METAL.to_owned(),
+            Some([n, k]) => [spectrum("eta", n), spectrum("k", k)].concat(),
+        };
+        format!(
+            "<bsdf type=\"roughconductor\"><string name=\"distribution\" value=\"{distribution}\"/>{}{metal}{}</bsdf>",
+            float("alpha", roughness),
+            self.varied("specular_reflectance", albedo),
+        )
+    }
+}
+
+/// All is reflected.
+const NO_METAL: &str = "<string name=\"material\" value=\"none\"/>";
+
+/// n and k: a dielectric reflects as a metal that absorbs nothing.
+fn index(fresnel: &Fresnel) -> Option<[f64; 2]> {
+    match *fresnel {
+        Fresnel::White => None,
+        Fresnel::Dielectric { index } => Some([index, 0.0]),
+        Fresnel::Conductor { n, k } => Some([n, k]),
+    }
+}
+
+/// A lobe times the Fresnel factor of the angle at which light arrives. Mitsuba has no word for it:
+/// `tests/peers/etendue_bsdfs.py` adds one, without which the scene does not load.
+fn factored(fresnel: &Fresnel, lobe: String) -> String {
+    match index(fresnel) {
+        None => lobe,
+        Some([n, k]) => format!(
+            "<bsdf type=\"etendue_fresnel\">{}{}{lobe}</bsdf>",
+            float("n", n),
+            float("k", k)
+        ),
+    }
+}
+
+fn blended(weight: &str, zero: &str, one: &str) -> String {
+    format!("<bsdf type=\"blendbsdf\">{weight}{zero}{one}</bsdf>")
+}
+
+/// Whether a picture reaches everywhere within a radius of its middle.
+fn covers(picture: &Picture, radius: f64) -> bool {
+    picture.size.iter().all(|side| 0.5 * side >= radius)
+}
+
+fn float(name: &str, value: f64) -> String {
+    format!("<float name=\"{name}\" value=\"{value:?}\"/>")
+}

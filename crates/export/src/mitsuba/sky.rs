@@ -1,0 +1,88 @@
+//! Environments as the pictures that Mitsuba has of them.
+//!
+//! In both, columns are areas of longitude. Rows are areas in ours, and nodes in Mitsuba's: its first row is the upper pole, its last the lower.
+
+use etendue_field::{Environment, EnvironmentMap};
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// Pixels around, at least. Lobes are straight between them: off by (2π/4096/σ)²/8 of the peak, 2·10⁻⁶ at σ = 0.4, 2·10⁻⁴ at σ = 0.04.
+const AROUND: usize = 4096;
+
+/// Pixels in a row, and radiance row by row.
+///
+/// A map of pixels is met exactly: the new nodes hold all the old ones. Dark is what would shine against the central ray.
+pub(super) fn map(environment: &Environment) -> (usize, Vec<f64>) {
+    let [width, rows] = match &environment.map {
+        EnvironmentMap::Lobes(_) => [AROUND, AROUND / 2 + 1],
+        EnvironmentMap::LatLong(map) => {
+            let raster = map.raster();
+            let finer = finer(raster.width());
+            [finer * raster.width(), 2 * finer * raster.height() + 1]
+        }
+    };
+    let pixels = (0..width * rows).map(|i| {
+        let column = (i % width) as f64 + 0.5;
+        let row = (i / width) as f64;
+        let from = toward(column / width as f64, row / (rows - 1) as f64);
+        // Light that comes from there travels the other way; z is along the central ray.
+        if environment.frame.vector_to_world(from).z >= 0.0 {
+            return 0.0;
+        }
+        match &environment.map {
+            EnvironmentMap::Lobes(_) => environment.map.radiance(from),
+            EnvironmentMap::LatLong(map) => {
+                let raster = map.raster();
+                let (across, down) = (raster.width() as f64, raster.height() as f64);
+                let column = column * across / width as f64;
+                let row = row * down / (rows - 1) as f64;
+                raster.value(column, row, true)
+            }
+        }
+    });
+    (width, pixels.collect())
+}
+
+/// By how much pixels are made smaller. Odd, so that the centres of old pixels are centres of new ones.
+fn finer(width: usize) -> usize {
+    let least = AROUND.div_ceil(width);
+    if width >= AROUND / 2 { 1 } else { least | 1 }
+}
+
+/// The direction of a share of the way around, and of the way down from the upper pole.
+fn toward(around: f64, down: f64) -> DVec3 {
+    let (sin, cos) = libm::sincos(TAU * (0.5 - around));
+    let (across, up) = libm::sincos(PI * down);
+    DVec3::new(across * sin, up, across * cos)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_field::{Frame, LatLong, Raster};
+    use std::sync::Arc;
+
+    /// What Mitsuba reads between its nodes is what we read between our pixels.
+    #[test]
+    fn rows_become_nodes() {
+        let values = (0..24).map(|i| f64::from(i * i % 17)).collect();
+        let latlong = LatLong::new(Raster::new(6, 4, values).unwrap());
+        // Half of the sky is dark: light comes from −Z alone.
+        let frame = Frame::IDENTITY;
+        let environment = Environment {
+            frame,
+            map: EnvironmentMap::LatLong(Arc::new(latlong)),
+        };
+        let (width, values) = map(&environment);
+        let rows = values.len() / width;
+        let nodes = Raster::new(width, rows, values).unwrap();
+        for (x, y) in [(0.3, 0.2), (-0.6, -0.9), (0.1, 3.0), (0.9, -0.1)] {
+            let from = DVec3::new(x, y, -0.5).normalize();
+            let column = width as f64 * (0.5 - libm::atan2(from.x, from.z) / TAU);
+            let row = 0.5 + (rows - 1) as f64 * libm::acos(from.y) / PI;
+            let theirs = nodes.value(column, row, true);
+            let ours = environment.map.radiance(from);
+            assert!((theirs - ours).abs() < 1e-9, "{from}: {theirs}, {ours}"); // rounding of angles, times slopes
+        }
+    }
+}

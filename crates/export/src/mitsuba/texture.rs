@@ -1,0 +1,124 @@
+//! What varies over a surface, as pictures over its texture coordinates, which are (s, t) in metres.
+
+use super::Writer;
+use super::picture::{pfm, sampled};
+use super::xml::spectrum;
+use etendue_field::{Grating, Pattern, Picture};
+use std::f64::consts::TAU;
+
+/// Pixels of a period of a cosine. Between them it is straight: off by (2π/512)²/8 = 2·10⁻⁵ of its amplitude at most.
+const PERIOD: usize = 512;
+
+/// A number that follows a pattern.
+#[derive(Clone, Copy)]
+pub(super) struct Varied<'a> {
+    /// `None` where it is the same everywhere, the second of the range.
+    pub(super) pattern: Option<&'a Pattern>,
+    /// Its values where the pattern is 0 and 1.
+    pub(super) range: [f64; 2],
+}
+
+impl Varied<'_> {
+    fn at(&self, share: f64) -> f64 {
+        let [low, high] = self.range;
+        low + share * (high - low)
+    }
+
+    /// The same, times a factor.
+    pub(super) fn times(self, factor: f64) -> Self {
+        let range = self.range.map(|value| factor * value);
+        Self { range, ..self }
+    }
+}
+
+impl Writer {
+    /// A parameter of a material.
+    ///
+    /// Checkerboards are pictures too, of four pixels: Mitsuba 3.9.1 takes the colours of its own the other way round
+    /// where it is asked for a number.
+    pub(super) fn varied(&mut self, name: &str, varied: &Varied<'_>) -> String {
+        match varied.pattern {
+            None => spectrum(name, varied.range[1]),
+            Some(Pattern::Checkerboard { period }) => {
+                let picture = sampled([2, 2], |column, row| {
+                    varied.at(if (column < 1.0) == (row < 1.0) {
+                        1.0
+                    } else {
+                        0.0
+                    })
+                });
+                let to_uv = scaled([1.0 / period; 2], [0.0; 2]);
+                self.bitmap(name, picture, "nearest", "repeat", &to_uv)
+            }
+            Some(Pattern::Cosine(grating)) => self.cosine(name, varied, grating),
+            Some(Pattern::Picture(picture)) => {
+                let pixels = picture.pixels.values().iter().map(|p| varied.at(*p));
+                let pixels = (picture.pixels.width(), pixels.collect());
+                let [scale, offset] = placed(picture);
+                self.bitmap(name, pixels, "bilinear", "clamp", &scaled(scale, offset))
+            }
+        }
+    }
+
+    fn cosine(&mut self, name: &str, varied: &Varied<'_>, grating: &Grating) -> String {
+        let Grating {
+            axis,
+            frequency,
+            modulation,
+            phase,
+        } = *grating;
+        // Mitsuba makes pictures of one row larger.
+        let (mut size, mut scale, mut offset) = ([2; 2], [0.0; 2], [0.0; 2]);
+        size[axis] = PERIOD;
+        scale[axis] = frequency;
+        offset[axis] = phase / TAU;
+        let picture = sampled(size, |column, row| {
+            let turn = [column, row][axis] / PERIOD as f64;
+            varied.at(0.5 * (1.0 + modulation * libm::cos(TAU * turn)))
+        });
+        self.bitmap(name, picture, "bilinear", "repeat", &scaled(scale, offset))
+    }
+
+    /// 1 within a picture and 0 beyond its edge: the middle of nine pixels.
+    pub(super) fn within(&mut self, name: &str, picture: &Picture) -> String {
+        let middle = sampled([3, 3], |column, row| {
+            let is_middle = |at: f64| (1.0..2.0).contains(&at);
+            if is_middle(column) && is_middle(row) {
+                1.0
+            } else {
+                0.0
+            }
+        });
+        let [scale, offset] = placed(picture);
+        let to_uv = scaled(scale.map(|x| x / 3.0), offset.map(|x| (x + 1.0) / 3.0));
+        self.bitmap(name, middle, "nearest", "clamp", &to_uv)
+    }
+
+    fn bitmap(
+        &mut self,
+        name: &str,
+        (width, values): (usize, Vec<f64>),
+        filter: &str,
+        wrap: &str,
+        to_uv: &str,
+    ) -> String {
+        let file = self.file(&format!("{name}.pfm"), pfm(width, &values));
+        format!(
+            "<texture type=\"bitmap\" name=\"{name}\"><string name=\"filename\" value=\"{file}\"/>\
+             <boolean name=\"raw\" value=\"true\"/><string name=\"filter_type\" value=\"{filter}\"/>\
+             <string name=\"wrap_mode\" value=\"{wrap}\"/>{to_uv}</texture>"
+        )
+    }
+}
+
+/// Where (s, t) is on a picture, from its top left to (1, 1): a factor and what is added.
+fn placed(picture: &Picture) -> [[f64; 2]; 2] {
+    let [width, height] = picture.size;
+    [[1.0 / width, -1.0 / height], [0.5; 2]]
+}
+
+fn scaled([x, y]: [f64; 2], [right, down]: [f64; 2]) -> String {
+    format!(
+        "<transform name=\"to_uv\"><scale x=\"{x:?}\" y=\"{y:?}\"/><translate x=\"{right:?}\" y=\"{down:?}\"/></transform>"
+    )
+}
