@@ -13,3 +13,4 @@ pub use paths::Paths;
 pub use picture::Picture;
 pub use probe::{BackwardProbe, Budget, PhotonProbe, Probe, Question, Stop};
 pub use scatter::Reflects;
+pub use space::{Hit, Ray, Space};
