@@ -16,3 +16,4 @@ pub use picture::Picture;
 pub use probe::{BackwardProbe, Budget, PhotonProbe, Probe, Question, Stop};
 pub use scatter::Reflects;
 pub use seen::{Nearness, Seen, View};
+pub use space::{Hit, Ray, Space};

@@ -82,6 +82,14 @@ impl Form {
         }
     }
 
+    /// Whether a ray meets it, strictly within bounds. `along` has unit length.
+    pub(crate) fn is_met(&self, start: DVec3, along: DVec3, within: [f64; 2]) -> bool {
+        match self {
+            Self::Mesh(mesh) => mesh.is_met(start, along, within),
+            other => other.first(start, along, within).is_some(),
+        }
+    }
+
     fn flat(&self, place: DVec2) -> Local {
         let (uv, along_u) = match self {
             Self::Disc => {

@@ -1,4 +1,7 @@
+//! Triangles of a world as rays meet them.
+
 use super::form::Local;
+use super::triangle::Sight;
 use etendue_scene::Hierarchy;
 use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
@@ -9,6 +12,8 @@ use std::sync::Arc;
 pub(crate) struct Mesh {
     triangles: Arc<Triangles>,
     hierarchy: Hierarchy,
+    /// The vertices of triangles, in the order in which the hierarchy names them.
+    ordered: Vec<[u32; 3]>,
     bounds: [DVec3; 2],
 }
 
@@ -25,8 +30,11 @@ impl Mesh {
         let all = all.unwrap_or_default();
         // Rays begin some way from it: padding counts that in.
         let origins = 10.0 * (all[1] - all[0]).length();
-        let hierarchy = Hierarchy::new(corners.len(), origins, bounds);
+        let hierarchy =
+            Hierarchy::over_triangles(corners.len(), origins, |i| places(&triangles, corners[i]));
+        let order = hierarchy.order().iter();
         Self {
+            ordered: order.map(|i| corners[*i as usize]).collect(),
             hierarchy,
             bounds: all,
             triangles,
@@ -43,26 +51,40 @@ impl Mesh {
         along: DVec3,
         [from, until]: [f64; 2],
     ) -> Option<(f64, Local)> {
+        let sight = Sight::new(start, along);
         let mut first: Option<(f64, usize, DVec2)> = None;
+        let mut end = until;
         self.hierarchy.along(start, along, [from, until], |i| {
-            let triangle = self.hierarchy.order()[i] as usize;
-            if let Some((at, place)) = met(
-                places(&self.triangles, self.triangles.corners()[triangle]),
-                start,
-                along,
-            ) && at > from
-                && at < first.map_or(until, |(at, ..)| at)
+            if let Some((at, place)) = sight.meets(places(&self.triangles, self.ordered[i]))
+                && at > from
+                // Of two at the same distance the same one, in whatever order they are looked at.
+                && (at < end || first.is_some_and(|(first, j, _)| (at, i) < (first, j)))
             {
-                first = Some((at, triangle, place));
+                first = Some((at, i, place));
+                end = at;
             }
-            first.map_or(until, |(at, ..)| at)
+            end
         });
-        first.map(|(at, triangle, place)| (at, self.local(triangle, place)))
+        first.map(|(at, i, place)| (at, self.local(self.ordered[i], place)))
+    }
+
+    /// Whether a ray meets it, strictly within bounds.
+    pub(super) fn is_met(&self, start: DVec3, along: DVec3, [from, until]: [f64; 2]) -> bool {
+        let sight = Sight::new(start, along);
+        let mut is_met = false;
+        self.hierarchy.along(start, along, [from, until], |i| {
+            let corners = places(&self.triangles, self.ordered[i]);
+            is_met |= sight
+                .meets(corners)
+                .is_some_and(|(at, _)| at > from && at < until);
+            // Then nothing matters any more.
+            if is_met { f64::NEG_INFINITY } else { until }
+        });
+        is_met
     }
 
     /// At barycentric coordinates of the second and the third corner.
-    fn local(&self, triangle: usize, place: DVec2) -> Local {
-        let corners = self.triangles.corners()[triangle];
+    fn local(&self, corners: [u32; 3], place: DVec2) -> Local {
         let [a, b, c] = places(&self.triangles, corners);
         let normal = (b - a).cross(c - a);
         let weights = [1.0 - place.x - place.y, place.x, place.y];
@@ -104,28 +126,15 @@ impl Mesh {
     pub(super) fn sample(&self, triangle: usize, [a, b]: [f64; 2]) -> (DVec3, Local) {
         let root = a.sqrt();
         let place = DVec2::new(root * (1.0 - b), root * b);
-        let [p, q, r] = places(&self.triangles, self.triangles.corners()[triangle]);
+        let corners = self.triangles.corners()[triangle];
+        let [p, q, r] = places(&self.triangles, corners);
         (
             p + place.x * (q - p) + place.y * (r - p),
-            self.local(triangle, place),
+            self.local(corners, place),
         )
     }
 }
 
 fn places(triangles: &Triangles, corners: [u32; 3]) -> [DVec3; 3] {
     corners.map(|corner| triangles.vertices()[corner as usize])
-}
-
-/// Where a ray meets a triangle, with barycentric coordinates (Möller and Trumbore 1997, *Fast, minimum storage ray-triangle intersection*).
-fn met([a, b, c]: [DVec3; 3], start: DVec3, along: DVec3) -> Option<(f64, DVec2)> {
-    let (ab, ac) = (b - a, c - a);
-    let across = along.cross(ac);
-    let volume = ab.dot(across);
-    let from = (start - a) / volume;
-    let u = from.dot(across);
-    let turned = from.cross(ab);
-    let v = along.dot(turned);
-    // In a triangle without area, or along its plane, these are no numbers.
-    let inside = u >= 0.0 && v >= 0.0 && u + v <= 1.0;
-    inside.then(|| (ac.dot(turned), DVec2::new(u, v)))
 }

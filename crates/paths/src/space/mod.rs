@@ -2,6 +2,7 @@
 
 mod form;
 mod mesh;
+mod triangle;
 
 use etendue_scene::Hierarchy;
 use etendue_world::{Geometry, Shape, Triangles, World};
@@ -12,9 +13,11 @@ use std::sync::Arc;
 
 /// A ray; distances along it are in lengths of `along`, which is 1 long.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray {
-    pub(crate) from: DVec3,
-    pub(crate) along: DVec3,
+pub struct Ray {
+    /// Where it begins.
+    pub from: DVec3,
+    /// Its direction.
+    pub along: DVec3,
 }
 
 impl Ray {
@@ -25,21 +28,24 @@ impl Ray {
 
 /// What a ray meets.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Hit {
-    pub(crate) distance: f64,
-    pub(crate) position: DVec3,
+pub struct Hit {
+    /// Along the ray.
+    pub distance: f64,
+    /// In the world.
+    pub position: DVec3,
     /// The number of the shape.
-    pub(crate) shape: usize,
+    pub shape: usize,
     /// Normal of the surface on its front.
-    pub(crate) normal: DVec3,
+    pub normal: DVec3,
     /// The frame that materials scatter in, from its coordinates to those of the world. Its Z is the normal, interpolated on smooth meshes; X is along u.
-    pub(crate) frame: DMat3,
-    pub(crate) uv: DVec2,
+    pub frame: DMat3,
+    /// Texture coordinates.
+    pub uv: DVec2,
 }
 
 /// All surfaces of a world.
 #[derive(Debug)]
-pub(crate) struct Space {
+pub struct Space {
     placed: Vec<Placed>,
     hierarchy: Hierarchy,
     /// No nearer hit counts: it is the surface that the ray begins on.
@@ -63,7 +69,9 @@ pub(crate) struct Placed {
 const NEAREST: f64 = 1e-9;
 
 impl Space {
-    pub(crate) fn new(world: &World) -> Self {
+    /// The surfaces of a world, with hierarchies over them.
+    #[must_use]
+    pub fn new(world: &World) -> Self {
         let mut meshes: Vec<(*const Triangles, Arc<Mesh>)> = Vec::new();
         let placed: Vec<Placed> = world
             .shapes
@@ -95,7 +103,8 @@ impl Space {
     }
 
     /// What a ray meets first, at distances within bounds.
-    pub(crate) fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
+    #[must_use]
+    pub fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<Hit> {
         let from = from.max(self.nearest);
         let mut first: Option<(f64, usize, Local)> = None;
         self.hierarchy
@@ -126,16 +135,14 @@ impl Space {
     }
 
     /// Whether a ray meets nothing before a distance.
-    pub(crate) fn is_free(&self, ray: &Ray, distance: f64) -> bool {
+    #[must_use]
+    pub fn is_free(&self, ray: &Ray, distance: f64) -> bool {
         let until = distance - self.nearest;
         let mut met = false;
         self.hierarchy
             .along(ray.from, ray.along, [self.nearest, until], |i| {
                 let shape = self.hierarchy.order()[i] as usize;
-                met = met
-                    || self.placed[shape]
-                        .first(ray, [self.nearest, until])
-                        .is_some();
+                met |= self.placed[shape].is_met(ray, [self.nearest, until]);
                 // Then nothing matters any more.
                 if met { f64::NEG_INFINITY } else { until }
             });
@@ -177,14 +184,24 @@ impl Placed {
         })
     }
 
-    fn first(&self, ray: &Ray, [from, until]: [f64; 2]) -> Option<(f64, Local)> {
+    fn first(&self, ray: &Ray, within: [f64; 2]) -> Option<(f64, Local)> {
+        let (start, along, scale) = self.seen(ray);
+        let within = within.map(|at| at * scale);
+        let (at, local) = self.form.first(start, along, within)?;
+        Some((at / scale, local))
+    }
+
+    fn is_met(&self, ray: &Ray, within: [f64; 2]) -> bool {
+        let (start, along, scale) = self.seen(ray);
+        self.form.is_met(start, along, within.map(|at| at * scale))
+    }
+
+    /// Where a ray starts and goes in its coordinates, and how much longer distances are there.
+    fn seen(&self, ray: &Ray) -> (DVec3, DVec3, f64) {
         let start = self.to_local.transform_point3(ray.from);
         let along = self.to_local.transform_vector3(ray.along);
         let scale = along.length();
-        let (at, local) = self
-            .form
-            .first(start, along / scale, [from * scale, until * scale])?;
-        Some((at / scale, local))
+        (start, along / scale, scale)
     }
 
     fn hit(&self, ray: &Ray, distance: f64, shape: usize, local: &Local) -> Hit {

@@ -1,0 +1,114 @@
+//! Where a ray meets a triangle, without gaps between two that share an edge.
+
+use glam::{DVec2, DVec3};
+
+/// A ray as triangles see it: along its direction, on axes in which that is (x, y, 1).
+pub(super) struct Sight {
+    start: DVec3,
+    /// The largest component of the direction, which is the last one here.
+    last: usize,
+    slopes: DVec2,
+    /// Distances are along the ray, depths along the last axis.
+    per_depth: f64,
+}
+
+impl Sight {
+    pub(super) fn new(start: DVec3, along: DVec3) -> Self {
+        let last = along.abs().max_position();
+        let along = turned(along, last);
+        Self {
+            start: turned(start, last),
+            last,
+            slopes: along.truncate() / along.z,
+            per_depth: 1.0 / along.z,
+        }
+    }
+
+    /// The distance, and barycentric coordinates of the second and the third corner (Woop, Benthin and Wald 2013, *Watertight ray/triangle
+    /// intersection*). An edge gives the same number, with the other sign, to the triangle beyond it: no ray passes between them.
+    #[inline]
+    pub(super) fn meets(&self, corners: [DVec3; 3]) -> Option<(f64, DVec2)> {
+        let seen = corners.map(|corner| turned(corner, self.last) - self.start);
+        let [a, b, c] = seen.map(|p| p.truncate() - p.z * self.slopes);
+        let sides = DVec3::new(b.perp_dot(c), c.perp_dot(a), a.perp_dot(b));
+        let volume = sides.element_sum();
+        // A triangle without area, or along whose plane the ray runs, is not met; nor is one that is no number.
+        let is_met = (sides.min_element() >= 0.0 || sides.max_element() <= 0.0) && volume != 0.0;
+        let weights = sides / volume;
+        let depths = DVec3::new(seen[0].z, seen[1].z, seen[2].z);
+        is_met.then(|| {
+            (
+                self.per_depth * weights.dot(depths),
+                DVec2::new(weights.y, weights.z),
+            )
+        })
+    }
+}
+
+/// The same on axes turned so that one of them is last.
+#[inline]
+fn turned(v: DVec3, last: usize) -> DVec3 {
+    match last {
+        0 => DVec3::new(v.y, v.z, v.x),
+        1 => DVec3::new(v.z, v.x, v.y),
+        _ => v,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_field::random::{self, Stream};
+
+    fn numbers(index: u64, block: u32) -> DVec3 {
+        let [x, y, z, _] = random::words(1, Stream::Photon, index, block).map(random::unit);
+        2.0 * DVec3::new(x, y, z) - 1.0
+    }
+
+    /// Rays at the edge that two triangles share: each meets one of them.
+    #[test]
+    fn nothing_passes_between_triangles_that_share_an_edge() {
+        let mut on_edge = 0;
+        for index in 0..200_000 {
+            let [a, b, aside, start] = [0, 1, 2, 3].map(|block| numbers(index, block));
+            let place = a.lerp(b, 0.1 + 0.4 * (1.0 + numbers(index, 4).x));
+            let (start, aside) = (4.0 * start, aside.cross(b - a));
+            let sight = Sight::new(start, (place - start).normalize());
+            // The same edge, gone along both ways.
+            let [one, other] = [[a, b, place + aside], [b, a, place - aside]];
+            let met = [sight.meets(one), sight.meets(other)];
+            assert!(met.iter().any(Option::is_some), "{start} to {a}, {b}");
+            on_edge += u32::from(met.iter().all(Option::is_some));
+        }
+        assert!(
+            on_edge < 100_000,
+            "{on_edge}: rays were not decided by rounding"
+        );
+    }
+
+    #[test]
+    fn distances_and_weights_lead_to_the_same_place() {
+        for index in 0..10_000 {
+            let corners = [0, 1, 2].map(|block| numbers(index, block));
+            let [a, b, c] = corners;
+            let start = 3.0 * numbers(index, 3);
+            let weights = numbers(index, 4).abs();
+            let [p, q] = [weights.x, weights.y].map(|w| 0.5 * w);
+            let place = a + p * (b - a) + q * (c - a);
+            let along = (place - start).normalize();
+            let across = (b - a).cross(c - a).normalize().dot(along).abs();
+            if across < 1e-3 {
+                continue;
+            }
+            let (at, found) = Sight::new(start, along)
+                .meets(corners)
+                .expect("aimed at it");
+            // Rounding, more of it for rays along the triangle.
+            assert!(
+                (start + at * along - place).length() < 1e-14 / across,
+                "{index}"
+            );
+            assert!((found - DVec2::new(p, q)).length() * (b - a).length() < 1e-12 / across);
+        }
+    }
+}

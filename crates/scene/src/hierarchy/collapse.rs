@@ -1,0 +1,126 @@
+//! From a tree with two boxes in a node to one with eight, such that a ray opens as few nodes as can be.
+
+use super::leaf::MOST;
+use super::wide::{Node, WIDTH, Wide};
+use obvhs::bvh2::Bvh2;
+
+/// What visiting a leaf takes, in openings of a node.
+const VISIT: f32 = 1.5;
+
+/// The most boxes that together stand for what is below a node of the tree of two, and which: see [`costs`].
+struct Collapse<'a> {
+    bvh: &'a Bvh2,
+    costs: Vec<[f32; WIDTH]>,
+}
+
+/// The tree of eight made of one of two, and its leaves: the first of their boxes, and how many.
+///
+/// # Panics
+///
+/// When a leaf has more than [`MOST`].
+pub(super) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
+    let (mut nodes, mut leaves) = (vec![Node::EMPTY], Vec::new());
+    let mut deepest = 0;
+    // Nodes of two, where their places are and how deep.
+    let mut todo: Vec<(usize, usize, usize)> = Vec::new();
+    if !bvh.nodes.is_empty() {
+        todo.push((0, 0, 1));
+    }
+    let collapse = Collapse {
+        costs: costs(bvh),
+        bvh,
+    };
+    while let Some((root, place, depth)) = todo.pop() {
+        deepest = deepest.max(depth);
+        for (i, child) in collapse.children(root).into_iter().enumerate() {
+            let of = &bvh.nodes[child];
+            let number = if of.is_leaf() {
+                assert!(of.prim_count as usize <= MOST, "more than was asked for");
+                leaves.push([of.first_index, of.prim_count]);
+                Node::leaf(leaves.len() - 1)
+            } else {
+                todo.push((child, nodes.len(), depth + 1));
+                nodes.push(Node::EMPTY);
+                Node::inner(nodes.len() - 1)
+            };
+            nodes[place].set(i, [of.min.to_array(), of.max.to_array()], number);
+        }
+    }
+    nodes.shrink_to_fit();
+    leaves.shrink_to_fit();
+    (Wide::new(nodes, deepest), leaves)
+}
+
+/// What rays take below each node of two if it becomes at most 1, 2 … boxes of a node of eight: areas times what opening them takes (Ylitie, Karras
+/// and Laine 2017, *Efficient incoherent ray traversal on GPUs through compressed wide BVHs*, section 3.1).
+fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
+    let mut costs = vec![[0.0; WIDTH]; bvh.nodes.len()];
+    let mut order = Vec::with_capacity(bvh.nodes.len());
+    let mut todo: Vec<usize> = (0..bvh.nodes.len().min(1)).collect();
+    while let Some(node) = todo.pop() {
+        order.push(node);
+        if !bvh.nodes[node].is_leaf() {
+            let first = bvh.nodes[node].first_index as usize;
+            todo.extend([first, first + 1]);
+        }
+    }
+    // What is below comes before.
+    for node in order.into_iter().rev() {
+        let of = &bvh.nodes[node];
+        let area = of.aabb().half_area();
+        if of.is_leaf() {
+            costs[node] = [VISIT * area; WIDTH];
+            continue;
+        }
+        let first = of.first_index as usize;
+        let both = [costs[first], costs[first + 1]];
+        let mut own = [area + shared(&both, WIDTH).1; WIDTH];
+        for boxes in 2..=WIDTH {
+            own[boxes - 1] = shared(&both, boxes).1.min(own[boxes - 2]);
+        }
+        costs[node] = own;
+    }
+    costs
+}
+
+/// How many of some boxes the first of two has so that both take least, and what they take.
+fn shared([first, second]: &[[f32; WIDTH]; 2], boxes: usize) -> (usize, f32) {
+    let cost = |of_first: usize| first[of_first - 1] + second[boxes - of_first - 1];
+    let mut best = (1, cost(1));
+    for of_first in 2..boxes {
+        if cost(of_first) < best.1 {
+            best = (of_first, cost(of_first));
+        }
+    }
+    best
+}
+
+impl Collapse<'_> {
+    /// The nodes of two that become the boxes of a node of eight.
+    fn children(&self, root: usize) -> Vec<usize> {
+        let mut children = Vec::with_capacity(WIDTH);
+        if self.bvh.nodes[root].is_leaf() {
+            children.push(root);
+        } else {
+            self.share(root, WIDTH, &mut children);
+        }
+        children
+    }
+
+    fn share(&self, node: usize, boxes: usize, children: &mut Vec<usize>) {
+        let first = self.bvh.nodes[node].first_index as usize;
+        let (of_first, _) = shared(&[self.costs[first], self.costs[first + 1]], boxes);
+        for (child, mut boxes) in [(first, of_first), (first + 1, boxes - of_first)] {
+            let costs = &self.costs[child];
+            // Fewer that take no more.
+            while boxes > 1 && costs[boxes - 1] >= costs[boxes - 2] {
+                boxes -= 1;
+            }
+            if boxes == 1 {
+                children.push(child);
+            } else {
+                self.share(child, boxes, children);
+            }
+        }
+    }
+}

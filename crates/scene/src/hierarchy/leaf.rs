@@ -1,0 +1,132 @@
+//! A few triangles that are tried together, in f32: which of them a ray may meet.
+//!
+//! Seen along the ray, a triangle is hit if the ray is on the same side of its three edges (Woop, Benthin and Wald 2013, *Watertight ray/triangle
+//! intersection*). Here a triangle is left out only if the ray is on different sides by more than all rounding.
+
+use super::wide::Visit;
+use fearless_simd::{Simd, f32x4, prelude::*};
+use glam::{DVec3, Vec3A};
+
+/// The most triangles, or boxes, of a leaf.
+pub(super) const MOST: usize = 4;
+
+/// A number for each triangle.
+type Lanes<S> = f32x4<S>;
+
+#[derive(Clone)]
+pub(super) struct Leaf {
+    /// [corner, axis, triangle], in lengths such that the largest coordinate of all triangles is 1.
+    corners: [[[f32; MOST]; 3]; 3],
+    first: u32,
+    count: u32,
+}
+
+/// A ray, its direction made (x, y, 1) on axes of its own.
+pub(super) struct Sight {
+    origin: [f32; 3],
+    axes: [usize; 3],
+    slopes: [f32; 2],
+    /// By how much coordinates across the ray may be wrong. Rounding of corners, origin and slopes makes 4e-6 of it.
+    tolerance: f32,
+}
+
+impl Sight {
+    #[inline]
+    pub(super) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
+        let size = direction.abs();
+        // The largest component becomes 1.
+        let axes = if size.x > size.y && size.x > size.z {
+            [1, 2, 0]
+        } else if size.y > size.z {
+            [2, 0, 1]
+        } else {
+            [0, 1, 2]
+        };
+        let [x, y, z] = axes.map(|axis| direction[axis]);
+        Self {
+            origin: origin.to_array(),
+            axes,
+            slopes: [super::single(x / z), super::single(y / z)],
+            tolerance,
+        }
+    }
+}
+
+impl Leaf {
+    pub(super) fn new(first: u32, triangles: impl Iterator<Item = [Vec3A; 3]>) -> Self {
+        let mut corners = [[[0.0; MOST]; 3]; 3];
+        let mut count = 0;
+        for (i, triangle) in triangles.enumerate() {
+            for (corner, place) in triangle.iter().enumerate() {
+                for axis in 0..3 {
+                    corners[corner][axis][i] = place[axis];
+                }
+            }
+            count += 1;
+        }
+        Self {
+            corners,
+            first,
+            count,
+        }
+    }
+
+    /// The triangles that a ray may meet, a bit for each.
+    #[inline(always)]
+    fn candidates<S: Simd>(&self, simd: S, sight: &Sight) -> u32 {
+        let a = self.across(simd, sight, 0);
+        let b = self.across(simd, sight, 1);
+        let c = self.across(simd, sight, 2);
+        let [u, v, w] = [side(b, c), side(c, a), side(a, b)];
+        // What two coordinates that are wrong by so much do to a product, for all products.
+        let size = size(a) + size(b) + size(c) + 2.0 * sight.tolerance;
+        let error = size * sight.tolerance;
+        // What is no number is not left out.
+        let out = u.min(v).min(w).simd_lt(-error) & u.max(v).max(w).simd_gt(error);
+        !u32::try_from(out.to_bitmask()).unwrap_or_default() & ((1 << self.count) - 1)
+    }
+
+    /// Where a corner of each triangle is across the ray.
+    #[inline(always)]
+    fn across<S: Simd>(&self, simd: S, sight: &Sight, corner: usize) -> [Lanes<S>; 2] {
+        let [x, y, z] = sight.axes;
+        let corner = &self.corners[corner];
+        let z = Lanes::simd_from(simd, corner[z]) - sight.origin[z];
+        let x = Lanes::simd_from(simd, corner[x]) - sight.origin[x];
+        let y = Lanes::simd_from(simd, corner[y]) - sight.origin[y];
+        [x - z * sight.slopes[0], y - z * sight.slopes[1]]
+    }
+}
+
+/// On which side of an edge the ray is.
+#[inline(always)]
+fn side<S: Simd>(p: [Lanes<S>; 2], q: [Lanes<S>; 2]) -> Lanes<S> {
+    p[0] * q[1] - p[1] * q[0]
+}
+
+#[inline(always)]
+fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
+    p[0].abs() + p[1].abs()
+}
+
+/// Leaves of triangles, of which those are named that a ray may meet.
+pub(super) struct Triangles<'a, M> {
+    pub(super) leaves: &'a [Leaf],
+    pub(super) sight: Sight,
+    pub(super) meet: M,
+}
+
+impl<M: FnMut(usize) -> f32> Visit for Triangles<'_, M> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32 {
+        let leaf = &self.leaves[leaf];
+        let mut left = leaf.candidates(simd, &self.sight);
+        let mut until = f32::INFINITY;
+        while left != 0 {
+            let i = leaf.first + left.trailing_zeros();
+            left &= left - 1;
+            until = until.min((self.meet)(i as usize));
+        }
+        until
+    }
+}

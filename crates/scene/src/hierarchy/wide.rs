@@ -1,0 +1,197 @@
+//! A tree with eight boxes in a node, all held against a ray at once.
+
+use fearless_simd::{Simd, f32x8, prelude::*};
+use glam::Vec3A;
+
+/// A tree; its root is the first node.
+#[derive(Clone)]
+pub(super) struct Wide {
+    nodes: Vec<Node>,
+    /// Places that a way through it may need to remember.
+    memory: usize,
+}
+
+/// Boxes in a node.
+pub(super) const WIDTH: usize = 8;
+
+/// Of a tree of as many levels as any with a million triangles, ways are remembered without asking for memory.
+const ENOUGH: usize = 96;
+
+#[derive(Clone)]
+#[repr(align(32))]
+pub(super) struct Node {
+    /// Lowest x of all boxes, highest x, lowest y and so on. A place without a box is what no ray meets.
+    planes: [[f32; WIDTH]; 6],
+    /// Numbers of nodes, and of leaves with [`LEAF`].
+    children: [u32; WIDTH],
+}
+
+/// Tells leaves from nodes.
+const LEAF: u32 = 1 << 31;
+
+/// A ray as nodes see it.
+pub(super) struct Ray {
+    origin: [f32; 3],
+    /// One over its direction.
+    turned: [f32; 3],
+    /// Which plane comes first, along each axis.
+    first: [usize; 3],
+    until: f32,
+}
+
+/// No component of a direction is nearer to zero: over any way it moves a ray by nothing, and one over it is a number.
+const LEAST: f32 = 1e-20;
+
+/// A child that is still to be looked at, and how far along the ray its box begins.
+#[derive(Clone, Copy, Default)]
+struct Waiting {
+    near: f32,
+    child: u32,
+}
+
+/// What is done with the leaves that a ray comes to.
+pub(super) trait Visit {
+    /// How far boxes still matter.
+    fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
+}
+
+impl Ray {
+    #[inline]
+    pub(super) fn new(origin: Vec3A, direction: Vec3A, until: f32) -> Self {
+        let turned = direction.to_array().map(|d| {
+            if d.abs() < LEAST {
+                LEAST.copysign(d).recip()
+            } else {
+                d.recip()
+            }
+        });
+        Self {
+            origin: origin.to_array(),
+            turned,
+            first: [0, 1, 2].map(|axis| 2 * axis + usize::from(turned[axis] < 0.0)),
+            until,
+        }
+    }
+}
+
+impl Wide {
+    /// Of nodes, of which so many lie below one another.
+    pub(super) fn new(nodes: Vec<Node>, depth: usize) -> Self {
+        let memory = WIDTH * depth;
+        Self { nodes, memory }
+    }
+
+    /// Visits the leaves whose boxes a ray meets, the nearer ones about first.
+    #[inline(always)]
+    pub(super) fn along<S: Simd>(&self, simd: S, ray: &Ray, visit: impl Visit) {
+        if self.memory <= ENOUGH {
+            self.remembering(simd, ray, &mut [Waiting::default(); ENOUGH], visit);
+        } else {
+            let mut memory = vec![Waiting::default(); self.memory];
+            self.remembering(simd, ray, &mut memory, visit);
+        }
+    }
+
+    #[inline(always)]
+    fn remembering<S: Simd>(
+        &self,
+        simd: S,
+        ray: &Ray,
+        waiting: &mut [Waiting],
+        mut visit: impl Visit,
+    ) {
+        let mut until = ray.until;
+        let mut count = 0;
+        let mut node = &self.nodes[0];
+        loop {
+            let (mut met, near) = node.meets(simd, ray, until);
+            let only = node.children[met.trailing_zeros() as usize % WIDTH];
+            if met.is_power_of_two() && only & LEAF == 0 {
+                node = &self.nodes[only as usize];
+                continue;
+            }
+            // The nearest one will be on top.
+            let before = count;
+            while met != 0 {
+                let i = met.trailing_zeros() as usize % WIDTH;
+                met &= met - 1;
+                let mut place = count;
+                while place > before && waiting[place - 1].near < near[i] {
+                    waiting[place] = waiting[place - 1];
+                    place -= 1;
+                }
+                let (near, child) = (near[i], node.children[i]);
+                waiting[place] = Waiting { near, child };
+                count += 1;
+            }
+            node = loop {
+                if count == 0 {
+                    return;
+                }
+                count -= 1;
+                let Waiting { near, child } = waiting[count];
+                if near > until {
+                    continue;
+                }
+                if child & LEAF == 0 {
+                    break &self.nodes[child as usize];
+                }
+                until = until.min(visit.visit(simd, (child ^ LEAF) as usize));
+                if until < 0.0 {
+                    return;
+                }
+            };
+        }
+    }
+}
+
+impl Node {
+    pub(super) const EMPTY: Self = {
+        let [low, high] = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
+        Self {
+            planes: [low, high, low, high, low, high],
+            children: [LEAF; WIDTH],
+        }
+    };
+
+    pub(super) fn inner(place: usize) -> u32 {
+        // Fewer than boxes, of which there are at most 2³².
+        u32::try_from(place).unwrap_or(LEAF) & !LEAF
+    }
+
+    pub(super) fn leaf(place: usize) -> u32 {
+        Self::inner(place) | LEAF
+    }
+
+    /// Puts a child at one of its places, in a box from its lowest to its highest corner.
+    pub(super) fn set(&mut self, place: usize, [low, high]: [[f32; 3]; 2], child: u32) {
+        for axis in 0..3 {
+            self.planes[2 * axis][place] = low[axis];
+            self.planes[2 * axis + 1][place] = high[axis];
+        }
+        self.children[place] = child;
+    }
+
+    /// Which boxes a ray meets, a bit for each, and how far along it they begin.
+    #[inline(always)]
+    fn meets<S: Simd>(&self, simd: S, ray: &Ray, until: f32) -> (u32, [f32; WIDTH]) {
+        let [x, y, z] = ray.first;
+        let near = self.crossing(simd, ray, 0, x);
+        let near = near.max(self.crossing(simd, ray, 1, y));
+        let near = near.max(self.crossing(simd, ray, 2, z));
+        let near = near.max(f32x8::splat(simd, 0.0));
+        let far = self.crossing(simd, ray, 0, x ^ 1);
+        let far = far.min(self.crossing(simd, ray, 1, y ^ 1));
+        let far = far.min(self.crossing(simd, ray, 2, z ^ 1));
+        let far = far.min(f32x8::splat(simd, until));
+        let met = near.simd_le(far).to_bitmask();
+        (u32::try_from(met).unwrap_or_default(), near.into())
+    }
+
+    /// How far along the ray it crosses planes.
+    #[inline(always)]
+    fn crossing<S: Simd>(&self, simd: S, ray: &Ray, axis: usize, plane: usize) -> f32x8<S> {
+        let plane = f32x8::simd_from(simd, self.planes[plane]);
+        (plane - ray.origin[axis]) * ray.turned[axis]
+    }
+}
