@@ -31,6 +31,9 @@ pub enum NotInMitsuba {
         /// Its exponent n.
         exponent: f64,
     },
+    /// The rays of a file.
+    #[error("Mitsuba has no light of single rays: the rays of a file cannot be exported")]
+    Rays,
     /// A mask that is not opaque.
     #[error(
         "Mitsuba has no semi-transparent mask, only pictures of one: {name:?} cannot be exported"

@@ -109,73 +109,66 @@ impl Scene {
     }
 }
 
-/// Fig. 16.
-pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
-    let scene = Scene::new(taken.quality)?;
-    let found = scene.rendered(Method::Predicted, false);
-    let layers = &found.layers;
-    let log = |values: &[f64]| {
-        // What has none is not on the scale.
-        let log = |x: &f64| {
-            if *x > 0.0 {
-                20.0 * libm::log10(*x)
-            } else {
-                f64::NAN
-            }
-        };
-        scene.picture(values.iter().map(log).collect())
-    };
-    let dots = scene.picture(layers.samples.iter().map(|n| n.min(1.0)).collect())?;
-    let power = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
-    let [bandwidth, blockers] = [power(&layers.bandwidth)?, power(&layers.blockers)?];
-    let density = log(&layers.density)?.mapv(|x| libm::pow(10.0, x / 10.0));
-    let row = |name, quantity: Quantity, scale, pictures| PlateRow {
-        name,
-        quantity,
-        scale,
-        shared: false,
-        pictures,
-    };
-    let decibel = Scale::Decibel { floor: -50.0 };
-    let one = |title: &str,
-               note: &str,
-               heads: [&str; 2],
-               values: [&Array2<f64>; 2],
-               scale,
-               style: &Style| {
-        let pictures = values.map(|values| scene.shown(values)).to_vec();
+/// Two pictures side by side.
+struct Pair<'a> {
+    title: &'a str,
+    note: &'a str,
+    heads: [&'a str; 2],
+    values: [&'a Array2<f64>; 2],
+    quantity: Quantity,
+    scale: Scale,
+    feet: Vec<Vec<String>>,
+}
+
+impl Pair<'_> {
+    fn drawn(self, scene: &Scene, style: &Style) -> Result<Figure, Failure> {
         let of = Plate {
-            title,
-            note,
-            heads: heads.map(str::to_owned).to_vec(),
-            rows: vec![row(
-                "",
-                Quantity::new("of the largest", ""),
-                scale,
-                pictures,
-            )],
-            feet: Vec::new(),
+            title: self.title,
+            note: self.note,
+            heads: self.heads.map(str::to_owned).to_vec(),
+            rows: vec![PlateRow {
+                name: "",
+                quantity: self.quantity,
+                scale: self.scale,
+                shared: false,
+                pictures: self.values.map(|values| scene.shown(values)).to_vec(),
+            }],
+            feet: self.feet,
             bars: None,
         };
         plate(&of, style).map_err(Failure::cannot_run)
+    }
+}
+
+/// Fig. 16.
+pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let scene = Scene::new(taken.quality)?;
+    let layers = scene.rendered(Method::Predicted, false).layers;
+    let squares = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
+    let [blockers, bandwidth] = [squares(&layers.blockers)?, squares(&layers.bandwidth)?];
+    let density = scene.picture(layers.density.clone())?;
+    let dots = scene.picture(layers.samples.iter().map(|n| n.min(1.0)).collect())?;
+    let above = Pair {
+        title: "Criteria and shading samples",
+        note: "Left: the nearness of what is reflected, 1/*d'*, the inverse of its harmonic mean. Right: the bandwidth by Eq. 21, corrected, in the direction of its largest.",
+        heads: ["blockers", "bandwidth"],
+        values: [&blockers, &bandwidth],
+        quantity: Quantity::new("square", ""),
+        scale: Scale::Decibel { floor: -50.0 },
+        feet: Vec::new(),
+    };
+    let below = Pair {
+        title: "",
+        note: "Left: samples a pixel that are asked for, up to one. Right: pixels that have one.",
+        heads: ["density", "samples"],
+        values: [&density, &dots],
+        quantity: Quantity::new("samples a pixel", ""),
+        scale: Scale::Linear,
+        feet: Vec::new(),
     };
     Ok(stacked(&[
-        one(
-            "Criteria and shading samples",
-            "Left: the nearness of what is reflected, 1/*d'*. Right: the bandwidth by Eq. 21, corrected, along its fastest direction. Both in decibels below the largest.",
-            ["blockers", "bandwidth"],
-            [&blockers, &bandwidth],
-            decibel,
-            &taken.style,
-        )?,
-        one(
-            "",
-            "Left: samples a pixel that are asked for. Right: the pixels that have one.",
-            ["density", "samples"],
-            [&density, &dots],
-            Scale::Linear,
-            &photographs(&taken.style),
-        )?,
+        above.drawn(&scene, &taken.style)?,
+        below.drawn(&scene, &photographs(&taken.style))?,
     ]))
 }
 
@@ -183,68 +176,57 @@ pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
 pub(super) fn pictures(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let scene = Scene::new(taken.quality)?;
     let bar = progress::stage("rendering", taken.quiet);
-    let [uniform, printed, predicted] = [
+    let ways = [
         (Method::Uniform, true),
         (Method::Predicted, true),
         (Method::Predicted, false),
-    ]
-    .map(|(method, is_even)| scene.rendered(method, is_even).radiance);
-    let reference = scene
-        .paths
-        .picture(&scene.camera, REFERENCE, 2, &|_| {})
-        .mean;
+    ];
+    let few = ways.map(|(method, is_even)| scene.rendered(method, is_even).radiance);
+    let reference = scene.paths.picture(&scene.camera, REFERENCE, 2, &|_| {});
     bar.finish_and_clear();
+    let reference = reference.mean;
     let white = bright(&reference);
-    let error = |radiance: &[f64]| {
-        let least = 0.01 * reference.iter().sum::<f64>() / reference.len() as f64;
-        let of = |(x, r): (&f64, &f64)| (x - r).powi(2) / (r * r + least * least);
-        radiance.iter().zip(&reference).map(of).sum::<f64>() / reference.len() as f64
-    };
-    let foot = |radiance: &[f64]| vec![format!("relMSE {:.4}", error(radiance))];
-    let feet = [&uniform, &printed, &predicted].map(|radiance| foot(radiance));
-    let [a, b, c, d] = [uniform, printed, predicted, reference]
-        .map(|of| scene.picture(of.into_iter().map(|x| (x / white).min(1.0)).collect()));
-    let all = [a?, b?, c?, d?];
-    let style = photographs(&taken.style);
-    let half =
-        |title: &str, note: &str, heads: [&str; 2], which: [usize; 2], feet: Vec<Vec<String>>| {
-            let of = Plate {
-                title,
-                note,
-                heads: heads.map(str::to_owned).to_vec(),
-                rows: vec![PlateRow {
-                    name: "",
-                    quantity: Quantity::new("radiance", "of white"),
-                    scale: Scale::Linear,
-                    shared: true,
-                    pictures: which.map(|i| scene.shown(&all[i])).to_vec(),
-                }],
-                feet,
-                bars: None,
-            };
-            plate(&of, &style).map_err(Failure::cannot_run)
-        };
+    let foot = |radiance: &Vec<f64>| vec![format!("relMSE {:.4}", error(radiance, &reference))];
+    let [even, round, along] = few.each_ref().map(foot);
+    let shown = |of: &[f64]| scene.picture(of.iter().map(|x| (x / white).min(1.0)).collect());
+    let [a, b, c] = few.each_ref().map(|of| shown(of));
+    let [a, b, c, d] = [a?, b?, c?, shown(&reference)?];
     let note = format!(
         "{} shading samples of {EACH} paths, 0.05 a pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²), *ε* a hundredth of the mean, noise of the reference *r* included.",
         scene.samples
     );
-    let [first, second, third] = feet;
+    let radiance = || Quantity::new("radiance of white", "");
+    let above = Pair {
+        title: "A picture of few shading samples",
+        note: &note,
+        heads: ["even samples", "by the criteria, alike in all directions"],
+        values: [&a, &b],
+        quantity: radiance(),
+        scale: Scale::Linear,
+        feet: vec![even, round],
+    };
+    let below = Pair {
+        title: "",
+        note: "",
+        heads: ["by the criteria, along each direction", "reference"],
+        values: [&c, &d],
+        quantity: radiance(),
+        scale: Scale::Linear,
+        feet: vec![along, vec![format!("{REFERENCE} paths a pixel")]],
+    };
+    let style = photographs(&taken.style);
     Ok(stacked(&[
-        half(
-            "A picture of few shading samples",
-            &note,
-            ["even samples", "by the criteria, alike in all directions"],
-            [0, 1],
-            vec![first, second],
-        )?,
-        half(
-            "",
-            "",
-            ["by the criteria, along each direction", "reference"],
-            [2, 3],
-            vec![third, vec![format!("{REFERENCE} paths a pixel")]],
-        )?,
+        above.drawn(&scene, &style)?,
+        below.drawn(&scene, &style)?,
     ]))
+}
+
+/// The relative mean square error of a picture.
+fn error(radiance: &[f64], reference: &[f64]) -> f64 {
+    let count = reference.len() as f64;
+    let least = 0.01 * reference.iter().sum::<f64>() / count;
+    let of = |(x, r): (&f64, &f64)| (x - r).powi(2) / (r * r + least * least);
+    radiance.iter().zip(reference).map(of).sum::<f64>() / count
 }
 
 /// The radiance above which a hundredth of the pixels lie.
@@ -258,6 +240,6 @@ fn bright(radiance: &[f64]) -> f64 {
 fn photographs(style: &Style) -> Style {
     Style {
         palette: Palette::Grey,
-        ..style.clone()
+        ..*style
     }
 }

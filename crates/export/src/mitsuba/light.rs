@@ -41,6 +41,7 @@ impl Writer {
                 );
                 self.xml.sky(&file, &environment.frame);
             }
+            Light::Rays { .. } => return Err(NotInMitsuba::Rays),
         }
         Ok(())
     }

@@ -124,6 +124,8 @@ fn of_light(light: &Light) -> Result<SpectralCovariance, Untraced> {
         Light::Environment { environment } => {
             light_of([endless; 2], [sky_variance(environment)?; 2])
         }
+        // No Gaussian: each of its rays is as narrow as can be.
+        Light::Rays { .. } => return Err(Untraced::Light),
     })
 }
 
