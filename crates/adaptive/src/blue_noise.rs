@@ -188,11 +188,11 @@ struct Grid {
 }
 
 /// Pixels along a square.
-const CELL: f64 = 3.0;
+const CELL: usize = 3;
 
 impl Grid {
     fn new(points: &[Point], wide: usize, high: usize) -> Self {
-        let size = [wide, high].map(|n| (n as f64 / CELL) as usize + 1);
+        let size = [wide, high].map(|n| n / CELL + 1);
         let mut cells = vec![Vec::new(); size[0] * size[1]];
         for (point, index) in points.iter().zip(0..) {
             let [x, y] = [0, 1].map(|k: usize| cell(point.at[k], size[k]));
@@ -224,7 +224,7 @@ impl Grid {
     reason = "a number of a cell, clamped"
 )]
 fn cell(at: f64, cells: usize) -> usize {
-    ((at / CELL).max(0.0) as usize).min(cells - 1)
+    ((at / CELL as f64).max(0.0) as usize).min(cells - 1)
 }
 
 #[cfg(test)]

@@ -99,7 +99,7 @@ pub(crate) fn shaded(place: &Place) -> Option<&Surface> {
     place
         .surface
         .as_ref()
-        .filter(|surface| surface.cutoff > 0.0 && surface.factors != [0.0; 2])
+        .filter(|surface| surface.cutoff > 0.0 && surface.factors.iter().any(|f| *f > 0.0))
 }
 
 /// How things change from one pixel to the next.

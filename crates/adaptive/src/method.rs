@@ -332,9 +332,8 @@ impl Work<'_> {
     fn fill(&self, values: &mut [Option<[f64; 2]>], samples: &mut Vec<Sample>) -> usize {
         let wide = self.visible.size[0];
         let mut added: Vec<Sample> = Vec::new();
-        for i in 0..values.len() {
-            let Some(surface) = shaded(&self.visible.places[i]).filter(|_| values[i].is_none())
-            else {
+        for (i, value) in values.iter_mut().enumerate() {
+            let Some(surface) = shaded(&self.visible.places[i]).filter(|_| value.is_none()) else {
                 continue;
             };
             let pixel = i / FOUR;
@@ -344,7 +343,7 @@ impl Work<'_> {
                 sample.surface.shape == surface.shape && far[0] < PATCH && far[1] < PATCH
             };
             if let Some(near) = added.iter().rev().take(RECENT).find(is_near) {
-                values[i] = Some(near.value);
+                *value = Some(near.value);
                 continue;
             }
             let point = Point {
@@ -353,7 +352,7 @@ impl Work<'_> {
             };
             let number = (self.plan.samples + added.len()) as u64;
             if let Some((sample, _)) = self.shader.one(&point, number) {
-                values[i] = Some(sample.value);
+                *value = Some(sample.value);
                 added.push(sample);
             }
         }

@@ -167,7 +167,7 @@ fn saved_rays_have_the_flux_of_their_plane() {
         floor
             .positions
             .iter()
-            .all(|p| (p[2] - 2.236_067_977_499_789_6).abs() < 1e-12)
+            .all(|p| (p[2] - 2.236_067_977_499_79).abs() < 1e-12)
     );
     for (p, d) in floor.positions.iter().zip(&floor.directions) {
         let back = (p[2] - 0.3) / d[2];
