@@ -157,7 +157,7 @@ impl Writer {
                 reflectance.is_uniform(),
             ),
         };
-        if patch.curvature == [0.0; 3] && is_uniform {
+        if patch.curvature.iter().all(|k| *k == 0.0) && is_uniform {
             self.xml.comment(&format!("smooth surface {name:?}"));
             self.xml.disk(&id, &patch.frame, patch.aperture, &looks);
             return Ok(());

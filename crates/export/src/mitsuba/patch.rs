@@ -35,7 +35,7 @@ pub(super) struct Vertex {
 
 /// The mesh of a patch; its texture coordinates are (s, t).
 pub(super) fn mesh(patch: &Patch) -> Mesh {
-    if patch.curvature == [0.0; 3] {
+    if patch.curvature.iter().all(|k| *k == 0.0) {
         return rings(patch, 1, EDGE);
     }
     let [mut count, most] = RINGS;
