@@ -43,10 +43,13 @@ fn picture(export: &Export, name: &str) -> ([usize; 2], Vec<f32>) {
     let [_, size, scale] = head.take(3).map(|(i, _)| i).collect::<Vec<_>>()[..] else {
         panic!("three lines");
     };
-    let size = std::str::from_utf8(&bytes[3..size]).unwrap();
-    let size: Vec<usize> = size.split(' ').map(|n| n.parse().unwrap()).collect();
+    let size = std::str::from_utf8(&bytes[3..size]).expect("a picture");
+    let size: Vec<usize> = size
+        .split(' ')
+        .map(|n| n.parse().expect("a picture"))
+        .collect();
     let numbers = bytes[scale + 1..].chunks_exact(4);
-    let numbers = numbers.map(|n| f32::from_le_bytes(n.try_into().unwrap()));
+    let numbers = numbers.map(|n| f32::from_le_bytes(n.try_into().expect("a picture")));
     ([size[0], size[1]], numbers.collect())
 }
 
