@@ -34,7 +34,7 @@ fn rays(unit: PowerUnit) -> RaySet {
                 [
                     1e-3 * wave(i, 0.618_033_989),
                     1e-3 * wave(i, 0.570_795),
-                    1e-4 * wave(i, 0.301_03),
+                    1e-4 * wave(i, 0.303_03),
                 ]
             })
             .collect(),
@@ -250,7 +250,7 @@ fn the_command_knows_what_it_can_judge() {
             .unwrap()
     };
     let write = |name: &str, edits: &[(&str, &str)]| {
-        fs::write(folder.path().join(name), text(edits)).unwrap()
+        fs::write(folder.path().join(name), text(edits)).unwrap();
     };
     write("led.ron", &[]);
     write(

@@ -181,7 +181,7 @@ mod tests {
         // A midpoint rule of 24 cells on an edge of light: of the order of 1/24², the square of a cell.
         assert!(off(&found.slices) < 4e-3, "{}", off(&found.slices));
         // A fault is seen: travel left out.
-        let mut wrong = given.clone();
+        let mut wrong = given;
         wrong.operators.remove(0);
         assert!(off(&predicted(&wrong, &rays, over).slices) > 0.1);
         // Against the plain sum at one frequency.
