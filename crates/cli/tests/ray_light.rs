@@ -34,7 +34,7 @@ fn rays(unit: PowerUnit) -> RaySet {
                 [
                     1e-3 * wave(i, 0.618_033_989),
                     1e-3 * wave(i, 0.570_795),
-                    1e-4 * wave(i, 0.301_3),
+                    1e-4 * wave(i, 0.303_03),
                 ]
             })
             .collect(),
