@@ -79,7 +79,7 @@ fn a_receiver_leaves_the_irradiance_even_over_slopes() {
     let met = Map::<4>::travel(1.2).covariance(&diagonal(LAMP));
     let c = chain.spectral_covariance().unwrap().matrix().unwrap();
     assert!((c[0][0] * 8.0 * PI * PI * met[0][0] - 1.0).abs() < 1e-12); // rounding
-    assert!(c[2] == [0.0; 4] && c[3] == [0.0; 4]);
+    assert_eq!([c[2], c[3]], [[0.0; 4]; 2]);
 }
 
 /// A surface a metre off, met at 0.4 rad, principal axes turned about its normal.
