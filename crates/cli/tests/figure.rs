@@ -134,8 +134,8 @@ fn an_unknown_figure_is_refused_and_names_those_there_are() {
     let folder = tempfile::tempdir().unwrap();
     refused(
         folder.path(),
-        "figure 16 --out out",
-        &["no figure 16", "1, 3, 4, 5", "table1, all"],
+        "figure 18 --out out",
+        &["no figure 18", "1, 3, 4, 5", "table1, all"],
     );
 }
 
