@@ -138,16 +138,7 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
         // What a lobe of 10⁷ leaves is 1/(8π² 10⁷) of angles, and its root of the rest.
         assert!((got - near).abs() < 1e-4, "{i}: {got} {near}");
     }
-<<<<<<< HEAD
-    assert!(
-        diffuse
-            .iter()
-            .enumerate()
-            .all(|(i, row)| i < 2 || row.iter().all(|x| *x == 0.0))
-    );
-=======
     assert_eq!(diffuse[2..], [[0.0; 4]; 2]);
->>>>>>> ca0c74330c588b66fdc55b60a77b9866514a30c9
     // ∫ l du dv keeps the block of positions of S.
     let field = traced().field().unwrap();
     let determinant = field[0][0] * field[1][1] - field[0][1] * field[1][0];
