@@ -1,20 +1,12 @@
-//! Which boxes or triangles a ray may meet: only this file and those below it know obvhs, and f32.
+//! Which boxes a ray may meet: the only file that knows obvhs, and f32.
 //!
 //! The hierarchy, in f32, only names candidates; whether and where something is hit is decided in
-//! f64 by who asks. Boxes are padded by more than rounding, so no candidate is missed. The builder
-//! makes a tree of two boxes a node; rays go through one of eight (`wide`), whose leaves are a few
-//! boxes, or triangles that are tried together (`leaf`).
+//! f64 by who asks. Boxes are padded by more than rounding, so no candidate is missed.
 //!
 //! The builder panics on boxes that are no numbers. No legal scene has them, and none reach it:
 //! what has no box in f32 is a candidate everywhere.
 
-mod collapse;
-mod leaf;
-mod wide;
-
-use fearless_simd::{Level, Simd, dispatch};
 use glam::{DVec3, Vec3A};
-use leaf::{Leaf, Sight};
 use obvhs::BvhBuildParams;
 use obvhs::aabb::Aabb;
 use obvhs::bvh2::Bvh2;
@@ -22,28 +14,16 @@ use obvhs::bvh2::builder::build_bvh2;
 use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::morton::morton_encode_u64_unorm;
+use obvhs::ray::{Ray, RayHit};
 use rayon::prelude::*;
 use std::fmt;
 use std::time::Duration;
-use wide::{Ray, Visit, Wide};
 
-/// A hierarchy over boxes or triangles.
+/// A hierarchy over boxes.
 #[derive(Clone)]
 pub struct Hierarchy {
-    /// Numbers as they were given, in the order of leaves.
-    order: Vec<u32>,
-    tree: Wide,
-    leaves: Leaves,
+    bvh: Bvh2,
     space: Space,
-    level: Level,
-}
-
-/// What is in the leaves of a tree.
-#[derive(Clone)]
-enum Leaves {
-    /// The first and the number of them.
-    Boxes(Vec<[u32; 2]>),
-    Triangles(Vec<Leaf>),
 }
 
 /// Where boxes are: f32 counts from the middle of all of them.
@@ -54,8 +34,6 @@ struct Space {
     size: f64,
     /// By how much boxes grow.
     padding: f64,
-    /// Makes coordinates those of `leaf`, about 1 and less.
-    unit: f64,
 }
 
 /// Boxes grow by this share of `Space::size`: f32 rounding is 6e-8 of it, a ray adds a few of
@@ -77,58 +55,37 @@ const PART: usize = 1 << 15;
 /// fast. With more it takes seconds, for a few percent.
 const FEW: usize = 1 << 13;
 
-/// What opening a node takes, in triangles of a leaf that are tried: these come several at a time.
-const OPENING: f32 = 3.0;
-
 impl Hierarchy {
     /// Over boxes, by number, given by their lowest and highest corners. `origins` is the largest
     /// coordinate a ray starts from.
     #[must_use]
     pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
         let space = Space::around((0..count).map(&bounds), origins);
-        let bvh = bvh(count, &space, bounds);
-        let (tree, leaves) = collapse::collapsed(&bvh);
-        Self {
-            order: bvh.primitive_indices,
-            tree,
-            leaves: Leaves::Boxes(leaves),
-            space,
-            level: Level::new(),
+        let boxed = |i: &u32| space.padded(bounds(*i as usize));
+        let numbers = 0..number(count);
+        if count <= PART {
+            let bvh = built(numbers.collect(), boxed);
+            return Self { bvh, space };
         }
+        let place = |i| (space.place(bounds(i as usize)), i);
+        let mut order: Vec<(u64, u32)> = numbers.into_par_iter().map(place).collect();
+        order.par_sort_unstable();
+        let part = |part: &[(u64, u32)]| built(part.iter().map(|(_, i)| *i).collect(), boxed);
+        let parts = order.par_chunks(PART).map(part).collect();
+        drop(order);
+        let bvh = joined(parts);
+        Self { bvh, space }
     }
 
-    /// Over triangles, by number, given by their corners.
-    #[must_use]
-    pub fn over_triangles(
-        count: usize,
-        origins: f64,
-        corners: impl Fn(usize) -> [DVec3; 3] + Sync,
-    ) -> Self {
-        let boxes = Self::new(count, origins, |i| {
-            let [a, b, c] = corners(i);
-            [a.min(b).min(c), a.max(b).max(c)]
-        });
-        let Leaves::Boxes(leaves) = &boxes.leaves else {
-            return boxes;
-        };
-        let within = |[first, count]: &[u32; 2]| {
-            let numbers = &boxes.order[*first as usize..(*first + *count) as usize];
-            let corners = numbers.iter().map(|i| corners(*i as usize));
-            Leaf::new(*first, corners.map(|of| of.map(|p| boxes.space.scaled(p))))
-        };
-        let leaves = Leaves::Triangles(leaves.par_iter().map(within).collect());
-        Self { leaves, ..boxes }
-    }
-
-    /// The boxes or triangles, in the order in which [`Self::along`] names them.
+    /// The boxes, in the order in which [`Self::along`] names them.
     #[must_use]
     pub fn order(&self) -> &[u32] {
-        &self.order
+        &self.bvh.primitive_indices
     }
 
-    /// Names the boxes or triangles that a ray may meet from `from` on, the nearer ones about first.
-    /// Distances are in lengths of `direction`, which is at least 1 long. `meet` tells how far they
-    /// still matter; before anything is met, that is `until`.
+    /// Names the boxes that a ray may meet from `from` on, the nearer ones about first. Distances
+    /// are in lengths of `direction`, which is at least 1 long. `meet` tells how far boxes still
+    /// matter; before anything is met, that is `until`.
     #[inline]
     pub fn along(
         &self,
@@ -141,42 +98,9 @@ impl Hierarchy {
         let origin = start + begin * direction - self.space.center;
         // Boxes this far are still opened: what is met is decided in f64.
         let limit = |at: f64| single((at - begin) * (1.0 + PADDING) + self.space.padding);
-        let ray = Ray::new(vector(origin), vector(direction), limit(until));
-        let meet = |i: usize| limit(meet(i));
-        match &self.leaves {
-            Leaves::Boxes(leaves) => {
-                let visit = Boxes { leaves, meet };
-                dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
-            }
-            Leaves::Triangles(leaves) => {
-                let tolerance = single(self.space.unit * self.space.padding);
-                let origin = vector(self.space.unit * origin);
-                let visit = leaf::Triangles {
-                    leaves,
-                    sight: Sight::new(origin, direction, tolerance),
-                    meet,
-                };
-                dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
-            }
-        }
-    }
-}
-
-/// Leaves of boxes, named one after the other.
-struct Boxes<'a, M> {
-    leaves: &'a [[u32; 2]],
-    meet: M,
-}
-
-impl<M: FnMut(usize) -> f32> Visit for Boxes<'_, M> {
-    #[inline(always)]
-    fn visit<S: Simd>(&mut self, _: S, leaf: usize) -> f32 {
-        let [first, count] = self.leaves[leaf];
-        let mut until = f32::INFINITY;
-        for i in first..first + count {
-            until = until.min((self.meet)(i as usize));
-        }
-        until
+        let ray = Ray::new(vector(origin), vector(direction), 0.0, limit(until));
+        let meet = |_: &Ray, i| limit(meet(i));
+        self.bvh.ray_traverse(ray, &mut RayHit::none(), meet);
     }
 }
 
@@ -192,8 +116,6 @@ impl Space {
             center,
             size,
             padding: PADDING * size + ROUNDING * farthest,
-            // Without a size, or with one that f64 cannot turn over, all triangles are candidates.
-            unit: 1.0 / size,
         }
     }
 
@@ -209,11 +131,6 @@ impl Space {
             let everywhere = DVec3::splat(self.size + self.padding);
             Aabb::new(vector(-everywhere), vector(everywhere))
         }
-    }
-
-    /// A place as triangles in leaves have it.
-    fn scaled(&self, place: DVec3) -> Vec3A {
-        vector(self.unit * (place - self.center))
     }
 
     /// Where the middle of a box is on a curve that fills the space.
@@ -243,7 +160,7 @@ impl Space {
 impl fmt::Debug for Hierarchy {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.debug_struct("Hierarchy")
-            .field("order", &self.order.len())
+            .field("boxes", &self.order().len())
             .finish_non_exhaustive()
     }
 }
@@ -253,23 +170,7 @@ fn is_sound(corners: &[DVec3; 2], largest: f64) -> bool {
     corners.iter().all(within)
 }
 
-/// The tree over boxes, two in a node.
-fn bvh(count: usize, space: &Space, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Bvh2 {
-    let boxed = |i: &u32| space.padded(bounds(*i as usize));
-    let numbers = 0..number(count);
-    if count <= PART {
-        return built(numbers.collect(), boxed);
-    }
-    let place = |i| (space.place(bounds(i as usize)), i);
-    let mut order: Vec<(u64, u32)> = numbers.into_par_iter().map(place).collect();
-    order.par_sort_unstable();
-    let part = |part: &[(u64, u32)]| built(part.iter().map(|(_, i)| *i).collect(), boxed);
-    let parts = order.par_chunks(PART).map(part).collect();
-    drop(order);
-    joined(parts)
-}
-
-/// The tree over some of them.
+/// The hierarchy over some boxes.
 fn built(numbers: Vec<u32>, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
     let preset = if boxes.len() <= FEW {
@@ -280,18 +181,24 @@ fn built(numbers: Vec<u32>, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     // Without pre-splits: they are for triangles.
     let parameters = BvhBuildParams {
         pre_split: false,
-        max_prims_per_leaf: number(leaf::MOST),
-        collapse_traversal_cost: OPENING,
         ..preset
     };
     let mut bvh = build_bvh2(&boxes, parameters, &mut Duration::default());
     for i in &mut bvh.primitive_indices {
         *i = numbers[*i as usize];
     }
+    finished(bvh)
+}
+
+/// A hierarchy as rays ask it: nodes lie in the order in which they are opened.
+fn finished(mut bvh: Bvh2) -> Bvh2 {
+    bvh.reorder_in_stack_traversal_order();
+    bvh.parents = Vec::new();
+    bvh.nodes.shrink_to_fit();
     bvh
 }
 
-/// One tree over what several have.
+/// One hierarchy over what several have.
 fn joined(mut parts: Vec<Bvh2>) -> Bvh2 {
     let root = |i: &u32| *parts[*i as usize].nodes[0].aabb();
     let one_each = BvhBuildParams {
@@ -331,7 +238,8 @@ fn joined(mut parts: Vec<Bvh2>) -> Bvh2 {
     bvh.parents = Vec::new();
     // Parts overlap: some nodes belong elsewhere.
     ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
-    bvh
+    bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);
+    finished(bvh)
 }
 
 fn number(count: usize) -> u32 {

@@ -22,8 +22,9 @@ impl Triangles {
     /// Of these corners. `origins` is the largest coordinate a ray starts from.
     #[must_use]
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
+        let bounds = |i: usize| enclosing(&corners[i]);
         Self(Arc::new(Shared {
-            hierarchy: Hierarchy::over_triangles(corners.len(), origins, |i| corners[i]),
+            hierarchy: Hierarchy::new(corners.len(), origins, bounds),
             bounds: enclosing(corners.as_flattened()),
             corners,
         }))

@@ -139,7 +139,7 @@ fn photons_have_the_covariance_of_their_field() {
     assert!(wrong.abs() > 20.0, "{wrong}");
 }
 
-/// With 20 photons in a group the floor of noise is a hundred times the moments, and is not in them.
+/// With 20 photons in a group the floor of noise is more than the moments, and is not in them.
 #[test]
 fn few_photons_have_no_bias() {
     let (mut all, mut naive) = (Vec::new(), Vec::new());
@@ -182,7 +182,8 @@ fn few_photons_have_no_bias() {
         );
         if k < 3 {
             let (value, error) = mean(&naive, k);
-            assert!(value - exact > 30.0 * error, "{k}: noise would be seen");
+            // Left in, noise is seen at once.
+            assert!(value - exact > 20.0 * error, "{k}: {value} {error} {exact}");
         }
     }
 }

@@ -50,7 +50,7 @@ fn total(rays: &[(DVec3, DVec3, f64)]) -> f64 {
 #[test]
 fn at_the_light_it_is_the_flux_of_the_light() {
     let scene = scene(
-        "",
+        r#""it""#,
         r#"(name: "light", at: Emission), (name: "on", at: Distance(0.5))"#,
     );
     for plane in 0..2 {

@@ -1,8 +1,8 @@
 //! Triangles of a world as rays meet them.
 
 use super::form::Local;
+use super::tree::Hierarchy;
 use super::triangle::Sight;
-use etendue_scene::Hierarchy;
 use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;

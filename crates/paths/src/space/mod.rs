@@ -2,14 +2,15 @@
 
 mod form;
 mod mesh;
+mod tree;
 mod triangle;
 
-use etendue_scene::Hierarchy;
 use etendue_world::{Geometry, Shape, Triangles, World};
 use form::{Form, Local};
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use mesh::Mesh;
 use std::sync::Arc;
+use tree::Hierarchy;
 
 /// A ray; distances along it are in lengths of `along`, which is 1 long.
 #[derive(Clone, Copy, Debug)]

@@ -189,7 +189,7 @@ mod tests {
         let mut plain = Complex::ZERO;
         for FluxRay { ray, flux } in rays.rays() {
             let [x, y] = [ray.x + ray.u, ray.y + ray.v];
-            let masked = 0.5 * (1.0 + libm::cos(TAU * 2.0 * (ray.x + 0.8 * ray.u) + 0.3));
+            let masked = 0.5 * (1.0 + 0.9 * libm::cos(TAU * 2.0 * (ray.x + 0.8 * ray.u) + 0.3));
             let seen = TwoPlane { x, y, ..*ray };
             let weight = flux * ray.secant_squared().powi(2) * masked * window.value(&seen);
             plain += weight * cis(-TAU * (rho * x + nu * ray.u));

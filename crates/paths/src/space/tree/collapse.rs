@@ -19,7 +19,10 @@ struct Collapse<'a> {
 ///
 /// When a leaf has more than [`MOST`].
 pub(super) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
-    let (mut nodes, mut leaves) = (vec![Node::EMPTY], Vec::new());
+    // As many as there can be: memory is taken once it is written to.
+    let most = bvh.nodes.len() / 2 + 1;
+    let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));
+    nodes.push(Node::EMPTY);
     let mut deepest = 0;
     // Nodes of two, where their places are and how deep.
     let mut todo: Vec<(usize, usize, usize)> = Vec::new();
@@ -56,16 +59,20 @@ pub(super) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
 fn costs(bvh: &Bvh2) -> Vec<[f32; WIDTH]> {
     let mut costs = vec![[0.0; WIDTH]; bvh.nodes.len()];
     let mut order = Vec::with_capacity(bvh.nodes.len());
-    let mut todo: Vec<usize> = (0..bvh.nodes.len().min(1)).collect();
+    let mut todo: Vec<u32> = Vec::new();
+    if !bvh.nodes.is_empty() {
+        todo.push(0);
+    }
     while let Some(node) = todo.pop() {
         order.push(node);
-        if !bvh.nodes[node].is_leaf() {
-            let first = bvh.nodes[node].first_index as usize;
-            todo.extend([first, first + 1]);
+        let of = &bvh.nodes[node as usize];
+        if !of.is_leaf() {
+            todo.extend([of.first_index, of.first_index + 1]);
         }
     }
     // What is below comes before.
     for node in order.into_iter().rev() {
+        let node = node as usize;
         let of = &bvh.nodes[node];
         let area = of.aabb().half_area();
         if of.is_leaf() {

@@ -1,0 +1,357 @@
+//! Which boxes or triangles a ray may meet: only this file and those below it know obvhs, and f32.
+//!
+//! The hierarchy, in f32, only names candidates; whether and where something is hit is decided in
+//! f64 by who asks. Boxes are padded by more than rounding, so no candidate is missed. The builder
+//! makes a tree of two boxes a node; rays go through one of eight (`wide`), whose leaves are a few
+//! boxes, or triangles that are tried together (`leaf`).
+//!
+//! The builder panics on boxes that are no numbers. No legal scene has them, and none reach it:
+//! what has no box in f32 is a candidate everywhere.
+
+mod collapse;
+mod leaf;
+mod wide;
+
+use fearless_simd::{Level, Simd, dispatch};
+use glam::{DVec3, Vec3A};
+use leaf::{Leaf, Sight};
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use obvhs::ploc::morton::morton_encode_u64_unorm;
+use rayon::prelude::*;
+use std::fmt;
+use std::time::Duration;
+use wide::{Ray, Visit, Wide};
+
+/// A hierarchy over boxes or triangles.
+#[derive(Clone)]
+pub(crate) struct Hierarchy {
+    /// Numbers as they were given, in the order of leaves.
+    order: Vec<u32>,
+    tree: Wide,
+    leaves: Leaves,
+    space: Space,
+    level: Level,
+}
+
+/// What is in the leaves of a tree.
+#[derive(Clone)]
+enum Leaves {
+    /// The first and the number of them.
+    Boxes(Vec<[u32; 2]>),
+    Triangles(Vec<Leaf>),
+}
+
+/// Where boxes are: f32 counts from the middle of all of them.
+#[derive(Clone, Copy, Debug)]
+struct Space {
+    center: DVec3,
+    /// The largest coordinate from there.
+    size: f64,
+    /// By how much boxes grow.
+    padding: f64,
+    /// Makes coordinates those of `leaf`, about 1 and less.
+    unit: f64,
+}
+
+/// Boxes grow by this share of `Space::size`: f32 rounding is 6e-8 of it, a ray adds a few of
+/// those.
+const PADDING: f64 = 1e-5;
+
+/// And by this share of the largest coordinate that a ray begins at: some roundings of f64.
+const ROUNDING: f64 = 1e-13;
+
+/// The largest coordinate of a box, which f32 still holds four times over. The farthest corner of a
+/// patch is at 1e28.
+const LARGEST: f64 = 1e36;
+
+/// More boxes than these are built in parts of as many, each by one thread. What the builder needs,
+/// some 150 bytes for each box, is then held for a part at a time.
+const PART: usize = 1 << 15;
+
+/// Up to so many boxes the builder takes its time: a tenth of a second makes rays up to twice as
+/// fast. With more it takes seconds, for a few percent.
+const FEW: usize = 1 << 13;
+
+/// What opening a node takes, in triangles of a leaf that are tried: these come several at a time.
+const OPENING: f32 = 3.0;
+
+impl Hierarchy {
+    /// Over boxes, by number, given by their lowest and highest corners. `origins` is the largest
+    /// coordinate a ray starts from.
+    #[must_use]
+    pub(crate) fn new(
+        count: usize,
+        origins: f64,
+        bounds: impl Fn(usize) -> [DVec3; 2] + Sync,
+    ) -> Self {
+        let space = Space::around((0..count).map(&bounds), origins);
+        let bvh = bvh(count, &space, bounds);
+        let (tree, leaves) = collapse::collapsed(&bvh);
+        Self {
+            order: bvh.primitive_indices,
+            tree,
+            leaves: Leaves::Boxes(leaves),
+            space,
+            level: Level::new(),
+        }
+    }
+
+    /// Over triangles, by number, given by their corners.
+    #[must_use]
+    pub(crate) fn over_triangles(
+        count: usize,
+        origins: f64,
+        corners: impl Fn(usize) -> [DVec3; 3] + Sync,
+    ) -> Self {
+        let boxes = Self::new(count, origins, |i| {
+            let [a, b, c] = corners(i);
+            [a.min(b).min(c), a.max(b).max(c)]
+        });
+        let Leaves::Boxes(leaves) = &boxes.leaves else {
+            return boxes;
+        };
+        let within = |[first, count]: &[u32; 2]| {
+            let numbers = &boxes.order[*first as usize..(*first + *count) as usize];
+            let corners = numbers.iter().map(|i| corners(*i as usize));
+            Leaf::new(*first, corners.map(|of| of.map(|p| boxes.space.scaled(p))))
+        };
+        let leaves = Leaves::Triangles(leaves.par_iter().map(within).collect());
+        Self { leaves, ..boxes }
+    }
+
+    /// The boxes or triangles, in the order in which [`Self::along`] names them.
+    #[must_use]
+    pub(crate) fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Names the boxes or triangles that a ray may meet from `from` on, the nearer ones about first.
+    /// Distances are in lengths of `direction`, which is at least 1 long. `meet` tells how far they
+    /// still matter; before anything is met, that is `until`.
+    #[inline]
+    pub(crate) fn along(
+        &self,
+        start: DVec3,
+        direction: DVec3,
+        [from, until]: [f64; 2],
+        mut meet: impl FnMut(usize) -> f64,
+    ) {
+        let begin = self.space.begin(start, direction, from);
+        let origin = start + begin * direction - self.space.center;
+        // Boxes this far are still opened: what is met is decided in f64.
+        let limit = |at: f64| single((at - begin) * (1.0 + PADDING) + self.space.padding);
+        let ray = Ray::new(vector(origin), vector(direction), limit(until));
+        let meet = |i: usize| limit(meet(i));
+        match &self.leaves {
+            Leaves::Boxes(leaves) => {
+                let visit = Boxes { leaves, meet };
+                dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
+            }
+            Leaves::Triangles(leaves) => {
+                let tolerance = single(self.space.unit * self.space.padding);
+                let origin = vector(self.space.unit * origin);
+                let visit = leaf::Triangles {
+                    leaves,
+                    sight: Sight::new(origin, direction, tolerance),
+                    meet,
+                };
+                dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
+            }
+        }
+    }
+}
+
+/// Leaves of boxes, named one after the other.
+struct Boxes<'a, M> {
+    leaves: &'a [[u32; 2]],
+    meet: M,
+}
+
+impl<M: FnMut(usize) -> f32> Visit for Boxes<'_, M> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, leaf: usize) -> f32 {
+        let [first, count] = self.leaves[leaf];
+        let mut until = f32::INFINITY;
+        for i in first..first + count {
+            until = until.min((self.meet)(i as usize));
+        }
+        until
+    }
+}
+
+impl Space {
+    fn around(boxes: impl Iterator<Item = [DVec3; 2]>, origins: f64) -> Self {
+        let sound = boxes.filter(|of| is_sound(of, LARGEST));
+        let all = sound.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
+        let [low, high] = all.unwrap_or_default();
+        let center = 0.5 * low + 0.5 * high;
+        let size = (high - center).max(center - low).max_element();
+        let farthest = (center.abs().max_element() + size + origins).min(LARGEST);
+        Self {
+            center,
+            size,
+            padding: PADDING * size + ROUNDING * farthest,
+            // Without a size, or with one that f64 cannot turn over, all triangles are candidates.
+            unit: 1.0 / size,
+        }
+    }
+
+    /// The box to look for.
+    fn padded(&self, [low, high]: [DVec3; 2]) -> Aabb {
+        let (low, high) = (
+            low - self.center - self.padding,
+            high - self.center + self.padding,
+        );
+        if is_sound(&[low, high], 2.0 * LARGEST) {
+            Aabb::new(vector(low), vector(high))
+        } else {
+            let everywhere = DVec3::splat(self.size + self.padding);
+            Aabb::new(vector(-everywhere), vector(everywhere))
+        }
+    }
+
+    /// A place as triangles in leaves have it.
+    fn scaled(&self, place: DVec3) -> Vec3A {
+        vector(self.unit * (place - self.center))
+    }
+
+    /// Where the middle of a box is on a curve that fills the space.
+    fn place(&self, [low, high]: [DVec3; 2]) -> u64 {
+        let middle = 0.5 * (low + high) - self.center;
+        // From 0 to below 1.
+        morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
+    }
+
+    /// Where to begin looking along a ray: at `from`, or, if that is far from everything, where it
+    /// comes near; f32 would lose it on the way.
+    #[inline]
+    fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
+        let start = start - self.center;
+        let at = start + from * direction;
+        if at.abs().max_element() < 4.0 * self.size {
+            return from;
+        }
+        let comes_near = |at: f64, d: f64| (-at - (2.0 * self.size).copysign(d)) / d;
+        let near = [0, 1, 2].map(|axis| comes_near(start[axis], direction[axis]));
+        // Along an axis a ray does not come nearer: NaN, or beyond all numbers.
+        let near = near.into_iter().filter(|t| t.is_finite());
+        near.fold(from, f64::max)
+    }
+}
+
+impl fmt::Debug for Hierarchy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Hierarchy")
+            .field("order", &self.order.len())
+            .finish_non_exhaustive()
+    }
+}
+
+fn is_sound(corners: &[DVec3; 2], largest: f64) -> bool {
+    let within = |p: &DVec3| p.is_finite() && p.abs().max_element() <= largest;
+    corners.iter().all(within)
+}
+
+/// The tree over boxes, two in a node.
+fn bvh(count: usize, space: &Space, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Bvh2 {
+    let boxed = |i: &u32| space.padded(bounds(*i as usize));
+    let numbers = 0..number(count);
+    if count <= PART {
+        return built(numbers.collect(), boxed);
+    }
+    let place = |i| (space.place(bounds(i as usize)), i);
+    let mut order: Vec<(u64, u32)> = numbers.into_par_iter().map(place).collect();
+    order.par_sort_unstable();
+    let part = |part: &[(u64, u32)]| built(part.iter().map(|(_, i)| *i).collect(), boxed);
+    let parts = order.par_chunks(PART).map(part).collect();
+    drop(order);
+    joined(parts)
+}
+
+/// The tree over some of them.
+fn built(numbers: Vec<u32>, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
+    let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
+    let preset = if boxes.len() <= FEW {
+        BvhBuildParams::very_slow_build()
+    } else {
+        BvhBuildParams::fast_build()
+    };
+    // Without pre-splits: they are for triangles.
+    let parameters = BvhBuildParams {
+        pre_split: false,
+        max_prims_per_leaf: number(leaf::MOST),
+        collapse_traversal_cost: OPENING,
+        ..preset
+    };
+    let mut bvh = build_bvh2(&boxes, parameters, &mut Duration::default());
+    for i in &mut bvh.primitive_indices {
+        *i = numbers[*i as usize];
+    }
+    bvh
+}
+
+/// One tree over what several have.
+fn joined(mut parts: Vec<Bvh2>) -> Bvh2 {
+    let root = |i: &u32| *parts[*i as usize].nodes[0].aabb();
+    let one_each = BvhBuildParams {
+        max_prims_per_leaf: 1,
+        ..BvhBuildParams::very_slow_build()
+    };
+    let numbers: Vec<u32> = (0..).take(parts.len()).collect();
+    let roots: Vec<Aabb> = numbers.iter().map(root).collect();
+    let mut bvh = build_bvh2(&roots, one_each, &mut Duration::default());
+    let of_parts = std::mem::take(&mut bvh.primitive_indices);
+    let above = bvh.nodes.len();
+    let below = |counted: fn(&Bvh2) -> usize| parts.iter().map(counted).sum::<usize>();
+    bvh.nodes.reserve_exact(below(|part| part.nodes.len() - 1));
+    bvh.primitive_indices
+        .reserve_exact(below(|part| part.primitive_indices.len()));
+    for leaf in 0..above {
+        if !bvh.nodes[leaf].is_leaf() {
+            continue;
+        }
+        let part = of_parts[bvh.nodes[leaf].first_index as usize] as usize;
+        let part = std::mem::take(&mut parts[part]);
+        // The root takes the place of the leaf, what is below it comes after all else.
+        let [nodes, boxes] = [bvh.nodes.len() - 1, bvh.primitive_indices.len()].map(number);
+        let mut moved = part.nodes.iter().map(|node| {
+            let by = if node.is_leaf() { boxes } else { nodes };
+            Bvh2Node {
+                first_index: node.first_index + by,
+                ..*node
+            }
+        });
+        if let Some(root) = moved.next() {
+            bvh.nodes[leaf] = root;
+        }
+        bvh.nodes.extend(moved);
+        bvh.primitive_indices.extend(&part.primitive_indices);
+    }
+    bvh.parents = Vec::new();
+    // Parts overlap: some nodes belong elsewhere.
+    ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
+    bvh
+}
+
+fn number(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+#[inline]
+fn vector(v: DVec3) -> Vec3A {
+    Vec3A::new(single(v.x), single(v.y), single(v.z))
+}
+
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "f32 only names candidates; padding covers its rounding"
+)]
+fn single(x: f64) -> f32 {
+    x as f32
+}
