@@ -1,8 +1,8 @@
-//! `etendue-mpi run`: a run whose batches are measured by all processes of an MPI job.
+//! `etendue-mpi run`, `predict` and `sweep`: batches, planes and points that are shared by all processes of an MPI job.
 //!
 //! `mpirun -n 32 etendue-mpi run scenes/fig9b.ron --photons 2^36 --threads 4 --resume`
 //!
-//! Rank 0 does what `etendue run` does, measures as well, and hands out batches as other ranks ask for them. Nothing is summed by MPI:
+//! Rank 0 does what `etendue` does, works as well, and hands out pieces as other ranks ask for them. Nothing is summed by MPI:
 //! it carries bytes, and the result has those of `etendue run`.
 //!
 //! Why `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and both MPICH and Open MPI are tested there.

@@ -24,7 +24,7 @@ impl Case {
         quiet: bool,
     ) -> Result<Self, Failure> {
         let measurement = measured(&scene, method, 0..scene.run.batches, quiet)?;
-        let predictions = predicted(&scene, &theories, method, quiet)?;
+        let predictions = predicted(&scene, &theories, method, None, quiet)?;
         Ok(Self {
             scene,
             theories,

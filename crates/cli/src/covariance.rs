@@ -47,7 +47,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
         let mut results = Results::claim(&folder, plan.clone())?;
         let method = args.photons.method;
         let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;
-        let predictions = predicted(&scene, &theories, method, args.quiet)?;
+        let predictions = predicted(&scene, &theories, method, None, args.quiet)?;
         let source = source(&scene, method)?;
         let mut reports = Vec::new();
         for (index, prediction) in predictions.iter().enumerate() {

@@ -7,6 +7,7 @@ use crate::method::{self, Method, source};
 use crate::predict::predicted;
 use crate::results::batches::Held;
 use crate::results::kept;
+use crate::results::predictions;
 use crate::results::stored::check_earlier;
 use crate::results::summary::Stopwatch;
 use crate::results::{Results, SUMMARY};
@@ -137,6 +138,15 @@ impl Job {
         kept::unpacked(bytes, &held, &self.scene.planes)
     }
 
+    /// The prediction of a plane that theory predicts, as bytes for another process.
+    pub(crate) fn packed_prediction(&self, plane: u32) -> Result<Vec<u8>, Failure> {
+        let number = plane as usize;
+        let found = self.scene.planes.get(number).zip(self.theories.get(number));
+        let (plane, theory) = found.ok_or_else(|| Failure::cannot_run("no such plane"))?;
+        let prediction = Prediction::new(&self.scene, plane, theory);
+        predictions::packed(plane, &prediction)
+    }
+
     /// Fails where a run would not end, or not fit into this machine.
     ///
     /// # Errors
@@ -164,7 +174,7 @@ impl Job {
     /// # Errors
     /// Where another method stands in for theory, and finds no light.
     pub fn predict(&self) -> Result<Vec<Prediction>, Failure> {
-        predicted(&self.scene, &self.theories, self.method, true)
+        predicted(&self.scene, &self.theories, self.method, None, true)
     }
 
     /// Compares what was measured with what was predicted.

@@ -1,4 +1,5 @@
 use crate::args::PredictArgs;
+use crate::crew::Led;
 use crate::failure::Failure;
 use crate::judge::Judge;
 use crate::method::Method;
@@ -9,9 +10,15 @@ use crate::threads::on_threads;
 use crate::{limits, load, method, progress, say, warnings};
 use etendue_compare::{Applicability, Class, Prediction};
 use etendue_scene::Scene;
+use std::collections::BTreeMap;
 
 /// `etendue predict`: returns the exit code.
 pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
+    predict_with(args, None)
+}
+
+/// The same, with other processes that predict as well.
+pub(crate) fn predict_with(args: &PredictArgs, crew: Option<&Led<'_>>) -> Result<u8, Failure> {
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
@@ -28,7 +35,7 @@ pub(crate) fn predict(args: &PredictArgs) -> Result<u8, Failure> {
             args.force.force,
         )?;
         let method = args.photons.method;
-        let predictions = predicted(&scene, &theories, method, args.quiet)?;
+        let predictions = predicted(&scene, &theories, method, crew, args.quiet)?;
         let content = predictions::write(&mut results, &scene, method, &predictions)?;
         Ok((results, content))
     })?;
@@ -48,31 +55,43 @@ pub(crate) fn predicted(
     scene: &Scene,
     theories: &[Applicability],
     method: Method,
+    crew: Option<&Led<'_>>,
     quiet: bool,
 ) -> Result<Vec<Prediction>, Failure> {
-    let classes = theories.iter().map(Applicability::class).enumerate();
-    let referred = classes.filter(|(_, class)| *class == Class::Reference);
-    let referred: Vec<usize> = referred.map(|(i, _)| i).collect();
+    let is_referred = |i: &usize| theories[*i].class() == Class::Reference;
+    let (referred, told): (Vec<usize>, Vec<usize>) = (0..scene.planes.len()).partition(is_referred);
     let judges = Judge::all(scene, &referred, method, quiet)?;
     let bar = progress::steps("predicting", scene.planes.len(), "planes", quiet);
-    let planes = scene.planes.iter().zip(theories).enumerate();
-    let predictions = planes.map(|(i, (plane, theory))| {
-        bar.set_message(plane.name.clone());
-        let prediction = match Judge::of(&judges, i) {
-            Some((judge, at)) => {
-                let reference = Prediction::reference(scene, i, theory, &judge.measurement, at);
-                let reference = reference.map(|mut prediction| {
-                    prediction.steps.push(judge.method.step());
-                    prediction
-                });
-                reference.map_err(Failure::cannot_run)
-            }
-            None => Ok(Prediction::new(scene, plane, theory)),
+    let own = |plane: u32| {
+        let at = &scene.planes[plane as usize];
+        bar.set_message(at.name.clone());
+        let prediction = Prediction::new(scene, at, &theories[plane as usize]);
+        bar.inc(1);
+        Ok(prediction)
+    };
+    let told: Vec<u32> = told.iter().map(|i| *i as u32).collect();
+    let mut told: BTreeMap<u32, Prediction> = match crew {
+        None => told
+            .iter()
+            .map(|i| Ok((*i, own(*i)?)))
+            .collect::<Result<_, Failure>>()?,
+        Some(crew) => crew.predict(scene, &told, &own, &|plane, bytes| {
+            bar.inc(1);
+            predictions::unpacked(&scene.planes[plane as usize], bytes)
+        })?,
+    };
+    let planes = theories.iter().enumerate().map(|(i, theory)| {
+        let Some((judge, at)) = Judge::of(&judges, i) else {
+            let missing = || Failure::cannot_run("a plane was not predicted");
+            return told.remove(&(i as u32)).ok_or_else(missing);
         };
         bar.inc(1);
-        prediction
+        let reference = Prediction::reference(scene, i, theory, &judge.measurement, at);
+        let mut prediction = reference.map_err(Failure::cannot_run)?;
+        prediction.steps.push(judge.method.step());
+        Ok(prediction)
     });
-    let predictions = predictions.collect();
+    let planes = planes.collect();
     bar.finish_and_clear();
-    predictions
+    planes
 }

@@ -138,7 +138,7 @@ fn stages(
         return done(&scene).ok_or_else(|| gone(place.folder));
     };
     watch.lap("trace");
-    let predictions = predicted(&scene, &theories, method, args.quiet)?;
+    let predictions = predicted(&scene, &theories, method, place.crew, args.quiet)?;
     watch.lap("predict");
     let case = Case {
         scene,

@@ -9,7 +9,9 @@ mod table;
 use crate::args::{SceneArgs, SweepArgs};
 use crate::case::Case;
 use crate::conclude::judged;
+use crate::crew::Led;
 use crate::failure::Failure;
+use crate::method::Method;
 use crate::results::sealed::json;
 use crate::results::stored::{VERSION, check_earlier, summary_of};
 use crate::results::summary::Summary;
@@ -32,41 +34,83 @@ const TABLES: [&str; 2] = ["sweep.csv", "sweep.parquet"];
 
 /// `etendue sweep`: returns the exit code.
 pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
-    let (set, sweeps) = settings(&args.set);
-    check(args, &set, &sweeps)?;
-    let scene = SceneArgs {
-        path: args.path.clone(),
-        set,
-    };
-    let base = load::scene(&scene, |run| args.photons.set(run))?;
-    let points = points(&sweeps, args.together)?;
-    let at = |point| load::scene_at(&scene, point, |run| args.photons.set(run));
-    let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
-    let folder = args.out.clone();
-    let folder = folder.unwrap_or_else(|| Path::new("out").join(format!("{}-sweep", base.name)));
+    sweep_with(args, None)
+}
+
+/// The same, with other processes that run points as well.
+pub(crate) fn sweep_with(args: &SweepArgs, crew: Option<&Led<'_>>) -> Result<u8, Failure> {
     on_threads(&args.threads, || {
+        let all = Points::read(args)?;
+        let folder = args.out.clone();
+        let name = || Path::new("out").join(format!("{}-sweep", all.base.name));
+        let folder = folder.unwrap_or_else(name);
         let checked = |scene| {
             let theories = Applicability::of_planes(scene);
             method::check(scene, args.photons.method)?;
-            limits::check(scene, &theories, rayon::current_num_threads())?;
-            Ok((scene, theories))
+            limits::check(scene, &theories, rayon::current_num_threads())
         };
-        let checked: Vec<_> = scenes.iter().map(checked).collect::<Result<_, Failure>>()?;
+        all.scenes.iter().try_for_each(checked)?;
         if !args.quiet {
-            warnings::tell_at(&points, &scenes);
+            warnings::tell_at(&all.points, &all.scenes);
         }
-        check_earlier(&folder, SWEEP, &base, args.force.force)?;
-        check_fields(&folder, &sweeps, args.force.force)?;
-        let inputs = load::inputs(&scene, &base);
+        let Points { base, sweeps, .. } = &all;
+        check_earlier(&folder, SWEEP, base, args.force.force)?;
+        check_fields(&folder, sweeps, args.force.force)?;
+        let inputs = load::inputs(&all.scene, base);
         // Before the work, and once more for the table: each point claims a folder of its own.
         drop(Results::claim(&folder, plan(&inputs, args.force.force))?);
         interrupt::keeps(
             "interrupted: the points that are done are kept, and the same command goes on from them",
         );
-        let found = run_all(args, &folder, &inputs, points.into_iter().zip(checked))?;
+        let found = run_all(args, &folder, &inputs, &all, crew)?;
         let results = Results::claim(&folder, plan(&inputs, args.force.force))?;
-        finish(args, &base, &sweeps, &found, results)
+        finish(args, base, sweeps, &found, results)
     })
+}
+
+/// What is asked for: a scene at each point of a sweep.
+pub(crate) struct Points {
+    scene: SceneArgs,
+    base: Scene,
+    sweeps: Vec<Sweep>,
+    method: Method,
+    points: Vec<Point>,
+    /// One for each point.
+    pub(crate) scenes: Vec<Scene>,
+}
+
+impl Points {
+    /// Those of a command line.
+    pub(crate) fn read(args: &SweepArgs) -> Result<Self, Failure> {
+        let (set, sweeps) = settings(&args.set);
+        check(args, &set, &sweeps)?;
+        let scene = SceneArgs {
+            path: args.path.clone(),
+            set,
+        };
+        let base = load::scene(&scene, |run| args.photons.set(run))?;
+        let points = points(&sweeps, args.together)?;
+        let at = |point| load::scene_at(&scene, point, |run| args.photons.set(run));
+        let scenes = points.iter().map(at).collect::<Result<_, _>>()?;
+        Ok(Self {
+            scene,
+            base,
+            sweeps,
+            method: args.photons.method,
+            points,
+            scenes,
+        })
+    }
+
+    /// Runs a point; returns its `summary.json`.
+    pub(crate) fn summary(&self, point: u32) -> Result<Vec<u8>, Failure> {
+        let scene = self.scenes.get(point as usize);
+        let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
+        let theories = Applicability::of_planes(scene);
+        let case = Case::of(scene.clone(), theories, self.method, true)?;
+        let summary = Summary::new(&case, &judged(&case)?, Vec::new());
+        Ok(summary.json(&BTreeMap::new()))
+    }
 }
 
 /// Fails where nothing is swept, or a field is given its values twice.
@@ -149,58 +193,76 @@ fn plan(inputs: &[PathBuf], force: bool) -> Plan {
 }
 
 /// What each point gives, run now or before.
-fn run_all<'a>(
+fn run_all(
     args: &SweepArgs,
     folder: &Path,
     inputs: &[PathBuf],
-    points: impl ExactSizeIterator<Item = (Point, (&'a Scene, Vec<Applicability>))>,
+    all: &Points,
+    crew: Option<&Led<'_>>,
 ) -> Result<Vec<Found>, Failure> {
-    let bar = progress::steps("running", points.len(), "points", args.quiet);
-    let found = points.map(|(point, (scene, theories))| {
-        bar.set_message(shown(&point));
-        let name = format!("points/{}", name_of(scene, args));
-        let there = folder.join(&name);
-        let summary = match summary_of(&there, scene, args.photons.method) {
-            Some(summary) => summary,
-            None => run(args, scene, theories, &there, inputs)?,
+    let bar = progress::steps("running", all.points.len(), "points", args.quiet);
+    let names: Vec<String> = all
+        .scenes
+        .iter()
+        .map(|scene| format!("points/{}", name_of(scene, args)))
+        .collect();
+    let earlier = |point: usize| {
+        let there = folder.join(&names[point]);
+        summary_of(&there, &all.scenes[point], args.photons.method)
+    };
+    let claimed = |point: u32| {
+        let plan = Plan {
+            index: SUMMARY,
+            files: Vec::new(),
+            inputs: inputs.to_vec(),
+            force: args.force.force,
         };
+        Results::claim(&folder.join(&names[point as usize]), plan)
+    };
+    let kept = |results: Results, summary: &[u8]| -> Result<Value, Failure> {
+        results.finish(|_| summary.to_vec())?;
         bar.inc(1);
+        serde_json::from_slice(summary).map_err(Failure::cannot_run)
+    };
+    let own = |point: u32| {
+        bar.set_message(shown(&all.points[point as usize]));
+        let results = claimed(point)?;
+        kept(results, &all.summary(point)?)
+    };
+    let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
+    let missing = summaries.iter().enumerate();
+    let missing = missing.filter(|(_, summary)| summary.is_none());
+    let missing: Vec<u32> = missing.map(|(point, _)| point as u32).collect();
+    bar.set_position((names.len() - missing.len()) as u64);
+    let found: BTreeMap<u32, Value> = match crew {
+        None => missing
+            .iter()
+            .map(|i| Ok((*i, own(*i)?)))
+            .collect::<Result<_, Failure>>()?,
+        Some(crew) => crew.run(&all.scenes, &missing, &own, &|point, summary| {
+            kept(claimed(point)?, summary)
+        })?,
+    };
+    bar.finish_and_clear();
+    for (point, summary) in found {
+        summaries[point as usize] = Some(summary);
+    }
+    let points = all.points.iter().zip(names).zip(summaries);
+    let found = points.map(|((point, folder), summary)| {
+        let summary = summary.ok_or_else(|| Failure::cannot_run("a point was not run"))?;
         Ok(Found {
-            point,
-            folder: name,
+            point: point.clone(),
+            folder,
             summary,
         })
     });
-    let found = found.collect();
-    bar.finish_and_clear();
-    found
+    found.collect()
 }
 
 /// The name of a point: the same for the same scene and method.
 fn name_of(scene: &Scene, args: &SweepArgs) -> String {
     let what = format!("{} {}", scene.hash(), args.photons.method.words());
     blake3::hash(what.as_bytes()).to_hex()[..16].to_owned()
-}
-
-/// Runs a scene, and leaves its summary in the folder.
-fn run(
-    args: &SweepArgs,
-    scene: &Scene,
-    theories: Vec<Applicability>,
-    folder: &Path,
-    inputs: &[PathBuf],
-) -> Result<Value, Failure> {
-    let plan = Plan {
-        index: SUMMARY,
-        files: Vec::new(),
-        inputs: inputs.to_vec(),
-        force: args.force.force,
-    };
-    let results = Results::claim(folder, plan)?;
-    let case = Case::of(scene.clone(), theories, args.photons.method, true)?;
-    let summary = Summary::new(&case, &judged(&case)?, Vec::new());
-    results.finish(|files| summary.json(files))?;
-    serde_json::to_value(&summary).map_err(Failure::cannot_run)
 }
 
 /// `sweep.json`, all but the hashes of the files.

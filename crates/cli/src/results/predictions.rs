@@ -1,9 +1,10 @@
 //! Predictions as files: `prediction.npz` for each plane.
 
+use crate::crew::{joined, split};
 use crate::failure::Failure;
 use crate::method::Method;
 use crate::results::Results;
-use crate::results::npz::Npz;
+use crate::results::npz::{Npz, NpzFile};
 use crate::results::stored::Stored;
 use etendue_compare::{
     Applicability, Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction,
@@ -13,6 +14,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;
 use ndarray::{Array0, Array1, Array4, Axis, arr0};
 use serde::{Deserialize, Serialize};
+use std::path::PathBuf;
 
 /// What `prediction.json` says beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
@@ -57,63 +59,86 @@ pub(crate) fn write(
 ) -> Result<Predicted, Failure> {
     let mut planes = Vec::new();
     for (plane, prediction) in scene.planes.iter().zip(predictions) {
-        // Every field by name: a new one must be stored too.
-        let Prediction {
-            class,
-            steps,
-            slices,
-            quadrature_error,
-            first_order,
-            replicates,
-            unblocked,
-            projection,
-            parameters,
-            cuts,
-        } = prediction;
-        let values: Array1<f64> = parameters.iter().map(|p| p.value).collect();
-        let [azimuths, rho, nu] = slices.grid.half_shape();
-        let mut derivatives = Array4::<Complex>::zeros([parameters.len(), azimuths, rho, nu]);
-        for (mut row, parameter) in derivatives.outer_iter_mut().zip(parameters) {
-            row.assign(&parameter.derivative.half);
-        }
-        let linear = first_order
-            .as_ref()
-            .map(|f| std::slice::from_ref(&f.slices));
-        let linear_replicates = first_order.as_ref().map(|f| f.replicates.as_slice());
-        let linear_replicates = linear_replicates.unwrap_or_default();
-        let bytes = Npz::new()
-            .add("slices", &slices.half)?
-            .add(
-                "first_order",
-                &stacked(&slices.grid, linear.unwrap_or_default()),
-            )?
-            .add("projection", &projection.values)?
-            .add("unblocked", &arr0(*unblocked))?
-            .add("values", &values)?
-            .add("derivatives", &derivatives)?
-            .add("replicates", &stacked(&slices.grid, replicates))?
-            .add(
-                "first_order_replicates",
-                &stacked(&slices.grid, linear_replicates),
-            )?
-            .add_half_axes(&slices.grid)?
-            .bytes()?;
+        let (words, bytes) = stored(plane, prediction)?;
         results.write(&file_of(plane), &bytes)?;
-        planes.push(PredictedPlane {
-            name: plane.name.clone(),
-            class: *class,
-            chain: steps.clone(),
-            quadrature_error: *quadrature_error,
-            first_order: first_order.as_ref().map(|f| f.chain.clone()),
-            parameters: parameters
-                .iter()
-                .map(|p| [p.name.clone(), p.unit.clone()])
-                .collect(),
-            cuts: cuts.clone(),
-            replicates: [replicates.len(), linear_replicates.len()],
-        });
+        planes.push(words);
     }
     Ok(Predicted { method, planes })
+}
+
+/// A prediction as bytes, for another process.
+pub(crate) fn packed(plane: &VirtualPlane, prediction: &Prediction) -> Result<Vec<u8>, Failure> {
+    let (words, bytes) = stored(plane, prediction)?;
+    Ok(joined(&words, &bytes))
+}
+
+/// The prediction of a plane from bytes of [`packed`].
+pub(crate) fn unpacked(plane: &VirtualPlane, bytes: &[u8]) -> Result<Prediction, Failure> {
+    let (words, bytes): (PredictedPlane, _) = split(bytes).map_err(Failure::cannot_run)?;
+    let file = NpzFile::new(PathBuf::from(file_of(plane)), bytes.to_vec())?;
+    read_plane(file, plane, &words)
+}
+
+/// The words of a prediction, and the bytes of its file of arrays.
+fn stored(
+    plane: &VirtualPlane,
+    prediction: &Prediction,
+) -> Result<(PredictedPlane, Vec<u8>), Failure> {
+    // Every field by name: a new one must be stored too.
+    let Prediction {
+        class,
+        steps,
+        slices,
+        quadrature_error,
+        first_order,
+        replicates,
+        unblocked,
+        projection,
+        parameters,
+        cuts,
+    } = prediction;
+    let values: Array1<f64> = parameters.iter().map(|p| p.value).collect();
+    let [azimuths, rho, nu] = slices.grid.half_shape();
+    let mut derivatives = Array4::<Complex>::zeros([parameters.len(), azimuths, rho, nu]);
+    for (mut row, parameter) in derivatives.outer_iter_mut().zip(parameters) {
+        row.assign(&parameter.derivative.half);
+    }
+    let linear = first_order
+        .as_ref()
+        .map(|f| std::slice::from_ref(&f.slices));
+    let linear_replicates = first_order.as_ref().map(|f| f.replicates.as_slice());
+    let linear_replicates = linear_replicates.unwrap_or_default();
+    let bytes = Npz::new()
+        .add("slices", &slices.half)?
+        .add(
+            "first_order",
+            &stacked(&slices.grid, linear.unwrap_or_default()),
+        )?
+        .add("projection", &projection.values)?
+        .add("unblocked", &arr0(*unblocked))?
+        .add("values", &values)?
+        .add("derivatives", &derivatives)?
+        .add("replicates", &stacked(&slices.grid, replicates))?
+        .add(
+            "first_order_replicates",
+            &stacked(&slices.grid, linear_replicates),
+        )?
+        .add_half_axes(&slices.grid)?
+        .bytes()?;
+    let words = PredictedPlane {
+        name: plane.name.clone(),
+        class: *class,
+        chain: steps.clone(),
+        quadrature_error: *quadrature_error,
+        first_order: first_order.as_ref().map(|f| f.chain.clone()),
+        parameters: parameters
+            .iter()
+            .map(|p| [p.name.clone(), p.unit.clone()])
+            .collect(),
+        cuts: cuts.clone(),
+        replicates: [replicates.len(), linear_replicates.len()],
+    };
+    Ok((words, bytes))
 }
 
 /// Slices as one array, [slices, azimuth, ρ ≥ 0, ν].
@@ -160,17 +185,16 @@ pub(crate) fn read(
                 let (name, is) = (&plane.name, words.class);
                 return Err(stored.fault(format!("class of {name} is {is:?}; must be {class:?}")));
             }
-            read_plane(stored, plane, words)
+            read_plane(stored.npz(&file_of(plane))?, plane, words)
         })
         .collect()
 }
 
 fn read_plane(
-    stored: &Stored<Predicted>,
+    mut file: NpzFile,
     plane: &VirtualPlane,
     words: &PredictedPlane,
 ) -> Result<Prediction, Failure> {
-    let mut file = stored.npz(&file_of(plane))?;
     file.check_half_axes(&plane.grid)?;
     let slices = |half| Slices {
         grid: plane.grid,
