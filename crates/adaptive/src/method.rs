@@ -150,16 +150,16 @@ impl Work<'_> {
             Method::Predicted | Method::Weighted => self.predicted(),
         };
         let count = self.plan.samples as f64;
+        let power = if matches!(method, Method::Predicted | Method::Weighted) {
+            POWER
+        } else {
+            1.0
+        };
+        let wanted: Vec<Option<Metric>> = wanted
+            .iter()
+            .map(|metric| metric.map(|metric| to_power(metric, power)))
+            .collect();
         if matches!(method, Method::Uniform | Method::Predicted) {
-            let power = if method == Method::Predicted {
-                POWER
-            } else {
-                1.0
-            };
-            let wanted: Vec<Option<Metric>> = wanted
-                .iter()
-                .map(|metric| metric.map(|metric| to_power(metric, power)))
-                .collect();
             let metrics = scaled(&wanted, count);
             self.told(&metrics);
             let points = self.points(&metrics, count, 0);
@@ -170,34 +170,27 @@ impl Work<'_> {
         let points = self.points(&first, FIRST * count, 0);
         let pilot = self.shaded(&points, 0);
         let contrast = self.contrast(&pilot);
-        let power = if method == Method::Weighted {
-            POWER
-        } else {
-            0.0
-        };
-        let wanted: Vec<Option<Metric>> = wanted
-            .iter()
-            .zip(&contrast)
-            .map(|(metric, contrast)| {
-                let metric = to_power((*metric)?, power);
-                // Of the standard deviation itself, or of its share in the rule above.
-                let power = if method == Method::Weighted {
-                    2.0 / 3.0
-                } else {
-                    1.0
-                };
-                Some(metric.times(libm::pow(contrast.max(LEAST), power)))
-            })
-            .collect();
         let rest = (1.0 - FIRST) * count;
-        let then = scaled(&wanted, rest);
+        let then = if method == Method::Weighted {
+            let missed = self.missed(&pilot);
+            let found = first.iter().zip(&missed);
+            let by_error = |(metric, missed): (&Option<Metric>, &f64)| {
+                let metric = (*metric)?;
+                Some(metric.times(libm::cbrt(missed.max(1e-12) / metric.determinant().sqrt())))
+            };
+            let found: Vec<Option<Metric>> = found.map(by_error).collect();
+            let halves = [scaled(&wanted, 0.5 * rest), scaled(&found, 0.5 * rest)];
+            sums(&halves[0], &halves[1])
+        } else {
+            let by_contrast = |(metric, contrast): (&Option<Metric>, &f64)| {
+                Some(metric.as_ref()?.times(contrast.max(LEAST)))
+            };
+            let wanted: Vec<_> = wanted.iter().zip(&contrast).map(by_contrast).collect();
+            scaled(&wanted, rest)
+        };
         let points = self.points(&then, rest, 1);
         let later = self.shaded(&points, pilot.len() as u64);
-        let both: Vec<Option<Metric>> = first
-            .iter()
-            .zip(&then)
-            .map(|(first, then)| Some(first.as_ref()?.plus(*then.as_ref()?)))
-            .collect();
+        let both = sums(&first, &then);
         self.told(&both);
         let all = pilot.into_iter().chain(later);
         all.map(|(sample, _)| Sample {
@@ -205,6 +198,48 @@ impl Work<'_> {
             ..sample
         })
         .collect()
+    }
+
+    /// The square of the relative error that planes through one half of the samples have at the other half, noise taken off, about each pixel.
+    fn missed(&self, samples: &[(Sample, f64)]) -> Vec<f64> {
+        let lights = samples.iter().map(|(sample, _)| sample.light(sample.value));
+        let dark = 0.01 * lights.sum::<f64>() / samples.len().max(1) as f64;
+        let mut found = Vec::new();
+        for half in 0..2 {
+            // In the order of pixels, so that both halves are everywhere.
+            let of = |odd: usize| samples.iter().skip(odd).step_by(2);
+            let sparse: Vec<Sample> = of(half)
+                .map(|(sample, _)| Sample {
+                    metric: sample.metric.times(0.5),
+                    ..*sample
+                })
+                .collect();
+            let values = reconstruct(self.visible, &sparse, Fit::Plane);
+            for (sample, noise) in of(1 - half) {
+                let pixel = pixel_at(sample.at, self.visible.size);
+                let mut near = self.visible.range(pixel);
+                let is_same = |i: &usize| {
+                    let surface = shaded(&self.visible.places[*i]);
+                    surface.is_some_and(|surface| surface.shape == sample.surface.shape)
+                };
+                let Some(value) = near.find(is_same).and_then(|i| values[i]) else {
+                    continue;
+                };
+                let [here, fitted] = [sample.value, value].map(|value| sample.light(value));
+                let square = (here - fitted).powi(2) - noise;
+                let scale = 0.5 * (here * here + fitted * fitted) + dark * dark;
+                found.push(Sample {
+                    metric: sample.metric.times(WIDER.powi(-2)),
+                    value: [square / scale, 0.0],
+                    ..*sample
+                });
+            }
+        }
+        let places = reconstruct(self.visible, &found, Fit::Mean);
+        self.visible.pixels(|pixel| {
+            let mut of = places[self.visible.range(pixel)].iter().flatten();
+            of.next().map_or(0.0, |value| value[0])
+        })
     }
 
     /// What the criteria ask for.
@@ -379,7 +414,19 @@ const LEAST: f64 = 0.02;
     clippy::cast_sign_loss,
     reason = "a number of a pixel, clamped"
 )]
+fn pixel_at(at: [f64; 2], size: [usize; 2]) -> [usize; 2] {
+    [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1))
+}
+
+/// The number of that pixel.
 fn pixel_of(at: [f64; 2], size: [usize; 2]) -> usize {
-    let [column, row] = [0, 1].map(|k: usize| (at[k].max(0.0) as usize).min(size[k] - 1));
+    let [column, row] = pixel_at(at, size);
     row * size[0] + column
+}
+
+/// Metrics of two sets of samples together.
+fn sums(a: &[Option<Metric>], b: &[Option<Metric>]) -> Vec<Option<Metric>> {
+    let both = a.iter().zip(b);
+    both.map(|(a, b)| Some(a.as_ref()?.plus(*b.as_ref()?)))
+        .collect()
 }

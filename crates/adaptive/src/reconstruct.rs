@@ -18,6 +18,14 @@ pub(crate) struct Sample {
     pub(crate) value: [f64; 2],
 }
 
+impl Sample {
+    /// The light of a value of base and lobe, with the factors of the surface.
+    pub(crate) fn light(&self, value: [f64; 2]) -> f64 {
+        let [base, lobe] = self.surface.factors;
+        base * value[0] + lobe * value[1]
+    }
+}
+
 /// Standard deviation of the filter where neighbours are about 1 apart: with less, some places see one sample alone; with more, detail that was paid for is lost.
 const WIDTH: f64 = 0.5;
 

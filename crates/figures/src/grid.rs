@@ -20,6 +20,18 @@ pub struct Picture<'a> {
     pub values: ArrayView2<'a, f64>,
 }
 
+impl Picture<'_> {
+    /// Height over width: 1, unless both axes count pixels, which are squares.
+    fn shape(&self) -> f64 {
+        let counts_pixels = |axis: &Axis| axis.quantity.unit == "pixels";
+        if counts_pixels(&self.x) && counts_pixels(&self.y) {
+            let (columns, rows) = self.values.dim();
+            return rows as f64 / columns as f64;
+        }
+        1.0
+    }
+}
+
 /// A line over a spectrum, ν = ν₀ + slope · (ρ − ρ₀): where the theory puts its content.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Guide {
@@ -108,13 +120,15 @@ pub(crate) fn inner(style: &Style) -> f64 {
 pub(crate) struct Grid<'b, 'a> {
     rows: Vec<Row<'b, 'a>>,
     style: Style,
-    /// Side of a picture.
+    /// Width of a picture.
     pub(crate) side: f64,
+    /// Height of a picture over its width.
+    shape: f64,
     blocks: Vec<Vec<Place>>,
 }
 
 impl<'b, 'a> Grid<'b, 'a> {
-    /// Lays out rows of `columns` pictures that are at least `least` wide, if one fits.
+    /// Lays out rows of `columns` pictures that are at least `least` wide, if one fits. All have the shape of the first.
     ///
     /// # Panics
     /// When a row has not a picture for each column.
@@ -124,10 +138,13 @@ impl<'b, 'a> Grid<'b, 'a> {
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
         }
+        let mut pictures = rows.iter().flat_map(|row| &row.cells);
+        let shape = pictures.next().map_or(1.0, |(first, _)| first.shape());
         let mut grid = Self {
             rows,
             style: *style,
             side: 0.0,
+            shape,
             blocks: Vec::new(),
         };
         for count in 1..=columns.max(1) {
@@ -138,7 +155,7 @@ impl<'b, 'a> Grid<'b, 'a> {
                 after.map(|column| grid.gap(column)).sum()
             };
             let widest = starts.iter().map(|start| gaps(*start)).fold(0.0, f64::max);
-            let most = MOST[usize::from(count > 1)];
+            let most = MOST[usize::from(count > 1)] / shape;
             grid.side = ((inner(style) - widest) / length as f64).min(most).floor();
             if grid.side >= least || length == 1 {
                 grid.blocks = starts
@@ -161,6 +178,11 @@ impl<'b, 'a> Grid<'b, 'a> {
             Place { column, left }
         };
         columns.map(place).collect()
+    }
+
+    /// Height of a picture.
+    fn height(&self) -> f64 {
+        self.shape * self.side
     }
 
     /// Whether a picture has another y axis than its neighbour on the left.
@@ -221,7 +243,7 @@ impl<'b, 'a> Grid<'b, 'a> {
                 x: last.left,
                 y,
                 width: self.side,
-                height: self.side,
+                height: self.height(),
             };
             match bars.last_mut() {
                 Some((bar, whole)) if index > 0 && row.has_bar_of(&self.rows[index - 1]) => {
@@ -235,7 +257,7 @@ impl<'b, 'a> Grid<'b, 'a> {
                     bars.push((shading, area));
                 }
             }
-            y += self.side + ROW_GAPS[usize::from(!self.shares_x(index))];
+            y += self.height() + ROW_GAPS[usize::from(!self.shares_x(index))];
         }
         for (shading, area) in bars {
             bar::draw(svg, &shading, area.right() + 10.0, area, closest - 2.0)?;
@@ -264,7 +286,7 @@ impl<'b, 'a> Grid<'b, 'a> {
                     x: place.left,
                     y,
                     width: self.side,
-                    height: self.side,
+                    height: self.height(),
                 },
                 x: &picture.x,
                 y: &picture.y,
@@ -282,9 +304,9 @@ impl<'b, 'a> Grid<'b, 'a> {
             draw_guides(svg, &panel, guides);
             panel.axes(svg);
         }
-        let at = [LEFT - ROW_NAME, y + 0.5 * self.side];
+        let at = [LEFT - ROW_NAME, y + 0.5 * self.height()];
         let style = Text::new(at, HEAD_TEXT, Anchor::Middle).bold().upwards();
-        svg.fitted(style, row.name, self.side);
+        svg.fitted(style, row.name, self.height());
         Ok(bar)
     }
 
