@@ -118,8 +118,8 @@ fn no_mutated_scene_file_panics() {
 /// Whether a mutated file is a sound scene, and whether that was run.
 fn tried(index: u64) -> [bool; 2] {
     let text = mutated(index);
-    let resolved = SceneFile::parse(&text)
-        .and_then(|file| resolve("fuzz", file, ".".as_ref(), 1_000_000_000));
+    let resolved =
+        SceneFile::parse(&text).and_then(|file| resolve("fuzz", file, ".".as_ref(), 1_000_000_000));
     let mut scene = match resolved {
         Ok(scene) => scene,
         Err(error) => {

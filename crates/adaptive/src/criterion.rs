@@ -3,14 +3,15 @@
 //! A lobe shows light about its axis, up to its cutoff Ω_ρ. From pixel to pixel the axis turns by ∂r, and what is at a distance d' moves before it by the
 //! part of the step ∂p on the surface that is across r, over d'. So the bandwidth along a direction of the picture is Ω_ρ |∂r + ∂p/d'| cycles per pixel. In the
 //! plane of incidence of a sphere that is Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁| times the angle of a pixel: Eq. 21 with what its print lacks, and without d'
-//! it is Eq. 20. What is found by finite differences on the screen has the angle of view, the distance and both curvatures in it, as the paper says.
+//! it is Eq. 20. What is found by finite differences on the screen has the angle of view, the distance and both curvatures in it, as the paper says. As
+//! printed, the equations are functions of the larger curvature, and alike in all directions.
 
 use crate::metric::Metric;
 use crate::visible::{OFFSETS, Place, Surface, Visible};
 use etendue_compare::lobe_cutoff;
 use etendue_field::Lobe;
 use etendue_paths::{Nearness, Reflects};
-use etendue_theory::shading::COSINE_CUTOFF;
+use etendue_theory::shading::{COSINE_CUTOFF, Criterion};
 use glam::DVec3;
 use std::collections::BTreeMap;
 use std::sync::Mutex;
@@ -94,6 +95,70 @@ pub(crate) fn criterion(
     Some(lobe.plus(shadow))
 }
 
+/// The same by Eqs. 20 and 21 as printed, seen from `eye`, where a surface has a lobe.
+pub(crate) fn printed(
+    visible: &Visible,
+    pixel: [usize; 2],
+    nearness: Nearness,
+    eye: DVec3,
+) -> Option<Metric> {
+    let corrected = criterion(visible, pixel, nearness)?;
+    let places = visible.of_pixel(pixel);
+    let first = places.iter().find_map(shaded)?;
+    let steps = steps(places, first.shape);
+    if !first.has_lobe || steps[0].position == DVec3::ZERO {
+        return Some(corrected);
+    }
+    let view = eye - first.position;
+    let distance = view.length();
+    let angle = libm::acos(first.normal.dot(view / distance).clamp(-1.0, 1.0));
+    let criterion = Criterion {
+        curvature: bend(&steps),
+        incidence: angle,
+        outgoing: angle,
+        distance,
+        blocker_distance: (nearness.reflected > 0.0).then(|| nearness.reflected.recip()),
+        lobe_cutoff: first.cutoff,
+        environment_cutoff: f64::INFINITY,
+    };
+    let per_angle = match criterion.blocker_distance {
+        Some(_) => criterion.printed_blocker(),
+        None => criterion.printed_environment(),
+    };
+    let [right, down] = steps.map(|step| across(step.position, view / distance) / distance);
+    let lobe = of_columns(right, down).times(per_angle * per_angle);
+    let of_position = of_columns(steps[0].position, steps[1].position);
+    Some(lobe.plus(of_position.times(nearness.shadow * nearness.shadow)))
+}
+
+/// The larger curvature of the surface in a pixel, per unit of length, above 0 where it is convex; NaN where nothing is shaded.
+pub(crate) fn curvature(visible: &Visible, pixel: [usize; 2]) -> f64 {
+    let places = visible.of_pixel(pixel);
+    let first = places.iter().find_map(shaded);
+    first.map_or(f64::NAN, |first| bend(&steps(places, first.shape)))
+}
+
+/// The larger principal curvature by how normals turn from pixel to pixel.
+fn bend(steps: &[Step; 2]) -> f64 {
+    let [a, b] = steps;
+    let lengths = of_columns(a.position, b.position);
+    let turns = Metric {
+        xx: a.normal.dot(a.position),
+        xy: 0.5 * (a.normal.dot(b.position) + b.normal.dot(a.position)),
+        yy: b.normal.dot(b.position),
+    };
+    let determinant = lengths.determinant();
+    if determinant <= 0.0 {
+        return 0.0;
+    }
+    // Trace and determinant of the shape operator.
+    let both =
+        (lengths.yy * turns.xx - 2.0 * lengths.xy * turns.xy + lengths.xx * turns.yy) / determinant;
+    let product = turns.determinant() / determinant;
+    let root = (0.25 * both * both - product).max(0.0).sqrt();
+    0.5 * both + root.copysign(both)
+}
+
 /// The surface of a place, if light is scattered there at all.
 pub(crate) fn shaded(place: &Place) -> Option<&Surface> {
     place
@@ -106,6 +171,7 @@ pub(crate) fn shaded(place: &Place) -> Option<&Surface> {
 #[derive(Clone, Copy, Debug, Default)]
 struct Step {
     axis: DVec3,
+    normal: DVec3,
     position: DVec3,
 }
 
@@ -120,6 +186,7 @@ fn steps(places: &[Place], shape: usize) -> [Step; 2] {
             // The offsets are orthogonal, and the squares of each sum to 5/16.
             let weight = (at - 0.5) * 16.0 / 5.0;
             step.axis += weight * surface.axis;
+            step.normal += weight * surface.normal;
             step.position += weight * surface.position;
         }
     }
@@ -144,7 +211,6 @@ fn of_columns(right: DVec3, down: DVec3) -> Metric {
 mod tests {
     use super::*;
     use etendue_paths::Paths;
-    use etendue_theory::shading::Criterion;
     use etendue_world::{
         Camera, Distribution, Geometry, Material, Projection, Roughness, Shape, Texture, World,
     };
@@ -242,6 +308,23 @@ mod tests {
                     theory.printed_environment()
                 };
                 farthest = farthest.max((found / printed - 1.0).abs());
+                // What methods take as printed is what theory has as printed, and the curvature that of the ball.
+                let drawn = super::printed(
+                    &visible,
+                    [column, 400],
+                    Nearness {
+                        reflected: nearness,
+                        shadow: 0.0,
+                    },
+                    eye,
+                );
+                let drawn = drawn.unwrap().xx.sqrt() / (slope / (1.0 + off * off));
+                assert!(
+                    (drawn / printed - 1.0).abs() < 0.02,
+                    "{column} {nearness}: {drawn} {printed}"
+                );
+                let curvature = curvature(&visible, [column, 400]) * RADIUS;
+                assert!((curvature - 1.0).abs() < 0.02, "{curvature}");
             }
         }
         // As printed they lack the 1 and a cosine, which is seen.

@@ -2,7 +2,7 @@
 
 use crate::blockers::nearness;
 use crate::blue_noise::{Point, blue_noise};
-use crate::criterion::{Cutoffs, criterion, shaded};
+use crate::criterion::{Cutoffs, criterion, curvature, printed, shaded};
 use crate::density::{scaled, to_power, wanted};
 use crate::metric::Metric;
 use crate::reconstruct::{Fit, Sample, reconstruct};
@@ -18,7 +18,10 @@ pub enum Method {
     Uniform,
     /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
     Predicted,
-    /// By the criteria, and by how much the light that is really there varies among a first quarter of the samples.
+    /// By the same as printed, to see what their misprints cost.
+    Printed,
+    /// Half by the criteria, and half by the light that is really there: by the error that planes through some of a first quarter of the samples have at
+    /// the others.
     Weighted,
     /// By that alone: the standard deviation of a first quarter of the samples, which are even.
     Variance,
@@ -61,6 +64,8 @@ pub enum Stage {
 pub struct Layers {
     /// The larger bandwidth by the criterion, cycles per pixel.
     pub bandwidth: Vec<f64>,
+    /// The larger curvature by finite differences on the screen, per unit of length, above 0 where it is convex.
+    pub curvature: Vec<f64>,
     /// 1/distance of what is reflected, per unit of length.
     pub blockers: Vec<f64>,
     /// The highest frequency of half shadows, cycles per unit of length.
@@ -147,19 +152,18 @@ impl Work<'_> {
         let method = self.plan.method;
         let wanted = match method {
             Method::Uniform | Method::Variance => even,
-            Method::Predicted | Method::Weighted => self.predicted(),
+            Method::Predicted | Method::Printed | Method::Weighted => self.predicted(),
         };
         let count = self.plan.samples as f64;
-        let power = if matches!(method, Method::Predicted | Method::Weighted) {
-            POWER
-        } else {
-            1.0
+        let power = match method {
+            Method::Uniform | Method::Variance => 1.0,
+            Method::Predicted | Method::Printed | Method::Weighted => POWER,
         };
         let wanted: Vec<Option<Metric>> = wanted
             .iter()
             .map(|metric| metric.map(|metric| to_power(metric, power)))
             .collect();
-        if matches!(method, Method::Uniform | Method::Predicted) {
+        if !matches!(method, Method::Weighted | Method::Variance) {
             let metrics = scaled(&wanted, count);
             self.told(&metrics);
             let points = self.points(&metrics, count, 0);
@@ -255,9 +259,15 @@ impl Work<'_> {
         (self.stage)(Stage::Blockers, w.div_ceil(4) * h.div_ceil(4));
         let near = nearness(self.visible, (paths, camera, cutoffs, seed), self.progress);
         (self.stage)(Stage::Criterion, 1);
-        let squared = self
-            .visible
-            .pixels(|[column, row]| criterion(self.visible, [column, row], near[row * w + column]));
+        let eye = camera.to_world.translation;
+        let squared = self.visible.pixels(|[column, row]| {
+            let near = near[row * w + column];
+            match self.plan.method {
+                Method::Printed => printed(self.visible, [column, row], near, eye),
+                _ => criterion(self.visible, [column, row], near),
+            }
+        });
+        self.layers.curvature = self.visible.pixels(|pixel| curvature(self.visible, pixel));
         let root = |metric: &Option<Metric>| metric.map_or(f64::NAN, |m| m.largest().sqrt());
         self.layers.bandwidth = squared.iter().map(root).collect();
         self.layers.blockers = near.iter().map(|near| near.reflected).collect();

@@ -46,6 +46,8 @@ pub(crate) struct Surface {
     pub(crate) normal: DVec3,
     /// The middle of the directions that light comes from: the mirror direction, or the normal of what has no lobe.
     pub(crate) axis: DVec3,
+    /// Whether the axis is the mirror direction.
+    pub(crate) has_lobe: bool,
     /// The highest frequency that the material keeps of these, cycles per radian; 0 of what is black.
     pub(crate) cutoff: f64,
     /// The factors of base and lobe, as textures have them. Shading is what remains.
@@ -55,14 +57,17 @@ pub(crate) struct Surface {
 impl Surface {
     pub(crate) fn new(paths: &Paths, seen: &Seen, cutoffs: &Cutoffs) -> Self {
         let reflects = paths.reflects(seen);
+        let has_lobe = matches!(reflects, Reflects::Lobe(_) | Reflects::Mirror);
         Self {
             shape: seen.shape(),
             position: seen.position(),
             normal: seen.normal(),
-            axis: match reflects {
-                Reflects::Lobe(_) | Reflects::Mirror => seen.mirrored(),
-                Reflects::Diffuse | Reflects::Nothing => seen.normal(),
+            axis: if has_lobe {
+                seen.mirrored()
+            } else {
+                seen.normal()
             },
+            has_lobe,
             cutoff: cutoffs.of(reflects),
             factors: paths.factors(seen),
         }

@@ -98,6 +98,7 @@ fn method(args: &RenderArgs) -> Option<etendue_adaptive::Method> {
         (Some(RenderMethod::Reference), _) | (None, None) => None,
         (Some(RenderMethod::Predicted) | None, _) => Some(Method::Predicted),
         (Some(RenderMethod::Uniform), _) => Some(Method::Uniform),
+        (Some(RenderMethod::Printed), _) => Some(Method::Printed),
         (Some(RenderMethod::Weighted), _) => Some(Method::Weighted),
         (Some(RenderMethod::Variance), _) => Some(Method::Variance),
     }

@@ -100,6 +100,7 @@ pub(crate) enum RenderMethod {
     Reference,
     Uniform,
     Predicted,
+    Printed,
     Weighted,
     Variance,
 }
@@ -140,12 +141,13 @@ Leaves in its folder
   picture.png    to look at: its brightest hundredth is white
 Scenes of OBJ, of PLY and often of glTF have no camera, and may have no light: --look-from with --look-at, and --sky.
 With few shading samples (Durand et al. 2005, section 6.2), the same and more: picture.exr and picture.npz have the maps that led to the
-samples (bandwidth, blockers, shadow, density, samples, variance), picture.npz their places (points), bandwidth.png and samples.png show
+samples (bandwidth, curvature, blockers, shadow, density, samples, variance), picture.npz their places (points), bandwidth.png and samples.png show
 two of them, and timing.json says how long each stage took. Methods:
   uniform     blue noise, even over all that is shaded
   predicted   by the criteria of the paper, Eqs. 20 and 21, corrected
-  weighted    by these and by how much light varies among a first quarter of the samples
-  variance    by how much it varies alone
+  printed     by the same as they are printed, to see what their misprints cost
+  weighted    half by these, half by the error found between a first quarter of the samples: the least error
+  variance    by the standard deviation among a first quarter of the samples, and by no theory
 Pixels are boxes, whatever filter the file names: each is the mean of the radiance over its area.")]
 pub(crate) struct RenderArgs {
     #[command(flatten)]

@@ -123,6 +123,7 @@ fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Resul
     let [w, h] = rendered.size;
     let Layers {
         bandwidth,
+        curvature,
         blockers,
         shadow,
         density,
@@ -132,6 +133,7 @@ fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Resul
     let layers = [
         ("radiance", &rendered.radiance),
         ("bandwidth", bandwidth),
+        ("curvature", curvature),
         ("blockers", blockers),
         ("shadow", shadow),
         ("density", density),
