@@ -131,7 +131,7 @@ fn tried(index: u64) -> [bool; 2] {
             return [false; 2];
         }
     };
-    let is_run = index % 16 == 0;
+    let is_run = index.is_multiple_of(16);
     if is_run {
         make_small(&mut scene);
         whole_run(&scene);

@@ -58,8 +58,14 @@ pub(crate) fn predicted(
     crew: Option<&Led<'_>>,
     quiet: bool,
 ) -> Result<Vec<Prediction>, Failure> {
-    let is_referred = |i: &usize| theories[*i].class() == Class::Reference;
-    let (referred, told): (Vec<usize>, Vec<usize>) = (0..scene.planes.len()).partition(is_referred);
+    let is_referred = |theory: &Applicability| theory.class() == Class::Reference;
+    let referred = theories.iter().enumerate();
+    let referred = referred.filter(|(_, theory)| is_referred(theory));
+    let referred: Vec<usize> = referred.map(|(i, _)| i).collect();
+    let told = (0..)
+        .zip(theories)
+        .filter(|(_, theory)| !is_referred(theory));
+    let told: Vec<u32> = told.map(|(i, _)| i).collect();
     let judges = Judge::all(scene, &referred, method, quiet)?;
     let bar = progress::steps("predicting", scene.planes.len(), "planes", quiet);
     let own = |plane: u32| {
@@ -69,7 +75,6 @@ pub(crate) fn predicted(
         bar.inc(1);
         Ok(prediction)
     };
-    let told: Vec<u32> = told.iter().map(|i| *i as u32).collect();
     let mut told: BTreeMap<u32, Prediction> = match crew {
         None => told
             .iter()
@@ -80,10 +85,11 @@ pub(crate) fn predicted(
             predictions::unpacked(&scene.planes[plane as usize], bytes)
         })?,
     };
-    let planes = theories.iter().enumerate().map(|(i, theory)| {
+    let planes = (0_u32..).zip(theories).map(|(number, theory)| {
+        let i = number as usize;
         let Some((judge, at)) = Judge::of(&judges, i) else {
             let missing = || Failure::cannot_run("a plane was not predicted");
-            return told.remove(&(i as u32)).ok_or_else(missing);
+            return told.remove(&number).ok_or_else(missing);
         };
         bar.inc(1);
         let reference = Prediction::reference(scene, i, theory, &judge.measurement, at);

@@ -230,9 +230,9 @@ fn run_all(
         kept(results, &all.summary(point)?)
     };
     let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
-    let missing = summaries.iter().enumerate();
+    let missing = (0..).zip(&summaries);
     let missing = missing.filter(|(_, summary)| summary.is_none());
-    let missing: Vec<u32> = missing.map(|(point, _)| point as u32).collect();
+    let missing: Vec<u32> = missing.map(|(point, _)| point).collect();
     bar.set_position((names.len() - missing.len()) as u64);
     let found: BTreeMap<u32, Value> = match crew {
         None => missing

@@ -11,6 +11,9 @@ use crate::threads::on_threads;
 use etendue_field::PhotonSource;
 use etendue_spectrum::{Batch, measure_watched};
 
+/// A piece that is done: its number and its bytes.
+type Piece = (u32, Vec<u8>);
+
 /// Does whatever the process that leads asks for, until it is dismissed.
 pub(super) fn follow(command: &Command, crew: &dyn Crew) {
     let followed = match command {
@@ -67,11 +70,7 @@ fn with_job(
     })
 }
 
-fn measured(
-    job: &Job,
-    source: &dyn PhotonSource,
-    batches: &[u32],
-) -> Result<Vec<(u32, Vec<u8>)>, Failure> {
+fn measured(job: &Job, source: &dyn PhotonSource, batches: &[u32]) -> Result<Vec<Piece>, Failure> {
     let found = measure_watched(source, &job.scene().planes, batches, &Alone);
     let packed = |batch: &Batch| Ok((batch.index, job.packed(batch)?));
     found.batches().map(packed).collect()
@@ -81,7 +80,7 @@ fn measured(
 fn obey(
     crew: &dyn Crew,
     key: &str,
-    done: &mut dyn FnMut(&Order) -> Result<Vec<(u32, Vec<u8>)>, Failure>,
+    done: &mut dyn FnMut(&Order) -> Result<Vec<Piece>, Failure>,
 ) -> Result<(), Failure> {
     let mut said = Said::Ready {
         key: key.to_owned(),

@@ -12,6 +12,12 @@ use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
 
+/// What the bytes of the piece of that number say.
+type Unpacked<'a, T> = dyn Fn(u32, &[u8]) -> Result<T, Failure> + Sync + 'a;
+
+/// Takes the bytes of the piece of that number.
+type Taken<'a> = dyn FnMut(u32, &[u8]) -> Result<(), Failure> + Send + 'a;
+
 /// The processes that this one leads.
 pub(crate) struct Led<'a> {
     crew: &'a dyn Crew,
@@ -78,7 +84,7 @@ impl<'a> Led<'a> {
         scene: &Scene,
         planes: &[u32],
         own: &dyn Fn(u32) -> Result<Prediction, Failure>,
-        unpacked: &(dyn Fn(u32, &[u8]) -> Result<Prediction, Failure> + Sync),
+        unpacked: &Unpacked<'_, Prediction>,
     ) -> Result<BTreeMap<u32, Prediction>, Failure> {
         self.pieces(&key([scene]), Task::Planes, planes, own, unpacked)
     }
@@ -89,7 +95,7 @@ impl<'a> Led<'a> {
         scenes: &[Scene],
         points: &[u32],
         own: &dyn Fn(u32) -> Result<T, Failure>,
-        unpacked: &(dyn Fn(u32, &[u8]) -> Result<T, Failure> + Sync),
+        unpacked: &Unpacked<'_, T>,
     ) -> Result<BTreeMap<u32, T>, Failure> {
         self.pieces(&key(scenes), Task::Points, points, own, unpacked)
     }
@@ -101,7 +107,7 @@ impl<'a> Led<'a> {
         task: Task,
         numbers: &[u32],
         own: &dyn Fn(u32) -> Result<T, Failure>,
-        unpacked: &(dyn Fn(u32, &[u8]) -> Result<T, Failure> + Sync),
+        unpacked: &Unpacked<'_, T>,
     ) -> Result<BTreeMap<u32, T>, Failure> {
         let left = Left::new(numbers.iter().copied(), &Alone);
         let mut others = BTreeMap::new();
@@ -125,7 +131,7 @@ impl<'a> Led<'a> {
         task: Task,
         left: &Left<'_>,
         own: impl FnOnce() -> Result<T, Failure>,
-        take: &mut (dyn FnMut(u32, &[u8]) -> Result<(), Failure> + Send),
+        take: &mut Taken<'_>,
     ) -> Result<T, Failure> {
         let (own, others) = thread::scope(|scope| {
             let others = scope.spawn(|| {
@@ -146,7 +152,7 @@ impl<'a> Led<'a> {
         key: &str,
         task: Task,
         left: &Left<'_>,
-        take: &mut (dyn FnMut(u32, &[u8]) -> Result<(), Failure> + Send),
+        take: &mut Taken<'_>,
     ) -> Result<(), Failure> {
         for who in 1..self.crew.count() {
             if held(&self.others)[who].waits {
