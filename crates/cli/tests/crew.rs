@@ -58,12 +58,20 @@ fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
         })
         .collect();
     let codes: Vec<u8> = thread::scope(|scope| {
-        let processes = members.iter().zip(lines).map(|(member, line)| {
-            let words: Vec<OsString> = line.split(' ').map(OsString::from).collect();
+        let begin = |number: usize| {
+            let words: Vec<OsString> = lines[number].split(' ').map(OsString::from).collect();
+            let member = &members[number];
             scope.spawn(move || in_crew(words, member))
-        });
-        let processes: Vec<_> = processes.collect();
-        processes.into_iter().map(|p| p.join().unwrap()).collect()
+        };
+        let others: Vec<_> = (1..lines.len()).map(begin).collect();
+        // The one that leads begins when the others have said that they are there: work this small is done before they are heard otherwise.
+        for (member, process) in members[1..].iter().zip(&others) {
+            while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
+                thread::yield_now();
+            }
+        }
+        let processes = std::iter::once(begin(0)).chain(others);
+        processes.map(|p| p.join().unwrap()).collect()
     });
     let sent = members[1..].iter();
     (
@@ -111,13 +119,13 @@ fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
         "predict SCENE --threads 1 --photons 2^16 --out OUT",
         "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
     ] {
-        let folder = folder();
-        let sent = same_files(folder.path(), line, 3);
-        // One word to say that it is there, and one for each order that it has followed.
-        assert!(
-            sent.iter().sum::<usize>() > 2,
-            "{line}: nobody helped: {sent:?}"
-        );
+        // Whoever is first takes the next piece, so a busy machine may leave nothing to the others: then again.
+        let helped = (0..20).any(|_| {
+            let sent = same_files(folder().path(), line, 3);
+            // One word to say that it is there, and one for each order that it has followed.
+            sent.iter().sum::<usize>() > 2
+        });
+        assert!(helped, "{line}: nobody helped");
     }
 }
 
