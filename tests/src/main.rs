@@ -47,6 +47,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
   cargo run --release -p etendue-validation -- kills        200 kills, for etendue beside it
   cargo run --release -p etendue-validation -- wild         100 random scenes, for etendue beside it
+  cargo run --release -p etendue-validation -- small        hours; small objects in the light of 2,000 random scenes
   cargo run --release -p etendue-validation -- assumptions  minutes; checks of theory switched off, on random scenes
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
 struct Cli {
@@ -118,6 +119,8 @@ enum Command {
     Wild(wild::Options),
     /// Random scenes that break one assumption of theory, predicted all the same; exit code 1 if photons never reject one.
     Assumptions(assumptions::Options),
+    /// Small objects in the light of random scenes; exit code 1 if photons reject a prediction.
+    Small(wild::SmallOptions),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
     /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
@@ -148,6 +151,9 @@ fn main() -> ExitCode {
     }
     if let Command::Wild(options) = &command {
         return printed(wild::wild(options));
+    }
+    if let Command::Small(options) = &command {
+        return printed(wild::small(options));
     }
     if let Command::Assumptions(options) = &command {
         return printed(assumptions::assumptions(options));
@@ -297,6 +303,7 @@ fn sections(command: &Command) -> Vec<Section> {
         | Command::Hostile(_)
         | Command::Kills(_)
         | Command::Wild(_)
+        | Command::Small(_)
         | Command::Assumptions(_) => Vec::new(),
         Command::Noise { most } => noise(most),
         Command::Main | Command::All => {

@@ -1,7 +1,7 @@
 //! What keeps a plane from the theory of light between parallel planes.
 
-use etendue_field::{Frame, Light, Orientation, Profile, Quantity, Side, VirtualPlane};
-use etendue_scene::{Hit, Object, Scene, Surface};
+use etendue_field::{Frame, Light, Mask, Orientation, Profile, Quantity, Side, VirtualPlane};
+use etendue_scene::{BlockerLayer, Hit, Object, Scene, Surface};
 use glam::DVec3;
 
 /// What keeps the theory from a plane, in words: oblique incidence, other objects in the way, and
@@ -67,6 +67,12 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
             }
         }
     }
+    for layer in scene.blockers.iter().filter(|_| plane.leg > 0) {
+        let parts = parts(layer, scene, plane);
+        if parts.iter().any(|part| passes(scene, plane, part, true)) {
+            found.push(format!("visibility of {} on the way back", layer.name));
+        }
+    }
     for (i, object) in scene.patches.iter().enumerate() {
         let own = visited(Object::Patch(i));
         if !own && passes(scene, plane, &object.patch.corners(), false) {
@@ -85,19 +91,60 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
     found
 }
 
-/// Whether light for a plane may pass through a box around points, given in the frame at the light.
-fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bool) -> bool {
-    let legs = &scene.path.legs;
+/// Corners of rectangles that hold all of a layer that light for a plane may meet.
+fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
+    // Where light goes; what has no end reaches a thousand times as far.
+    let [from, to] = tube(scene, plane);
+    let far = 1e3
+        * from
+            .into_iter()
+            .chain(to)
+            .fold(layer.distance, f64::max)
+            .min(1e30);
+    let corners = |[[x0, x1], [y0, y1]]: [[f64; 2]; 2]| {
+        [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| DVec3::new(x, y, layer.distance))
+    };
+    let everywhere = [[-far, far]; 2];
+    match &layer.mask {
+        Mask::Grating(_) => vec![corners(everywhere)],
+        Mask::Opaque {
+            shapes,
+            half_planes,
+        } => {
+            let shapes = shapes.iter().map(|shape| {
+                let bounds = shape.bounds();
+                [0, 1].map(|axis| bounds.extent(axis))
+            });
+            let halves = half_planes.iter().map(|half| {
+                let mut extent = everywhere;
+                extent[half.axis][usize::from(!half.above)] = half.edge;
+                extent
+            });
+            shapes.chain(halves).map(corners).collect()
+        }
+    }
+}
+
+/// Half-widths of where light for a plane leaves the light, and of where it comes to the surfaces.
+fn tube(scene: &Scene, plane: &VirtualPlane) -> [[f64; 2]; 2] {
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let slope = [&plane.window.u, &plane.window.v].map(Profile::half_width);
-    // A plane right after something is at the same distance.
-    let after = plane.side == Side::After;
-    let along = scene.path.along(plane) * if after { 1.0 + 1e-12 } else { 1.0 };
-    let seen = [0, 1].map(|axis| window[axis] + along * slope[axis]);
+    let along = scene.path.along(plane);
     let light = [0, 1].map(|axis| {
         let [low, high] = scene.light.extent(axis);
         low.abs().max(high.abs()).min(f64::MAX)
     });
+    [light, [0, 1].map(|axis| window[axis] + along * slope[axis])]
+}
+
+/// Whether light for a plane may pass through a box around points, given in the frame at the light.
+fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bool) -> bool {
+    let legs = &scene.path.legs;
+    let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
+    let [light, seen] = tube(scene, plane);
+    // A plane right after something is at the same distance.
+    let after = plane.side == Side::After;
+    let along = scene.path.along(plane) * if after { 1.0 + 1e-12 } else { 1.0 };
     let crosses = |leg: usize| {
         let (from, to, end) = if leg < plane.leg {
             (light, seen, legs[leg].length)

@@ -6,10 +6,12 @@
 //! the two differ, the plane is not predicted. Rays are drawn more densely the nearer they are to
 //! the central one, down to a thousandth of the surface, so that windows of any size hold many.
 
+mod clearance;
 mod coordinates;
 mod meshes;
 mod rays;
 mod scattered;
+mod search;
 mod specular;
 mod surroundings;
 

@@ -88,7 +88,7 @@ impl Resolver<'_> {
             meshes: &meshes,
             patches: &patches,
         };
-        let path = self.path(&file, checked, things);
+        let path = self.path(&file, checked, &light, things);
         self.ends(&file, &blockers, path.first_hit());
         let stops = stops(&path, things);
         self.names(&file, &stops);

@@ -48,7 +48,7 @@ pub struct Leg {
     pub frame: Frame,
     /// Distance along the path at which it begins.
     pub start: f64,
-    /// Distance to the surface that ends it; for the last leg, until something stands in its way.
+    /// Distance to the surface that ends it; for the last leg, to the first thing that stands in its way.
     pub length: f64,
     /// Where it leaves a surface; `None` for the first.
     pub leaves: Option<Hit>,

@@ -13,12 +13,14 @@ mod reflects;
 mod run;
 mod scene;
 mod shrink;
+mod small;
 mod straight;
 mod surfaces;
 mod tally;
 
 pub(crate) use judge::HANDFUL;
 pub(crate) use scene::scene;
+pub(crate) use small::{SmallOptions, small};
 
 use crate::hostile::{child, on_threads};
 use crate::progress::progress;

@@ -1,7 +1,7 @@
 //! How far smooth meshes lead light beside where their osculating patches do.
 
 use super::coordinates::coordinates;
-use super::rays::{Ray, bright};
+use super::rays::{Draw, Ray, bright};
 use super::specular::{Arrival, Follower, on};
 use etendue_field::{Profile, interpolated_normal};
 use etendue_scene::{MeshObject, Object};
@@ -32,8 +32,8 @@ impl Follower<'_> {
             return None;
         }
         let tries = u32::try_from(LOOKED_AT / triangles).unwrap_or(u32::MAX);
-        let rays = (0..tries).filter_map(|index| self.ray(index));
-        let of_window = (0..tries).filter_map(|index| self.ray_of_window(index));
+        let rays = (0..tries).filter_map(|index| self.ray(&Draw::new(index)));
+        let of_window = (0..tries).filter_map(|index| self.ray_of_window(&Draw::new(index)));
         self.off_on_average(rays)
             .or_else(|| self.off_on_average(of_window))
     }

@@ -4,19 +4,25 @@ use etendue_field::{EnvironmentMap, Frame, Light, Patch, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
-/// Rays with light in the window that are followed for a plane.
-const LIT: usize = 3000;
-/// Rays tried for these.
-const TRIED: u32 = 60_000;
-
 /// Light of less than this share of the strongest that comes into the window changes no verdict.
 const DARK: f64 = 1e-5;
 
-/// What rays meet that carry light into the window: `check` says it of ray number `index`, and how
-/// much that carries, or that it carries none.
-pub(super) fn met<M>(check: impl Fn(u32) -> Option<(f64, Option<M>)>) -> Vec<M> {
-    let lit = bright((0..TRIED).filter_map(check), LIT);
-    lit.into_iter().filter_map(|(_, meets)| meets).collect()
+/// What a ray is drawn by.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Draw {
+    /// Its number, which chooses between ways to draw it.
+    pub(super) index: u32,
+    /// Six numbers in [0, 1].
+    pub(super) numbers: [f64; 6],
+}
+
+impl Draw {
+    pub(super) fn new(index: u32) -> Self {
+        Self {
+            index,
+            numbers: lattice(index),
+        }
+    }
 }
 
 /// The first of rays that carry light into the window, `most` of them, without those that are dark
@@ -129,7 +135,7 @@ pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
     std::array::from_fn(|axis| (2.0 * r[axis] - 1.0) * profiles[axis].half_width())
 }
 
-/// A number in (−1, 1): every other one evenly, else as densely near zero as its size, down to a
+/// A number in [−1, 1]: every other one evenly, else as densely near zero as its size, down to a
 /// thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
     let s = 2.0 * r - 1.0;

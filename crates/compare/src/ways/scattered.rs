@@ -1,8 +1,10 @@
 //! Light that a surface with a BRDF receives and sends on: what photons meet, and where theory
 //! looks.
 
+use super::clearance::Piece;
 use super::coordinates::{coordinates, direction, seen};
-use super::rays::{Ray, lattice, met, point_on, ray_to, within};
+use super::rays::{Draw, Ray, point_on, ray_to, within};
+use super::search::{Followed, found};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Hit, Scene};
@@ -28,7 +30,7 @@ pub(crate) fn unforeseen_by_scattering(
         hit,
         around: Surroundings::new(scene, plane),
     };
-    in_words(met(|index| scatterer.check(index)), scene)
+    in_words(found(&scatterer), scene)
 }
 
 struct Scatterer<'a> {
@@ -40,24 +42,15 @@ struct Scatterer<'a> {
     around: Surroundings<'a>,
 }
 
-impl Scatterer<'_> {
-    /// How strong light number `index` is in the window, and what it meets on its way that theory
-    /// does not know of, if anything; `None` if it does not come there.
-    fn check(&self, index: u32) -> Option<(f64, Option<Meets>)> {
-        let r = lattice(index);
-        let leaving = self.leaving(index, r)?;
-        let Ray { point, direction } = leaving;
-        let normal = self.system.patch.normal(point);
-        let window = &self.plane.window;
-        let z = coordinates(self.at, &leaving, Some([point, normal]))?;
-        let (arriving, emitted) = ray_to(&self.system.light, point, index, [r[4], r[5]])?;
-        let faces = arriving.direction.dot(normal) < 0.0 && direction.dot(normal) > 0.0;
-        let end = (point - arriving.point).length();
-        let ([photons, theory], meets) = self.around.first_leg(&arriving, end);
-        let light = emitted * photons.max(theory) * window.value(&z);
-        if !faces || light <= 0.0 {
-            return None;
-        }
+impl Followed for Scatterer<'_> {
+    fn check(&self, draw: &Draw) -> Option<(f64, Option<Meets>)> {
+        let Followable {
+            light,
+            arriving,
+            end,
+            meets,
+            leaving,
+        } = self.follow(draw)?;
         let meets = self
             .shadow(&arriving, end)
             .or(meets)
@@ -68,18 +61,80 @@ impl Scatterer<'_> {
         Some((light, is_wrong.then(|| meets.unwrap_or(itself))))
     }
 
+    fn pieces(&self, draw: &Draw) -> Option<(f64, Vec<Piece>)> {
+        let path = self.follow(draw)?;
+        let own = Some(self.hit.object);
+        let arriving = Piece {
+            leg: 0,
+            ray: path.arriving,
+            extent: [0.0, path.end],
+            leaves: None,
+            ends: own,
+            is_last: false,
+        };
+        let leaving = Piece {
+            leg: 1,
+            ray: path.leaving,
+            extent: [self.around.rounding(1), self.around.to_plane(&path.leaving)],
+            leaves: own,
+            ends: self.scene.path.ends_at(1).map(|hit| hit.object),
+            is_last: true,
+        };
+        Some((path.light, vec![arriving, leaving]))
+    }
+
+    fn around(&self) -> &Surroundings<'_> {
+        &self.around
+    }
+}
+
+/// Light that comes to the surface and leaves it into the window.
+struct Followable {
+    light: f64,
+    arriving: Ray,
+    /// How far the surface is from the light.
+    end: f64,
+    /// Blockers that theory does not have on the way to the surface.
+    meets: Option<Meets>,
+    leaving: Ray,
+}
+
+impl Scatterer<'_> {
+    /// A path from the light to the window; `None` if it brings no light.
+    fn follow(&self, draw: &Draw) -> Option<Followable> {
+        let leaving = self.leaving(draw)?;
+        let Ray { point, direction } = leaving;
+        let normal = self.system.patch.normal(point);
+        let window = &self.plane.window;
+        let z = coordinates(self.at, &leaving, Some([point, normal]))?;
+        let r = draw.numbers;
+        let (arriving, emitted) = ray_to(&self.system.light, point, draw.index, [r[4], r[5]])?;
+        let faces = arriving.direction.dot(normal) < 0.0 && direction.dot(normal) > 0.0;
+        let end = (point - arriving.point).length();
+        let ([photons, theory], meets) = self.around.first_leg(&arriving, end);
+        let light = emitted * photons.max(theory) * window.value(&z);
+        (faces && light > 0.0).then_some(Followable {
+            light,
+            arriving,
+            end,
+            meets,
+            leaving,
+        })
+    }
+
     /// A ray that leaves the surface: from a point of it, or, every other one across the leg, as it
     /// comes through the window.
-    fn leaving(&self, index: u32, r: [f64; 6]) -> Option<Ray> {
+    fn leaving(&self, draw: &Draw) -> Option<Ray> {
+        let r = draw.numbers;
         let [x, y, u, v] = within(&self.plane.window, r);
         let patch = &self.system.patch;
-        if self.at.orientation == Orientation::Orthogonal && index % 4 < 2 {
+        if self.at.orientation == Orientation::Orthogonal && draw.index % 4 < 2 {
             let seen = seen(self.at, [x, y, u, v])?;
             let back = seen.back(patch);
             let point = back.at(back.theory_hit(patch)?);
             return Some(Ray { point, ..seen });
         }
-        let point = point_on(patch, self.hit.point, index, [r[0], r[1]])?;
+        let point = point_on(patch, self.hit.point, draw.index, [r[0], r[1]])?;
         let direction = direction(self.at, patch.normal(point), [u, v]);
         Some(Ray { point, direction })
     }
@@ -94,16 +149,13 @@ impl Scatterer<'_> {
     /// What stands between a point of the surface and the plane; the surface itself wherever it is,
     /// as photons that would meet it again are gone, whatever stops them before.
     fn beyond(&self, ray: &Ray) -> Option<Meets> {
-        let path = &self.scene.path;
-        let across = path.legs[1].frame.travelled(path.along(self.plane));
-        let local = ray.seen_from(&across);
-        let end = -local.point.z / local.direction.z;
+        let end = self.around.to_plane(ray);
         let from = self.around.rounding(1);
-        let ends = path.ends_at(1).map(|hit| hit.object);
+        let ends = self.scene.path.ends_at(1).map(|hit| hit.object);
         let met = self.around.first(ray, from, ends);
         let met = met.filter(|(t, _)| *t < end);
         let own = self.hit.object;
-        let again = self.around.meets(ray, from, own);
+        let again = self.around.hit(ray, from, own).is_some();
         let met = met
             .map(|(_, object)| self.named(object))
             .or(again.then_some(Meets::Itself(own)));

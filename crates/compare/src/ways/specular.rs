@@ -1,7 +1,9 @@
 //! Rays through specular surfaces: what photons meet, and where theory looks.
 
+use super::clearance::Piece;
 use super::coordinates::{coordinates, seen};
-use super::rays::{Ray, centred, lattice, met, point_on, ray_to, strength, within};
+use super::rays::{Draw, Ray, centred, point_on, ray_to, strength, within};
+use super::search::{Followed, found};
 use super::surroundings::{Meets, Surroundings, in_words};
 use etendue_field::{Light, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
@@ -18,9 +20,9 @@ pub(crate) fn unforeseen_by_rays(
     off: Option<f64>,
 ) -> Vec<String> {
     let follower = Follower::new(scene, plane, view);
-    let mut found = met(|index| follower.check(follower.ray(index)?));
-    found.extend(met(|index| follower.check(follower.ray_of_window(index)?)));
-    let mut found = in_words(found, scene);
+    let mut meets = found(&Drawn(&follower, Follower::ray));
+    meets.extend(found(&Drawn(&follower, Follower::ray_of_window)));
+    let mut found = in_words(meets, scene);
     found.extend(off.filter(|off| *off > OFF_PATCHES).map(|off| {
         let percent = 100.0 * off;
         format!("a mesh that sends light {percent:.3} % of the window beside its osculating patch")
@@ -49,6 +51,30 @@ pub(super) struct Follower<'a> {
     pub(super) system: &'a System,
     pub(super) at: &'a Plane,
     around: Surroundings<'a>,
+}
+
+/// Rays of a follower, in one of two ways to draw them.
+struct Drawn<'a>(
+    &'a Follower<'a>,
+    fn(&Follower<'a>, &Draw) -> Option<(Ray, f64)>,
+);
+
+impl Followed for Drawn<'_> {
+    fn check(&self, draw: &Draw) -> Option<(f64, Option<Meets>)> {
+        self.0.check(self.1(self.0, draw)?)
+    }
+
+    fn pieces(&self, draw: &Draw) -> Option<(f64, Vec<Piece>)> {
+        let (ray, emitted) = self.1(self.0, draw)?;
+        let mut pieces = Vec::with_capacity(self.0.system.elements.len() + 1);
+        let (z, share) = self.0.follow(ray, |piece| pieces.push(piece))?;
+        let light = emitted * share * self.0.plane.window.value(&z);
+        (light > 0.0).then_some((light, pieces))
+    }
+
+    fn around(&self) -> &Surroundings<'_> {
+        &self.0.around
+    }
 }
 
 /// A ray at the plane, and the share of it that masks on the first leg let pass.
@@ -80,9 +106,9 @@ impl Follower<'_> {
         (light > 0.0).then_some((light, meets))
     }
 
-    /// Ray number `index` of the light, towards the first surface, and how strong it is.
-    pub(super) fn ray(&self, index: u32) -> Option<(Ray, f64)> {
-        let r = lattice(index);
+    /// A ray of the light, towards the first surface, and how strong it is.
+    pub(super) fn ray(&self, draw: &Draw) -> Option<(Ray, f64)> {
+        let Draw { index, numbers: r } = *draw;
         let hit = self.scene.path.ends_at(0)?;
         let of_patch = |patch: &Patch| point_on(patch, hit.point, index, [r[0], r[1]]);
         let target = match (self.system.elements.first(), hit.object) {
@@ -107,17 +133,17 @@ impl Follower<'_> {
         ray_to(&self.system.light, target, index, [r[2], r[3]])
     }
 
-    /// Ray number `index` that theory has arrive in the window: hardly any ray of the light itself may
+    /// A ray that theory has arrive in the window: hardly any ray of the light itself may
     /// come into a narrow one, or onto a part of a wide one that is close to the light. Light without
     /// extent is sent to places in the window, where nothing turns it first.
-    pub(super) fn ray_of_window(&self, index: u32) -> Option<(Ray, f64)> {
+    pub(super) fn ray_of_window(&self, draw: &Draw) -> Option<(Ray, f64)> {
         let light = &self.system.light;
-        let coordinates = within(&self.plane.window, lattice(index));
+        let coordinates = within(&self.plane.window, draw.numbers);
         if !light.has_extent() {
             let [x, y, ..] = coordinates;
             let at = self.at.frame.to_world(DVec3::new(x, y, 0.0));
             let turned = !self.system.elements.is_empty();
-            return ray_to(light, at, index, [0.0; 2]).filter(|_| !turned);
+            return ray_to(light, at, draw.index, [0.0; 2]).filter(|_| !turned);
         }
         let mut ray = seen(self.at, coordinates)?;
         for (leg, element) in self.system.elements.iter().enumerate().rev() {
@@ -139,14 +165,39 @@ impl Follower<'_> {
 
     /// Where theory has a ray arrive.
     pub(super) fn theory(&self, light: Ray) -> Arrival {
+        self.follow(light, |_| {})
+    }
+
+    /// Where theory has a ray arrive; its straight pieces are told one after the other.
+    fn follow(&self, light: Ray, mut tell: impl FnMut(Piece)) -> Arrival {
+        let path = &self.scene.path;
+        let piece = |leg: usize, ray: Ray, end: f64| Piece {
+            leg,
+            ray,
+            extent: [self.around.rounding(leg), end],
+            leaves: path.legs[leg].leaves.map(|hit| hit.object),
+            ends: path.ends_at(leg).map(|hit| hit.object),
+            is_last: leg == self.plane.leg,
+        };
         let mut ray = light;
         let mut share = 1.0;
         for (leg, element) in self.system.elements.iter().enumerate() {
             let t = ray.theory_hit(&element.patch)?;
+            tell(piece(leg, ray, t));
             share *= self.passed(leg, &ray, t);
             ray = self.turned(leg, on(&element.patch, ray.at(t)), &ray)?;
         }
+        tell(piece(self.plane.leg, ray, self.end(&ray)));
         Some((coordinates(self.at, &ray, self.counted_at(&ray)?)?, share))
+    }
+
+    /// How far a ray of the last leg goes: to the plane, or to the surface that the plane is on.
+    fn end(&self, ray: &Ray) -> f64 {
+        let across = self.around.to_plane(ray);
+        let ends = self.scene.path.ends_at(self.plane.leg);
+        let surface = ends.filter(|_| self.at.arriving);
+        let hit = surface.and_then(|hit| self.around.hit(ray, 0.0, hit.object));
+        hit.unwrap_or(across)
     }
 
     /// The share of a ray that passes what theory has on the first leg.
@@ -235,21 +286,20 @@ impl Follower<'_> {
         let ends = path.ends_at(leg).map(|hit| hit.object);
         let leaves = path.legs[leg].leaves.map(|hit| hit.object);
         let from = self.around.rounding(leg);
-        // How far it is to the plane; on a surface, to the plane across the leg where the central
-        // ray hits.
-        let across = path.legs[leg].frame.travelled(path.along(self.plane));
-        let local = ray.seen_from(&across);
-        let end = -local.point.z / local.direction.z;
+        let end = self.end(ray);
         let nearer = self.around.first(ray, from, ends);
         let nearer = nearer.filter(|(t, object)| *t < end && Some(*object) != leaves);
         // A photon that would meet again what it has left is gone, wherever the plane is and
         // whatever stops it before.
-        let again = leaves.filter(|left| self.around.meets(ray, from, *left));
+        let again = leaves.filter(|left| self.around.hit(ray, from, *left).is_some());
         let mut unforeseen = nearer
             .map(|(_, object)| Meets::OutOfTurn(object))
             .or(again.map(Meets::Itself));
         if leg > 0 {
             unforeseen = unforeseen.or_else(|| self.around.later_leg(ray, leg, from, end));
+        } else if self.at.arriving {
+            // Across the leg blockers and planes are parallel.
+            unforeseen = unforeseen.or(self.around.first_leg(ray, end).1);
         }
         let Some(patch) = &self.at.patch else {
             return (coordinates(self.at, ray, None), unforeseen);

@@ -1,6 +1,7 @@
 //! What stands around the path, and what a ray of a leg meets of it.
 
 use super::rays::Ray;
+use crate::chain::stands_before;
 use etendue_field::{Patch, VirtualPlane};
 use etendue_scene::{Hit, Object, Scene, Surface};
 use glam::DVec3;
@@ -60,12 +61,12 @@ pub(super) fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
 
 /// The surfaces of the path as rays meet them, and the blockers.
 pub(super) struct Surroundings<'a> {
-    scene: &'a Scene,
+    pub(super) scene: &'a Scene,
     plane: &'a VirtualPlane,
-    objects: Vec<(Object, Form<'a>)>,
+    pub(super) objects: Vec<(Object, Form<'a>)>,
 }
 
-enum Form<'a> {
+pub(super) enum Form<'a> {
     Smooth(Patch),
     Flat(&'a Surface),
     /// A box around a mesh, its lowest and highest corner.
@@ -105,6 +106,16 @@ impl<'a> Surroundings<'a> {
         ROUNDING * (leg.start + leg.leaves.map_or(0.0, |Hit { point, .. }| point.length()))
     }
 
+    /// How far along a ray of its leg the plane is; of a plane on a surface, the plane across the
+    /// leg where the central ray hits.
+    pub(super) fn to_plane(&self, ray: &Ray) -> f64 {
+        let path = &self.scene.path;
+        let leg = &path.legs[self.plane.leg];
+        let across = leg.frame.travelled(path.along(self.plane));
+        let local = ray.seen_from(&across);
+        -local.point.z / local.direction.z
+    }
+
     /// The surface that a ray meets first beyond `from`, and where; `ignored` is not met.
     pub(super) fn first(
         &self,
@@ -125,10 +136,11 @@ impl<'a> Surroundings<'a> {
         hits.min_by(|(a, _), (b, _)| a.total_cmp(b))
     }
 
-    /// Whether a ray meets an object anywhere beyond `from`, whatever it meets first.
-    pub(super) fn meets(&self, ray: &Ray, from: f64, what: Object) -> bool {
+    /// Where a ray meets an object beyond `from`, whatever it meets first.
+    pub(super) fn hit(&self, ray: &Ray, from: f64, what: Object) -> Option<f64> {
         let forms = self.objects.iter().filter(|(object, _)| *object == what);
-        forms.flat_map(|(_, form)| form.hits(ray)).any(|t| t > from)
+        let hits = forms.flat_map(|(_, form)| form.hits(ray));
+        hits.filter(|t| *t > from).min_by(f64::total_cmp)
     }
 
     /// The share of a ray of the first leg that passes the blockers before `end`; and that which
@@ -136,8 +148,8 @@ impl<'a> Surroundings<'a> {
     pub(super) fn first_leg(&self, ray: &Ray, end: f64) -> ([f64; 2], Option<Meets>) {
         let mut shares = [1.0; 2];
         let mut meets = None;
-        for (index, layer) in self.scene.blockers.iter().enumerate() {
-            let known = crate::chain::stands_before(layer.distance, self.scene, self.plane);
+        for index in 0..self.scene.blockers.len() {
+            let known = self.is_known(index);
             let crossed = self.crossing(ray, index).filter(|t| *t > 0.0 && *t < end);
             let passes = self.transmittance(ray, index);
             if crossed.is_some() {
@@ -163,8 +175,13 @@ impl<'a> Surroundings<'a> {
         Some(Meets::Layer { index, leg })
     }
 
+    /// Whether theory has a layer of blockers on the first leg, before the plane.
+    pub(super) fn is_known(&self, index: usize) -> bool {
+        stands_before(self.scene.blockers[index].distance, self.scene, self.plane)
+    }
+
     /// How far along a ray it crosses the plane of blockers.
-    fn crossing(&self, ray: &Ray, index: usize) -> Option<f64> {
+    pub(super) fn crossing(&self, ray: &Ray, index: usize) -> Option<f64> {
         let t = (self.scene.blockers[index].distance - ray.point.z) / ray.direction.z;
         t.is_finite().then_some(t)
     }

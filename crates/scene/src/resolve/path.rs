@@ -7,7 +7,7 @@ use crate::nearest::did_you_mean;
 use crate::scene::{
     BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Surface,
 };
-use etendue_field::{Frame, Specular, TwoPlane, interpolated_normal, triangle_distance};
+use etendue_field::{Frame, Light, Specular, TwoPlane, interpolated_normal, triangle_distance};
 use glam::DVec3;
 
 /// Share of a leg within which it does not meet again what it has just left.
@@ -31,6 +31,7 @@ impl Resolver<'_> {
         &mut self,
         file: &SceneFile,
         frame: Frame,
+        light: &Light,
         things: Things<'_>,
     ) -> CentralRay {
         let visits = &file.path.visits;
@@ -66,7 +67,7 @@ impl Resolver<'_> {
             };
         }
         if legs.len() == visits.len() {
-            leg.length = things.clear(&leg.frame);
+            leg.length = things.clear(&leg.frame, light);
         }
         legs.push(leg);
         CentralRay { frame, legs }
@@ -309,23 +310,29 @@ impl Things<'_> {
         }
     }
 
-    /// How far the axis of a frame goes until it meets an object, or the plane of the light or of blockers.
-    fn clear(&self, frame: &Frame) -> f64 {
+    /// How far the axis of a frame goes until it meets an object, blockers or the light.
+    fn clear(&self, frame: &Frame, light: &Light) -> f64 {
         let objects = self.objects();
         let objects = objects
             .iter()
             .filter_map(|(o, _)| Some(self.hit(*o, frame)?.0));
         let black = self.meshes.iter().filter(|m| m.is_black());
         let black = black.filter_map(|mesh| Some(mesh.first_on(frame)?.0));
-        let planes = self.blockers.iter().map(|layer| layer.distance);
-        let crossed = planes
-            .chain([0.0])
-            .map(|z| (z - frame.origin.z) / frame.d.z)
-            .filter(|t| *t > LEFT);
-        objects
-            .chain(black)
-            .chain(crossed)
-            .fold(f64::INFINITY, f64::min)
+        let crossing = |z: f64| {
+            let t = (z - frame.origin.z) / frame.d.z;
+            let at = frame.origin + t * frame.d;
+            (t > LEFT && t.is_finite()).then_some((t, at.x, at.y))
+        };
+        let masks = self.blockers.iter().filter_map(|layer| {
+            let (t, x, y) = crossing(layer.distance)?;
+            (layer.mask.transmittance(x, y) < 1.0).then_some(t)
+        });
+        let lamp = light.shape().and_then(|shape| {
+            let (t, x, y) = crossing(0.0)?;
+            shape.contains(x, y).then_some(t)
+        });
+        let all = objects.chain(black).chain(masks).chain(lamp);
+        all.fold(f64::INFINITY, f64::min)
     }
 }
 

@@ -244,14 +244,24 @@ impl Resolver<'_> {
             );
             self.faults.add_on_path(of, value(), allowed);
         }
-        let beside = |s: &&Stop<'_>| s.extent.iter().any(|end| near(*end, distance));
         let ends = |leg: &usize| near(path.legs[leg + 1].start, distance);
         let hit = (0..path.legs.len() - 1).find(ends);
         let hit = hit.and_then(|leg| stops.iter().find(|s| s.ends == Some(leg)));
+        let at = path.frame_at(distance, leg);
+        let beside = |s: &&Stop<'_>| s.extent.iter().any(|end| near(*end, at.origin.z));
         let on_first = || stops.iter().filter(|_| leg == 0).find(beside);
         if let Some(stop) = hit.or_else(on_first) {
             let name = shown(stop.name, limits::NAME);
             let allowed = format!("Before(\"{name}\") or After(\"{name}\") at that distance");
+            self.faults.add_on_path(of, value(), allowed);
+        } else if let Some(stop) = stops
+            .iter()
+            .filter(|stop| stop.is_flat() && is_across(&at))
+            .find(beside)
+        {
+            // Light on its way back would be before or after it by rounding alone.
+            let name = shown(stop.name, limits::NAME);
+            let allowed = format!("a distance at which {name} does not lie in the plane");
             self.faults.add_on_path(of, value(), allowed);
         }
         OnPath {
@@ -384,6 +394,11 @@ impl Resolver<'_> {
 
 fn gigabytes(bytes: f64) -> String {
     format!("{:.1} GB", bytes / 1e9)
+}
+
+/// Whether a frame lies across the first leg.
+fn is_across(frame: &Frame) -> bool {
+    libm::hypot(frame.d.x, frame.d.y) <= SAME_PLANE
 }
 
 fn near(a: f64, b: f64) -> bool {

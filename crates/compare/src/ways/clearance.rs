@@ -1,0 +1,235 @@
+//! How far the path of a ray, as theory has it, passes from what theory does not know of.
+
+use super::rays::Ray;
+use super::surroundings::{Form, Meets, Surroundings};
+use etendue_field::{Disc, HalfPlane, Mask, Patch, Rectangle, Shape};
+use etendue_scene::{Object, Surface};
+use glam::DVec3;
+
+/// A straight piece of the path of a ray.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Piece {
+    pub(super) leg: usize,
+    pub(super) ray: Ray,
+    /// Distances along the ray at which the piece begins and ends.
+    pub(super) extent: [f64; 2],
+    /// The surface that the ray has left, and the one that ends its leg.
+    pub(super) leaves: Option<Object>,
+    pub(super) ends: Option<Object>,
+    /// Whether the piece ends at the plane.
+    pub(super) is_last: bool,
+}
+
+/// Something that a ray may meet on a leg where theory does not have it.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Suspect {
+    pub(super) leg: usize,
+    pub(super) what: What,
+}
+
+#[derive(Clone, Copy, Debug)]
+pub(super) enum What {
+    /// A shape or half-plane of a layer of blockers, by their numbers.
+    Shape {
+        layer: usize,
+        shape: usize,
+    },
+    HalfPlane {
+        layer: usize,
+        half: usize,
+    },
+    /// A grating, which has no edge.
+    Grating {
+        layer: usize,
+    },
+    /// A surface of the path, by its number among the objects of the surroundings.
+    Object(usize),
+}
+
+/// Share of a distance within which a ray meets the surface that ends its leg.
+const AT_END: f64 = 1e-6;
+
+impl Suspect {
+    /// Everything that rays may meet on the legs from the light to a plane.
+    pub(super) fn all(around: &Surroundings<'_>, legs: usize) -> Vec<Self> {
+        let of_layer = |(layer, mask): (usize, &Mask)| match mask {
+            Mask::Grating(_) => vec![What::Grating { layer }],
+            Mask::Opaque {
+                shapes,
+                half_planes,
+            } => {
+                let shapes = (0..shapes.len()).map(|shape| What::Shape { layer, shape });
+                let halves = (0..half_planes.len()).map(|half| What::HalfPlane { layer, half });
+                shapes.chain(halves).collect()
+            }
+        };
+        let layers = around.scene.blockers.iter().map(|layer| &layer.mask);
+        let mut things: Vec<What> = layers.enumerate().flat_map(of_layer).collect();
+        things.extend((0..around.objects.len()).map(What::Object));
+        (0..legs)
+            .flat_map(|leg| things.iter().map(move |what| Self { leg, what: *what }))
+            .collect()
+    }
+
+    /// What is said of it once a ray meets it.
+    pub(super) fn meets(&self, around: &Surroundings<'_>, piece: &Piece) -> Meets {
+        match self.what {
+            What::Shape { layer: index, .. }
+            | What::HalfPlane { layer: index, .. }
+            | What::Grating { layer: index } => Meets::Layer {
+                index,
+                leg: self.leg,
+            },
+            What::Object(i) => {
+                let object = around.objects[i].0;
+                if [piece.leaves, piece.ends].contains(&Some(object)) {
+                    Meets::Itself(object)
+                } else {
+                    Meets::OutOfTurn(object)
+                }
+            }
+        }
+    }
+
+    /// How far a piece of a path passes from it, metres; zero where it meets it against theory,
+    /// infinite where it cannot.
+    pub(super) fn gap(&self, around: &Surroundings<'_>, piece: &Piece) -> f64 {
+        let (layer, outside): (usize, &dyn Fn(DVec3) -> f64) = match self.what {
+            What::Object(i) => return object_gap(around, i, piece),
+            What::Grating { layer } => (layer, &|_| 0.0),
+            What::Shape { layer, shape } => {
+                let Mask::Opaque { shapes, .. } = &around.scene.blockers[layer].mask else {
+                    return f64::INFINITY;
+                };
+                let shape = &shapes[shape];
+                (layer, &|at| outside_shape(shape, at))
+            }
+            What::HalfPlane { layer, half } => {
+                let Mask::Opaque { half_planes, .. } = &around.scene.blockers[layer].mask else {
+                    return f64::INFINITY;
+                };
+                let half = &half_planes[half];
+                (layer, &|at| outside_half_plane(half, at))
+            }
+        };
+        let Some(t) = around.crossing(&piece.ray, layer) else {
+            return f64::INFINITY;
+        };
+        let [from, to] = piece.extent;
+        let off = if piece.leg > 0 || !around.is_known(layer) {
+            beyond(t, [from, to])
+        } else {
+            // Theory has it: what would be wrong is to meet the surface first.
+            (to - t).max(0.0)
+        };
+        off.hypot(outside(piece.ray.at(t)))
+    }
+}
+
+/// How far a number lies outside an interval.
+fn beyond(t: f64, [from, to]: [f64; 2]) -> f64 {
+    (from - t).max(t - to).max(0.0)
+}
+
+fn outside_shape(shape: &Shape, at: DVec3) -> f64 {
+    match *shape {
+        Shape::Rectangle(Rectangle { center, size }) => {
+            outside_rectangle([at.x - center[0], at.y - center[1]], size)
+        }
+        Shape::Disc(Disc { center, radius }) => {
+            let off = libm::hypot(at.x - center[0], at.y - center[1]);
+            (off - radius).max(0.0)
+        }
+    }
+}
+
+/// How far a point lies outside a rectangle around the origin.
+fn outside_rectangle(at: [f64; 2], size: [f64; 2]) -> f64 {
+    let [x, y] = [0, 1].map(|axis: usize| (at[axis].abs() - 0.5 * size[axis]).max(0.0));
+    libm::hypot(x, y)
+}
+
+fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
+    let coordinate = if half.axis == 0 { at.x } else { at.y };
+    let off = half.edge - coordinate;
+    if half.above { off } else { -off }.max(0.0)
+}
+
+/// The same for a surface of the path.
+fn object_gap(around: &Surroundings<'_>, index: usize, piece: &Piece) -> f64 {
+    let (object, form) = &around.objects[index];
+    let [from, to] = piece.extent;
+    let own = |which: Option<Object>| which == Some(*object);
+    let extent = match (own(piece.ends), own(piece.leaves), piece.is_last) {
+        // Theory has it there.
+        (true, _, true) => return f64::INFINITY,
+        (true, _, false) => [from, to * (1.0 - AT_END)],
+        // Light that meets again what it has left is gone, wherever the plane is.
+        (false, true, true) => [from, f64::INFINITY],
+        _ => piece.extent,
+    };
+    if extent[0] > extent[1] {
+        return f64::INFINITY;
+    }
+    match form {
+        Form::Flat(surface) => flat_gap(surface, &piece.ray, extent),
+        Form::Smooth(patch) => patch_gap(patch, &piece.ray, extent),
+        Form::Around(corners) => box_gap(corners, &piece.ray, extent),
+    }
+}
+
+fn flat_gap(surface: &Surface, ray: &Ray, extent: [f64; 2]) -> f64 {
+    let local = ray.seen_from(&surface.frame);
+    let t = -local.point.z / local.direction.z;
+    if !t.is_finite() {
+        return f64::INFINITY;
+    }
+    let at = local.at(t);
+    beyond(t, extent).hypot(outside_rectangle([at.x, at.y], surface.size))
+}
+
+/// The points where a line meets the quadric of a patch, or where it passes it nearest, may lie
+/// beside the patch or off the piece.
+fn patch_gap(patch: &Patch, ray: &Ray, extent: [f64; 2]) -> f64 {
+    let Ray { point, direction } = ray.seen_from(&patch.frame);
+    let off = |t: f64| {
+        let at = point + t * direction;
+        let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
+        // The other half of a sphere or a cylinder.
+        let below = patch.aperture * (-patch.gradient(at).z).max(0.0);
+        beyond(t, extent).hypot(aside).hypot(below)
+    };
+    let curved = DVec3::from(patch.curvature) * direction;
+    let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
+    let c = patch.value(point);
+    let squared = b * b - a * c;
+    if squared < 0.0 {
+        let t = -b / a;
+        let at = point + t * direction;
+        let passes = (0.5 * patch.value(at) / patch.gradient(at).length()).abs();
+        return off(t).hypot(passes);
+    }
+    let q = -(b + squared.sqrt().copysign(b));
+    let roots = [q / a, c / q].into_iter().filter(|t| t.is_finite());
+    roots.map(off).fold(f64::INFINITY, f64::min)
+}
+
+/// The distance of a piece from a box around a mesh.
+fn box_gap([low, high]: &[DVec3; 2], ray: &Ray, [from, to]: [f64; 2]) -> f64 {
+    let distance = |t: f64| {
+        let at = ray.at(t);
+        at.distance(at.clamp(*low, *high))
+    };
+    // It is convex along a line. What has no end need not be followed farther than the box.
+    let far = (ray.point - 0.5 * (*low + *high)).length() + low.distance(*high);
+    let [mut a, mut b] = [from, to.min(from + far)];
+    for _ in 0..60 {
+        let third = (b - a) / 3.0;
+        if distance(a + third) < distance(b - third) {
+            b -= third;
+        } else {
+            a += third;
+        }
+    }
+    distance(0.5 * (a + b))
+}

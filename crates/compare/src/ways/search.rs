@@ -1,0 +1,146 @@
+//! A search for light in the window that meets what theory does not know of.
+//!
+//! A few thousand rays fill the window evenly and find what is in the way of much of the light. An
+//! object that stands in the way of little of it may lie between them, at the edge or in the corner
+//! of the window. So for each such object the rays that pass it nearest are moved until they meet
+//! it or come no nearer: a distance that falls along a smooth path finds the smallest object.
+
+use super::clearance::{Piece, Suspect};
+use super::rays::{Draw, bright, lattice};
+use super::surroundings::{Meets, Surroundings};
+
+/// Rays with light in the window that are followed for a plane.
+const LIT_RAYS: usize = 3000;
+/// Rays tried for these.
+const TRIED_RAYS: u32 = 60_000;
+/// How many of the rays that pass an object nearest are moved towards it.
+const STARTS: usize = 4;
+/// Moves of each.
+const MOVES: u32 = 300;
+/// The first moves go as far as rays are from each other: 3000 fill a window of four axes with
+/// seven on each.
+const FIRST_MOVE: f64 = 0.15;
+/// A move that comes nearer makes the next this much longer. One that does not makes it shorter so
+/// that one success in twelve keeps the length: in a corner most axes are at their ends.
+const LONGER: f64 = 1.5;
+const SHORTER: f64 = 0.964;
+/// An object is out of reach whose distance from the nearest ray exceeds this share of the range of
+/// distances: the nearest corner of a window of four axes lies a seventh of it beyond.
+const REACH: f64 = 0.5;
+/// A shadow in light of this share of the strongest has 10⁻⁶ of the power of one in the strongest,
+/// which 10⁹ photons do not show.
+const FAINT: f64 = 1e-3;
+
+/// Rays that theory follows from the light to a plane.
+pub(super) trait Followed {
+    /// How much light a ray brings into the window, and what it meets on its way that theory does
+    /// not know of, if anything; `None` if it brings none.
+    fn check(&self, draw: &Draw) -> Option<(f64, Option<Meets>)>;
+
+    /// How much light it brings by theory's path, and the pieces of that; `None` if it brings none.
+    fn pieces(&self, draw: &Draw) -> Option<(f64, Vec<Piece>)>;
+
+    /// What stands around the path.
+    fn around(&self) -> &Surroundings<'_>;
+}
+
+/// What rays meet that theory does not know of.
+pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
+    let checked = (0..TRIED_RAYS).filter_map(|index| {
+        let draw = Draw::new(index);
+        let (light, meets) = rays.check(&draw)?;
+        Some((light, (draw, meets)))
+    });
+    let lit = bright(checked, LIT_RAYS);
+    let strongest = lit.iter().map(|(light, _)| *light).fold(0.0, f64::max);
+    let mut found: Vec<Meets> = lit.iter().filter_map(|(_, (_, meets))| *meets).collect();
+    let paths = lit.iter().filter_map(|(_, (draw, _))| {
+        let (light, pieces) = rays.pieces(draw)?;
+        (light > FAINT * strongest).then_some((*draw, pieces))
+    });
+    let paths: Vec<(Draw, Vec<Piece>)> = paths.collect();
+    let Some((_, pieces)) = paths.first() else {
+        return found;
+    };
+    let around = rays.around();
+    for suspect in Suspect::all(around, pieces.len()) {
+        if found.contains(&suspect.meets(around, &pieces[suspect.leg])) {
+            continue;
+        }
+        let search = Search {
+            rays,
+            suspect,
+            faint: FAINT * strongest,
+        };
+        let mut starts = search.starts(&paths).into_iter();
+        found.extend(starts.find_map(|start| search.approach(start)));
+    }
+    found
+}
+
+/// The search for a ray that meets one object on one leg.
+struct Search<'a, R> {
+    rays: &'a R,
+    suspect: Suspect,
+    /// Light weaker than this does not count.
+    faint: f64,
+}
+
+impl<R: Followed> Search<'_, R> {
+    fn gap(&self, pieces: &[Piece]) -> f64 {
+        self.suspect
+            .gap(self.rays.around(), &pieces[self.suspect.leg])
+    }
+
+    /// The rays that pass the object nearest, and how near; none if it is out of reach.
+    fn starts(&self, paths: &[(Draw, Vec<Piece>)]) -> Vec<(f64, Draw)> {
+        let gaps = paths.iter().map(|(draw, pieces)| (self.gap(pieces), *draw));
+        let mut gaps: Vec<(f64, Draw)> = gaps.filter(|(gap, _)| gap.is_finite()).collect();
+        gaps.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        let [Some((nearest, _)), Some((farthest, _))] = [gaps.first(), gaps.last()] else {
+            return Vec::new();
+        };
+        let is_within_reach = *nearest <= REACH * (farthest - nearest);
+        gaps.truncate(if is_within_reach { STARTS } else { 0 });
+        gaps
+    }
+
+    /// Moves a ray towards the object; what it meets, if it comes to meet anything.
+    fn approach(&self, (mut gap, mut at): (f64, Draw)) -> Option<Meets> {
+        let mut length = FIRST_MOVE;
+        for number in 0..MOVES {
+            if gap <= 0.0 {
+                let meets = self.rays.check(&at).and_then(|(_, meets)| meets);
+                if meets.is_some() {
+                    return meets;
+                }
+            }
+            let moved = moved(&at, length, number);
+            let nearer = self.rays.pieces(&moved).and_then(|(light, pieces)| {
+                let nearer = self.gap(&pieces);
+                (light > self.faint && nearer < gap).then_some(nearer)
+            });
+            if let Some(nearer) = nearer {
+                (gap, at) = (nearer, moved);
+                length *= LONGER;
+            } else {
+                length *= SHORTER;
+            }
+        }
+        None
+    }
+}
+
+/// A draw at most so far from another along each axis; two of three moves go along one axis, since
+/// in a corner of the window few other moves stay inside.
+fn moved(from: &Draw, length: f64, number: u32) -> Draw {
+    let step = lattice(number);
+    let mut numbers = from.numbers;
+    for (axis, x) in numbers.iter_mut().enumerate() {
+        let [turn, along] = [number % 3, number / 3 % 6];
+        if turn == 0 || along as usize == axis {
+            *x = (*x + length * (2.0 * step[axis] - 1.0)).clamp(0.0, 1.0);
+        }
+    }
+    Draw { numbers, ..*from }
+}

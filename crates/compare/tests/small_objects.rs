@@ -1,0 +1,124 @@
+//! Theory does not speak of a plane for which a small object beside the central ray stops light.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use etendue_compare::{Applicability, Class};
+use etendue_scene::{Scene, SceneFile, resolve};
+use glam::DVec3;
+
+const FACING: DVec3 = DVec3::new(0.382_683_43, 0.0, -0.923_879_53);
+const HALF: f64 = 0.2;
+const POINT: &str = "Point(center: (0, 0, 0), intensity: 1)";
+const SQUARE: &str = "Rectangle(center: (0, 0, 0), size: (0.1, 0.1))";
+
+/// A surface that turns the central ray aside, a disc in the plane z = 0.7 and a plane at 1.7 m.
+fn scene(light: &str, event: &str, disc: [f64; 2], radius: f64) -> Scene {
+    let [x, y] = disc;
+    let text = format!(
+        r#"(
+            light: {light},
+            blockers: [Shapes(name: "disc", center: (0, 0, 0.7),
+                shapes: [Disc(center: ({x}, {y}), radius: {radius})])],
+            surfaces: [Smooth(name: "mirror", center: (0, 0, 1),
+                facing: ({}, {}, {}), form: Plane, aperture: 1, event: {event})],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["mirror"]),
+            planes: [(name: "plane", at: Distance(1.7))],
+            window: (x: Box({HALF}), u: Box({HALF})),
+            frequencies: (azimuths: 4, rho: (max: 20), nu: (max: 20)),
+        )"#,
+        FACING.x, FACING.y, FACING.z
+    );
+    let file = SceneFile::parse(&text).unwrap();
+    resolve("scene", file, ".".as_ref(), u64::MAX).unwrap()
+}
+
+fn reasons(scene: &Scene) -> Vec<String> {
+    let found = Applicability::new(scene, &scene.planes[0]);
+    assert_eq!(found.class() == Class::Reference, !found.reasons.is_empty());
+    found.reasons
+}
+
+/// Where the ray from one point towards another crosses z = 0.7.
+fn crossing(from: DVec3, to: DVec3) -> [f64; 2] {
+    let at = from.lerp(to, (0.7 - from.z) / (to.z - from.z));
+    [at.x, at.y]
+}
+
+/// The point of the plane with coordinates (x, y), shares of the window.
+fn in_plane(x: f64, y: f64) -> DVec3 {
+    let far = scene(POINT, "Mirror", [9.0, 9.0], 0.01);
+    let frame = far.planes[0].frame;
+    let frame = far.path.frame.decompose(&frame);
+    frame.to_world(DVec3::new(HALF * x, HALF * y, 0.0))
+}
+
+/// Places of the window in shares of it: middle, edges and corners.
+fn places() -> impl Iterator<Item = [f64; 2]> {
+    const SHARES: [f64; 4] = [-0.995, -0.4, 0.3, 0.995];
+    SHARES.into_iter().flat_map(|x| SHARES.map(|y| [x, y]))
+}
+
+#[test]
+fn a_small_disc_in_light_that_a_mirror_has_turned() {
+    let image = |p: DVec3| {
+        let n = FACING.normalize();
+        p - 2.0 * (p - DVec3::Z).dot(n) * n
+    };
+    let reason = "visibility of disc to light that has left mirror";
+    for (light, half) in [(POINT, 0.0), (SQUARE, 0.05)] {
+        for [x, y] in places() {
+            let from = image(half * DVec3::new(x.signum(), -y.signum(), 0.0));
+            let disc = crossing(from, in_plane(x, y));
+            for radius in [0.012, 0.002, 3e-4] {
+                let found = reasons(&scene(light, "Mirror", disc, radius));
+                assert_eq!(found, [reason], "{light} {x} {y} {radius}");
+            }
+            let beyond = crossing(from, in_plane(x.signum() * 1.6, y));
+            let found = reasons(&scene(light, "Mirror", beyond, 3e-4));
+            assert_eq!(found, [""; 0], "{light} {x} {y}");
+        }
+    }
+}
+
+/// From a BRDF light leaves in all directions: the corner of the window is one of four axes.
+#[test]
+fn a_small_disc_in_light_that_a_brdf_has_scattered() {
+    let event = "Reflects(brdf: (lobe: Phong(20), albedo: 0.5))";
+    let reason = "visibility of disc to light that has left mirror";
+    let frame = scene(POINT, event, [9.0, 9.0], 0.01).planes[0].frame;
+    for [x, y] in places() {
+        for [u, v] in [[0.9, -0.9], [-0.95, 0.2]] {
+            let to = in_plane(x, y);
+            let from = to - frame.vector_to_world(HALF * DVec3::new(u, v, 1.0 / HALF));
+            let disc = crossing(from, to);
+            for radius in [0.012, 0.002] {
+                let found = reasons(&scene(SQUARE, event, disc, radius));
+                assert_eq!(found, [reason], "{x} {y} {u} {v} {radius}");
+            }
+        }
+    }
+}
+
+/// A second mirror whose edge just reaches into the light on its way to the first.
+#[test]
+fn the_edge_of_a_surface_that_is_met_out_of_turn() {
+    let reaching = |edge: f64| {
+        let text = format!(
+            r#"(
+                light: {SQUARE},
+                surfaces: [
+                    Smooth(name: "first", center: (0, 0, 1), facing: (0.70710678, 0, -0.70710678),
+                        form: Plane, aperture: 1, event: Mirror),
+                    Smooth(name: "second", center: (0.8, 0, 1), facing: (-1, 0, 0),
+                        form: Plane, aperture: {edge}, event: Mirror)],
+                path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["first", "second"]),
+                planes: [(name: "plane", at: After("second"))],
+                window: (x: Box(0.2), u: Box(0.2)),
+                frequencies: (azimuths: 2, rho: (max: 8), nu: (max: 8)),
+            )"#
+        );
+        let file = SceneFile::parse(&text).unwrap();
+        reasons(&resolve("scene", file, ".".as_ref(), u64::MAX).unwrap())
+    };
+    assert_eq!(reaching(0.5), [""; 0]);
+}
