@@ -291,6 +291,22 @@ fn a_blocker_in_a_later_leg_is_decided() {
     });
 }
 
+/// A disc that shades a ten-thousandth of the window is not missed; rays of theory pass through it,
+/// and photons of another seed do not.
+#[test]
+fn a_small_disc_in_a_later_leg_is_decided() {
+    let scene = scene("corner_disc");
+    let class = Applicability::new(&scene, &scene.planes[0]).class();
+    assert_eq!(class, Class::Reference);
+    let mut other = scene.clone();
+    other.run.seed = 2;
+    let (photons, reference) = (photons(&scene), photons(&other));
+    let reference = by_reference(&scene, 0, &reference);
+    assert_eq!(verdict(&scene, &photons, &reference), Verdict::Pass);
+    let unaware = by_specular(&scene, 0, reference);
+    assert_eq!(verdict(&scene, &photons, &unaware), Verdict::Fail);
+}
+
 /// So is light that meets a surface twice; rays of theory meet it once.
 #[test]
 fn a_hollow_met_twice_is_decided() {

@@ -99,26 +99,71 @@ fn a_small_disc_in_light_that_a_brdf_has_scattered() {
     }
 }
 
-/// A second mirror whose edge just reaches into the light on its way to the first.
+/// Reflection of a point in a plane.
+fn reflected(point: DVec3, [on, normal]: [DVec3; 2]) -> DVec3 {
+    point - 2.0 * (point - on).dot(normal) * normal
+}
+
+/// A second mirror whose edge just reaches into the light on its way to the first. A million random
+/// rays, followed by the images of the light in both planes, say how far it may reach.
 #[test]
-fn the_edge_of_a_surface_that_is_met_out_of_turn() {
-    let reaching = |edge: f64| {
-        let text = format!(
+fn the_edge_of_a_mirror_that_is_met_out_of_turn() {
+    const RAYS: u32 = 1_000_000;
+    let [first, second] = [
+        [DVec3::Z, DVec3::new(1.0, 0.0, -1.0).normalize()],
+        [
+            DVec3::new(0.5, 0.0, 1.0),
+            DVec3::new(-1.0, 0.0, 1.0).normalize(),
+        ],
+    ];
+    let text = |aperture: f64| {
+        format!(
             r#"(
                 light: {SQUARE},
                 surfaces: [
-                    Smooth(name: "first", center: (0, 0, 1), facing: (0.70710678, 0, -0.70710678),
+                    Smooth(name: "first", center: (0, 0, 1), facing: (1, 0, -1),
                         form: Plane, aperture: 1, event: Mirror),
-                    Smooth(name: "second", center: (0.8, 0, 1), facing: (-1, 0, 0),
-                        form: Plane, aperture: {edge}, event: Mirror)],
+                    Smooth(name: "second", center: (0.5, 0, 1), facing: (-1, 0, 1),
+                        form: Plane, aperture: {aperture}, event: Mirror)],
                 path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["first", "second"]),
                 planes: [(name: "plane", at: After("second"))],
-                window: (x: Box(0.2), u: Box(0.2)),
+                window: (x: Box(0.15), u: Box(0.5)),
                 frequencies: (azimuths: 2, rho: (max: 8), nu: (max: 8)),
             )"#
-        );
-        let file = SceneFile::parse(&text).unwrap();
+        )
+    };
+    let found = |aperture: f64| {
+        let file = SceneFile::parse(&text(aperture)).unwrap();
         reasons(&resolve("scene", file, ".".as_ref(), u64::MAX).unwrap())
     };
-    assert_eq!(reaching(0.5), [""; 0]);
+    let file = SceneFile::parse(&text(0.3)).unwrap();
+    let scene = resolve("scene", file, ".".as_ref(), u64::MAX).unwrap();
+    let frame = scene.path.frame.decompose(&scene.planes[0].frame);
+    let reach = |index: u32| {
+        // Multiples of powers of the root of x⁵ = x + 1 fill four axes evenly.
+        let r = [1.0, 2.0, 3.0, 4.0]
+            .map(|k| (f64::from(index) * 1.167_303_978_261_418_7_f64.powf(-k)).fract() - 0.5);
+        let from = DVec3::new(0.1 * r[0], 0.1 * r[1], 0.0);
+        let to = frame.to_world(DVec3::new(0.3 * r[2], 0.3 * r[3], 0.0));
+        let at = |from: DVec3, to: DVec3, [on, normal]: [DVec3; 2]| {
+            let t = (on - from).dot(normal) / (to - from).dot(normal);
+            from.lerp(to, t)
+        };
+        let image = reflected(from, first);
+        let on_second = at(reflected(image, second), to, second);
+        let on_first = at(image, on_second, first);
+        let crosses = (second[0] - from).dot(second[1]) / (on_first - from).dot(second[1]);
+        let beyond = !(0.0..1.0).contains(&crosses);
+        let reaches = on_second.distance(second[0]);
+        // It must be large enough to reflect the ray, and so large to stop it.
+        let stops = from.lerp(on_first, crosses).distance(second[0]);
+        (!beyond && stops > reaches).then_some(stops)
+    };
+    let aperture = (0..RAYS).filter_map(reach).fold(f64::INFINITY, f64::min);
+    assert!(aperture.is_finite());
+    assert_eq!(
+        found(1.001 * aperture),
+        ["light that meets second out of turn"]
+    );
+    assert_eq!(found(0.95 * aperture), [""; 0]);
 }

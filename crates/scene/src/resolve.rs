@@ -76,7 +76,9 @@ impl Resolver<'_> {
         self.level(file.run.alpha, file.planes.len());
         self.layers(&file);
         // Without a frame no distance is known: check on with one that leaves the values as they are.
-        let checked = frame.unwrap_or(Frame::IDENTITY);
+        // In one that is not finite all triangles of a mesh would overlap.
+        let checked = frame.filter(|frame| frame.origin.is_finite());
+        let checked = checked.unwrap_or(Frame::IDENTITY);
         let light = self.light(&file.light, &checked);
         let surfaces = self.surfaces(&file, &checked);
         let meshes = self.meshes(&file, &checked);

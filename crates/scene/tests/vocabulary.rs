@@ -160,6 +160,7 @@ const BAD: &[(&str, &str, &str)] = &[
         "center: (0, inf, 0.5)",
         "blockers[2].center[1]",
     ),
+    // A grating stands at 1.2 m, and shapes at 1 m, beside the ray.
     ("Distance(2.5)", "Distance(2.9)", "planes[4].at"),
     ("Distance(2.5)", "Distance(2)", "planes[4].at"),
     ("After(\"star\")", "After(\"moon\")", "planes[1].at"),
@@ -313,5 +314,31 @@ fn unknown_words_are_named_with_the_known_ones() {
             error.contains(part) && error.starts_with("line ") && !error.contains("File"),
             "{to}: {error}"
         );
+    }
+}
+
+/// On its way back light may pass the plane of blockers and of a light that are beside it, but a
+/// plane must not lie in theirs.
+#[test]
+fn a_plane_beyond_blockers_that_the_central_ray_misses() {
+    let at = |distance: f64| {
+        let plane = format!("Distance({distance})");
+        let text = text().replace("Distance(2.5)", &plane);
+        let grating = text.find("    Grating(").unwrap();
+        let star = text.find("    Mesh(name: \"star\"").unwrap();
+        let planes = text.find("    (name: \"star\", at").unwrap();
+        let irradiance = text.find("    (name: \"irradiance\"").unwrap();
+        // Without the grating and the mesh the ray meets nothing but the light.
+        let text = [
+            &text[..grating],
+            &text[text[star..].find("],").unwrap() + star..planes],
+            &text[irradiance..],
+        ];
+        resolved(&text.concat()).map(|scene| scene.planes[2].distance)
+    };
+    assert_eq!(at(3.2).unwrap().to_bits(), 3.2_f64.to_bits());
+    for refused in [3.0, 4.5] {
+        let error = at(refused).unwrap_err().to_string();
+        assert!(error.contains("planes[2].at"), "{error}");
     }
 }
