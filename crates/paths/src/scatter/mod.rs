@@ -377,7 +377,12 @@ fn factor(of: &Dielectric, uv: DVec2, wi: DVec3) -> f64 {
 
 /// Reflects or refracts at a smooth interface, each as often as light does.
 fn smooth_interface(of: &Dielectric, uv: DVec2, wo: DVec3, random: f64) -> Option<Bounce> {
-    let index = if wo.z > 0.0 { of.index } else { 1.0 / of.index };
+    // A thin sheet has the same medium on both sides.
+    let index = if of.is_thin || wo.z > 0.0 {
+        of.index
+    } else {
+        1.0 / of.index
+    };
     let normal = DVec3::Z * wo.z.signum();
     let mut at = dielectric(index, wo.z.abs());
     if of.is_thin && at.reflected < 1.0 {

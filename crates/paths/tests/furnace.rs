@@ -1,0 +1,299 @@
+//! Furnace tests: under a sky of radiance 1 a lossless surface is invisible, and no surface is brighter than the sky.
+//!
+//! Sheets and opaque surfaces are seen on a disc from its front and its back, and on an open cylinder, which shows both of its sides at once. Every
+//! material is seen on a cube and a sphere from outside and, where light passes, on a sphere from inside.
+
+use etendue_paths::{Paths, Picture};
+use etendue_world::{
+    Camera, Conductor, Dielectric, Distribution, Geometry, Light, Material, Plastic, Projection,
+    Roughness, Shape, Texture, Triangles, World,
+};
+use glam::{DAffine3, DMat3, DVec3};
+use std::sync::Arc;
+
+/// Pixels along a side of a picture.
+const SIDE: usize = 24;
+/// Paths of a pixel.
+const SAMPLES: u32 = 100;
+
+fn constant(value: f64) -> Texture {
+    Texture::Constant(value)
+}
+
+fn roughness(distribution: Distribution, alpha: [f64; 2]) -> Option<Roughness> {
+    Some(Roughness {
+        distribution,
+        alpha: alpha.map(constant),
+    })
+}
+
+fn glass(index: f64, is_thin: bool, roughness: Option<Roughness>) -> Material {
+    Material::Dielectric(Dielectric {
+        index,
+        reflectance: constant(1.0),
+        transmittance: constant(1.0),
+        roughness,
+        is_thin,
+    })
+}
+
+fn metal(index: Option<[f64; 2]>, roughness: Option<Roughness>) -> Material {
+    Material::Conductor(Conductor {
+        index,
+        reflectance: constant(1.0),
+        roughness,
+    })
+}
+
+fn plastic(roughness: Option<Roughness>, is_nonlinear: bool) -> Material {
+    Material::Plastic(Plastic {
+        index: 1.5,
+        diffuse: constant(1.0),
+        specular: constant(1.0),
+        is_nonlinear,
+        roughness,
+    })
+}
+
+fn white() -> Material {
+    Material::Diffuse {
+        reflectance: constant(1.0),
+    }
+}
+
+fn two_sided(of: Material) -> Material {
+    Material::TwoSided(Box::new([of.clone(), of]))
+}
+
+fn blend(first: Material, second: Material) -> Material {
+    Material::Blend {
+        weight: constant(0.3),
+        of: Box::new([first, second]),
+    }
+}
+
+fn mask(of: Material) -> Material {
+    Material::Mask {
+        opacity: constant(0.4),
+        of: Box::new(of),
+    }
+}
+
+/// What is behind a surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Behind {
+    /// The same medium as in front.
+    Same,
+    /// A medium of this index: radiance there is larger by its square.
+    Medium(f64),
+    /// No light passes.
+    Nothing,
+}
+
+/// A material with what is known of it.
+struct Case {
+    name: &'static str,
+    material: Material,
+    is_lossless: bool,
+    behind: Behind,
+}
+
+fn cases() -> Vec<Case> {
+    use Behind::{Medium, Nothing, Same};
+    let ggx = |alpha| roughness(Distribution::Ggx, [alpha, alpha]);
+    let beckmann = || roughness(Distribution::Beckmann, [0.3, 0.15]);
+    let mirror = || two_sided(metal(None, None));
+    let phong = Material::Phong {
+        diffuse: constant(0.4),
+        specular: constant(0.6),
+        exponent: constant(20.0),
+    };
+    let lossless = [
+        ("glass", Medium(1.5), glass(1.5, false, None)),
+        ("bubble", Medium(1.0 / 1.5), glass(1.0 / 1.5, false, None)),
+        (
+            "white and glass",
+            Medium(1.5),
+            blend(two_sided(white()), glass(1.5, false, None)),
+        ),
+        ("thin glass", Same, glass(1.5, true, None)),
+        ("thin gap", Same, glass(0.75, true, None)),
+        ("masked thin glass", Same, mask(glass(1.5, true, None))),
+        ("masked white", Same, mask(two_sided(white()))),
+        (
+            "mirror and thin glass",
+            Same,
+            blend(mirror(), glass(1.5, true, None)),
+        ),
+        ("white", Nothing, two_sided(white())),
+        ("mirror", Nothing, mirror()),
+        ("plastic", Nothing, two_sided(plastic(None, true))),
+        ("linear plastic", Nothing, two_sided(plastic(None, false))),
+        (
+            "white and mirror",
+            Nothing,
+            blend(two_sided(white()), mirror()),
+        ),
+    ];
+    let lossy = [
+        ("rough glass", Medium(1.5), glass(1.5, false, ggx(0.2))),
+        (
+            "rough bubble",
+            Medium(1.0 / 1.5),
+            glass(1.0 / 1.5, false, beckmann()),
+        ),
+        ("rough mirror", Nothing, two_sided(metal(None, beckmann()))),
+        (
+            "rough metal",
+            Nothing,
+            two_sided(metal(Some([0.2, 3.9]), ggx(0.3))),
+        ),
+        (
+            "smooth metal",
+            Nothing,
+            two_sided(metal(Some([0.2, 3.9]), None)),
+        ),
+        ("rough plastic", Nothing, two_sided(plastic(ggx(0.2), true))),
+        ("phong", Nothing, two_sided(phong)),
+    ];
+    let case = |is_lossless| {
+        move |(name, behind, material)| Case {
+            name,
+            material,
+            is_lossless,
+            behind,
+        }
+    };
+    let lossless = lossless.map(case(true)).into_iter();
+    lossless.chain(lossy.map(case(false))).collect()
+}
+
+/// A shape with a camera that looks at its middle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum View {
+    DiscFront,
+    DiscBack,
+    Cylinder,
+    Cube,
+    SphereOutside,
+    SphereInside,
+}
+
+impl View {
+    /// The views that the law holds in.
+    fn of(behind: Behind) -> &'static [Self] {
+        let all = &[
+            Self::SphereInside,
+            Self::SphereOutside,
+            Self::Cube,
+            Self::DiscFront,
+            Self::DiscBack,
+            Self::Cylinder,
+        ];
+        match behind {
+            Behind::Same => all,
+            Behind::Nothing => &all[1..],
+            // What has another medium behind it bounds a body. Total reflection keeps some light of a denser one inside for ever.
+            Behind::Medium(index) if index > 1.0 => &all[1..3],
+            Behind::Medium(_) => &all[..3],
+        }
+    }
+
+    fn picture(self, material: &Material) -> Picture {
+        let (geometry, from, half_width) = match self {
+            Self::DiscFront => (Geometry::Disc, DVec3::new(2.0, 0.5, 1.0), 0.5),
+            Self::DiscBack => (Geometry::Disc, DVec3::new(2.0, 0.5, -1.0), 0.5),
+            Self::Cylinder => (Geometry::Cylinder, DVec3::new(1.0, 1.5, 3.0), 0.5),
+            Self::Cube => (cube(), DVec3::new(2.0, 3.0, 1.5), 0.5),
+            // As wide as the sphere, whose rim the outer pixels show.
+            Self::SphereOutside => (Geometry::Sphere, DVec3::new(0.3, 2.0, 0.5), 0.58),
+            Self::SphereInside => (Geometry::Sphere, DVec3::new(0.3, 0.5, 0.2), 1.0),
+        };
+        let shape = Shape {
+            name: String::new(),
+            geometry,
+            to_world: DAffine3::IDENTITY,
+            is_flipped: false,
+            material: 0,
+            emission: None,
+        };
+        let world = World {
+            shapes: vec![shape],
+            materials: vec![material.clone()],
+            lights: vec![Light::Constant { radiance: 1.0 }],
+            ..World::default()
+        };
+        let along = -from.normalize();
+        let left = along.any_orthonormal_vector();
+        let turned = DMat3::from_cols(left, along.cross(left), along);
+        let camera = Camera {
+            name: "camera".to_owned(),
+            to_world: DAffine3::from_mat3_translation(turned, from),
+            size: [SIDE; 2],
+            projection: Projection::Perspective {
+                half_width,
+                shift: [0.0; 2],
+                lens: None,
+            },
+            clip: [1e-3, 1e6],
+        };
+        Paths::new(&world).picture(&camera, SAMPLES, 5, &|_| {})
+    }
+}
+
+/// x, y and z from −1 to 1, with flat faces.
+fn cube() -> Geometry {
+    let sign = |i: usize, axis: usize| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
+    let vertices = (0..8).map(|i| DVec3::new(sign(i, 0), sign(i, 1), sign(i, 2)));
+    let faces: [[u32; 4]; 6] = [
+        [0, 2, 3, 1],
+        [4, 5, 7, 6],
+        [0, 1, 5, 4],
+        [2, 6, 7, 3],
+        [0, 4, 6, 2],
+        [1, 3, 7, 5],
+    ];
+    let halves = |[a, b, c, d]: [u32; 4]| [[a, b, c], [a, c, d]];
+    let corners = faces.into_iter().flat_map(halves).collect();
+    Geometry::Mesh(Arc::new(
+        Triangles::new(vertices.collect(), corners, None, None).unwrap(),
+    ))
+}
+
+/// The mean of some pixels, with its standard error.
+fn mean(picture: &Picture, of: impl Fn(usize) -> bool) -> (f64, f64) {
+    let pixels: Vec<usize> = (0..SIDE * SIDE).filter(|i| of(*i)).collect();
+    let count = pixels.len() as f64;
+    let sum: f64 = pixels.iter().map(|i| picture.mean[*i]).sum();
+    let variance: f64 = pixels.iter().map(|i| picture.variance[*i]).sum();
+    (sum / count, variance.sqrt() / count)
+}
+
+#[test]
+fn no_surface_changes_the_energy_of_a_furnace() {
+    for Case {
+        name,
+        material,
+        is_lossless,
+        behind,
+    } in cases()
+    {
+        for view in View::of(behind) {
+            let picture = view.picture(&material);
+            let expected = match (view, behind) {
+                (View::SphereInside, Behind::Medium(index)) => index * index,
+                _ => 1.0,
+            };
+            // Each row by itself, and the whole picture.
+            for row in 0..=SIDE {
+                let (mean, error) = mean(&picture, |i| row == SIDE || i / SIDE == row);
+                let place = format!("{name} {view:?} row {row}: {mean} ± {error}");
+                let bound = 5.0 * error + 1e-9; // 2,300 means, and rounding where all paths find the same.
+                assert!(mean < expected + bound, "brighter than the sky: {place}");
+                let is_kept = !is_lossless || mean > expected - bound;
+                assert!(is_kept, "light is lost: {place}");
+                assert!(error < 0.05 && mean > 0.2, "too little to tell: {place}");
+            }
+        }
+    }
+}
