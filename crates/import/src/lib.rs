@@ -14,6 +14,7 @@ mod options;
 mod pbrt;
 mod pictures;
 mod placement;
+mod range;
 mod report;
 mod spectrum;
 

@@ -35,7 +35,7 @@ impl fmt::Display for Note {
 pub struct Imported {
     /// The world.
     pub world: World,
-    /// All that was dropped or approximated, in the order of reading.
+    /// What was dropped or approximated, in the order of reading; where there is too much, the last note says how much more.
     pub notes: Vec<Note>,
 }
 

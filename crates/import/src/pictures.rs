@@ -3,6 +3,7 @@
 mod hdr;
 mod jpeg;
 
+use crate::range::MAX_NUMBER;
 use crate::{Color, files::Files};
 use etendue_field::Raster;
 use etendue_scene::{Channels, read_channels};
@@ -78,8 +79,10 @@ impl Curve {
 fn read(files: &Files, path: &Path, color: Color, curve: Curve) -> Result<Raster, String> {
     let bytes = files.read(path)?;
     let channels = decode(path, &bytes)?;
-    if !channels.values.iter().all(|v| v.is_finite()) {
-        return Err("has pixels that are not finite".to_owned());
+    if !channels.values.iter().all(|v| v.abs() <= MAX_NUMBER) {
+        return Err(format!(
+            "has pixels out of range; allowed: up to {MAX_NUMBER:e}"
+        ));
     }
     let linear = |v: f64| match curve {
         Curve::Srgb if channels.are_levels => linear(v),

@@ -1,5 +1,6 @@
 //! Where shapes of any scene may be placed.
 
+use crate::range::{MAX_NUMBER, holds};
 use etendue_world::Geometry;
 use glam::{DAffine3, DVec3};
 
@@ -17,9 +18,14 @@ pub(crate) fn fault(geometry: &Geometry, to_world: DAffine3) -> Option<&'static 
         Geometry::Cylinder => alike(x, y) && is_square,
         _ => true,
     };
-    let is_regular = to_world.is_finite() && to_world.matrix3.determinant().abs() > 0.0;
+    let lengths = [x, y, z].map(DVec3::length);
+    let is_regular = holds(to_world)
+        && lengths.iter().all(|length| *length >= 1.0 / MAX_NUMBER)
+        && to_world.matrix3.determinant().abs() > 0.0;
     match (is_regular, fits) {
-        (false, _) => Some("that is scaled to nothing, or without bounds"),
+        (false, _) => Some(
+            "that is placed out of range, or scaled to nothing; allowed: coordinates up to 1e9, and scales from 1e-9 to 1e9",
+        ),
         (true, false) => Some("with shear, or not scaled alike along its axes"),
         (true, true) => None,
     }

@@ -1,10 +1,10 @@
 use crate::note::{Imported, Note, Refused};
 use etendue_world::World;
-use std::cell::{Cell, RefCell};
+use std::cell::RefCell;
 use std::rc::Rc;
 
-/// Causes that are kept; there may be as many as elements in a file.
-const MOST_CAUSES: usize = 1000;
+/// Causes that are kept, and notes; there may be as many as elements in a file.
+const MAX_MESSAGES: usize = 100;
 
 /// Bytes of a value in a message.
 const LONGEST: usize = 60;
@@ -44,46 +44,56 @@ impl Place {
 /// What is found while a scene is read: causes to refuse it, and notes.
 #[derive(Debug, Default)]
 pub(crate) struct Report {
-    causes: RefCell<Vec<Note>>,
-    notes: RefCell<Vec<Note>>,
-    more: Cell<usize>,
+    causes: RefCell<Messages>,
+    notes: RefCell<Messages>,
+}
+
+/// The first messages, and how many followed.
+#[derive(Debug, Default)]
+struct Messages {
+    kept: Vec<Note>,
+    more: usize,
+}
+
+impl Messages {
+    fn add(&mut self, place: &Place, message: String) {
+        match self.kept.len() < MAX_MESSAGES {
+            true => self.kept.push(place.note(message)),
+            false => self.more += 1,
+        }
+    }
+
+    /// All that are kept; the last one says how many more there are of this kind.
+    fn finish(mut self, kind: &str) -> Vec<Note> {
+        if let (Some(last), more @ 1..) = (self.kept.last(), self.more) {
+            let more = Place::whole(&last.file).note(format!("and {more} more {kind}"));
+            self.kept.push(more);
+        }
+        self.kept
+    }
 }
 
 impl Report {
     /// The scene cannot be read, because of this too.
     pub(crate) fn cause(&self, place: &Place, message: impl Into<String>) {
-        let mut causes = self.causes.borrow_mut();
-        if causes.len() < MOST_CAUSES {
-            causes.push(place.note(message.into()));
-        } else {
-            self.more.set(self.more.get() + 1);
-        }
+        self.causes.borrow_mut().add(place, message.into());
     }
 
     /// This is dropped or approximated.
     pub(crate) fn note(&self, place: &Place, message: impl Into<String>) {
-        self.notes.borrow_mut().push(place.note(message.into()));
+        self.notes.borrow_mut().add(place, message.into());
     }
 
     /// Whether the scene cannot be read.
     pub(crate) fn has_causes(&self) -> bool {
-        !self.causes.borrow().is_empty()
+        !self.causes.borrow().kept.is_empty()
     }
 
     /// The world, or all causes.
     pub(crate) fn finish(self, world: World) -> Result<Imported, Refused> {
-        let mut causes = self.causes.into_inner();
-        if let (Some(last), more @ 1..) = (causes.last().cloned(), self.more.get()) {
-            let message = format!("and {more} causes more");
-            causes.push(Note {
-                line: 0,
-                column: 0,
-                message,
-                ..last
-            });
-        }
+        let causes = self.causes.into_inner().finish("causes");
         if causes.is_empty() {
-            let notes = self.notes.into_inner();
+            let notes = self.notes.into_inner().finish("notes");
             Ok(Imported { world, notes })
         } else {
             Err(Refused { causes })

@@ -186,12 +186,12 @@ fn illumination_tells_the_material() {
 fn what_is_left_out_is_told_with_its_line() {
     let read = read(
         "usemtl m\nf 1 2 3\nl 1 2\nl 2 3\n",
-        "newmtl m\nKa 1 1 1\nbump x.png\nKa 0 0 0\n",
+        "newmtl m\nKa 1 1 1\ndecal x.png\nKa 0 0 0\n",
     );
     let notes: Vec<String> = read.notes.iter().map(ToString::to_string).collect();
     for expected in [
         "a.mtl:2:1: `Ka` left out, 2 times",
-        "a.mtl:3:1: `bump` left out",
+        "a.mtl:3:1: `decal` left out",
         "a.obj:12:1: l left out, 2 times",
     ] {
         assert!(

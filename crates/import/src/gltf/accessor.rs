@@ -2,6 +2,7 @@
 
 use super::reader::Reader;
 use super::uri::{Source, source};
+use crate::range::MAX_NUMBER;
 use ::gltf::json::accessor::{ComponentType, Type};
 use ::gltf::json::validation::Checked;
 use ::gltf::json::{Accessor, Index};
@@ -67,10 +68,13 @@ impl Reader<'_> {
         let numbers: Vec<[f64; N]> = (0..rows.count).map(row).collect();
         let bad = numbers
             .iter()
-            .position(|row| row.iter().any(|v| !v.is_finite()));
+            .position(|row| !row.iter().all(|v| v.abs() <= MAX_NUMBER));
         if let Some(bad) = bad {
             let path = format!("accessors[{}]", index.value());
-            self.cause(&path, format!("element {bad} is not finite"));
+            self.cause(
+                &path,
+                format!("element {bad} is out of range; allowed: up to {MAX_NUMBER:e}"),
+            );
             return None;
         }
         Some(numbers)

@@ -2,6 +2,7 @@
 
 use super::node::Placed;
 use super::reader::Reader;
+use crate::range::MAX_NUMBER;
 use ::gltf::json::camera::{Orthographic, Perspective};
 use etendue_world::{Camera, Projection};
 use std::f64::consts::PI;
@@ -61,11 +62,15 @@ impl<'a> Reader<'a> {
         let near = self.within(
             &format!("{path}.znear"),
             of.znear,
-            [f64::MIN_POSITIVE, 1e30],
+            [f64::MIN_POSITIVE, MAX_NUMBER],
         );
         let far = match of.zfar {
-            Some(far) => self.within(&format!("{path}.zfar"), far, [f64::from(of.znear), 1e30]),
-            None => Some(1e30),
+            Some(far) => self.within(
+                &format!("{path}.zfar"),
+                far,
+                [f64::from(of.znear), MAX_NUMBER],
+            ),
+            None => Some(f64::INFINITY),
         };
         let (aspect, tangent) = (aspect?, libm::tan(yfov? / 2.0));
         let [w, h] = size(aspect);
@@ -84,11 +89,11 @@ impl<'a> Reader<'a> {
     ) -> Option<(Projection, f64, f64, [f64; 2])> {
         let [xmag, ymag] = [("xmag", of.xmag), ("ymag", of.ymag)]
             .map(|(name, value)| self.within(&format!("{path}.{name}"), value, [1e-9, 1e9]));
-        let near = self.within(&format!("{path}.znear"), of.znear, [0.0, 1e30]);
+        let near = self.within(&format!("{path}.znear"), of.znear, [0.0, MAX_NUMBER]);
         let far = self.within(
             &format!("{path}.zfar"),
             of.zfar,
-            [f64::from(of.znear), 1e30],
+            [f64::from(of.znear), MAX_NUMBER],
         );
         let (xmag, ymag) = (xmag?, ymag?);
         let aspect = xmag / ymag;

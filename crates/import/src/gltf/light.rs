@@ -2,6 +2,7 @@
 
 use super::node::Placed;
 use super::reader::{MOST, Reader};
+use crate::range::MAX_NUMBER;
 use ::gltf::json::extensions::scene::khr_lights_punctual::{Light as Punctual, Spot, Type};
 use ::gltf::json::validation::Checked;
 use etendue_world::{Falloff, Light};
@@ -29,7 +30,7 @@ impl<'a> Reader<'a> {
     }
 
     fn light(&mut self, light: &Punctual, placed: &Placed<'a>, path: &str) -> Option<Light> {
-        let most = [0.0, 1e30];
+        let most = [0.0, MAX_NUMBER];
         let strength = self.within(&format!("{path}.intensity"), light.intensity, most)?;
         for value in light.color {
             self.within(&format!("{path}.color"), value, most)?;

@@ -2,6 +2,7 @@
 
 use super::reader::Reader;
 use super::texture::Level;
+use crate::range::MAX_NUMBER;
 use crate::report::quoted;
 use ::gltf::json::Material as Source;
 use ::gltf::json::material::AlphaMode;
@@ -108,7 +109,7 @@ impl<'a> Reader<'a> {
         let strength = match strength {
             Some(of) => {
                 let path = format!("{}.extensions.KHR_materials_emissive_strength", draft.path);
-                self.within(&path, of.emissive_strength.0, [0.0, 1e30])?
+                self.within(&path, of.emissive_strength.0, [0.0, MAX_NUMBER])?
             }
             None => 1.0,
         };
@@ -156,8 +157,8 @@ impl<'a> Reader<'a> {
     fn tell_dropped_of(&self, draft: &Draft<'_>) {
         let (source, path) = (draft.source, &draft.path);
         if source.normal_texture.is_some() {
-            let message = "left out: normals are those of the mesh";
-            self.note(&format!("{path}.normalTexture"), message);
+            let message = "is not supported: normals are those of the mesh";
+            self.cause(&format!("{path}.normalTexture"), message);
         }
         if source.occlusion_texture.is_some() {
             let message = "left out: light is followed instead";

@@ -1,6 +1,7 @@
 //! Nodes: where everything is.
 
 use super::reader::Reader;
+use crate::range::{MAX_NUMBER, holds};
 use crate::report::quoted;
 use ::gltf::json::Node;
 use glam::{DAffine3, DMat3, DQuat, DVec3};
@@ -86,8 +87,9 @@ impl<'a> Reader<'a> {
     /// What is at a node.
     fn hold(&mut self, placed: &Placed<'a>) {
         let (node, path) = (placed.node, &placed.path);
-        if !placed.to_world.is_finite() {
-            return self.cause(path, "is placed without bounds");
+        if !holds(placed.to_world) {
+            let message = format!("is placed out of range; allowed: up to {MAX_NUMBER:e}");
+            return self.cause(path, message);
         }
         if node.skin.is_some() {
             self.note(

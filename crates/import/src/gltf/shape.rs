@@ -4,6 +4,7 @@ use super::material::Surface;
 use super::mesh::back_of;
 use super::node::Placed;
 use super::reader::{MOST, Reader};
+use crate::range::MAX_NUMBER;
 use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;
 use etendue_world::{Geometry, Shape, Triangles};
@@ -24,8 +25,10 @@ impl<'a> Reader<'a> {
         };
         // A determinant of an f64 product may round to no exact 0.
         let linear = placed.to_world.matrix3;
-        let size = linear.x_axis.length() * linear.y_axis.length() * linear.z_axis.length();
-        if linear.determinant().abs() <= 1e-12 * size {
+        let lengths = [linear.x_axis, linear.y_axis, linear.z_axis].map(DVec3::length);
+        let size: f64 = lengths.iter().product();
+        let is_tiny = lengths.iter().any(|length| *length < 1.0 / MAX_NUMBER);
+        if is_tiny || linear.determinant().abs() <= 1e-12 * size {
             let message = "scales a mesh to nothing: left out";
             return self.note(&placed.path, message);
         }

@@ -2,6 +2,7 @@
 
 use super::material::Draft;
 use super::reader::Reader;
+use crate::range::MAX_NUMBER;
 use ::gltf::json::extensions::texture::TextureTransform;
 use ::gltf::json::texture::{Info, MagFilter, Sampler, WrappingMode};
 use ::gltf::json::validation::Checked;
@@ -96,10 +97,12 @@ impl Reader<'_> {
         let turn = DMat2::from_cols(DVec2::new(cosine, -sine), DVec2::new(sine, cosine));
         let linear = turn * DMat2::from_diagonal(scale);
         let map = DAffine2::from_mat2_translation(linear, offset);
-        if !map.is_finite() {
-            self.cause(path, "is transformed without bounds");
+        let is_in_range = map.to_cols_array().iter().all(|v| v.abs() <= MAX_NUMBER);
+        if !is_in_range {
+            let message = format!("is transformed out of range; allowed: up to {MAX_NUMBER:e}");
+            self.cause(path, message);
         }
-        map.is_finite().then_some(map)
+        is_in_range.then_some(map)
     }
 }
 

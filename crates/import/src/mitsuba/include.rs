@@ -8,6 +8,8 @@ use std::path::Path;
 
 /// Files included in one another.
 const MOST_INCLUDED: usize = 15;
+/// Files that are included, again and again.
+const MAX_INCLUDES: usize = 1000;
 /// Folders to look for files in.
 const MOST_FOLDERS: usize = 64;
 
@@ -50,6 +52,14 @@ impl Tree<'_> {
         }
         if self.open.len() > MOST_INCLUDED {
             return Err(format!("more than {MOST_INCLUDED} files in one another"));
+        }
+        self.includes += 1;
+        if self.includes > MAX_INCLUDES {
+            // The first one says it.
+            return match self.includes == MAX_INCLUDES + 1 {
+                true => Err(format!("more than {MAX_INCLUDES} files are included")),
+                false => Ok(()),
+            };
         }
         let bytes = self.files.read(&path).map_err(told)?;
         let text = String::from_utf8(bytes).map_err(|_| told("is no UTF-8".to_owned()))?;

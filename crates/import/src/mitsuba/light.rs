@@ -31,6 +31,11 @@ impl<'a> Reader<'a> {
                 None
             }
         };
+        let is_sky = |light: &Light| matches!(light, Light::Constant { .. } | Light::Sky(_));
+        if light.as_ref().is_some_and(is_sky) && self.world.lights.iter().any(is_sky) {
+            let message = "a second environment; allowed: one, as in Mitsuba 3";
+            return self.report.cause(&object.place, message);
+        }
         match light {
             Some(light) => self.world.lights.push(light),
             None => self.lost(object),

@@ -4,6 +4,7 @@ use super::metals;
 use super::object::Object;
 use super::reader::Reader;
 use super::texture::as_number;
+use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness, Texture};
@@ -15,7 +16,7 @@ const DEEPEST: usize = 8;
 const MOST: usize = 1 << 20;
 
 /// Plugins that are materials of a world.
-const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null, bumpmap, normalmap";
+const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
 
 impl<'a> Reader<'a> {
     /// The number of a material; `None` after a cause.
@@ -81,7 +82,6 @@ impl<'a> Reader<'a> {
                 opacity: Texture::Constant(0.0),
                 of: Box::new(black()),
             }),
-            "bumpmap" | "normalmap" => self.without_map(object, depth),
             _ => {
                 self.unsupported(object, ALLOWED);
                 None
@@ -180,10 +180,20 @@ impl<'a> Reader<'a> {
     fn phong(&mut self, object: &'a Object) -> Option<Material> {
         let diffuse = self.reflectance(object, "diffuse_reflectance", 0.5);
         let specular = self.reflectance(object, "specular_reflectance", 0.2);
-        let exponent = self.reflectance(object, "exponent", 30.0);
+        let exponent = self.texture_or(object, "exponent", Role::Reflectance, 30.0)?;
+        let exponent = self.not_negative(object, "exponent", exponent);
+        let (diffuse, specular) = (diffuse?, specular?);
+        let share = diffuse.largest() + specular.largest();
+        if share > MAX_SHARE {
+            let message = format!(
+                "diffuse_reflectance and specular_reflectance add up to {share}; allowed: up to 1"
+            );
+            self.report.cause(&object.place, message);
+            return None;
+        }
         Some(Material::Phong {
-            diffuse: diffuse?,
-            specular: specular?,
+            diffuse,
+            specular,
             exponent: exponent?,
         })
     }

@@ -49,23 +49,6 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// What is below a bump map or a normal map.
-    pub(super) fn without_map(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
-        let message = format!(
-            "approximated: {} is left out, the surface is smooth",
-            object.plugin
-        );
-        self.report.note(&object.place, message);
-        for (_, texture) in self.children(object, Kind::Texture) {
-            self.drop_all(texture);
-        }
-        let mut of = self.nested(object, depth)?;
-        match (of.pop(), of.pop()) {
-            (Some(of), None) => Some(of),
-            _ => self.wrong_number(object, "one"),
-        }
-    }
-
     /// All bsdfs within; `None` after a cause.
     fn nested(&mut self, object: &'a Object, depth: usize) -> Option<Vec<Material>> {
         let within = self.children(object, Kind::Bsdf);

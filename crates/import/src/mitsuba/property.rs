@@ -2,9 +2,10 @@
 
 use super::object::Value;
 use super::source::Source;
-use super::transform::{Attributes, allow, find, is_rigid, required, step};
+use super::transform::{Attributes, allow, find, required, step};
 use super::value;
 use super::xml::Tree;
+use crate::range::{MAX_NUMBER, holds};
 use crate::report::quoted;
 use glam::DAffine3;
 use roxmltree::Node;
@@ -33,7 +34,7 @@ impl Tree<'_> {
     ) -> Result<Value, String> {
         if element == "transform" {
             allow(attributes, &["name"])?;
-            return self.transform(node, source).map(Value::Transform);
+            return self.transform(node).map(Value::Transform);
         }
         if let Some(child) = node.children().find(Node::is_element) {
             let name = child.tag_name().name();
@@ -68,7 +69,7 @@ impl Tree<'_> {
         })
     }
 
-    fn transform(&mut self, node: Node<'_, '_>, source: &mut Source) -> Result<DAffine3, String> {
+    fn transform(&mut self, node: Node<'_, '_>) -> Result<DAffine3, String> {
         let mut made = DAffine3::IDENTITY;
         for child in node.children().filter(Node::is_element) {
             self.elements += 1;
@@ -79,17 +80,13 @@ impl Tree<'_> {
                 _ => step(name, &attributes),
             };
             let step = step.map_err(|error| format!("<{name}>: {error}"))?;
-            if name == "rotate" && !is_rigid(step) {
-                let place = source.cursor.place(child.range().start, &source.name);
-                let message =
-                    "an axis whose length is not 1: no rotation, but what Mitsuba 3.9 takes it for";
-                self.report.note(&place, message);
-            }
             made = step * made;
         }
-        match made.is_finite() {
+        match holds(made) {
             true => Ok(made),
-            false => Err("numbers beyond all bounds".to_owned()),
+            false => Err(format!(
+                "its product has numbers out of range; allowed: up to {MAX_NUMBER:e}"
+            )),
         }
     }
 

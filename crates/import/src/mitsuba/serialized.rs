@@ -2,6 +2,7 @@
 
 use crate::files::Files;
 use crate::meshes::Parts;
+use crate::range::MAX_NUMBER;
 use flate2::read::ZlibDecoder;
 use glam::{DVec2, DVec3};
 use std::io::Read;
@@ -13,21 +14,23 @@ const HAS_COLORS: u32 = 0x8;
 const IS_DOUBLE: u32 = 0x2000;
 /// Bytes of a name; it is passed over.
 const LONGEST_NAME: u64 = 1 << 16;
-/// The largest coordinate, as in other meshes.
-const LARGEST: f64 = 1e9;
-/// Bytes that zlib makes of one at most.
-const MOST_PER_BYTE: u64 = 1032;
+/// Bytes that are unpacked of one: zlib makes up to 1032 of zeros, and less than 20 of meshes.
+const MAX_PER_BYTE: u64 = 64;
 
 /// The mesh of this number, from 0.
 pub(super) fn read(bytes: &[u8], number: u32, files: &Files) -> Result<Parts, String> {
     let (version, start) = find(bytes, number)?;
     let packed = bytes.get(start..).ok_or("has a mesh beyond its end")?;
-    let most = files.left().min(packed.len() as u64 * MOST_PER_BYTE);
+    let most = files.left().min(packed.len() as u64 * MAX_PER_BYTE);
     let mut stream = Stream {
         inner: ZlibDecoder::new(packed).take(most),
         most,
     };
-    let parts = stream.mesh(version)?;
+    let mesh = stream.mesh(version);
+    let parts = mesh.map_err(|error| match stream.inner.limit() {
+        0 => format!("unpacks to more than {most} bytes; allowed: {MAX_PER_BYTE} times its size"),
+        _ => error,
+    })?;
     files.spend(most - stream.inner.limit())?;
     Ok(parts)
 }
@@ -147,9 +150,9 @@ impl<R: Read> Stream<R> {
                     true => f64::from_le_bytes(self.some()?),
                     false => f32::from_le_bytes(self.some()?).into(),
                 };
-                if value.is_nan() || value.abs() > LARGEST {
+                if value.is_nan() || value.abs() > MAX_NUMBER {
                     return Err(format!(
-                        "has {value} at vertex {i}; allowed: up to {LARGEST}"
+                        "has {value} at vertex {i}; allowed: up to {MAX_NUMBER}"
                     ));
                 }
             }

@@ -14,13 +14,22 @@ pub(super) struct Source {
 
 /// Counts lines and columns of places that follow one another.
 pub(super) struct Cursor {
-    pub(super) text: Rc<str>,
-    pub(super) offset: usize,
-    pub(super) line: usize,
-    pub(super) column: usize,
+    text: Rc<str>,
+    offset: usize,
+    line: usize,
+    column: usize,
 }
 
 impl Cursor {
+    pub(super) fn new(text: &str) -> Self {
+        Self {
+            text: text.into(),
+            offset: 0,
+            line: 1,
+            column: 1,
+        }
+    }
+
     pub(super) fn place(&mut self, offset: usize, file: &Rc<str>) -> Place {
         // Elements are met in the order of the text, so all of it is counted once.
         if let Some(passed) = self.text.get(self.offset..offset) {

@@ -3,6 +3,7 @@
 use super::object::{Kind, Object, Property, Value};
 use super::reader::Reader;
 use crate::Color;
+use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::{Role, from_xyz, rgb};
 use etendue_world::{Bitmap, Filter, Texture, Wrap};
@@ -26,7 +27,7 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// As [`Self::texture_or`], for shares of light: below 0 nothing is reflected.
+    /// As [`Self::texture_or`], for shares of light: 0 to 1.
     pub(super) fn reflectance(
         &mut self,
         object: &'a Object,
@@ -34,7 +35,14 @@ impl<'a> Reader<'a> {
         default: f64,
     ) -> Option<Texture> {
         let texture = self.texture_or(object, name, Role::Reflectance, default)?;
-        self.not_negative(object, name, texture)
+        let texture = self.not_negative(object, name, texture)?;
+        let largest = texture.largest();
+        if largest <= MAX_SHARE {
+            return Some(texture);
+        }
+        let message = format!("{name} goes up to {largest}; allowed: 0 to 1");
+        self.report.cause(self.place_of(object, name), message);
+        None
     }
 
     /// A light's strength, which is one number for all of it.
@@ -56,7 +64,12 @@ impl<'a> Reader<'a> {
         self.not_negative(object, name, texture)
     }
 
-    fn not_negative(&self, object: &'a Object, name: &str, texture: Texture) -> Option<Texture> {
+    pub(super) fn not_negative(
+        &self,
+        object: &'a Object,
+        name: &str,
+        texture: Texture,
+    ) -> Option<Texture> {
         let lowest = match &texture {
             Texture::Constant(value) => *value,
             Texture::Checkerboard { values, .. } => values[0].min(values[1]),

@@ -6,6 +6,9 @@ use glam::{DAffine3, DMat3, DMat4, DVec3, DVec4};
 /// The attributes of an element, after substitution.
 pub(super) type Attributes = Vec<(String, String)>;
 
+/// How far the length of an axis may be from 1: it is a vector of rounded numbers.
+const UNIT: f64 = 1e-3;
+
 /// How far a transform may be from one that keeps lengths and angles: it is a product of rounded numbers.
 const RIGID: f64 = 1e-3;
 
@@ -24,10 +27,13 @@ pub(super) fn step(name: &str, attributes: &Attributes) -> Result<DAffine3, Stri
             allow(attributes, &["x", "y", "z", "value", "angle"])?;
             let axis = vector(attributes, 0.0)?;
             let angle = value::number(required(attributes, "angle")?)?.to_radians();
-            if axis == DVec3::ZERO {
-                return Err("an axis of no length".to_owned());
+            let length = axis.length();
+            if (length - 1.0).abs() > UNIT {
+                return Err(format!(
+                    "an axis of length {length}; allowed: 1, as Mitsuba 3 does not normalise it and makes no rotation of others"
+                ));
             }
-            Ok(rotation(axis, angle))
+            Ok(rotation(axis / length, angle))
         }
         "lookat" => {
             allow(attributes, &["origin", "target", "up"])?;
@@ -67,7 +73,7 @@ pub(super) fn frame(z: DVec3) -> DMat3 {
     DMat3::from_cols(s, t, z)
 }
 
-/// The rotation about a unit axis (Rodrigues). The axis is taken as it is, as in Mitsuba 3.9: with another length it is no rotation.
+/// The rotation about a unit axis (Rodrigues).
 fn rotation(axis: DVec3, angle: f64) -> DAffine3 {
     let (sin, cos) = libm::sincos(angle);
     let column =

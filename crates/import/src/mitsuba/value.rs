@@ -1,15 +1,16 @@
 //! Numbers and lists of them, as Mitsuba writes them.
 
 use super::object::Value;
+use crate::range::in_range;
 use crate::report::quoted;
 use glam::DVec3;
 use std::rc::Rc;
 
-/// A finite number. `Err` is what is wrong.
+/// A number in range. `Err` is what is wrong.
 pub(super) fn number(text: &str) -> Result<f64, String> {
     let parsed: Option<f64> = text.trim().parse().ok();
     match parsed {
-        Some(value) if value.is_finite() => Ok(value),
+        Some(value) if value.is_finite() => in_range(value),
         _ => Err(format!("{} is no finite number", quoted(text))),
     }
 }

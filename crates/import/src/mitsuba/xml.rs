@@ -15,6 +15,8 @@ use std::rc::Rc;
 
 /// Elements within one another.
 const DEEPEST: usize = 64;
+/// Attributes of an element.
+const MAX_ATTRIBUTES: usize = 64;
 /// Elements of all files together.
 const MOST_ELEMENTS: usize = 1 << 21;
 
@@ -30,6 +32,7 @@ pub(super) struct Tree<'a> {
     /// Files that are being read, the innermost last.
     pub(super) open: Vec<PathBuf>,
     pub(super) elements: usize,
+    pub(super) includes: usize,
 }
 
 impl<'a> Tree<'a> {
@@ -42,6 +45,7 @@ impl<'a> Tree<'a> {
             report,
             open: Vec::new(),
             elements: 0,
+            includes: 0,
         }
     }
 
@@ -66,6 +70,13 @@ impl<'a> Tree<'a> {
     ) {
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let name: Rc<str> = name.into();
+        // What parses them compares all of an element with one another.
+        if let Some(offset) = crowded(text) {
+            let mut cursor = Cursor::new(text);
+            let place = cursor.place(offset, &name);
+            let message = format!("an element of more than {MAX_ATTRIBUTES} attributes");
+            return self.report.cause(&place, message);
+        }
         let document = match Document::parse(text) {
             Ok(document) => document,
             Err(error) => {
@@ -83,12 +94,7 @@ impl<'a> Tree<'a> {
             name,
             folders,
             is_old: false,
-            cursor: Cursor {
-                text: text.into(),
-                offset: 0,
-                line: 1,
-                column: 1,
-            },
+            cursor: Cursor::new(text),
         };
         let place = source.cursor.place(root.range().start, &source.name);
         match root.attribute("version").map(version) {
@@ -289,6 +295,37 @@ impl<'a> Tree<'a> {
             }
         }
     }
+}
+
+/// Where an element begins that has too many attributes.
+fn crowded(text: &str) -> Option<usize> {
+    let mut at = 0;
+    while let Some(start) = text[at..].find('<').map(|i| at + i) {
+        let rest = &text[start..];
+        let skipped = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>")];
+        if let Some((_, end)) = skipped.iter().find(|(begin, _)| rest.starts_with(begin)) {
+            at = start + rest.find(end)? + end.len();
+            continue;
+        }
+        let (mut quote, mut attributes, mut end) = (None, 0, rest.len());
+        for (i, byte) in rest.bytes().enumerate() {
+            match (quote, byte) {
+                (None, b'>') => {
+                    end = i + 1;
+                    break;
+                }
+                (None, b'=') => attributes += 1,
+                (None, b'"' | b'\'') => quote = Some(byte),
+                (Some(open), _) if open == byte => quote = None,
+                _ => {}
+            }
+        }
+        if attributes > MAX_ATTRIBUTES {
+            return Some(start);
+        }
+        at = start + end;
+    }
+    None
 }
 
 pub(super) fn unknown(id: &str) -> String {

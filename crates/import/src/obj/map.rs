@@ -1,5 +1,6 @@
 //! Statements of MTL files that name a picture.
 
+use crate::range::MAX_NUMBER;
 use crate::report::{Place, Report, quoted};
 use etendue_world::Wrap;
 use glam::{DAffine2, DVec2};
@@ -59,8 +60,9 @@ impl Map {
             report.cause(&place, "names no file");
             return None;
         }
-        if !(scale.is_finite() && offset.is_finite()) {
-            report.cause(&place, "places its picture without bounds");
+        if !(scale.abs().max_element() <= MAX_NUMBER && offset.abs().max_element() <= MAX_NUMBER) {
+            let message = format!("places its picture out of range; allowed: up to {MAX_NUMBER:e}");
+            report.cause(&place, message);
             return None;
         }
         // v' = s v + o upwards is 1 − v' = s (1 − v) + 1 − s − o downwards.

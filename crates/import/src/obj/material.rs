@@ -5,6 +5,7 @@ use super::map::Map;
 use super::ply::diffuse;
 use super::reader::Reader;
 use crate::pictures::{decode, linear};
+use crate::range::{MAX_NUMBER, MAX_SHARE};
 use etendue_field::Raster;
 use etendue_world::{Bitmap, Conductor, Dielectric, Filter, Material, Texture};
 use std::sync::Arc;
@@ -87,7 +88,16 @@ impl Reader<'_> {
     /// `Kd` times its picture.
     fn diffuse(&mut self, entry: &Entry) -> Option<Texture> {
         match &entry.map_kd {
-            Some(map) => self.bitmap(map, entry.kd.unwrap_or([1.0; 3]), false),
+            Some(map) => {
+                let texture = self.bitmap(map, entry.kd.unwrap_or([1.0; 3]), false)?;
+                let largest = texture.largest();
+                if largest > MAX_SHARE {
+                    let message = format!("Kd goes up to {largest}; allowed: 0 to 1");
+                    self.report.cause(&map.place, message);
+                    return None;
+                }
+                Some(texture)
+            }
             None => {
                 let factor = entry.kd.unwrap_or([0.5; 3]);
                 Some(Texture::Constant(self.color.of(factor)))
@@ -105,11 +115,12 @@ impl Reader<'_> {
         note(
             "approximated: Ks and Ns are the modified Phong lobe ks (n + 2)/(2π) cosⁿ α about the mirror direction",
         );
-        let all = diffuse.largest() + ks;
-        if all > 1.0 + 1e-9 {
-            note(&format!(
-                "Kd and Ks reflect up to {all:.4} of the light, more than there is"
-            ));
+        let share = diffuse.largest() + ks;
+        if share > MAX_SHARE {
+            let message =
+                format!("Kd and Ks reflect up to {share:.4} of the light; allowed: up to 1");
+            self.report.cause(&entry.place, message);
+            return None;
         }
         Some(Material::Phong {
             diffuse,
@@ -178,8 +189,10 @@ impl Reader<'_> {
         });
         let raster = raster.map_err(|fault| fault.to_string())?;
         let values = raster.values();
-        if !values.iter().all(|v| v.is_finite() && *v >= 0.0) {
-            return Err("has pixels below 0 or without bounds".to_owned());
+        if !values.iter().all(|v| (0.0..=MAX_NUMBER).contains(v)) {
+            return Err(format!(
+                "has pixels out of range; allowed: 0 to {MAX_NUMBER:e}"
+            ));
         }
         self.files.spend(size_of_val(values) as u64)?;
         Ok(raster)

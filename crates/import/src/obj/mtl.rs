@@ -2,6 +2,7 @@
 
 use super::entry::Entry;
 use super::map::Map;
+use crate::range::MAX_NUMBER;
 use crate::report::{Place, Report, quoted};
 use crate::spectrum::from_xyz;
 use std::collections::HashMap;
@@ -95,13 +96,12 @@ struct Statement<'a> {
 impl Statement<'_> {
     /// Whether the statement is known.
     fn apply(&self, entry: &mut Entry, folder: &Path) -> bool {
-        let infinity = f64::INFINITY;
         match self.word.to_ascii_lowercase().as_str() {
             "kd" => entry.kd = self.color(1.0).or(entry.kd),
             "ks" => entry.ks = self.color(1.0).or(entry.ks),
-            "ke" => entry.ke = self.color(infinity).or(entry.ke),
+            "ke" => entry.ke = self.color(MAX_NUMBER).or(entry.ke),
             "tf" => entry.tf = self.color(1.0).or(entry.tf),
-            "ns" => entry.ns = self.number(0.0, 1e9).or(entry.ns),
+            "ns" => entry.ns = self.number(0.0, MAX_NUMBER).or(entry.ns),
             "ni" => entry.ni = self.number(0.001, 10.0).or(entry.ni),
             "d" => entry.d = self.opacity().or(entry.d),
             "tr" => entry.d = self.number(0.0, 1.0).map(|tr| 1.0 - tr).or(entry.d),
@@ -112,6 +112,11 @@ impl Statement<'_> {
                     self.refuse("a whole number from 0 to 10");
                 }
                 entry.illum = whole.or(entry.illum);
+            }
+            // Pictures that move normals or places of the surface.
+            "bump" | "map_bump" | "norm" | "disp" => {
+                let message = format!("{} is not supported: surfaces are smooth", self.word);
+                self.report.cause(&self.place, message);
             }
             "map_kd" => entry.map_kd = self.map(folder).or(entry.map_kd.take()),
             "map_ke" => entry.map_ke = self.map(folder).or(entry.map_ke.take()),
@@ -169,11 +174,10 @@ impl Statement<'_> {
             _ => None,
         };
         let color = color.map(|color| if is_xyz { from_xyz(color) } else { color });
-        let is_sound = |v: &f64| v.is_finite() && (0.0..=most).contains(v);
+        let is_sound = |v: &f64| (0.0..=most).contains(v);
         let found = color.filter(|color| color.iter().all(is_sound));
         if found.is_none() {
-            let range = if most.is_finite() { "to 1" } else { "on" };
-            self.refuse(&format!("one number or three, from 0 {range}"));
+            self.refuse(&format!("one number or three, from 0 to {most}"));
         }
         found
     }

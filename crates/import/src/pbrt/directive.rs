@@ -4,6 +4,7 @@ use super::build::Builder;
 use super::parameter::parameters;
 use super::token::{Token, Tokens, number};
 use super::transform::{look_at, matrix, rotation};
+use crate::range::{MAX_NUMBER, holds, in_range};
 use crate::report::{Place, quoted};
 use glam::{DAffine3, DVec3};
 
@@ -89,11 +90,11 @@ impl Builder<'_> {
     ) -> Result<(), String> {
         match word {
             "Identity" => self.state.to_world = DAffine3::IDENTITY,
-            "Translate" => self.concat(DAffine3::from_translation(vector(tokens)?)),
-            "Scale" => self.concat(DAffine3::from_scale(vector(tokens)?)),
-            "Rotate" => self.concat(rotation(numbers(tokens)?)?),
-            "LookAt" => self.concat(look_at(numbers(tokens)?)?),
-            "ConcatTransform" => self.concat(matrix(&in_brackets(tokens)?)?),
+            "Translate" => self.concat(DAffine3::from_translation(vector(tokens)?))?,
+            "Scale" => self.concat(DAffine3::from_scale(vector(tokens)?))?,
+            "Rotate" => self.concat(rotation(numbers(tokens)?)?)?,
+            "LookAt" => self.concat(look_at(numbers(tokens)?)?)?,
+            "ConcatTransform" => self.concat(matrix(&in_brackets(tokens)?)?)?,
             "Transform" => self.state.to_world = matrix(&in_brackets(tokens)?)?,
             "CoordinateSystem" => self.coordinate_system(text(tokens)?),
             "CoordSysTransform" => self.go_to_system(&text(tokens)?, place)?,
@@ -119,8 +120,15 @@ impl Builder<'_> {
         Ok(())
     }
 
-    fn concat(&mut self, map: DAffine3) {
-        self.state.to_world *= map;
+    fn concat(&mut self, map: DAffine3) -> Result<(), String> {
+        let product = self.state.to_world * map;
+        if !holds(product) {
+            return Err(format!(
+                "its product with the transform before has numbers out of range; allowed: up to {MAX_NUMBER:e}"
+            ));
+        }
+        self.state.to_world = product;
+        Ok(())
     }
 
     /// A directive with the name of a plugin and parameters.
@@ -210,7 +218,7 @@ fn numbers<const N: usize>(tokens: &mut Tokens<'_>) -> Result<[f64; N], String> 
     for value in &mut all {
         match tokens.peek().cloned() {
             Some((Token::Word(word), _)) if !is_directive(word) => {
-                *value = number(word)?;
+                *value = in_range(number(word)?)?;
                 tokens.next();
             }
             _ => return Err(format!("allowed: {N} numbers")),

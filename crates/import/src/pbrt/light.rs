@@ -3,6 +3,7 @@
 use super::entity::{Entity, Given, Read};
 use super::reader::Reader;
 use super::transform::without_scale;
+use crate::range::{MAX_NUMBER, in_range};
 use crate::spectrum::Role;
 use etendue_world::{Falloff, Light};
 use glam::{DAffine3, DMat3, DVec3};
@@ -41,7 +42,11 @@ impl Reader<'_> {
     /// What a light is multiplied with for its power or illuminance, where one above 0 is given: pbrt passes over others.
     pub(super) fn wanted(&self, entity: &Entity, name: &str, now: f64) -> Read<f64> {
         let wanted = entity.float(self.report, name)?;
-        Ok(wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now))
+        let factor = wanted.filter(|w| *w > 0.0).map_or(1.0, |w| w / now);
+        in_range(factor).map_err(|error| {
+            let message = format!("{name} asks for a factor that {error}");
+            entity.fault(self.report, name, message)
+        })
     }
 
     fn point(&self, entity: &Entity, to_world: DAffine3) -> Read<Light> {
@@ -54,12 +59,15 @@ impl Reader<'_> {
         })
     }
 
-    /// A place without bounds is a cause.
+    /// A place out of range is a cause.
     fn place(&self, entity: &Entity, place: DVec3) -> Read<DVec3> {
-        if place.is_finite() {
+        if place.abs().max_element() <= MAX_NUMBER {
             return Ok(place);
         }
-        self.report.cause(&entity.place, "a place without bounds");
+        self.report.cause(
+            &entity.place,
+            "a place out of range; allowed: coordinates up to 1e9",
+        );
         Err(Given)
     }
 

@@ -81,8 +81,8 @@ impl Reader<'_> {
         }
         for name in ["displacement", "normalmap"] {
             if entity.has(name) {
-                let message = format!("approximated: {name} is left out, the surface is smooth");
-                self.note_once(entity.place_of(name), &message);
+                let message = format!("{name} is not supported: surfaces are smooth");
+                return Err(entity.fault(self.report, name, message));
             }
         }
         // Named materials have their type among the parameters.
@@ -93,7 +93,7 @@ impl Reader<'_> {
         Ok(Some(match plugin {
             "" | "none" | "interface" => return Ok(None),
             "diffuse" => both_sides(Material::Diffuse {
-                reflectance: self.texture_or(entity, "reflectance", ALBEDO, 0.5, uv)?,
+                reflectance: self.albedo_or(entity, "reflectance", 0.5, uv)?,
             }),
             "conductor" => both_sides(Material::Conductor(self.conductor(entity, uv)?)),
             "coateddiffuse" => both_sides(Material::Plastic(self.coated(entity, uv)?)),
@@ -154,7 +154,7 @@ impl Reader<'_> {
             return Err(entity.fault(self.report, "albedo", message.to_owned()));
         }
         let index = self.index(entity);
-        let diffuse = self.texture_or(entity, "reflectance", ALBEDO, 0.5, uv);
+        let diffuse = self.albedo_or(entity, "reflectance", 0.5, uv);
         let roughness = self.roughness(entity, uv);
         Ok(Plastic {
             index: index?,

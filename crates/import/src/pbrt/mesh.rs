@@ -13,9 +13,6 @@ use glam::{DAffine3, DVec2, DVec3};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// The largest coordinate, as in other meshes.
-const LARGEST: f64 = 1e9;
-
 /// By how much of its size a patch may be off a plane or a parallelogram.
 const FLAT: f64 = 1e-5;
 
@@ -160,10 +157,6 @@ impl Reader<'_> {
     fn indexed<const N: usize>(&self, entity: &Entity) -> Read<(Vec<DVec3>, Vec<[u32; N]>)> {
         let report = self.report;
         let vertices = entity.points(report, "P", Kind::Point3)?;
-        if vertices.iter().any(|p| p.abs().max_element() > LARGEST) {
-            let message = format!("a coordinate beyond ±{LARGEST:e}");
-            return Err(entity.fault(report, "P", message));
-        }
         let indices = entity.numbers(report, "indices", &[Kind::Integer])?;
         if indices.is_empty() && vertices.len() == N {
             #[expect(clippy::cast_possible_truncation, reason = "3 or 4")]

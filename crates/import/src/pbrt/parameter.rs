@@ -2,6 +2,7 @@
 
 use super::directive::is_directive;
 use super::token::{At, Token, Tokens, number};
+use crate::range::MAX_NUMBER;
 use crate::report::{Place, Report, quoted};
 use std::cell::Cell;
 use std::rc::Rc;
@@ -193,10 +194,14 @@ impl List {
 
 /// The values if they go with the type; else a cause.
 fn checked(values: Values, kind: Kind, name: &str, place: &Place, report: &Report) -> Values {
+    let is_in_range = |v: &f64| v.abs() <= MAX_NUMBER;
     let whole = |v: &f64| v.fract() == 0.0 && v.abs() <= f64::from(i32::MAX);
     let allowed = match (kind, &values) {
         (_, Values::Broken) => return values,
         (_, Values::Numbers(none)) if none.is_empty() => return values,
+        (_, Values::Numbers(all)) if kind != Kind::Integer && !all.iter().all(is_in_range) => {
+            "numbers from -1e9 to 1e9"
+        }
         (Kind::Bool, Values::Truths(_))
         | (Kind::Text | Kind::Texture | Kind::Spectrum, Values::Texts(_)) => return values,
         (Kind::Integer, Values::Numbers(all)) if all.iter().all(whole) => return values,

@@ -6,6 +6,7 @@ use super::parameter::{Kind, Values};
 use super::reader::Reader;
 use super::token::number;
 use crate::Color;
+use crate::range::in_range;
 use crate::report::quoted;
 use crate::spectrum::{Role, rgb};
 
@@ -117,7 +118,7 @@ impl Reader<'_> {
         let text = super::include::read(self.files, &path).map_err(unread)?;
         let lines = text.lines().map(|line| line.split('#').next());
         let words = lines.flat_map(|line| line.unwrap_or_default().split_whitespace());
-        let numbers: Result<Vec<f64>, String> = words.map(number).collect();
+        let numbers: Result<Vec<f64>, String> = words.map(|word| in_range(number(word)?)).collect();
         let samples = numbers.and_then(|numbers| sampled(&numbers));
         Ok(Spectrum::Sampled(
             samples.map_err(|e| unread(format!(": {e}")))?,

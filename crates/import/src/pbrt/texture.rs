@@ -3,6 +3,7 @@
 use super::entity::{Entity, Given, Read};
 use super::parameter::Kind;
 use super::reader::{Reader, Uv};
+use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::Role;
 use etendue_field::Raster;
@@ -52,6 +53,24 @@ impl Reader<'_> {
                 Ok(Texture::Constant(value.unwrap_or(default)))
             }
         }
+    }
+
+    /// A share of light, 0 to 1.
+    pub(super) fn albedo_or(
+        &mut self,
+        entity: &Entity,
+        name: &str,
+        default: f64,
+        uv: Uv,
+    ) -> Read<Texture> {
+        let ask = Ask::Spectrum(Role::Reflectance);
+        let texture = self.texture_or(entity, name, ask, default, uv)?;
+        let largest = texture.largest();
+        if largest <= MAX_SHARE {
+            return Ok(texture);
+        }
+        let message = format!("{name} goes up to {largest}; allowed: 0 to 1");
+        Err(entity.fault(self.report, name, message))
     }
 
     /// One number; a texture that varies is a cause.

@@ -166,7 +166,7 @@ fn escape(c: char) -> Option<char> {
     })
 }
 
-/// A finite number; `Err` is what is wrong.
+/// A finite number; `Err` is what is wrong. Integers have a range of their own.
 pub(super) fn number(word: &str) -> Result<f64, String> {
     let parsed: Option<f64> = word.parse().ok();
     let finite = parsed.filter(|value| value.is_finite());
