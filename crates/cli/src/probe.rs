@@ -84,6 +84,7 @@ impl Case<'_> {
             "camera": self.camera.name,
             "seed": self.args.seed,
             "version": VERSION,
+            "notes": world::notes(&self.imported),
         })
     }
 

@@ -51,6 +51,7 @@ pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
         "size": camera.size,
         "seed": args.seed,
         "version": VERSION,
+        "notes": world::notes(&imported),
     });
     let said = on_threads(&args.threads, || {
         let paths = Paths::new(&imported.world);
@@ -78,9 +79,9 @@ pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
     })?;
     finished.tell_replaced(args.quiet);
     if !args.quiet {
-        for note in &imported.notes {
-            say(&format!("note: {note}"));
-        }
+        world::notes(&imported)
+            .iter()
+            .for_each(|note| say(&format!("note: {note}")));
         say(&format!(
             "{} × {} pixels{said} in {}",
             camera.size[0],
@@ -104,6 +105,21 @@ fn method(args: &RenderArgs) -> Option<etendue_adaptive::Method> {
     }
 }
 
+/// Refuses a picture with a pixel that is not finite, in 32 bits too: nothing is written then.
+fn require_finite([w, _]: [usize; 2], radiance: &[f64]) -> Result<(), Failure> {
+    #[expect(clippy::cast_possible_truncation, reason = "as EXR files hold it")]
+    let is_lost = |value: &f64| !(*value as f32).is_finite();
+    let Some(first) = radiance.iter().position(is_lost) else {
+        return Ok(());
+    };
+    let count = radiance.iter().filter(|value| is_lost(value)).count();
+    Err(Failure::bad_input(format!(
+        "{count} pixels are not finite, the first at {},{}: numbers of the scene are too large or too small; nothing is written",
+        first % w,
+        first / w
+    )))
+}
+
 /// Radiance and its standard error, for programs; and a picture to look at.
 fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<(), Failure> {
     let [w, h] = picture.size;
@@ -112,6 +128,8 @@ fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<
         .iter()
         .map(|variance| variance.sqrt())
         .collect();
+    require_finite(picture.size, &picture.mean)?;
+    require_finite(picture.size, &errors)?;
     let part = |name, values: &[f64]| {
         #[expect(clippy::cast_possible_truncation, reason = "EXR viewers want 32 bits")]
         let samples = values.iter().map(|x| *x as f32).collect();

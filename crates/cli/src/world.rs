@@ -27,6 +27,11 @@ pub(crate) fn load(args: &WorldArgs) -> Result<Imported, Failure> {
     Ok(imported)
 }
 
+/// What was left out of the scene or approximated, for result files and the terminal.
+pub(crate) fn notes(imported: &Imported) -> Vec<String> {
+    imported.notes.iter().map(ToString::to_string).collect()
+}
+
 /// The camera that the command line puts into the scene.
 fn of_command(view: &ViewArgs) -> Result<Option<Camera>, Failure> {
     let (Some(from), Some(at)) = (view.look_from, view.look_at) else {
@@ -88,20 +93,21 @@ pub(crate) fn camera(world: &World, args: &CameraArgs) -> Result<Camera, Failure
 
 /// `etendue import`: returns the exit code.
 pub(crate) fn report(args: &ImportArgs) -> Result<u8, Failure> {
-    let Imported { world, notes, .. } = load(&args.scene)?;
-    let mut lines = aligned(rows(&world));
+    let imported = load(&args.scene)?;
+    let world = &imported.world;
+    let mut lines = aligned(rows(world));
     lines.extend(world.cameras.iter().map(of_camera));
     if world.cameras.is_empty() {
         lines.push(NO_CAMERA.to_owned());
     }
-    if require_light(&world).is_err() {
+    if require_light(world).is_err() {
         lines.push(NO_LIGHT.to_owned());
     }
     lines.push(match world.depth {
         Some(depth) => format!("light meets at most {depth} surfaces"),
         None => "light meets any number of surfaces".to_owned(),
     });
-    lines.extend(notes.iter().map(|note| format!("note: {note}")));
+    lines.extend(notes(&imported).iter().map(|note| format!("note: {note}")));
     deliver(&lines.join("\n"))?;
     Ok(0)
 }

@@ -75,8 +75,8 @@ fn angle(text: &str) -> Result<f64, String> {
 }
 
 fn radiance(text: &str) -> Result<f64, String> {
-    let found = text.parse().ok().filter(|v| (0.0..=1e30).contains(v));
-    found.ok_or_else(|| "allowed: a number from 0 on".to_owned())
+    let found = text.parse().ok().filter(|v| (0.0..=1e9).contains(v));
+    found.ok_or_else(|| "allowed: a number from 0 to 1e9".to_owned())
 }
 
 impl WorldArgs {

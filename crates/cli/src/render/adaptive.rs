@@ -121,6 +121,7 @@ impl Watch {
 
 fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Result<(), Failure> {
     let [w, h] = rendered.size;
+    super::require_finite(rendered.size, &rendered.radiance)?;
     let Layers {
         bandwidth,
         curvature,
