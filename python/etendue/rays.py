@@ -50,9 +50,9 @@ class Spectrum:
     """Shear slope of the power, Σ power·rho·nu / Σ power·rho², in metres, and its error; `None` where no ray is in the window. The error is by the
     jackknife, and up to √2 too large where most frequencies hold noise. So it is with the bandwidths."""
     bandwidth_rho: tuple[float, float] | None
-    """95 % bandwidth along rho, and its error."""
+    """95 % bandwidth along rho in the azimuth where it is largest, and its error."""
     bandwidth_nu: tuple[float, float] | None
-    """95 % bandwidth along nu, and its error."""
+    """95 % bandwidth along nu in the azimuth where it is largest, and its error."""
 
     def __repr__(self) -> str:
         return f"<etendue.Spectrum {self.slices.shape}: {self.in_window} rays in the window, slope {self.slope}>"

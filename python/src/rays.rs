@@ -5,7 +5,8 @@ use crate::live::Live;
 use crate::outcome::cells;
 use etendue::Failure;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
-use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, shear_slope};
+use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
+use etendue_spectrum::moments::shear_slope;
 use etendue_spectrum::{CrossPower, RadialPower, Uncertain, estimate, measure_watched};
 use ndarray::Array1;
 use numpy::PyReadonlyArray1;
@@ -121,11 +122,11 @@ pub(crate) fn spectrum(
             ("slope", power.statistic(|p| shear_slope(p, grid))),
             (
                 "bandwidth_rho",
-                power.statistic(|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
+                power.bandwidth(bandwidth_rho).map(|widest| widest.value),
             ),
             (
                 "bandwidth_nu",
-                power.statistic(|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
+                power.bandwidth(bandwidth_nu).map(|widest| widest.value),
             ),
         ],
     })

@@ -206,7 +206,7 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     warnings
 }
 
-/// A bandwidth at the end of the grid is that of the grid. Of a spectrum that is even all over it, it is 95 % of the largest frequency.
+/// A bandwidth at the end of the grid is that of the grid. Of a spectrum that is even all over it, it is 95 % of where the last cell ends, half a step beyond the largest frequency.
 fn warning(plane: &VirtualPlane, bandwidth: f64) -> Option<String> {
     const NEAR: f64 = 0.9;
     let nu = plane.grid.nu;

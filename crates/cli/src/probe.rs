@@ -16,7 +16,7 @@ use etendue_compare::{PlaneComparison, Prediction, Test, Verdict, compare, sidak
 use etendue_field::PhotonSource;
 use etendue_import::Imported;
 use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question};
-use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho};
+use etendue_spectrum::bandwidth::{Widest, bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::{CrossPower, Measurement, Uncertain, measure};
 use etendue_world::Camera;
 use said::{of_plane, of_stop, said};
@@ -37,8 +37,8 @@ const FREQUENCIES: usize = 12;
 #[derive(Debug)]
 struct Found {
     comparison: PlaneComparison,
-    nu: Option<Uncertain>,
-    rho: Option<Uncertain>,
+    nu: Option<Widest<Uncertain>>,
+    rho: Option<Widest<Uncertain>>,
     /// Why photons do not find all its light.
     misses: Option<&'static str>,
     /// The covariance of its spectrum, if it was asked for.
@@ -212,12 +212,11 @@ fn measured(args: &ProbeArgs, probe: &Probe<'_>) -> Result<Vec<(Found, Predictio
     let plane = |i: usize| {
         let prediction = Prediction::measured(&forward, i).map_err(Failure::cannot_run)?;
         let comparison = compare(&backward, i, &prediction, &test).map_err(Failure::cannot_run)?;
-        let grid = probe.planes[i].grid;
         let power = CrossPower::new(&backward, i).map_err(Failure::cannot_run)?;
         let found = Found {
             comparison,
-            nu: power.statistic(|p| bandwidth_nu(p, &grid, BANDWIDTH_FRACTION)),
-            rho: power.statistic(|p| bandwidth_rho(p, &grid, BANDWIDTH_FRACTION)),
+            nu: power.bandwidth(bandwidth_nu),
+            rho: power.bandwidth(bandwidth_rho),
             misses: photons.misses(i),
             covariance: None,
         };

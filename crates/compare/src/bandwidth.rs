@@ -6,8 +6,8 @@ use crate::budget::budget;
 use crate::residuals::crossed_power;
 use etendue_field::{Lobe, Orientation, ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
+use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu, widest};
 use etendue_spectrum::estimate::TooFewBatches;
-use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu};
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::{self, Criterion};
 use etendue_theory::{Model, scattering};
@@ -78,7 +78,7 @@ pub fn exact_bandwidth(
     let over = (window, grid, &picture);
     let exact = view.predict(&[], over, budget(scene));
     let power = crossed_power(&exact.replicates);
-    bandwidth_nu(power.view(), grid, BANDWIDTH_FRACTION)
+    Some(widest(power.view(), grid, bandwidth_nu)?.value)
 }
 
 /// The bandwidth along ν as measured at plane `index`, with its error. `None` where no light came.
@@ -89,7 +89,6 @@ pub fn measured_bandwidth(
     measurement: &Measurement,
     index: usize,
 ) -> Result<Option<Uncertain>, TooFewBatches> {
-    let grid = &measurement.planes()[index].grid;
     let power = CrossPower::new(measurement, index)?;
-    Ok(power.statistic(|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)))
+    Ok(power.bandwidth(bandwidth_nu).map(|widest| widest.value))
 }

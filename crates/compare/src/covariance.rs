@@ -4,7 +4,8 @@ use crate::applicability::{Applicability, Theory};
 use crate::class::Class;
 use crate::prediction::Prediction;
 use crate::report::Pair;
-use etendue_field::{FieldGrid, SliceGrid, Slices, VirtualPlane, percent, tidy};
+use crate::residuals::crossed_power;
+use etendue_field::{FieldGrid, SliceGrid, VirtualPlane, percent, tidy};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::field::{FieldCovariance, Moments, PowerMoments};
 use etendue_spectrum::moments::second_moment;
@@ -266,19 +267,10 @@ fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
     if prediction.class == Class::Reference {
         return None;
     }
-    let first = |slices: &Slices| slices.half.index_axis(Axis(0), 0).to_owned();
     let grid = &prediction.slices.grid;
-    let count = prediction.replicates.len() as f64;
-    let power = if count > 1.0 {
-        let mut sum = first(&Slices::zeros(*grid));
-        let mut squares = Array2::<f64>::zeros(sum.raw_dim());
-        for replicate in prediction.replicates.iter().map(first) {
-            squares += &replicate.mapv(|s| s.norm_sqr());
-            sum += &replicate;
-        }
-        (sum.mapv(|s| s.norm_sqr()) - squares) / (count * (count - 1.0))
-    } else {
-        first(&prediction.slices).mapv(|s| s.norm_sqr())
+    let power = match prediction.replicates.len() {
+        0 | 1 => prediction.slices.half.mapv(|s| s.norm_sqr()),
+        _ => crossed_power(&prediction.replicates),
     };
-    Some(grid.unfold_radial(power.view()))
+    Some(grid.unfold_radial(power.index_axis(Axis(0), 0)))
 }

@@ -41,7 +41,9 @@ pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use memory::Memory;
 pub use plane::{EACH, PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction};
-pub use report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
+pub use report::{
+    Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
+};
 pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::{scattered, system};

@@ -4,17 +4,17 @@ use crate::agreement::{Agreement, UNSEEN};
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
 use crate::prediction::Prediction;
-use crate::report::{Bandwidth, Covariance, HighFrequencyShare, Pair, PlaneReport};
+use crate::report::{
+    Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
+};
 use crate::residuals::{Residuals, crossed_power, largest};
 use crate::score::{ParameterReport, score};
 use crate::uneven::too_few;
 use crate::verdict::{Test, Verdict};
 use etendue_field::{SliceGrid, Slices, percent, tidy};
+use etendue_spectrum::bandwidth::{SliceBandwidth, bandwidth_nu, bandwidth_rho, widest};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
-use etendue_spectrum::moments::{
-    BANDWIDTH_FRACTION, bandwidth_nu, bandwidth_rho, high_frequency_share, second_moment,
-    shear_slope,
-};
+use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope};
 use etendue_spectrum::{CrossPower, Measurement, RadialPower};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 
@@ -63,11 +63,14 @@ pub fn compare(
     let estimate = estimate::slices(measurement, index)?;
     let predicted = without_rounding(prediction);
     let residuals = Residuals::between(measurement, index, &predicted, &prediction.replicates);
-    let (variance, predicted_radial) = if prediction.is_statistical() {
+    let (variance, predicted_power) = if prediction.is_statistical() {
         (residuals.variance(), crossed_power(&prediction.replicates))
     } else {
-        (estimate.variance, predicted.radial_power())
+        let power = predicted.half.mapv(|s| s.norm_sqr());
+        (estimate.variance, power)
     };
+    let mean = predicted_power.sum_axis(Axis(0)) / predicted.grid.azimuths as f64;
+    let predicted_radial = predicted.grid.unfold_radial(mean.view());
     let power = CrossPower::new(measurement, index)?;
     let sides = Compared {
         measurement,
@@ -77,6 +80,7 @@ pub fn compare(
         residuals: &residuals,
         variance: &variance,
         power: &power,
+        predicted_power: &predicted_power,
         predicted_radial: &predicted_radial,
     };
     let report = sides.report(&sides.judged(test))?;
@@ -102,6 +106,8 @@ struct Compared<'a> {
     /// The variance of the mean residual, noise of the prediction included.
     variance: &'a Array3<f64>,
     power: &'a CrossPower<'a>,
+    /// [azimuth, ρ ≥ 0, ν].
+    predicted_power: &'a Array3<f64>,
     predicted_radial: &'a Array2<f64>,
 }
 
@@ -313,8 +319,8 @@ impl Compared<'_> {
             spectral_moments: [[2, 0], [1, 1], [0, 2]]
                 .map(|powers| self.pair(|p| second_moment(p, grid, powers))),
             bandwidth_95: Bandwidth {
-                rho: self.pair(|p| bandwidth_rho(p, grid, BANDWIDTH_FRACTION)),
-                nu: self.pair(|p| bandwidth_nu(p, grid, BANDWIDTH_FRACTION)),
+                rho: self.bandwidth(bandwidth_rho),
+                nu: self.bandwidth(bandwidth_nu),
             },
             covariance: covariance(self.measurement, self.index, prediction)?,
             high_frequency_share: self.high_frequency_shares(grid),
@@ -344,6 +350,22 @@ impl Compared<'_> {
             share: self.pair(|p| high_frequency_share(p, grid, cut)),
         });
         shares.collect()
+    }
+
+    /// The bandwidth of both powers, each in the azimuth where it is largest.
+    fn bandwidth(&self, of: SliceBandwidth) -> DirectedPair {
+        let grid = &self.predicted.grid;
+        let measured = self.power.bandwidth(of);
+        let predicted = widest(self.predicted_power.view(), grid, of);
+        DirectedPair {
+            measured: measured.map(|m| m.value.value),
+            predicted: predicted.map(|p| p.value),
+            error: measured.map(|m| m.value.error),
+            azimuth: Azimuths {
+                measured: measured.map(|m| m.azimuth),
+                predicted: predicted.map(|p| p.azimuth),
+            },
+        }
     }
 
     /// A number read off both radial powers by the same estimator.

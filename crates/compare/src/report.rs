@@ -19,13 +19,35 @@ pub struct Pair {
     pub error: Option<f64>,
 }
 
+/// Measured and predicted values of one number, each in the azimuth where it is largest.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct DirectedPair {
+    /// The value from the photons.
+    pub measured: Option<f64>,
+    /// The value of the prediction, by the same estimator.
+    pub predicted: Option<f64>,
+    /// Standard error of the measured value.
+    pub error: Option<f64>,
+    /// Where they are.
+    pub azimuth: Azimuths,
+}
+
+/// Azimuths of a measured and a predicted number, radians from X towards Y.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Azimuths {
+    /// That of the measured one.
+    pub measured: Option<f64>,
+    /// That of the predicted one.
+    pub predicted: Option<f64>,
+}
+
 /// The bandwidths along both axes.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bandwidth {
     /// The bandwidth along ρ, cycles per metre.
-    pub rho: Pair,
+    pub rho: DirectedPair,
     /// The bandwidth along ν, cycles per unit slope.
-    pub nu: Pair,
+    pub nu: DirectedPair,
 }
 
 /// Second central moments of a windowed light field, [4, 4], in the units of its coordinates.
@@ -98,7 +120,7 @@ pub struct PlaneReport {
     /// Second moments of the radial spectrum over the grid: ρρ, ρν and νν. For a field with edges
     /// they grow with the grid, and the bandwidth says more.
     pub spectral_moments: [Pair; 3],
-    /// 95 % bandwidth of the radial spectrum.
+    /// 95 % bandwidths of the slices where they are largest.
     pub bandwidth_95: Bandwidth,
     /// Second central moments of the windowed light field over the coordinates of the plane. There
     /// are none where no light came.

@@ -4,8 +4,8 @@
 //! photons and keeps, for each batch and plane, the [`Slices`](etendue_field::Slices) of the windowed light
 //! field, its projection on (x, u) and the tally of the window. Out: a [`Measurement`], partial or whole,
 //! and the estimates made from its independent batches: mean slices with their variance
-//! ([`estimate::slices`]), radial power without the photons' noise ([`CrossPower`]), slopes and bandwidths
-//! with jackknife errors ([`moments`]). The field itself on a 4D grid, with its full radial spectrum, is [`field`]'s.
+//! ([`estimate::slices`]), radial power without the photons' noise ([`CrossPower`]), slopes ([`moments`]) and
+//! bandwidths ([`bandwidth`](mod@bandwidth)) with jackknife errors. The field itself on a 4D grid, with its full radial spectrum, is [`field`]'s.
 //!
 //! The transform is [`SliceTransform`], held against the plain sums of [`direct`]. Nothing here traces or
 //! predicts, and nothing judges: comparing with a prediction is another crate's.
@@ -27,6 +27,7 @@
 //! assert!((slices.half[[0, 1, 2]].im + 3.0).abs() < 1e-6); // 2e-7 of the weight
 //! ```
 
+pub mod bandwidth;
 mod batch;
 pub mod direct;
 pub mod estimate;

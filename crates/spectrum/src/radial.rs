@@ -1,8 +1,9 @@
+use crate::bandwidth::{BANDWIDTH_FRACTION, SliceBandwidth, Widest, widest_slice};
 use crate::estimate::TooFewBatches;
 use crate::jackknife::{Jackknife, Uncertain};
 use crate::measurement::Measurement;
 use etendue_field::{Complex, SliceGrid, Slices};
-use ndarray::{Array2, Array3, ArrayView2, Axis, Slice};
+use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis, Slice};
 use std::ops::Range;
 
 /// The measured radial power of a plane: |S_φ|² averaged over the azimuths, [ρ, ν] ascending.
@@ -30,12 +31,12 @@ pub struct RadialPower {
 pub struct CrossPower<'m> {
     grid: SliceGrid,
     batches: Vec<&'m Slices>,
-    /// Σ S_r, [azimuth, ρ ≥ 0, ν].
-    sum: Array3<Complex>,
-    /// T averaged over the azimuths, [ρ ≥ 0, ν].
-    pairs: Array2<f64>,
     /// The azimuths that are averaged.
     azimuths: Range<usize>,
+    /// Σ S_r at these azimuths, [azimuth, ρ ≥ 0, ν].
+    sum: Array3<Complex>,
+    /// T at these azimuths, [azimuth, ρ ≥ 0, ν].
+    pairs: Array3<f64>,
 }
 
 impl<'m> CrossPower<'m> {
@@ -74,20 +75,35 @@ impl<'m> CrossPower<'m> {
         TooFewBatches::check(measurement, 3)?;
         let grid = measurement.planes()[plane].grid;
         let batches: Vec<_> = measurement.at_plane(plane).map(|b| &b.slices).collect();
-        let mut sum = Array3::zeros(grid.half_shape());
-        let mut squares = Array3::zeros(grid.half_shape());
+        let [_, rho, nu] = grid.half_shape();
+        let mut sum = Array3::zeros([azimuths.len(), rho, nu]);
+        let mut squares = Array3::zeros(sum.raw_dim());
         for slices in &batches {
-            sum += &slices.half;
-            squares.zip_mut_with(&slices.half, |sum: &mut f64, s| *sum += s.norm_sqr());
+            let half = at(&slices.half, &azimuths);
+            sum += &half;
+            squares.zip_mut_with(&half, |sum: &mut f64, s| *sum += s.norm_sqr());
         }
-        let pairs = mean(&(sum.mapv(|s: Complex| s.norm_sqr()) - squares), &azimuths);
+        let pairs = sum.mapv(|s: Complex| s.norm_sqr()) - squares;
         Ok(Self {
             grid,
             batches,
+            azimuths,
             sum,
             pairs,
-            azimuths,
         })
+    }
+
+    /// That of slice number `slice` of those here.
+    fn slice(&self, slice: usize) -> Self {
+        let one = slice..slice + 1;
+        let first = self.azimuths.start;
+        Self {
+            grid: self.grid,
+            batches: self.batches.clone(),
+            azimuths: first + slice..first + slice + 1,
+            sum: at(&self.sum, &one).to_owned(),
+            pairs: at(&self.pairs, &one).to_owned(),
+        }
     }
 
     /// The power U, [ρ, ν].
@@ -95,7 +111,7 @@ impl<'m> CrossPower<'m> {
     pub fn power(&self) -> Array2<f64> {
         let r = self.batches.len() as f64;
         self.grid
-            .unfold_radial((&self.pairs / (r * (r - 1.0))).view())
+            .unfold_radial((mean(&self.pairs) / (r * (r - 1.0))).view())
     }
 
     /// The power without batch number `left_out` of those there are, [ρ, ν].
@@ -106,12 +122,12 @@ impl<'m> CrossPower<'m> {
     #[must_use]
     pub fn without(&self, left_out: usize) -> Array2<f64> {
         let r = self.batches.len() as f64;
-        let mut row = Array3::zeros(self.grid.half_shape());
+        let mut row = Array3::zeros(self.sum.raw_dim());
         ndarray::Zip::from(&mut row)
-            .and(&self.batches[left_out].half)
+            .and(at(&self.batches[left_out].half, &self.azimuths))
             .and(&self.sum)
             .for_each(|row: &mut f64, s, sum| *row = (s.conj() * (sum - s)).re);
-        let power = (&self.pairs - mean(&row, &self.azimuths) * 2.0) / ((r - 1.0) * (r - 2.0));
+        let power = (mean(&self.pairs) - mean(&row) * 2.0) / ((r - 1.0) * (r - 2.0));
         self.grid.unfold_radial(power.view())
     }
 
@@ -120,7 +136,7 @@ impl<'m> CrossPower<'m> {
     pub fn radial(&self) -> RadialPower {
         let power = self.power();
         let r = self.batches.len() as f64;
-        let of_mean = mean(&self.sum.mapv(|s| s.norm_sqr() / (r * r)), &self.azimuths);
+        let of_mean = mean(&self.sum.mapv(|s| s.norm_sqr() / (r * r)));
         let mut jackknife = Jackknife::new(power.raw_dim());
         for left_out in 0..self.batches.len() {
             jackknife.add(&self.without(left_out));
@@ -132,7 +148,17 @@ impl<'m> CrossPower<'m> {
         }
     }
 
-    /// A number read off the power, such as a slope or a bandwidth, with its standard error by the jackknife.
+    /// The largest bandwidth over the azimuths, with its standard error in that azimuth. Where several are alike noise chooses among them,
+    /// and the largest is above each of them by about its error.
+    pub fn bandwidth(&self, of: SliceBandwidth) -> Option<Widest<Uncertain>> {
+        let (slice, _) = widest_slice(self.pairs.view(), &self.grid, of)?;
+        let one = self.slice(slice);
+        let value = one.statistic(|power| of(power, &self.grid, BANDWIDTH_FRACTION))?;
+        let azimuth = self.grid.azimuth(one.azimuths.start);
+        Some(Widest { azimuth, value })
+    }
+
+    /// A number read off the power, such as a slope, with its standard error by the jackknife.
     ///
     /// `None` when the number does not exist, with all batches or with one left out.
     pub fn statistic(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Option<Uncertain> {
@@ -148,8 +174,12 @@ impl<'m> CrossPower<'m> {
     }
 }
 
+/// The slices at some azimuths.
+fn at<'a, T>(slices: &'a Array3<T>, azimuths: &Range<usize>) -> ArrayView3<'a, T> {
+    slices.slice_axis(Axis(0), Slice::from(azimuths.clone()))
+}
+
 /// The mean over azimuths.
-fn mean(slices: &Array3<f64>, azimuths: &Range<usize>) -> Array2<f64> {
-    let over = slices.slice_axis(Axis(0), Slice::from(azimuths.clone()));
-    over.sum_axis(Axis(0)) / azimuths.len() as f64
+fn mean(slices: &Array3<f64>) -> Array2<f64> {
+    slices.sum_axis(Axis(0)) / slices.len_of(Axis(0)) as f64
 }

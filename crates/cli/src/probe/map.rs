@@ -1,6 +1,6 @@
 //! How fast light changes with angle at the camera, over a picture: measured, and by the criterion of Durand et al. 2005.
 
-use super::said::{criterion, of_window};
+use super::said::{ON_GRID, criterion};
 use super::{BATCHES, Case};
 use crate::failure::Failure;
 use crate::results::Results;
@@ -11,7 +11,7 @@ use crate::threads::on_threads;
 use crate::{deliver, pictures, progress};
 use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
 use etendue_paths::{BackwardProbe, Budget, Probe};
-use etendue_spectrum::moments::{BANDWIDTH_FRACTION, bandwidth_nu};
+use etendue_spectrum::bandwidth::bandwidth_nu;
 use etendue_spectrum::{CrossPower, estimate, measure};
 use ndarray::{Array2, Axis as ArrayAxis};
 use rayon::prelude::*;
@@ -27,7 +27,7 @@ const UNSURE: f64 = 0.2;
 /// What is known of a pixel; NaN where there is nothing, or too much noise.
 #[derive(Clone, Copy, Debug)]
 struct Point {
-    /// The frequency below which 95 % of the power in the window lies, cycles per slope, with its standard error.
+    /// The frequency below which 95 % of the power in the window lies, in the azimuth where it is largest, cycles per slope, with its standard error.
     measured: f64,
     error: f64,
     /// Eq. 20, corrected.
@@ -91,8 +91,7 @@ fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, 
     let rays = BackwardProbe::new(&probe, budget);
     let found = measure(&rays, &probe.planes, 0..BATCHES, &|_| {});
     let power = CrossPower::new(&found, 0).map_err(Failure::cannot_run)?;
-    let plane = &probe.planes[0];
-    let nu = power.statistic(|p| bandwidth_nu(p, &plane.grid, BANDWIDTH_FRACTION));
+    let nu = power.bandwidth(bandwidth_nu).map(|widest| widest.value);
     let noise = estimate::noise(&found, 0).map_err(Failure::cannot_run)?;
     let is_clear = noise.is_some_and(|noise| noise <= NOISY);
     let nu = nu.filter(|nu| is_clear && nu.error <= UNSURE * nu.value);
@@ -100,7 +99,7 @@ fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, 
         measured: nu.map_or(f64::NAN, |nu| nu.value),
         error: nu.map_or(f64::NAN, |nu| nu.error),
         criterion: criterion(&probe.stops[0]).unwrap_or(f64::NAN),
-        window: of_window(&probe, 0.0).0,
+        window: ON_GRID / probe.planes[0].window.u.half_width(),
         samples: nu.map_or(f64::NAN, |nu| 2.0 * nu.value * probe.pixel_slope),
     })
 }

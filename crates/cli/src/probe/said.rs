@@ -6,6 +6,7 @@ use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{Lobe, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
 use etendue_spectrum::Uncertain;
+use etendue_spectrum::bandwidth::Widest;
 use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
@@ -48,12 +49,14 @@ pub(super) fn of_stop(world: &World, stop: &Stop) -> Value {
 }
 
 pub(super) fn of_plane(found: &Found) -> Value {
-    let number = |of: &Option<Uncertain>| of.map(|of| [of.value, of.error]);
+    let number = |of: &Option<Widest<Uncertain>>| of.map(|of| [of.value.value, of.value.error]);
+    let azimuth = |of: &Option<Widest<Uncertain>>| of.map(|of| of.azimuth);
     let mut tree = tree_of!({
         "report": found.comparison.report,
         "verdict": verdict(found),
         "photons_miss": found.misses,
         "bandwidth_95": { "nu": number(&found.nu), "rho": number(&found.rho) },
+        "bandwidth_95_azimuth": { "nu": azimuth(&found.nu), "rho": azimuth(&found.rho) },
     });
     if let Some(covariance) = &found.covariance {
         tree["spectral_covariance"] = covariance.tree();
@@ -93,7 +96,7 @@ pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16
         lines.push(format!("The ray leaves the scene after surface {count}."));
     }
     if let Some(nu) = found.first().and_then(|camera| camera.nu) {
-        lines.extend(bandwidths(probe, nu));
+        lines.extend(bandwidths(probe, nu.value));
     }
     lines.extend(covariance::said(found));
     lines
@@ -140,8 +143,12 @@ fn planes(found: &[&Found]) -> Vec<String> {
         "95 % of ρ [cycles/m]",
         "verdict",
     ];
-    let shown =
-        |of: &Option<Uncertain>| of.map_or("–".to_owned(), |of| uncertain(of.value, of.error));
+    let shown = |of: &Option<Widest<Uncertain>>| {
+        of.map_or("–".to_owned(), |Widest { azimuth, value }| {
+            let value = uncertain(value.value, value.error);
+            format!("{value} at {:.0}°", azimuth.to_degrees())
+        })
+    };
     let rows = found.iter().map(|found| {
         let report = &found.comparison.report;
         let share = |x: Option<f64>| x.map_or("–".to_owned(), |x| percent(x, 3));
@@ -161,15 +168,12 @@ fn planes(found: &[&Found]) -> Vec<String> {
     table(head, rows)
 }
 
-/// What the window alone gives, in cycles per slope: the estimator of even light, whose product with the half-width is always this.
-const OWN: f64 = 0.43;
+/// The bandwidth of a Hann window of half-width 1 along its axes.
+const OF_WINDOW: f64 = 0.557_22;
 
-/// The bandwidth that a window has alone, and whether a measured one is no more than that.
-pub(super) fn of_window(probe: &Probe<'_>, measured: f64) -> (f64, bool) {
-    let own = OWN / probe.planes[0].window.u.half_width();
-    // Noise and the light's own shape move it by some per cent.
-    (own, measured < 1.15 * own)
-}
+/// What is measured of a Hann window of half-width 1 alone, on the grid of a probe: its cells are as wide as half of the spectrum's main
+/// lobe, and along the diagonal the product of two windows has a larger bandwidth than along the axes.
+pub(super) const ON_GRID: f64 = 0.681_53;
 
 /// Bandwidths at the camera, and the shading samples that they ask for.
 fn bandwidths(probe: &Probe<'_>, measured: Uncertain) -> Vec<String> {
@@ -180,10 +184,12 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain) -> Vec<String> {
             "  {what:38}{cycles:10.3} cycles/slope  {samples:8.4} shading samples a pixel along a direction"
         )
     };
-    let (own, is_own) = of_window(probe, measured.value);
+    let half_width = probe.planes[0].window.u.half_width();
+    // Noise and the light's own shape move it by some per cent.
+    let is_own = measured.value < 1.15 * ON_GRID / half_width;
     let mut lines = vec!["bandwidth at the camera".to_owned()];
     lines.push(line("measured, 95 % of the power", measured.value));
-    lines.push(line("of the window alone", own));
+    lines.push(line("of the window alone", OF_WINDOW / half_width));
     lines.push(match criterion(&probe.stops[0]) {
         Some(cycles) => line("by Eq. 20, light of all frequencies", cycles),
         None => "  Eq. 20 is about lobes: it says nothing of this surface".to_owned(),
@@ -195,4 +201,51 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain) -> Vec<String> {
         );
     }
     lines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::probe::FREQUENCIES;
+    use etendue_field::{FrequencyAxis, Profile, SliceGrid};
+    use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth, bandwidth_nu, widest};
+    use ndarray::{Array1, Array3};
+
+    /// ∫ W(t) cos(2π f t) dt over a Hann window of half-width 1, by the midpoint rule.
+    fn transformed(frequency: f64) -> f64 {
+        const POINTS: u32 = 1000;
+        let window = Profile::Hann(1.0);
+        let at = |i: u32| {
+            let t = (f64::from(i) + 0.5) / f64::from(POINTS);
+            window.value(t) * libm::cos(std::f64::consts::TAU * frequency * t)
+        };
+        2.0 * (0..POINTS).map(at).sum::<f64>() / f64::from(POINTS)
+    }
+
+    #[test]
+    fn a_window_alone_has_the_bandwidths_that_are_printed() {
+        let fine = FrequencyAxis {
+            half: 2000,
+            spacing: 0.0025,
+        };
+        let power: Array1<f64> = fine
+            .values()
+            .into_iter()
+            .map(|f| transformed(f).powi(2))
+            .collect();
+        let found = bandwidth(power.view(), &fine, BANDWIDTH_FRACTION).unwrap_or_default();
+        assert!((found - OF_WINDOW).abs() < 1e-4, "{found}"); // the tail beyond 5, and the curvature within a cell
+        let axis = |half| FrequencyAxis { half, spacing: 0.5 };
+        let grid = SliceGrid {
+            azimuths: 4,
+            rho: axis(0),
+            nu: axis(FREQUENCIES),
+        };
+        let even = Array3::from_shape_fn(grid.half_shape(), |(k, _, j)| {
+            let [_, _, u, v] = grid.frequency(k, 0.0, grid.nu.value(j));
+            (transformed(u) * transformed(v)).powi(2)
+        });
+        let found = widest(even.view(), &grid, bandwidth_nu).map_or(0.0, |widest| widest.value);
+        assert!((found - ON_GRID).abs() < 1e-4, "{found}"); // rounding of the constant, and the midpoint rule
+    }
 }

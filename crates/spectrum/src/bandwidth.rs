@@ -1,0 +1,200 @@
+//! Bandwidths of slices: the frequency that holds most of the power, in the azimuth where it is largest.
+
+use etendue_field::{FrequencyAxis, SliceGrid};
+use ndarray::{ArrayView1, ArrayView2, ArrayView3, Axis};
+
+/// The fraction of the power that a bandwidth holds, unless another is asked for.
+pub const BANDWIDTH_FRACTION: f64 = 0.95;
+
+/// The bandwidth of one slice along one of its axes: [`bandwidth_rho`] or [`bandwidth_nu`].
+pub type SliceBandwidth = fn(ArrayView2<'_, f64>, &SliceGrid, f64) -> Option<f64>;
+
+/// A bandwidth, and the azimuth where it is largest.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Widest<T> {
+    /// The azimuth, radians.
+    pub azimuth: f64,
+    /// The bandwidth there.
+    pub value: T,
+}
+
+/// The bandwidth of a slice along ρ: see [`bandwidth`].
+#[must_use]
+pub fn bandwidth_rho(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64) -> Option<f64> {
+    bandwidth(power.sum_axis(Axis(1)).view(), &grid.rho, fraction)
+}
+
+/// The bandwidth of a slice along ν: see [`bandwidth`].
+#[must_use]
+pub fn bandwidth_nu(power: ArrayView2<'_, f64>, grid: &SliceGrid, fraction: f64) -> Option<f64> {
+    bandwidth(power.sum_axis(Axis(0)).view(), &grid.nu, fraction)
+}
+
+/// The largest bandwidth over the azimuths of a power [azimuth, ρ ≥ 0, ν]; the first of those alike.
+#[must_use]
+pub fn widest(
+    power: ArrayView3<'_, f64>,
+    grid: &SliceGrid,
+    of: SliceBandwidth,
+) -> Option<Widest<f64>> {
+    let (slice, value) = widest_slice(power, grid, of)?;
+    let azimuth = grid.azimuth(slice);
+    Some(Widest { azimuth, value })
+}
+
+/// The number of the slice with the largest bandwidth, and that bandwidth.
+pub(crate) fn widest_slice(
+    power: ArrayView3<'_, f64>,
+    grid: &SliceGrid,
+    of: SliceBandwidth,
+) -> Option<(usize, f64)> {
+    let each = power.outer_iter().enumerate().filter_map(|(k, half)| {
+        let power = grid.unfold_radial(half);
+        Some((k, of(power.view(), grid, BANDWIDTH_FRACTION)?))
+    });
+    each.reduce(|widest, next| if next.1 > widest.1 { next } else { widest })
+}
+
+/// The smallest B for which the power at |frequency| ≤ B is at least `fraction` of the total.
+///
+/// `marginal` is the power along `axis`, summed over the other one. The power of a frequency of the axis lies evenly in
+/// its cell, half a step to either side, so the power inside grows linearly with B within a cell. Unit: that of the axis.
+/// `None` when the total is not positive.
+#[must_use]
+pub fn bandwidth(
+    marginal: ArrayView1<'_, f64>,
+    axis: &FrequencyAxis,
+    fraction: f64,
+) -> Option<f64> {
+    let total = marginal.sum();
+    if total.is_nan() || total <= 0.0 {
+        return None;
+    }
+    let wanted = fraction * total;
+    let mut inside = 0.0;
+    for step in 0..=axis.half {
+        // Both cells at this distance from zero; the cell of zero lies on both sides.
+        let (power, inner, width) = match step {
+            0 => (marginal[axis.half], 0.0, 0.5),
+            _ => (
+                marginal[axis.half - step] + marginal[axis.half + step],
+                step as f64 - 0.5,
+                1.0,
+            ),
+        };
+        if inside + power >= wanted {
+            return Some((inner + width * (wanted - inside) / power) * axis.spacing);
+        }
+        inside += power;
+    }
+    // Only rounding can keep the whole from reaching a fraction of it.
+    Some(axis.max() + 0.5 * axis.spacing)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::{Array1, Array2, Array3, arr1};
+    use std::f64::consts::PI;
+
+    fn axis(half: usize, spacing: f64) -> FrequencyAxis {
+        FrequencyAxis { half, spacing }
+    }
+
+    #[test]
+    fn bandwidths_of_known_powers() {
+        // 81 cells of 0.25, of which 0.95 are inside.
+        let flat = bandwidth(Array1::ones(81).view(), &axis(40, 0.25), 0.95).unwrap();
+        assert!((flat - 0.95 * 81.0 * 0.25 / 2.0).abs() < 1e-12); // rounding
+        let of =
+            |powers: [f64; 3], fraction| bandwidth(arr1(&powers).view(), &axis(1, 2.0), fraction);
+        // Half of the cell of zero, which ends at 1.
+        assert_eq!(of([0.0, 3.0, 0.0], 0.5), Some(0.5));
+        assert_eq!(of([1.0, 0.0, 1.0], 0.5), Some(2.0));
+        assert_eq!(of([1.0, 0.0, 1.0], 1.0), Some(3.0));
+        assert!(of([1.0, -3.0, 1.0], 0.95).is_none());
+    }
+
+    #[test]
+    fn gaussians_along_both_axes() {
+        let grid = SliceGrid {
+            azimuths: 1,
+            rho: axis(10, 0.3),
+            nu: axis(40, 0.25),
+        };
+        let power = Array2::from_shape_fn((21, 81), |(i, j)| {
+            let (rho, nu) = (grid.rho.value(i), grid.nu.value(j));
+            libm::exp(-(nu * nu) - (rho / 0.8).powi(2))
+        });
+        // exp(−t²/s²) with s = 0.8 and 1: erf(B/s) = 0.95 at B = 1.386 s.
+        let rho = bandwidth_rho(power.view(), &grid, 0.95).unwrap();
+        let nu = bandwidth_nu(power.view(), &grid, 0.95).unwrap();
+        assert!((rho - 1.386 * 0.8).abs() < 0.02, "{rho}"); // curvature within a cell of 0.3
+        assert!((nu - 1.386).abs() < 0.02, "{nu}"); // the same for 0.25
+    }
+
+    /// ∫ cos²(π t/2) e^(−2πi f t) dt over |t| < 1: a Hann window of half-width 1.
+    fn hann(f: f64) -> f64 {
+        let sinc = |x: f64| match x.abs() < 1e-9 {
+            true => 1.0,
+            false => libm::sin(PI * x) / (PI * x),
+        };
+        sinc(2.0 * f) + 0.5 * (sinc(2.0 * f - 1.0) + sinc(2.0 * f + 1.0))
+    }
+
+    /// The power of a Hann window alone, or of a sine of contrast 1 behind it, along one axis.
+    fn seen(frequency: Option<f64>, axis: &FrequencyAxis) -> Array1<f64> {
+        let values = axis.values().into_iter();
+        let sides = |f: f64| frequency.map_or(0.0, |at| 0.5 * (hann(f - at) + hann(f + at)));
+        values.map(|f| (hann(f) + sides(f)).powi(2)).collect()
+    }
+
+    #[test]
+    fn a_window_alone_has_its_own_bandwidth() {
+        // 0.55722 by the midpoint rule with 4·10⁴ points up to 20; 6.12 where the half-width is 0.09105.
+        for (spacing, error) in [(0.02, 1e-3), (0.125, 4e-3)] {
+            let axis = axis(100, spacing);
+            let found = bandwidth(seen(None, &axis).view(), &axis, 0.95).unwrap();
+            // The curvature of the power within a cell.
+            assert!((found - 0.557_22).abs() < error, "{spacing}: {found}");
+        }
+    }
+
+    #[test]
+    fn a_bandwidth_is_not_below_the_signal() {
+        // A third of the power is about the frequency of the sine, of which no more than a twentieth of all is left out.
+        for frequency in [1.5, 3.04, 4.7] {
+            let axis = axis(24, 0.25);
+            let found = bandwidth(seen(Some(frequency), &axis).view(), &axis, 0.95).unwrap();
+            let exact = FrequencyAxis {
+                half: 2400,
+                spacing: 0.0025,
+            };
+            let exact = bandwidth(seen(Some(frequency), &exact).view(), &exact, 0.95).unwrap();
+            assert!(found > frequency, "{found}");
+            assert!((found - exact).abs() < 0.02, "{found} {exact}"); // the curvature of the power within a cell
+        }
+    }
+
+    #[test]
+    fn the_widest_azimuth_counts() {
+        let grid = SliceGrid {
+            azimuths: 4,
+            rho: axis(0, 1.0),
+            nu: axis(24, 0.25),
+        };
+        let mut power = Array3::zeros(grid.half_shape());
+        for (k, mut slice) in power.outer_iter_mut().enumerate() {
+            let frequency = (k == 2).then_some(3.0);
+            slice.row_mut(0).assign(&seen(frequency, &grid.nu));
+        }
+        let found = widest(power.view(), &grid, bandwidth_nu).unwrap();
+        assert!((found.azimuth - PI / 2.0).abs() < 1e-12, "{found:?}"); // rounding
+        let alone = bandwidth(
+            seen(Some(3.0), &grid.nu).view(),
+            &grid.nu,
+            BANDWIDTH_FRACTION,
+        );
+        assert_eq!(Some(found.value), alone);
+    }
+}
