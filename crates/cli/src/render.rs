@@ -148,3 +148,23 @@ fn write(results: &mut Results, picture: &Picture, made_from: &Value) -> Result<
     let png = etendue_figures::photograph([w, h], &picture.mean).map_err(Failure::cannot_run)?;
     results.write(FILES[2], &png)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pixels_that_are_not_finite_are_refused() {
+        assert!(require_finite([2, 2], &[0.0, 1.0, 1e30, 1e-300]).is_ok());
+        // The first is beyond what 32 bits hold.
+        for lost in [1e39, f64::INFINITY, f64::NAN] {
+            let refused = require_finite([2, 2], &[0.0, 1.0, 2.0, lost]).unwrap_err();
+            assert_eq!(refused.code, 2);
+            assert!(
+                refused
+                    .message
+                    .starts_with("1 pixels are not finite, the first at 1,1")
+            );
+        }
+    }
+}

@@ -74,6 +74,33 @@ fn import_says_what_there_is_and_what_is_left_out() {
 }
 
 #[test]
+fn results_keep_what_was_left_out() {
+    let folder = folder("<rfilter type=\"box\"/>", "<rfilter type=\"gaussian\"/>");
+    let path = folder.path();
+    done(path, "render room.xml --samples 2 --quiet --out picture");
+    done(
+        path,
+        "probe room.xml --map 1x1 --rays 2^8 --quiet --out probe",
+    );
+    for file in ["picture/picture.json", "probe/probe.json"] {
+        let notes = &json(&path.join(file))["notes"];
+        let first = notes[0].as_str().unwrap();
+        assert!(first.starts_with("room.xml:5:"), "{file}: {notes}");
+        assert_eq!(notes.as_array().unwrap().len(), 1, "{file}");
+    }
+}
+
+#[test]
+fn numbers_out_of_range_leave_no_picture() {
+    let folder = folder("value=\"9\"", "value=\"1e200\"");
+    let message = refused(folder.path(), "render room.xml --out out");
+    assert!(message.contains("room.xml:12:"), "{message}");
+    let message = refused(folder.path(), "render room.xml --sky 1e200 --out out");
+    assert!(message.contains("from 0 to 1e9"), "{message}");
+    assert!(!folder.path().join("out").exists());
+}
+
+#[test]
 fn what_cannot_be_followed_is_refused_with_all_causes() {
     let folder = folder("type=\"sphere\" id=\"ball\"", "type=\"blob\"");
     fs::write(
