@@ -3,6 +3,8 @@
 //! Sheets and opaque surfaces are seen on a disc from its front and its back, and on an open cylinder, which shows both of its sides at once. Every
 //! material is seen on a cube and a sphere from outside and, where light passes, on a sphere from inside.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
 use etendue_paths::{Paths, Picture};
 use etendue_world::{
     Camera, Conductor, Dielectric, Distribution, Geometry, Light, Material, Plastic, Projection,

@@ -73,7 +73,7 @@ impl Mesh {
     /// weights, materials, points and lines are passed over, free-form surfaces are refused. PLY: ASCII and
     /// binary of either byte order, coordinates and lists of any type; other elements and properties are
     /// passed over. Faces of more than three corners become fans about their first corner, which is right
-    /// for convex ones. Triangles of zero area are dropped where others remain.
+    /// for convex ones, and have at most 4,096. Triangles of zero area are dropped where others remain.
     ///
     /// # Errors
     /// The first fault found: the place in the file, the value and what is allowed. Elements are counted
@@ -143,6 +143,17 @@ impl Mesh {
 fn has_area(vertices: &[DVec3], corners: [u32; 3]) -> bool {
     let [a, b, c] = corners.map(|i| vertices[i as usize]);
     (b - a).cross(c - a) != DVec3::ZERO
+}
+
+/// Corners of a face. All triangles of a fan have its first corner, so a ray near it meets the boxes of most of them.
+const MAX_CORNERS: usize = 4096;
+
+/// Requires a number of corners that a face may have.
+fn check_corners(count: usize, place: impl FnOnce() -> String) -> Result<(), Fault> {
+    match (3..=MAX_CORNERS).contains(&count) {
+        true => Ok(()),
+        false => Err(fault(place(), count, format!("3 to {MAX_CORNERS}"))),
+    }
 }
 
 /// Requires a coordinate that a scene may hold.

@@ -189,8 +189,8 @@ fn faults_of_obj_files_are_told() {
         ("f 1 2 0", "face 1, corner 3 is 0; allowed: 1 to 4, or -4 to -1"),
         ("f 1 2 -9223372036854775808", "corner 3 is -9223372036854775808; allowed: 1 to 4"),
         ("f 1/-9223372036854775808 2 99999999999999999999", "corner 3 is `99999999999999999999`; allowed: an index"),
-        ("f 1 2", "line 5, face 1, number of corners is 2; allowed: at least 3"),
-        ("f", "line 5, face 1, number of corners is 0; allowed: at least 3"),
+        ("f 1 2", "line 5, face 1, number of corners is 2; allowed: 3 to 4096"),
+        ("f", "line 5, face 1, number of corners is 0; allowed: 3 to 4096"),
         ("f 1 2 three", "line 5, face 1, corner 3 is `three`; allowed: an index"),
         ("f 1 2 3/x", "corner 3 is `3/x`; allowed: an index"),
         ("f 1 2 3/1/1/1", "corner 3 is `3/1/1/1`; allowed: an index"),
@@ -265,7 +265,7 @@ fn faults_of_ply_files_are_told() {
         ("3 0 1 2\n", "3 0 1 3\n", "line 13, face 0, corner 3 is 3; allowed: 0 to 2"),
         ("3 0 1 2\n", "3 0 1 -1\n", "line 13, face 0, corner 3 is -1; allowed: 0 to 2"),
         ("3 0 1 2\n", "3 0 1 1.5\n", "line 13, face 0, corner 3 is 1.5; allowed: 0 to 2"),
-        ("3 0 1 2\n", "2 0 1\n\n", "line 13, face 0, number of corners is 2; allowed: at least 3"),
+        ("3 0 1 2\n", "2 0 1\n\n", "line 13, face 0, number of corners is 2; allowed: 3 to 4096"),
         ("3 0 1 2\n", "-3 0 1 2\n", "line 13, face 0, vertex_indices is -3 long; allowed: a list that"),
         ("3 0 1 2\n", "4 0 1 2", "line 13, face 0, vertex_indices is missing, as the file ends; allowed: 1 rows of element face"),
         ("3 0 1 2\n", "3 0 1 1\n", "triangles with an area is 0; allowed: at least 1"),
@@ -308,7 +308,7 @@ fn faults_of_binary_ply_files_are_told() {
         ),
         (
             with(6 * 24 + 13, &[2]),
-            "face 1, number of corners is 2; allowed: at least 3",
+            "face 1, number of corners is 2; allowed: 3 to 4096",
         ),
     ] {
         assert!(told.contains(words), "{told}");

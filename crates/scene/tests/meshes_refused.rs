@@ -3,7 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_scene::{Mesh, Scene, SceneError, SceneFile, resolve};
+use etendue_scene::{DetailedMesh, Mesh, Scene, SceneError, SceneFile, resolve};
 use std::fmt::Write as _;
 use std::fs;
 use std::path::Path;
@@ -189,4 +189,30 @@ fn coarse_smooth_meshes_are_warned_of() {
         "{coarse:?}"
     );
     assert_eq!(warned(32), Vec::<String>::new());
+}
+
+#[test]
+fn faces_of_too_many_corners_are_refused() {
+    let polygon = |count: usize| {
+        let angle = |i: usize| std::f64::consts::TAU * i as f64 / count as f64;
+        let vertices = (0..count).map(|i| format!("v {} {} 0\n", angle(i).cos(), angle(i).sin()));
+        let corners = (1..=count).map(|i| format!(" {i}"));
+        format!(
+            "{}f{}",
+            vertices.collect::<String>(),
+            corners.collect::<String>()
+        )
+    };
+    let file = Path::new("a.obj");
+    assert!(DetailedMesh::parse(file, polygon(4096).as_bytes()).is_ok());
+    for told in [
+        Mesh::parse(file, polygon(4097).as_bytes()).map(drop),
+        DetailedMesh::parse(file, polygon(4097).as_bytes()).map(drop),
+    ] {
+        let told = told.unwrap_err().to_string();
+        assert_eq!(
+            told,
+            "line 4098, face 1, number of corners is 4097; allowed: 3 to 4096"
+        );
+    }
 }

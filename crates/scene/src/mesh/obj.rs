@@ -5,7 +5,7 @@ pub(super) mod parts;
 
 use super::error::fault;
 use super::text::{Lines, Words, number, quoted};
-use super::{Mesh, check_coordinate, fan};
+use super::{Mesh, check_coordinate, check_corners, fan};
 use crate::fault::Fault;
 use glam::DVec3;
 use std::borrow::Cow;
@@ -125,10 +125,9 @@ fn triangles(bytes: &[u8], count: usize) -> Result<Vec<[u32; 3]>, Fault> {
                     })?;
                     corners.push(index);
                 }
-                if corners.len() < 3 {
-                    let what = format!("face {face}, number of corners");
-                    return Err(fault(place(line, &what), corners.len(), "at least 3"));
-                }
+                check_corners(corners.len(), || {
+                    place(line, &format!("face {face}, number of corners"))
+                })?;
                 triangles.extend(fan(&corners));
             }
             _ => {}

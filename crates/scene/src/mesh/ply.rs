@@ -5,7 +5,7 @@ pub(super) mod detailed;
 mod header;
 
 use super::error::fault;
-use super::{Mesh, check_coordinate, fan};
+use super::{Mesh, check_coordinate, check_corners, fan};
 use crate::fault::Fault;
 use body::{Body, Row};
 use glam::DVec3;
@@ -82,10 +82,7 @@ fn vertex(row: Row<'_>, values: [f64; 3]) -> Result<DVec3, Fault> {
 
 /// Writes a face's corners, among `count` vertices.
 fn face(row: Row<'_>, values: &[f64], count: usize, corners: &mut Vec<u32>) -> Result<(), Fault> {
-    if values.len() < 3 {
-        let place = row.place("number of corners");
-        return Err(fault(place, values.len(), "at least 3"));
-    }
+    check_corners(values.len(), || row.place("number of corners"))?;
     corners.clear();
     for (i, value) in values.iter().enumerate() {
         let index = body::whole(*value).filter(|index| (*index as usize) < count);

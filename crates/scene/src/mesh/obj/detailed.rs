@@ -2,8 +2,8 @@
 
 use super::super::detailed::{DetailedMesh, check};
 use super::super::error::fault;
-use super::super::fan;
 use super::super::text::{Words, number, quoted};
+use super::super::{check_corners, fan};
 use super::{corner, place, statements, vertices, without_mark};
 use crate::fault::Fault;
 use glam::{DVec2, DVec3};
@@ -89,10 +89,9 @@ fn faces(bytes: &[u8], counts: [usize; 3]) -> Result<(Vec<Key>, Vec<[u32; 3]>), 
                     }
                     corners.push(index);
                 }
-                if corners.len() < 3 {
-                    let what = format!("face {face}, number of corners");
-                    return Err(fault(place(line, &what), corners.len(), "at least 3"));
-                }
+                check_corners(corners.len(), || {
+                    place(line, &format!("face {face}, number of corners"))
+                })?;
                 triangles.extend(fan(&corners));
             }
             _ => {}
