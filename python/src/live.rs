@@ -29,13 +29,13 @@ impl Watch for Live {
     fn traced(&self, photons: u64) {
         self.photons.fetch_add(photons, Ordering::Relaxed);
         if self.is_stopped.load(Ordering::Relaxed) {
-            // A block of photons takes a millisecond and a batch may take hours: it ends in the midst of it. This is no panic, and
+            // A block of photons takes a millisecond and a part of a batch a second: it ends in the midst of it. This is no panic, and
             // prints nothing.
             resume_unwind(Box::new(Stopped));
         }
     }
 
-    fn wants(&self, _batch: u32) -> bool {
+    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         !self.is_stopped.load(Ordering::Relaxed)
     }
 }

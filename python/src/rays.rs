@@ -7,7 +7,9 @@ use etendue::Failure;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::moments::shear_slope;
-use etendue_spectrum::{CrossPower, RadialPower, Uncertain, estimate, measure_watched};
+use etendue_spectrum::{
+    CrossPower, PartialBatch, RadialPower, Uncertain, estimate, measure_watched,
+};
 use ndarray::Array1;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;
@@ -103,10 +105,9 @@ pub(crate) fn spectrum(
     plane: &VirtualPlane,
     live: &Live,
 ) -> Result<Spectrum, Failure> {
-    let batches: Vec<u32> = (0..rays.0.len())
-        .filter_map(|i| u32::try_from(i).ok())
-        .collect();
-    let measured = measure_watched(rays, std::slice::from_ref(plane), &batches, live);
+    let batches = (0..rays.0.len()).filter_map(|i| u32::try_from(i).ok());
+    let mut batches = batches.map(PartialBatch::new);
+    let (measured, _) = measure_watched(rays, std::slice::from_ref(plane), &mut batches, live);
     let few = |error: estimate::TooFewBatches| Failure {
         message: error.to_string(),
         code: 2,

@@ -8,7 +8,7 @@ mod led;
 mod message;
 
 pub(crate) use led::Led;
-pub(crate) use message::{joined, split};
+pub(crate) use message::{Packed, Piece, joined, split};
 
 use crate::args::{Cli, Command, RunArgs};
 use crate::failure::Failure;

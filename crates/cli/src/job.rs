@@ -2,6 +2,7 @@
 
 use crate::case::Case;
 use crate::conclude::{Ending, Judged, plan, written};
+use crate::crew::{Packed, Piece};
 use crate::failure::Failure;
 use crate::method::{self, Method, source};
 use crate::predict::predicted;
@@ -15,7 +16,7 @@ use crate::{limits, load, machine};
 use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict};
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::{Batch, Measurement, Watch, measure_watched};
+use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
@@ -138,6 +139,35 @@ impl Job {
         kept::unpacked(bytes, &held, &self.scene.planes)
     }
 
+    /// The first parts of a batch as bytes, for another process.
+    pub(crate) fn packed_partial(&self, batch: &PartialBatch) -> Result<Packed, Failure> {
+        let bytes = batch
+            .sum
+            .as_ref()
+            .map_or(Ok(Vec::new()), |sum| self.packed(sum))?;
+        let piece = Piece {
+            number: batch.index,
+            parts: Some(batch.parts),
+            length: bytes.len(),
+        };
+        Ok((piece, bytes))
+    }
+
+    /// The first parts of a batch, from bytes of [`Self::packed_partial`].
+    pub(crate) fn unpacked_partial(
+        &self,
+        source: &dyn PhotonSource,
+        piece: &Piece,
+        bytes: &[u8],
+    ) -> Result<PartialBatch, Failure> {
+        let index = piece.number;
+        let Some(parts) = piece.parts.filter(|parts| *parts > 0) else {
+            return Ok(PartialBatch::new(index));
+        };
+        let sum = Some(self.unpacked(source, index, bytes)?);
+        Ok(PartialBatch { index, parts, sum })
+    }
+
     /// The prediction of a plane that theory predicts, as bytes for another process.
     pub(crate) fn packed_prediction(&self, plane: u32) -> Result<Vec<u8>, Failure> {
         let number = plane as usize;
@@ -161,12 +191,8 @@ impl Job {
     /// When the method finds no light.
     pub fn measure(&self, batches: &[u32], watch: &dyn Watch) -> Result<Measurement, Failure> {
         let source = source(&self.scene, self.method)?;
-        Ok(measure_watched(
-            &*source,
-            &self.scene.planes,
-            batches,
-            watch,
-        ))
+        let mut batches = batches.iter().copied().map(PartialBatch::new);
+        Ok(measure_watched(&*source, &self.scene.planes, &mut batches, watch).0)
     }
 
     /// Predicts all planes, on the threads of the current pool.

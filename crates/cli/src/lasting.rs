@@ -1,28 +1,33 @@
-//! A measurement that outlives its process: its batches are kept as they are done.
+//! A measurement that outlives its process: its batches are kept as they are done, and those on the way every few seconds.
 
 use crate::crew::Led;
 use crate::failure::Failure;
 use crate::job::Job;
 use crate::method::{Method, source};
-use crate::results::kept::Kept;
+use crate::results::kept::{Kept, Progress};
 use crate::warnings::warn;
 use crate::{interrupt, progress};
+use etendue_field::PhotonSource;
 use etendue_scene::Scene;
-use etendue_spectrum::{Batch, Measurement, Watch, measure_watched};
+use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
 use indicatif::ProgressBar;
+use std::collections::BTreeMap;
 use std::hash::{BuildHasher, RandomState};
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Batches done before this are not kept: they are soon made again.
 const SHORT: Duration = Duration::from_secs(5);
+/// How often a batch on the way is kept.
+const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 
 /// How long a measurement may take, and whether others have a part in it.
 #[derive(Clone, Copy)]
 pub(crate) struct Lasting<'a> {
     /// Goes on from what is kept, and shares the work with others that do.
     pub(crate) resume: bool,
-    /// When no more batches are begun.
+    /// When no more parts of batches are begun.
     pub(crate) until: Option<Instant>,
     /// Other processes that measure as well.
     pub(crate) crew: Option<&'a Led<'a>>,
@@ -47,6 +52,7 @@ pub(crate) fn measured(
         lasting,
         bar: &bar,
         begun: Instant::now(),
+        partial: Mutex::default(),
         is_late: AtomicBool::default(),
         is_full: AtomicBool::default(),
     };
@@ -55,19 +61,25 @@ pub(crate) fn measured(
         kept.remove();
     }
     loop {
+        let mut begun = BTreeMap::new();
         if lasting.resume {
             // Then the batches are gone.
             if is_done() {
                 bar.finish_and_clear();
                 return Ok(None);
             }
-            for path in kept.read(&mut all, &emitted)? {
+            let damaged;
+            (begun, damaged) = kept.read(&mut all, &emitted)?;
+            for path in damaged {
                 let path = path.display();
                 bar.suspend(|| warn(&format!("{path} is damaged: the batch is measured again")));
             }
-            bar.set_position(all.emitted());
+            let photons = begun.values().map(|batch| photons_of(&*source, batch));
+            bar.set_position(all.emitted() + photons.sum::<u64>());
         }
-        let mut missing: Vec<u32> = lit.iter().copied().filter(|b| !all.contains(*b)).collect();
+        let missing = lit.iter().filter(|b| !all.contains(**b));
+        let missing = missing.map(|b| begun.remove(b).unwrap_or_else(|| PartialBatch::new(*b)));
+        let mut missing: Vec<PartialBatch> = missing.collect();
         if missing.is_empty() {
             break;
         }
@@ -76,47 +88,79 @@ pub(crate) fn measured(
             let begin = RandomState::new().hash_one(0) % missing.len() as u64;
             missing.rotate_left(usize::try_from(begin).unwrap_or(0));
         }
-        let found = match lasting.crew {
+        let (found, left) = match lasting.crew {
             Some(crew) => {
                 let job = Job::of(scene.clone(), method, Vec::new())?;
-                crew.measure(&job, &*source, &missing, &keeper)?
+                crew.measure(&job, &*source, missing, &keeper)?
             }
-            None => measure_watched(&*source, &scene.planes, &missing, &keeper),
+            None => {
+                let mut missing = missing.into_iter();
+                measure_watched(&*source, &scene.planes, &mut missing, &keeper)
+            }
         };
         all = all.merge(found).map_err(Failure::cannot_run)?;
         if keeper.is_late.load(Ordering::Relaxed) {
+            let mut left = left.iter();
+            left.try_for_each(|batch| kept.write_partial(batch))?;
             bar.finish_and_clear();
-            let done = kept.count();
-            return Err(Failure::cannot_run(format!(
-                "time is up: {done} of {} batches are kept in {}; the same command with --resume goes on from them",
-                lit.len(),
-                kept.folder().display()
-            )));
+            return Err(time_is_up(kept, lit.len()));
         }
     }
     bar.finish_and_clear();
     Ok(Some(all))
 }
 
-/// Keeps batches as they are done.
+/// How many photons of a batch are traced, about.
+fn photons_of(source: &dyn PhotonSource, batch: &PartialBatch) -> u64 {
+    let parts = u64::from(source.parts(batch.index));
+    source.emitted(batch.index) / parts * u64::from(batch.parts)
+}
+
+/// The error of a run whose time was up, which says what is kept.
+fn time_is_up(kept: &Kept, batches: usize) -> Failure {
+    let [done, begun] = kept.count();
+    let begun = match begun {
+        0 => String::new(),
+        begun => format!(", and the beginning of {begun} more,"),
+    };
+    Failure::cannot_run(format!(
+        "time is up: {done} of {batches} batches{begun} are kept in {}; the same command with --resume goes on from them",
+        kept.folder().display()
+    ))
+}
+
+/// Keeps batches as they are done, and on the way.
 struct Keeper<'a> {
     kept: &'a Kept,
     is_done: &'a (dyn Fn() -> bool + Sync),
     lasting: Lasting<'a>,
     bar: &'a ProgressBar,
     begun: Instant,
+    /// When each batch on the way was kept last.
+    partial: Mutex<BTreeMap<u32, Instant>>,
     is_late: AtomicBool,
     /// Whether no more can be kept.
     is_full: AtomicBool,
 }
 
 impl Keeper<'_> {
-    /// Writes a batch. Where that fails the run goes on without it.
-    fn keep(&self, batch: &Batch) {
+    /// Whether anything is to be kept by now.
+    fn keeps(&self) -> bool {
+        let Lasting {
+            resume,
+            until,
+            crew,
+        } = self.lasting;
+        let is_eager = resume || until.is_some() || crew.is_some();
+        is_eager || self.begun.elapsed() > SHORT
+    }
+
+    /// Keeps something by `write`. Where that fails the run goes on without it.
+    fn keep(&self, write: impl FnOnce() -> Result<(), Failure>) {
         if self.is_full.load(Ordering::Relaxed) {
             return;
         }
-        if let Err(failure) = self.kept.write(batch) {
+        if let Err(failure) = write() {
             if !self.is_full.swap(true, Ordering::Relaxed) {
                 let message = failure.message;
                 self.bar.suspend(|| {
@@ -126,8 +170,19 @@ impl Keeper<'_> {
             return;
         }
         interrupt::keeps(
-            "interrupted: the batches that are done are kept, and the same command with --resume goes on from them",
+            "interrupted: what is measured is kept, up to the last few seconds, and the same command with --resume goes on from it",
         );
+    }
+
+    /// Whether a batch on the way was not kept for a while; from now on it was.
+    fn is_due(&self, batch: u32) -> bool {
+        let mut partial = self.partial.lock().unwrap_or_else(PoisonError::into_inner);
+        let last = partial.entry(batch).or_insert(self.begun);
+        let is_due = last.elapsed() > PARTIAL_INTERVAL;
+        if is_due {
+            *last = Instant::now();
+        }
+        is_due
     }
 }
 
@@ -136,27 +191,33 @@ impl Watch for Keeper<'_> {
         self.bar.inc(photons);
     }
 
-    fn wants(&self, batch: u32) -> bool {
-        if self
-            .lasting
-            .until
-            .is_some_and(|until| Instant::now() >= until)
-        {
+    fn goes_on(&self, batch: u32, part: u32) -> bool {
+        let until = self.lasting.until;
+        if until.is_some_and(|until| Instant::now() >= until) {
             self.is_late.store(true, Ordering::Relaxed);
             return false;
         }
-        !(self.lasting.resume && (self.kept.has(batch) || (self.is_done)()))
+        if !self.lasting.resume {
+            return true;
+        }
+        // A batch where another process is ahead is left to it.
+        !(self.is_done)()
+            && match self.kept.progress(batch) {
+                None => true,
+                Some(Progress::Parts(parts)) => parts <= part,
+                Some(Progress::Done) => false,
+            }
+    }
+
+    fn begun(&self, batch: &PartialBatch) {
+        if self.keeps() && self.is_due(batch.index) {
+            self.keep(|| self.kept.write_partial(batch));
+        }
     }
 
     fn done(&self, batch: &Batch) {
-        let Lasting {
-            resume,
-            until,
-            crew,
-        } = self.lasting;
-        let is_eager = resume || until.is_some() || crew.is_some();
-        if is_eager || self.begun.elapsed() > SHORT {
-            self.keep(batch);
+        if self.keeps() {
+            self.keep(|| self.kept.write(batch));
         }
     }
 }

@@ -1,3 +1,5 @@
+//! What one batch of photons measured, whole or in part.
+
 use crate::ray_moments::RayMoments;
 use etendue_field::{Ledger, PlaneTally, Projection, Slices};
 
@@ -47,4 +49,36 @@ pub struct Batch {
     pub ledger: Ledger,
     /// One entry for each virtual plane, in the order of the measurement's planes.
     pub planes: Vec<PlaneBatch>,
+}
+
+/// The first parts of a batch, summed in order: its measurement goes on from them, and ends with the same bits as if it had not stopped.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PartialBatch {
+    /// The number of the batch.
+    pub index: u32,
+    /// How many parts are summed.
+    pub parts: u32,
+    /// Their sum; `None` of no parts. Like all sums it is per photon of the whole batch.
+    pub sum: Option<Batch>,
+}
+
+impl PartialBatch {
+    /// A batch that is not begun.
+    #[must_use]
+    pub fn new(index: u32) -> Self {
+        Self {
+            index,
+            parts: 0,
+            sum: None,
+        }
+    }
+
+    /// Adds the next part.
+    pub(crate) fn add(&mut self, part: Batch) {
+        self.parts += 1;
+        match &mut self.sum {
+            Some(sum) => sum.add(&part),
+            sum => *sum = Some(part),
+        }
+    }
 }

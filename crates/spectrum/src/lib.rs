@@ -40,7 +40,7 @@ pub mod moments;
 mod radial;
 mod ray_moments;
 
-pub use batch::{Batch, PlaneBatch};
+pub use batch::{Batch, PartialBatch, PlaneBatch};
 pub use etendue_field::transform::{Accumulator, SliceTransform};
 pub use histogram::ProjectionHistogram;
 pub use jackknife::Uncertain;

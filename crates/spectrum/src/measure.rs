@@ -1,11 +1,15 @@
-use crate::batch::{Batch, PlaneBatch};
+//! Measures batches of photons, part by part, on all threads of a pool.
+
+use crate::batch::{Batch, PartialBatch, PlaneBatch};
 use crate::histogram::ProjectionHistogram;
 use crate::measurement::Measurement;
 use crate::ray_moments::RayMoments;
 use etendue_field::transform::{Accumulator, SliceTransform};
 use etendue_field::{Crossing, PhotonSource, PlaneTally, ProjectionGrid, VirtualPlane};
 use rayon::prelude::*;
+use std::collections::BTreeMap;
 use std::ops::Range;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Cells of a projection along x and along u.
 pub const PROJECTION_BINS: usize = 64;
@@ -24,19 +28,22 @@ pub fn measure(
     batches: Range<u32>,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Measurement {
-    let batches: Vec<u32> = batches.collect();
-    measure_watched(source, planes, &batches, &Told(progress))
+    let mut batches = batches.map(PartialBatch::new);
+    measure_watched(source, planes, &mut batches, &Told(progress)).0
 }
 
-/// What goes on while batches are measured, told and asked from several threads.
+/// Callbacks of a measurement, from any thread.
 pub trait Watch: Sync {
     /// So many photons more are traced.
     fn traced(&self, photons: u64);
 
-    /// Whether a batch is to be measured, asked when its turn comes.
-    fn wants(&self, _batch: u32) -> bool {
+    /// Whether to measure a part of a batch, asked when its turn comes. The rest of the batch is left out otherwise.
+    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
         true
     }
+
+    /// More parts of a batch are done, but not all of them.
+    fn begun(&self, _batch: &PartialBatch) {}
 
     /// A batch is done.
     fn done(&self, _batch: &Batch) {}
@@ -51,14 +58,17 @@ impl Watch for Told<'_> {
     }
 }
 
-/// [`measure`] of distinct batches in any order, of which those are left out that `watch` does not want.
+/// [`measure`] of distinct batches in any order, each from where it was left. Returns the batches that are done, and those that `watch`
+/// has stopped on the way.
+///
+/// Threads take parts in order, so that few batches are on the way at a time. A part waits until all before it are summed.
 #[must_use]
 pub fn measure_watched(
     source: &dyn PhotonSource,
     planes: &[VirtualPlane],
-    batches: &[u32],
+    batches: &mut (dyn Iterator<Item = PartialBatch> + Send),
     watch: &dyn Watch,
-) -> Measurement {
+) -> (Measurement, Vec<PartialBatch>) {
     let plans: Vec<_> = planes
         .iter()
         .map(|p| SliceTransform::new(&p.grid))
@@ -69,35 +79,113 @@ pub fn measure_watched(
             .map(|(plane, plan)| Recorder::new(plane, plan))
             .collect()
     };
-    let part = |recorders: &mut Vec<Recorder<'_>>, index: u32, part: u32| {
-        measure_part(source, [index, part], recorders, &|photons| {
+    let mut all = Vec::new();
+    let parts = Parts {
+        source,
+        batches,
+        watch,
+        all: &mut all,
+        next: 0,
+    };
+    let parts = parts.par_bridge();
+    parts.for_each_init(recorders, |own, (sum, part): (Arc<BatchSum>, u32)| {
+        let measured = measure_part(source, [sum.index, part], own, &|photons| {
             watch.traced(photons);
-        })
-    };
-    let whole = |own: &mut Vec<Recorder<'_>>, index: u32| {
-        let parts = source.parts(index);
-        if parts == 1 {
-            return Some(part(own, index, 0));
+        });
+        sum.add(part, measured, watch);
+    });
+    let mut whole = Vec::new();
+    let mut begun = Vec::new();
+    for BatchSum { parts, state, .. } in all.into_iter().filter_map(Arc::into_inner) {
+        let state = state.into_inner().unwrap_or_else(PoisonError::into_inner);
+        match state.partial {
+            PartialBatch {
+                parts: done,
+                sum: Some(batch),
+                ..
+            } if done == parts => whole.push(batch),
+            partial => begun.push(partial),
         }
-        let parts = (0..parts).into_par_iter().with_max_len(1);
-        let parts = parts.map_init(recorders, |own, number| part(own, index, number));
-        let parts: Vec<Batch> = parts.collect();
-        parts.into_iter().reduce(|mut sum, part| {
-            sum.add(&part);
-            sum
-        })
-    };
-    let measured: Vec<Option<Batch>> = batches
-        .par_iter()
-        .with_max_len(1)
-        .map_init(recorders, |own, index| {
-            let emits = source.emitted(*index) > 0 && watch.wants(*index);
-            let batch = emits.then(|| whole(own, *index)).flatten();
-            batch.iter().for_each(|batch| watch.done(batch));
-            batch
-        })
-        .collect();
-    Measurement::of(planes, measured.into_iter().flatten())
+    }
+    (Measurement::of(planes, whole.into_iter()), begun)
+}
+
+/// The parts of batches, one after the other.
+struct Parts<'a> {
+    source: &'a dyn PhotonSource,
+    batches: &'a mut (dyn Iterator<Item = PartialBatch> + Send),
+    watch: &'a dyn Watch,
+    /// The batches so far.
+    all: &'a mut Vec<Arc<BatchSum>>,
+    /// The next part of the last of them.
+    next: u32,
+}
+
+impl Iterator for Parts<'_> {
+    type Item = (Arc<BatchSum>, u32);
+
+    fn next(&mut self) -> Option<Self::Item> {
+        loop {
+            if let Some(sum) = self.all.last()
+                && self.next < sum.parts
+                && self.watch.goes_on(sum.index, self.next)
+            {
+                self.next += 1;
+                return Some((Arc::clone(sum), self.next - 1));
+            }
+            let emits = |batch: &PartialBatch| self.source.emitted(batch.index) > 0;
+            let partial = Iterator::find(&mut self.batches, emits)?;
+            self.next = partial.parts;
+            let parts = self.source.parts(partial.index);
+            self.all.push(Arc::new(BatchSum::new(partial, parts)));
+        }
+    }
+}
+
+/// The sum of the parts of a batch, in their order.
+struct BatchSum {
+    index: u32,
+    /// How many parts the batch has.
+    parts: u32,
+    state: Mutex<SumState>,
+}
+
+struct SumState {
+    partial: PartialBatch,
+    /// Parts that are done before one that precedes them.
+    waiting: BTreeMap<u32, Batch>,
+}
+
+impl BatchSum {
+    fn new(partial: PartialBatch, parts: u32) -> Self {
+        Self {
+            index: partial.index,
+            parts,
+            state: Mutex::new(SumState {
+                partial,
+                waiting: BTreeMap::new(),
+            }),
+        }
+    }
+
+    fn state(&self) -> MutexGuard<'_, SumState> {
+        self.state.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn add(&self, part: u32, measured: Batch, watch: &dyn Watch) {
+        let mut state = self.state();
+        let SumState { partial, waiting } = &mut *state;
+        waiting.insert(part, measured);
+        let before = partial.parts;
+        while let Some(next) = waiting.remove(&partial.parts) {
+            partial.add(next);
+        }
+        match &partial.sum {
+            Some(batch) if partial.parts == self.parts => watch.done(batch),
+            _ if partial.parts > before => watch.begun(partial),
+            _ => {}
+        }
+    }
 }
 
 /// What a part of a batch adds to the means over the whole batch.

@@ -4,7 +4,10 @@ mod common;
 
 use common::{Shower, boxed, grid, hann, plane};
 use etendue_field::{Crossing, Ledger, PhotonSource, VirtualPlane};
-use etendue_spectrum::{Measurement, MergeError, direct, estimate, measure};
+use etendue_spectrum::{
+    Measurement, MergeError, PartialBatch, Watch, direct, estimate, measure, measure_watched,
+};
+use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 
 fn planes() -> Vec<VirtualPlane> {
@@ -77,6 +80,95 @@ fn parts_make_a_batch() {
             .unwrap()
             .install(|| measure(&parted, &planes(), 0..10, &|_| ()));
         assert!(measured == whole, "{threads} threads");
+    }
+}
+
+/// Two batches, each of five batches of a shower.
+struct Large(Shower);
+
+impl PhotonSource for Large {
+    fn emitted(&self, batch: u32) -> u64 {
+        (0..5).map(|part| self.0.emitted(5 * batch + part)).sum()
+    }
+
+    fn emit(&self, _: u32, _: &mut dyn FnMut(usize, &[Crossing]), _: &dyn Fn(u64)) -> Ledger {
+        panic!("it is emitted in parts")
+    }
+
+    fn parts(&self, _: u32) -> u32 {
+        5
+    }
+
+    fn emit_part(
+        &self,
+        batch: u32,
+        part: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        self.0.emit(5 * batch + part, record, progress)
+    }
+}
+
+/// Stops the first batch after so many parts.
+struct Stop {
+    parts: u32,
+    /// How many parts of it were summed, in the order told.
+    begun: Mutex<Vec<u32>>,
+}
+
+impl Watch for Stop {
+    fn traced(&self, _: u64) {}
+
+    fn goes_on(&self, batch: u32, part: u32) -> bool {
+        batch > 0 || part < self.parts
+    }
+
+    fn begun(&self, batch: &PartialBatch) {
+        if batch.index == 0 {
+            self.begun.lock().unwrap().push(batch.parts);
+        }
+    }
+}
+
+/// A batch that stops after any of its parts goes on from there to the same bits, on any number of threads.
+#[test]
+fn a_batch_goes_on_where_it_was_left() {
+    let source = Large(shower());
+    let planes = planes();
+    let whole = measure(&source, &planes, 0..2, &|_| ());
+    assert_eq!(whole.emitted(), 5_003);
+    for threads in [1, 2, 5] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
+        let pool = pool.unwrap();
+        for parts in 0..5 {
+            let measured = |batches: Vec<PartialBatch>, watch: &Stop| {
+                let mut batches = batches.into_iter();
+                pool.install(|| measure_watched(&source, &planes, &mut batches, watch))
+            };
+            let watch = |parts| Stop {
+                parts,
+                begun: Mutex::default(),
+            };
+            let first = watch(parts);
+            let (found, left) = measured([0, 1].map(PartialBatch::new).to_vec(), &first);
+            // All parts that were begun are in it, told as they were summed.
+            assert_eq!(
+                left.iter().map(|b| (b.index, b.parts)).collect::<Vec<_>>(),
+                [(0, parts)]
+            );
+            let told = first.begun.into_inner().unwrap();
+            assert!(
+                told.is_sorted() && told.last().copied().unwrap_or(0) == parts,
+                "{told:?}"
+            );
+            let (rest, none) = measured(left, &watch(5));
+            assert!(none.is_empty());
+            assert!(
+                found.merge(rest).unwrap() == whole,
+                "{threads} threads, {parts} parts"
+            );
+        }
     }
 }
 

@@ -528,7 +528,24 @@ impl PhotonSource for Backward {
         record: &mut dyn FnMut(usize, &[Crossing]),
         progress: &dyn Fn(u64),
     ) -> Ledger {
-        let range = self.shares.of(batch);
+        for part in 0..self.parts(batch) {
+            self.emit_part(batch, part, record, progress);
+        }
+        Ledger::default()
+    }
+
+    fn parts(&self, batch: u32) -> u32 {
+        self.shares.parts(batch)
+    }
+
+    fn emit_part(
+        &self,
+        batch: u32,
+        part: u32,
+        record: &mut dyn FnMut(usize, &[Crossing]),
+        progress: &dyn Fn(u64),
+    ) -> Ledger {
+        let range = self.shares.part(batch, part);
         let mut crossings = Vec::with_capacity(BLOCK);
         for start in range.clone().step_by(BLOCK) {
             let end = range.end.min(start + BLOCK as u64);

@@ -3,10 +3,9 @@ use std::ops::Range;
 
 /// Photons traced between two reports.
 pub(crate) const BLOCK: usize = 4096;
-/// Fewest photons of a part: what is summed up for each takes a few milliseconds.
+/// A part of a batch holds fewer than twice as many photons, about a second of work of one thread: a run stops between parts.
+/// Summing up a part takes a few milliseconds.
 const PART: u64 = 1 << 20;
-/// Most parts of a batch: their sums wait for each other.
-const MOST: u32 = 16;
 
 /// How the photons of a run are shared out: evenly over batches, in order.
 #[derive(Clone, Copy, Debug)]
@@ -32,18 +31,31 @@ impl Shares {
         start(batch)..start(batch + 1)
     }
 
-    /// Parts of a batch for threads that have no batch of their own.
+    /// How many parts a batch has: at least one, and none is empty unless the batch is.
     pub(crate) fn parts(&self, batch: u32) -> u32 {
-        u32::try_from(self.count(batch) / PART).map_or(MOST, |parts| parts.clamp(1, MOST))
+        let parts = self.count(batch).div_ceil(self.part_length(batch));
+        u32::try_from(parts).unwrap_or(u32::MAX).max(1)
     }
 
     /// The photons of a part, whole blocks of them but for the last.
     pub(crate) fn part(&self, batch: u32, part: u32) -> Range<u64> {
         let range = self.of(batch);
-        let each = self.count(batch).div_ceil(u64::from(self.parts(batch)));
-        let each = each.next_multiple_of(BLOCK as u64);
-        let start = |part: u32| range.end.min(range.start + each * u64::from(part));
-        start(part)..start(part + 1)
+        let length = u128::from(self.part_length(batch));
+        let start = |part: u32| {
+            let start = u128::from(range.start) + length * u128::from(part);
+            u64::try_from(start).map_or(range.end, |start| start.min(range.end))
+        };
+        start(part)..start(part.saturating_add(1))
+    }
+
+    /// Photons of each part of a batch but the last. Numbers of parts fit in 32 bits.
+    fn part_length(&self, batch: u32) -> u64 {
+        let count = self.count(batch);
+        let parts = count / PART.max(count >> 31);
+        count
+            .div_ceil(parts.max(1))
+            .max(1)
+            .next_multiple_of(BLOCK as u64)
     }
 
     /// Their number.
@@ -57,13 +69,17 @@ impl Shares {
 mod tests {
     use super::*;
 
+    fn two(photons: u64) -> Shares {
+        Shares {
+            photons,
+            batches: 2,
+        }
+    }
+
     #[test]
     fn parts_make_the_batch() {
         for photons in [1, 5_000, 3 << 20, (3 << 20) + 77, 1_000_000_000_007] {
-            let shares = Shares {
-                photons,
-                batches: 2,
-            };
+            let shares = two(photons);
             let parts = shares.parts(1);
             let mut next = shares.of(1).start;
             for part in (0..parts).map(|part| shares.part(1, part)) {
@@ -73,13 +89,24 @@ mod tests {
             }
             assert_eq!(next, shares.of(1).end);
         }
-        let parts = |photons| {
-            Shares {
-                photons,
-                batches: 1,
+        assert_eq!(two(0).parts(0), 1);
+        assert!(two(0).part(0, 0).is_empty());
+    }
+
+    #[test]
+    fn parts_are_bounded() {
+        for exponent in 21..52 {
+            let shares = two((1 << exponent) + 12_345);
+            let last = shares.parts(1) - 1;
+            for part in [0, last / 2, last] {
+                let part = shares.part(1, part);
+                assert!(part.end - part.start < 2 * PART, "2^{exponent}: {part:?}");
             }
-            .parts(0)
-        };
-        assert_eq!([1, 1 << 20, 5 << 20, 1 << 40].map(parts), [1, 1, 5, MOST]);
+        }
+        // The largest number of photons has parts that still cover it.
+        let most = two(u64::MAX);
+        let last = most.parts(1) - 1;
+        assert_eq!(most.part(1, last).end, u64::MAX);
+        assert!(!most.part(1, last).is_empty());
     }
 }

@@ -1,7 +1,6 @@
 //! A process that does what the one that leads asks for.
 
-use super::led::Alone;
-use super::message::{Order, Said, Task, joined, split};
+use super::message::{Order, Packed, Piece, Said, Task, joined, packed, split, unpack};
 use super::{Crew, key};
 use crate::args::{Command, PhotonArgs, SceneArgs, ThreadArgs};
 use crate::failure::Failure;
@@ -9,10 +8,8 @@ use crate::job::{Job, Options};
 use crate::sweep::Points;
 use crate::threads::on_threads;
 use etendue_field::PhotonSource;
-use etendue_spectrum::{Batch, measure_watched};
-
-/// A piece that is done: its number and its bytes.
-type Piece = (u32, Vec<u8>);
+use etendue_spectrum::{PartialBatch, Watch, measure_watched};
+use std::time::{Duration, Instant};
 
 /// Does whatever the process that leads asks for, until it is dismissed.
 pub(super) fn follow(command: &Command, crew: &dyn Crew) {
@@ -21,9 +18,9 @@ pub(super) fn follow(command: &Command, crew: &dyn Crew) {
         Command::Predict(args) => with_job(&args.scene, &args.photons, &args.threads, crew),
         Command::Sweep(args) => on_threads(&args.threads, || {
             let points = Points::read(args)?;
-            let mut run = |order: &Order| -> Result<_, Failure> {
-                let run = |point: &u32| Ok((*point, points.summary(*point)?));
-                order.numbers.iter().map(run).collect()
+            let mut run = |order: &Order, _: &[u8]| -> Result<_, Failure> {
+                let run = |piece: &Piece| Ok(whole(piece.number, points.summary(piece.number)?));
+                order.pieces.iter().map(run).collect()
             };
             obey(crew, &key(&points.scenes), &mut run)
         }),
@@ -52,17 +49,18 @@ fn with_job(
     on_threads(threads, || {
         let job = Job::read(&scene.path, &options)?;
         let mut source: Option<Box<dyn PhotonSource>> = None;
-        let mut done = |order: &Order| match order.task {
+        let mut done = |order: &Order, bytes: &[u8]| match order.task {
             Task::Planes => {
-                let predicted = |plane: &u32| Ok((*plane, job.packed_prediction(*plane)?));
-                order.numbers.iter().map(predicted).collect()
+                let predicted =
+                    |piece: &Piece| Ok(whole(piece.number, job.packed_prediction(piece.number)?));
+                order.pieces.iter().map(predicted).collect()
             }
             _ => {
                 if source.is_none() {
                     source = Some(job.source()?);
                 }
                 source.as_deref().map_or(Ok(Vec::new()), |source| {
-                    measured(&job, source, &order.numbers)
+                    measured(&job, source, order, bytes)
                 })
             }
         };
@@ -70,36 +68,65 @@ fn with_job(
     })
 }
 
-fn measured(job: &Job, source: &dyn PhotonSource, batches: &[u32]) -> Result<Vec<Piece>, Failure> {
-    let found = measure_watched(source, &job.scene().planes, batches, &Alone);
-    let packed = |batch: &Batch| Ok((batch.index, job.packed(batch)?));
-    found.batches().map(packed).collect()
+/// A piece that is done.
+fn whole(number: u32, bytes: Vec<u8>) -> Packed {
+    let piece = Piece {
+        number,
+        parts: None,
+        length: bytes.len(),
+    };
+    (piece, bytes)
+}
+
+/// Measures batches until it is time to send them back.
+fn measured(
+    job: &Job,
+    source: &dyn PhotonSource,
+    order: &Order,
+    bytes: &[u8],
+) -> Result<Vec<Packed>, Failure> {
+    let batches = unpack(&order.pieces, bytes);
+    let batches = batches.map(|(piece, own)| job.unpacked_partial(source, piece, own));
+    let batches: Vec<PartialBatch> = batches.collect::<Result<_, _>>()?;
+    let until = Until(Instant::now() + Duration::from_secs_f64(order.seconds));
+    let planes = &job.scene().planes;
+    let (found, begun) = measure_watched(source, planes, &mut batches.into_iter(), &until);
+    let done = found.batches();
+    let done = done.map(|batch| Ok(whole(batch.index, job.packed(batch)?)));
+    let begun = begun.iter().map(|batch| job.packed_partial(batch));
+    done.chain(begun).collect()
+}
+
+/// Goes on until this moment.
+struct Until(Instant);
+
+impl Watch for Until {
+    fn traced(&self, _photons: u64) {}
+
+    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
+        Instant::now() < self.0
+    }
 }
 
 /// Follows orders by `done`, until one is empty.
 fn obey(
     crew: &dyn Crew,
     key: &str,
-    done: &mut dyn FnMut(&Order) -> Result<Vec<Piece>, Failure>,
+    done: &mut dyn FnMut(&Order, &[u8]) -> Result<Vec<Packed>, Failure>,
 ) -> Result<(), Failure> {
-    let mut said = Said::Ready {
+    let ready = Said::Ready {
         key: key.to_owned(),
         abreast: rayon::current_num_threads(),
     };
-    let mut bytes = Vec::new();
+    let mut message = joined(&ready, &[]);
     loop {
-        let sent = crew.send(0, &joined(&said, &bytes));
-        sent.map_err(Failure::cannot_run)?;
+        crew.send(0, &message).map_err(Failure::cannot_run)?;
         let (_, answer) = crew.receive().map_err(Failure::cannot_run)?;
-        let (order, _): (Order, _) = split(&answer).map_err(Failure::cannot_run)?;
-        if order.numbers.is_empty() {
+        let (order, bytes): (Order, _) = split(&answer).map_err(Failure::cannot_run)?;
+        if order.pieces.is_empty() {
             return Ok(());
         }
-        let found = done(&order)?;
-        let pieces = found.iter().map(|(number, own)| (*number, own.len()));
-        said = Said::Done {
-            pieces: pieces.collect(),
-        };
-        bytes = found.into_iter().flat_map(|(_, own)| own).collect();
+        let found = done(&order, bytes)?;
+        message = packed(|pieces| Said::Done { pieces }, found);
     }
 }

@@ -1,13 +1,13 @@
 //! The processes that this one leads: it hands out what they ask for, and takes what they have done.
 
-use super::message::{Order, Said, Task, joined, split};
+use super::message::{Order, Packed, Piece, Said, Task, packed, split, unpack};
 use super::{Crew, key};
 use crate::failure::Failure;
 use crate::job::Job;
 use etendue_compare::Prediction;
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
-use etendue_spectrum::{Batch, Measurement, Watch, measure_watched};
+use etendue_spectrum::{Measurement, PartialBatch, Watch, measure_watched};
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;
@@ -15,8 +15,15 @@ use std::thread;
 /// What the bytes of the piece of that number say.
 type Unpacked<'a, T> = dyn Fn(u32, &[u8]) -> Result<T, Failure> + Sync + 'a;
 
-/// Takes the bytes of the piece of that number.
-type Taken<'a> = dyn FnMut(u32, &[u8]) -> Result<(), Failure> + Send + 'a;
+/// Takes a piece and its bytes.
+type Taken<'a> = dyn FnMut(&Piece, &[u8]) -> Result<(), Failure> + Send + 'a;
+
+/// The piece of that number, to be handed out.
+type Given<'a> = dyn Fn(u32) -> Result<Packed, Failure> + Sync + 'a;
+
+/// The least seconds after which others send back batches that are not done, and seconds more for each process: what they send takes the
+/// one that leads less time than that.
+const RETURN_SECONDS: [f64; 2] = [5.0, 0.05];
 
 /// The processes that this one leads.
 pub(crate) struct Led<'a> {
@@ -27,7 +34,7 @@ pub(crate) struct Led<'a> {
 /// One of them.
 #[derive(Clone, Copy, Debug)]
 struct Other {
-    /// Batches that it measures at a time.
+    /// Parts of batches that it measures at a time.
     abreast: usize,
     /// Pieces that it has now.
     has: usize,
@@ -52,30 +59,54 @@ impl<'a> Led<'a> {
         }
     }
 
-    /// Measures batches of a scene.
+    /// Measures batches of a scene, each from where it was left. Returns those that are done, and those that `watch` has stopped.
     pub(crate) fn measure(
         &self,
         job: &Job,
         source: &dyn PhotonSource,
-        batches: &[u32],
+        batches: Vec<PartialBatch>,
         watch: &dyn Watch,
-    ) -> Result<Measurement, Failure> {
-        let left = Left::new(batches.iter().copied(), watch);
+    ) -> Result<(Measurement, Vec<PartialBatch>), Failure> {
+        let parts = batches.first().map_or(1, |batch| source.parts(batch.index));
+        let left = Left::new(batches.iter().map(|batch| batch.index), parts as usize);
+        let begun: BTreeMap<u32, PartialBatch> =
+            batches.into_iter().map(|b| (b.index, b)).collect();
+        let begun = Mutex::new(begun);
+        let taken = |number| {
+            let partial = held(&begun).remove(&number);
+            partial.unwrap_or_else(|| PartialBatch::new(number))
+        };
+        let own = || {
+            let mut batches = std::iter::from_fn(|| left.next().map(taken));
+            let planes = &job.scene().planes;
+            Ok(measure_watched(source, planes, &mut batches, watch))
+        };
+        let give = |number| job.packed_partial(&taken(number));
         let mut others = Vec::new();
-        let own = || Ok(measure_watched(source, &job.scene().planes, batches, &left));
-        let mut take = |number, bytes: &[u8]| {
-            let batch = job.unpacked(source, number, bytes)?;
+        let mut take = |piece: &Piece, bytes: &[u8]| {
+            if piece.parts.is_some() {
+                let partial = job.unpacked_partial(source, piece, bytes)?;
+                watch.begun(&partial);
+                let goes_on = watch.goes_on(partial.index, partial.parts);
+                held(&begun).insert(piece.number, partial);
+                if goes_on {
+                    left.put_back(piece.number);
+                }
+                return Ok(());
+            }
+            let batch = job.unpacked(source, piece.number, bytes)?;
             watch.traced(batch.emitted);
             watch.done(&batch);
             others.push(batch);
             Ok(())
         };
         let key = key([job.scene()]);
-        let mut all = self.share(&key, Task::Batches, &left, own, &mut take)?;
+        let (mut all, stopped) = self.share(&key, Task::Batches, &left, own, (&give, &mut take))?;
         for batch in others {
             all.insert(batch).map_err(Failure::cannot_run)?;
         }
-        Ok(all)
+        let begun = begun.into_inner().unwrap_or_else(PoisonError::into_inner);
+        Ok((all, begun.into_values().chain(stopped).collect()))
     }
 
     /// Predicts planes of a scene: `own` does it here, and `unpacked` has what another process has sent.
@@ -109,33 +140,42 @@ impl<'a> Led<'a> {
         own: &dyn Fn(u32) -> Result<T, Failure>,
         unpacked: &Unpacked<'_, T>,
     ) -> Result<BTreeMap<u32, T>, Failure> {
-        let left = Left::new(numbers.iter().copied(), &Alone);
+        let left = Left::new(numbers.iter().copied(), usize::MAX);
         let mut others = BTreeMap::new();
         let all_own = || {
             let taken = std::iter::from_fn(|| left.next());
             taken.map(|number| Ok((number, own(number)?))).collect()
         };
-        let mut take = |number, bytes: &[u8]| {
-            others.insert(number, unpacked(number, bytes)?);
+        let give = |number| {
+            let piece = Piece {
+                number,
+                parts: None,
+                length: 0,
+            };
+            Ok((piece, Vec::new()))
+        };
+        let mut take = |piece: &Piece, bytes: &[u8]| {
+            others.insert(piece.number, unpacked(piece.number, bytes)?);
             Ok(())
         };
-        let mut all: BTreeMap<u32, T> = self.share(key, task, &left, all_own, &mut take)?;
+        let exchange = (&give as &Given<'_>, &mut take as &mut Taken<'_>);
+        let mut all: BTreeMap<u32, T> = self.share(key, task, &left, all_own, exchange)?;
         all.append(&mut others);
         Ok(all)
     }
 
-    /// Does what is left, here by `own` and wherever somebody asks for some, whose pieces go to `take`.
+    /// Does what is left, here by `own` and wherever somebody asks for some, whose pieces `give` makes and `take` takes back.
     fn share<T>(
         &self,
         key: &str,
         task: Task,
-        left: &Left<'_>,
+        left: &Left,
         own: impl FnOnce() -> Result<T, Failure>,
-        take: &mut Taken<'_>,
+        (give, take): (&Given<'_>, &mut Taken<'_>),
     ) -> Result<T, Failure> {
         let (own, others) = thread::scope(|scope| {
             let others = scope.spawn(|| {
-                let served = self.serve(key, task, left, take);
+                let served = self.serve(key, task, left, (give, take));
                 // Where others have failed, this process need not go on.
                 served.inspect_err(|_| left.drop_all())
             });
@@ -151,14 +191,15 @@ impl<'a> Led<'a> {
         &self,
         key: &str,
         task: Task,
-        left: &Left<'_>,
-        take: &mut Taken<'_>,
+        left: &Left,
+        (give, take): (&Given<'_>, &mut Taken<'_>),
     ) -> Result<(), Failure> {
-        for who in 1..self.crew.count() {
-            if held(&self.others)[who].waits {
-                self.hand(who, task, left)?;
-            }
-        }
+        let hand_all = || {
+            let waits = |who: &usize| held(&self.others)[*who].waits;
+            let mut waiting = (1..self.crew.count()).filter(waits);
+            waiting.try_for_each(|who| self.hand(who, task, left, give))
+        };
+        hand_all()?;
         while !left.is_empty() || held(&self.others).iter().any(|other| other.has > 0) {
             let (who, said, bytes) = self.heard()?;
             match said {
@@ -169,20 +210,18 @@ impl<'a> Led<'a> {
                 }
                 Said::Ready { abreast, .. } => {
                     held(&self.others)[who].abreast = abreast;
-                    self.hand(who, task, left)?;
+                    self.hand(who, task, left, give)?;
                 }
                 Said::Failed { message } => {
                     return Err(Failure::cannot_run(format!("process {who}: {message}")));
                 }
                 Said::Done { pieces } => {
                     // It goes on while its pieces are unpacked and kept.
-                    self.hand(who, task, left)?;
-                    let mut bytes = bytes.as_slice();
-                    for (number, length) in pieces {
-                        let (own, rest) = bytes.split_at_checked(length).unwrap_or_default();
-                        take(number, own)?;
-                        bytes = rest;
-                    }
+                    self.hand(who, task, left, give)?;
+                    let mut pieces = unpack(&pieces, &bytes);
+                    pieces.try_for_each(|(piece, own)| take(piece, own))?;
+                    // Batches that are not done go on where somebody waits.
+                    hand_all()?;
                 }
             }
         }
@@ -201,12 +240,8 @@ impl<'a> Led<'a> {
     }
 
     /// Gives pieces to a process that waits, if any are left.
-    fn hand(&self, who: usize, task: Task, left: &Left<'_>) -> Result<(), Failure> {
-        let most = match task {
-            Task::Batches => held(&self.others)[who].abreast,
-            Task::Planes | Task::Points => 1,
-        };
-        let numbers = left.last(most);
+    fn hand(&self, who: usize, task: Task, left: &Left, give: &Given<'_>) -> Result<(), Failure> {
+        let numbers = left.last(held(&self.others)[who].abreast);
         if numbers.is_empty() {
             return Ok(());
         }
@@ -214,41 +249,45 @@ impl<'a> Led<'a> {
         others[who].has = numbers.len();
         others[who].waits = false;
         drop(others);
-        self.order(who, &Order { task, numbers })
+        let pieces = numbers.into_iter().map(give);
+        self.order(who, task, pieces.collect::<Result<_, _>>()?)
     }
 
-    fn order(&self, who: usize, order: &Order) -> Result<(), Failure> {
-        let sent = self.crew.send(who, &joined(order, &[]));
+    fn order(&self, who: usize, task: Task, pieces: Vec<Packed>) -> Result<(), Failure> {
+        let [least, each] = RETURN_SECONDS;
+        let order = |pieces| Order {
+            task,
+            pieces,
+            seconds: least.max(each * self.crew.count() as f64),
+        };
+        let sent = self.crew.send(who, &packed(order, pieces));
         sent.map_err(Failure::cannot_run)
     }
 
     /// Ends the work of all others, as soon as each asks for more.
     pub(super) fn dismiss_all(&self) -> Result<(), Failure> {
-        let end = Order {
-            task: Task::Batches,
-            numbers: Vec::new(),
-        };
         for who in 1..self.crew.count() {
             while !held(&self.others)[who].waits {
                 self.heard()?;
             }
-            self.order(who, &end)?;
+            self.order(who, Task::Batches, Vec::new())?;
         }
         Ok(())
     }
 }
 
-/// The pieces that nobody has begun.
-struct Left<'a> {
+/// The pieces that nobody is at.
+struct Left {
     numbers: Mutex<VecDeque<u32>>,
-    watch: &'a dyn Watch,
+    /// How many parts a piece has, which one process measures at a time.
+    parts: usize,
 }
 
-impl<'a> Left<'a> {
-    fn new(numbers: impl Iterator<Item = u32>, watch: &'a dyn Watch) -> Self {
+impl Left {
+    fn new(numbers: impl Iterator<Item = u32>, parts: usize) -> Self {
         Self {
             numbers: Mutex::new(numbers.collect()),
-            watch,
+            parts,
         }
     }
 
@@ -265,43 +304,17 @@ impl<'a> Left<'a> {
         held(&self.numbers).pop_front()
     }
 
-    /// Takes the last ones, as many as that: this process goes through them from the first.
-    fn last(&self, most: usize) -> Vec<u32> {
+    /// Takes the last ones, which have so many parts: this process goes through them from the first.
+    fn last(&self, parts: usize) -> Vec<u32> {
         let mut numbers = held(&self.numbers);
-        let mut taken = Vec::new();
-        while taken.len() < most.max(1)
-            && let Some(number) = numbers.pop_back()
-        {
-            if self.watch.wants(number) {
-                taken.push(number);
-            }
-        }
-        taken
-    }
-}
-
-impl Watch for Left<'_> {
-    fn traced(&self, photons: u64) {
-        self.watch.traced(photons);
+        let most = parts.div_ceil(self.parts).clamp(1, numbers.len().max(1));
+        std::iter::from_fn(|| numbers.pop_back())
+            .take(most)
+            .collect()
     }
 
-    fn wants(&self, batch: u32) -> bool {
-        let mut numbers = held(&self.numbers);
-        let Some(at) = numbers.iter().position(|other| *other == batch) else {
-            return false;
-        };
-        numbers.remove(at);
-        self.watch.wants(batch)
+    /// Has one that was taken and is not done.
+    fn put_back(&self, number: u32) {
+        held(&self.numbers).push_back(number);
     }
-
-    fn done(&self, batch: &Batch) {
-        self.watch.done(batch);
-    }
-}
-
-/// Nobody looks on, and everything is wanted.
-pub(super) struct Alone;
-
-impl Watch for Alone {
-    fn traced(&self, _photons: u64) {}
 }

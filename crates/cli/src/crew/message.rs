@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 pub(super) enum Said {
     /// It has scenes with this key, and measures so many batches at a time.
     Ready { key: String, abreast: usize },
-    /// What follows these words are the pieces of these numbers, each of so many bytes.
-    Done { pieces: Vec<(u32, usize)> },
+    /// The bytes of these pieces follow.
+    Done { pieces: Vec<Piece> },
     /// It cannot do what it was told.
     Failed { message: String },
 }
@@ -25,11 +25,47 @@ pub(super) enum Task {
     Points,
 }
 
-/// The numbers of pieces to do; none ends the work.
+/// Something to do, or something done.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(crate) struct Piece {
+    pub(crate) number: u32,
+    /// How many parts of a batch are done, unless it is whole or not begun.
+    pub(crate) parts: Option<u32>,
+    /// How many bytes it has.
+    pub(crate) length: usize,
+}
+
+/// Pieces to do; none ends the work. The bytes of batches that are begun follow.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Order {
     pub(super) task: Task,
-    pub(super) numbers: Vec<u32>,
+    pub(super) pieces: Vec<Piece>,
+    /// When to send back batches that are not done by then.
+    pub(super) seconds: f64,
+}
+
+/// A piece with its bytes.
+pub(crate) type Packed = (Piece, Vec<u8>);
+
+/// The message that says `words` about pieces, and has their bytes.
+pub(super) fn packed<T: Serialize>(
+    words: impl FnOnce(Vec<Piece>) -> T,
+    pieces: Vec<Packed>,
+) -> Vec<u8> {
+    let (pieces, bytes): (Vec<Piece>, Vec<Vec<u8>>) = pieces.into_iter().unzip();
+    joined(&words(pieces), &bytes.concat())
+}
+
+/// The bytes of each of some pieces, which follow each other.
+pub(super) fn unpack<'a>(
+    pieces: &'a [Piece],
+    mut bytes: &'a [u8],
+) -> impl Iterator<Item = (&'a Piece, &'a [u8])> {
+    pieces.iter().map(move |piece| {
+        let (own, rest) = bytes.split_at_checked(piece.length).unwrap_or_default();
+        bytes = rest;
+        (piece, own)
+    })
 }
 
 /// The length of words, the words, and the bytes that they are about.

@@ -1,8 +1,8 @@
-//! Batches of a run that are kept as they are done, so that a run that ends early goes on from them.
+//! Batches of a run, kept as they are measured, so that a run that ends early goes on from them.
 //!
 //! Each is a file below `batches/` and the key of the run, in the folder of its results. It comes there whole, by one move, and its name has
 //! the hash of its content. A batch has the same bytes whoever measures it: processes need no lock to share the work, and one that
-//! dies holds nothing up.
+//! dies holds nothing up. A batch on the way is a file too, the sum of its first parts: the next one replaces it.
 
 use crate::failure::Failure;
 use crate::machine::available_memory;
@@ -12,11 +12,11 @@ use crate::results::npz::NpzFile;
 use crate::results::stored::VERSION;
 use etendue_field::VirtualPlane;
 use etendue_scene::{Scene, read_file};
-use etendue_spectrum::{Batch, Measurement};
+use etendue_spectrum::{Batch, Measurement, PartialBatch};
 use std::collections::BTreeMap;
-use std::fs;
 use std::io::{Cursor, ErrorKind, Read, Write};
 use std::path::{Path, PathBuf};
+use std::{fmt, fs};
 use zip::write::SimpleFileOptions;
 use zip::{CompressionMethod, ZipArchive, ZipWriter};
 
@@ -50,54 +50,97 @@ impl Kept {
         &self.folder
     }
 
-    /// Whether a batch is there.
-    pub(crate) fn has(&self, batch: u32) -> bool {
-        self.paths().contains_key(&batch)
+    /// How many batches are done, and how many are begun.
+    pub(crate) fn count(&self) -> [usize; 2] {
+        let found = self.furthest();
+        let done = found.values().filter(|name| name.parts.is_none()).count();
+        [done, found.len() - done]
     }
 
-    /// How many batches are there.
-    pub(crate) fn count(&self) -> usize {
-        self.paths().len()
+    /// How far a batch is; `None` if it is not begun.
+    pub(crate) fn progress(&self, batch: u32) -> Option<Progress> {
+        let furthest = self.furthest().remove(&batch)?;
+        Some(furthest.parts.map_or(Progress::Done, Progress::Parts))
     }
 
-    /// The file of each batch that is there.
-    fn paths(&self) -> BTreeMap<u32, PathBuf> {
+    /// Of each batch the file with the most parts.
+    fn furthest(&self) -> BTreeMap<u32, Name> {
+        let mut furthest = BTreeMap::new();
+        for name in self.names() {
+            let of_batch = furthest.entry(name.batch).or_insert_with(|| name.clone());
+            if name.is_beyond(of_batch) {
+                *of_batch = name;
+            }
+        }
+        furthest
+    }
+
+    fn names(&self) -> impl Iterator<Item = Name> {
         let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
-        let paths = entries.map(|entry| entry.path());
-        paths
-            .filter_map(|path| Some((named(&path)?.0, path)))
-            .collect()
+        entries.filter_map(|entry| Name::parse(entry.file_name().to_str()?))
     }
 
     /// Keeps a batch.
     pub(crate) fn write(&self, batch: &Batch) -> Result<(), Failure> {
+        self.put(batch, None)
+    }
+
+    /// Keeps the first parts of a batch, unless more of them are kept.
+    pub(crate) fn write_partial(&self, batch: &PartialBatch) -> Result<(), Failure> {
+        let is_new = match self.progress(batch.index) {
+            None => true,
+            Some(Progress::Parts(parts)) => parts < batch.parts,
+            Some(Progress::Done) => false,
+        };
+        match batch.sum.as_ref().filter(|_| is_new) {
+            Some(sum) => self.put(sum, Some(batch.parts)),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes a file, and removes those of the same batch that hold less.
+    fn put(&self, batch: &Batch, parts: Option<u32>) -> Result<(), Failure> {
         let bytes = packed(&self.planes, batch)?;
+        let name = Name::new(batch.index, parts, &bytes);
         let put = || {
             fs::create_dir_all(&self.folder)?;
             let mut file = tempfile::NamedTempFile::new_in(&self.folder)?;
             file.write_all(&bytes)?;
             file.as_file().sync_all()?;
-            let path = self.folder.join(name_of(batch.index, &bytes));
+            let path = self.folder.join(name.to_string());
             file.persist(path).map_err(|error| error.error)
         };
-        put().map(drop).map_err(|e| Failure::write(&self.folder, e))
+        put().map_err(|e| Failure::write(&self.folder, e))?;
+        for other in self.names() {
+            if other.batch == name.batch && name.is_beyond(&other) {
+                // What stays is harmless, and another process may have removed it.
+                let _ = fs::remove_file(self.folder.join(other.to_string()));
+            }
+        }
+        Ok(())
     }
 
-    /// Adds those that are there and not yet in a measurement. Returns the paths of damaged ones, which were removed and are to be measured
-    /// again. `emitted` says how many photons a batch has.
+    /// Adds the batches that are done and not yet in a measurement. Returns those that are begun, and the paths of damaged files, which
+    /// were removed: what they held is measured again. `emitted` says how many photons a batch has.
     pub(crate) fn read(
         &self,
         all: &mut Measurement,
         emitted: &dyn Fn(u32) -> u64,
-    ) -> Result<Vec<PathBuf>, Failure> {
+    ) -> Result<(BTreeMap<u32, PartialBatch>, Vec<PathBuf>), Failure> {
+        let mut begun = BTreeMap::new();
         let mut damaged = Vec::new();
-        for (index, path) in self.paths() {
+        for (index, name) in self.furthest() {
             if all.contains(index) {
                 continue;
             }
-            match self.batch(index, emitted(index), &path) {
-                Ok(batch) => all.insert(batch).map_err(Failure::cannot_run)?,
-                Err(_) => match fs::remove_file(&path) {
+            let path = self.folder.join(name.to_string());
+            match (self.batch(&name, emitted(index), &path), name.parts) {
+                (Ok(batch), None) => all.insert(batch).map_err(Failure::cannot_run)?,
+                (Ok(batch), Some(parts)) => {
+                    let sum = Some(batch);
+                    begun.insert(index, PartialBatch { index, parts, sum });
+                }
+                (Err(_), _) => match fs::remove_file(&path) {
                     Ok(()) => damaged.push(path),
                     // Another process has removed it.
                     Err(e) if e.kind() == ErrorKind::NotFound => {}
@@ -105,19 +148,19 @@ impl Kept {
                 },
             }
         }
-        Ok(damaged)
+        Ok((begun, damaged))
     }
 
-    fn batch(&self, index: u32, photons: u64, path: &Path) -> Result<Batch, Failure> {
+    fn batch(&self, name: &Name, photons: u64, path: &Path) -> Result<Batch, Failure> {
         let bytes = read_file(path, available_memory()).map_err(Failure::bad_input)?;
-        if named(path).is_none_or(|(_, hash)| hash != hash_of(&bytes)) {
+        if *name != Name::new(name.batch, name.parts, &bytes) {
             return Err(Failure::bad_input("its name has another hash"));
         }
         let held = Held {
             seed: self.seed,
             method: self.method,
             photons,
-            batches: index..index.saturating_add(1),
+            batches: name.batch..name.batch.saturating_add(1),
         };
         unpacked(&bytes, &held, &self.planes)
     }
@@ -167,17 +210,64 @@ pub(crate) fn unpacked(
     batch.ok_or_else(|| Failure::bad_input("no batch is in it"))
 }
 
-fn hash_of(bytes: &[u8]) -> String {
-    blake3::hash(bytes).to_hex()[..32].to_owned()
+/// How far a batch is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Progress {
+    /// So many of its first parts are summed.
+    Parts(u32),
+    /// It is whole.
+    Done,
 }
 
-fn name_of(batch: u32, bytes: &[u8]) -> String {
-    format!("{batch:08}-{}.batch", hash_of(bytes))
+/// The name of a file: `NUMBER-HASH.batch` of a whole batch, `NUMBER-PARTS-HASH.begun` of its first parts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Name {
+    batch: u32,
+    /// How many parts it holds; `None` of a whole batch.
+    parts: Option<u32>,
+    /// Of the parts and the bytes.
+    hash: String,
 }
 
-/// The number and the hash that the name of a file has; `None` if it is not one of a batch.
-fn named(path: &Path) -> Option<(u32, String)> {
-    let name = path.file_name()?.to_str()?.strip_suffix(".batch")?;
-    let (batch, hash) = name.split_once('-')?;
-    Some((batch.parse().ok()?, hash.to_owned()))
+impl Name {
+    fn new(batch: u32, parts: Option<u32>, bytes: &[u8]) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        if let Some(parts) = parts {
+            hasher.update(&parts.to_le_bytes());
+        }
+        let hash = hasher.update(bytes).finalize().to_hex()[..32].to_owned();
+        Self { batch, parts, hash }
+    }
+
+    fn parse(name: &str) -> Option<Self> {
+        let (stem, is_whole) = match name.strip_suffix(".batch") {
+            Some(stem) => (stem, true),
+            None => (name.strip_suffix(".begun")?, false),
+        };
+        let (batch, mut hash) = stem.split_once('-')?;
+        let mut parts = None;
+        if !is_whole {
+            let (number, rest) = hash.split_once('-')?;
+            parts = Some(number.parse().ok()?);
+            hash = rest;
+        }
+        let (batch, hash) = (batch.parse().ok()?, hash.to_owned());
+        Some(Self { batch, parts, hash })
+    }
+
+    /// Whether this file holds more of its batch than another one of it.
+    fn is_beyond(&self, other: &Self) -> bool {
+        let rank = |name: &Self| name.parts.map_or(u64::MAX, u64::from);
+        rank(self) > rank(other)
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { batch, parts, hash } = self;
+        match parts {
+            None => write!(f, "{batch:08}-{hash}.batch"),
+            Some(parts) => write!(f, "{batch:08}-{parts:08}-{hash}.begun"),
+        }
+    }
 }
