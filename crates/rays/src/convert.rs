@@ -18,7 +18,7 @@ pub struct Converted {
 /// Writes a file in a format. In its own format all of it is kept.
 ///
 /// # Errors
-/// Rays that the format cannot hold, such as negative weights in TM-25.
+/// Rays that the format cannot hold, such as negative weights in TM-25 and NPY: what is written can be read.
 pub fn convert(file: &RayFile, to: Format) -> Result<Converted, Fault> {
     let packed = |bytes: Vec<u8>| match to {
         Format::McplGz => gz::pack(&bytes),
@@ -43,7 +43,7 @@ pub fn convert(file: &RayFile, to: Format) -> Result<Converted, Fault> {
             if matches!(set.wavelengths, Wavelengths::Spectrum(_)) {
                 notes.push("the spectrum of all rays is dropped".to_owned());
             }
-            npy::write(&set)
+            npy::write(&set)?
         }
     };
     Ok(Converted { bytes, notes })

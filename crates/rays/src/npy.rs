@@ -22,14 +22,39 @@ pub fn npy_header(rows: u64, columns: usize) -> Vec<u8> {
     header
 }
 
-pub(crate) fn write(set: &RaySet) -> Vec<u8> {
+/// # Errors
+/// A ray that [`read`] refuses.
+pub(crate) fn write(set: &RaySet) -> Result<Vec<u8>, Fault> {
     let mut bytes = npy_header(set.len() as u64, 8);
-    for (ray, (position, direction)) in set.positions.iter().zip(&set.directions).enumerate() {
-        let last = [set.powers[ray], set.wavelength(ray).unwrap_or(f64::NAN)];
-        let row = position.iter().chain(direction).chain(&last);
-        bytes.extend(row.flat_map(|v| v.to_le_bytes()));
+    for (ray, ([x, y, z], [kx, ky, kz])) in set.positions.iter().zip(&set.directions).enumerate() {
+        let wavelength = set.wavelength(ray).unwrap_or(f64::NAN);
+        let row = [*x, *y, *z, *kx, *ky, *kz, set.powers[ray], wavelength];
+        check(&row).map_err(|what| Fault::ray(ray, what))?;
+        bytes.extend(row.iter().flat_map(|v| v.to_le_bytes()));
     }
-    bytes
+    Ok(bytes)
+}
+
+/// Why a row is no ray.
+fn check(row: &[f64; 8]) -> Result<(), String> {
+    let [.., kx, ky, kz, power, wavelength] = *row;
+    if let Some(value) = row[..7].iter().find(|v| !v.is_finite()) {
+        return Err(format!(
+            "it has the number {value}; allowed: finite numbers"
+        ));
+    }
+    let size = length([kx, ky, kz]);
+    if (size - 1.0).abs() > LENGTH_SLACK {
+        return Err(format!(
+            "its direction has the length {size}; allowed: unit vectors"
+        ));
+    }
+    if power < 0.0 || wavelength <= 0.0 || wavelength.is_infinite() {
+        return Err(format!(
+            "power {power}, wavelength {wavelength} m; allowed: power of 0 or more, positive wavelengths or NaN"
+        ));
+    }
+    Ok(())
 }
 
 pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
@@ -57,23 +82,7 @@ pub(crate) fn read(bytes: &[u8]) -> Result<RaySet, Fault> {
             *value = cursor.f64("a ray")?;
         }
         let [x, y, z, kx, ky, kz, power, wavelength] = row;
-        let refused = |what: String| Err(Fault::ray(ray, what));
-        if let Some(value) = row[..7].iter().find(|v| !v.is_finite()) {
-            return refused(format!(
-                "it has the number {value}; allowed: finite numbers"
-            ));
-        }
-        let size = length([kx, ky, kz]);
-        if (size - 1.0).abs() > LENGTH_SLACK {
-            return refused(format!(
-                "its direction has the length {size}; allowed: unit vectors"
-            ));
-        }
-        if power < 0.0 || wavelength <= 0.0 || wavelength.is_infinite() {
-            return refused(format!(
-                "power {power}, wavelength {wavelength} m; allowed: power of 0 or more, positive wavelengths or NaN"
-            ));
-        }
+        check(&row).map_err(|what| Fault::ray(ray, what))?;
         set.positions.push([x, y, z]);
         set.directions.push(unit([kx, ky, kz]));
         set.powers.push(power);

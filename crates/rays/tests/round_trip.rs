@@ -366,3 +366,25 @@ fn negative_weights_go_into_no_tm25() -> Result<(), Fault> {
     assert!(fault.to_string().contains("ray 1"), "{fault}");
     convert(&RayFile::Npy(set), Format::Mcpl).map(|_| ())
 }
+
+/// A photon of so little energy that its wavelength is beyond the largest number.
+#[test]
+fn what_is_written_can_be_read() {
+    let set = some_rays(
+        Wavelengths::Each(vec![500e-9, f64::INFINITY]),
+        PowerUnit::Watt,
+    );
+    let negative = RaySet {
+        powers: vec![-0.25, 0.5],
+        ..some_rays(Wavelengths::Unknown, PowerUnit::Watt)
+    };
+    for (set, ray) in [(set, "ray 1"), (negative, "ray 0")] {
+        for format in [Format::Npy, Format::Mcpl, Format::Tm25] {
+            match convert(&RayFile::Npy(set.clone()), format) {
+                Ok(written) => assert!(RayFile::read(&written.bytes).is_ok(), "{format}"),
+                Err(fault) => assert!(fault.to_string().contains(ray), "{format}: {fault}"),
+            }
+        }
+        assert!(convert(&RayFile::Npy(set), Format::Npy).is_err());
+    }
+}
