@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from etendue._etendue import CannotRun, SceneError
-from etendue.scene import Scene, Source, Value, _text, as_scene  # pyright: ignore[reportPrivateUsage]
+from etendue.scene import Scene, Source, Value, _text, _whole, as_scene  # pyright: ignore[reportPrivateUsage]
 
 
 def sweep(
@@ -36,7 +36,7 @@ def sweep(
     if together:
         arguments.append("--together")
     if photons is not None:
-        arguments.append(f"--photons={int(photons)}")
+        arguments.append(f"--photons={_whole(photons)}")
     _done("sweep", [scene], arguments, Path(out))
     with open(Path(out) / "sweep.csv", newline="", encoding="utf-8") as file:
         rows = list(csv.DictReader(file))
@@ -76,7 +76,8 @@ def _done(command: str, scenes: Sequence[Scene | Source], arguments: list[str], 
     """Runs a command; a fault of its input and one of this machine are raised as everywhere."""
     with tempfile.TemporaryDirectory() as folder:
         paths = [_path(scene, Path(folder)) for scene in scenes]
-        line = [sys.executable, "-m", "etendue", command, *paths, *arguments, f"--out={out}", "--quiet"]
+        # What follows `--` is a path, whatever it begins with.
+        line = [sys.executable, "-m", "etendue", command, *arguments, f"--out={out}", "--quiet", "--", *paths]
         ended = subprocess.run(line, capture_output=True, text=True, check=False)
     message = ended.stderr.strip().removeprefix("error: ")
     if ended.returncode == 2:

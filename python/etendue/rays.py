@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from etendue import types
 from etendue.progress import Progress, told
-from etendue.scene import Scene
+from etendue.scene import Scene, _threads  # pyright: ignore[reportPrivateUsage]
 
 Floats = NDArray[np.float64]
 
@@ -98,7 +98,7 @@ def spectrum(
     plane = Scene(_around(window, frequencies), name="rays")
     with told(progress, rays, "rays") as tell:
         found: dict[str, Any] = plane._job.spectrum(  # pyright: ignore[reportPrivateUsage]
-            columns, group, batches, threads, tell
+            columns, group, batches, _threads(threads), tell
         )
     if not np.isfinite(found["power"]).all():
         raise ValueError("the power of these weights is beyond the largest number; allowed: weights below 1e100 or so")
@@ -117,7 +117,7 @@ def _column(name: str, numbers: ArrayLike) -> Floats:
 def _groups(rays: int, batch: ArrayLike | None, batches: int) -> tuple[NDArray[np.uint32], int]:
     """The group of each ray, and how many there are."""
     if batch is None:
-        if not 2 <= batches <= rays:
+        if not 2 <= batches <= rays or batches != int(batches):
             raise ValueError(f"batches is {batches} for {rays} rays; allowed: 2 to one a ray")
         return np.arange(rays, dtype=np.uint32) % np.uint32(batches), batches
     numbers = np.asarray(batch)

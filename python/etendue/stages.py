@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from etendue import _etendue
 from etendue.progress import Progress, told
 from etendue.result import Result
-from etendue.scene import Method, Scene, Source, Value, as_scene
+from etendue.scene import Method, Scene, Source, Value, _count, _threads, as_scene  # pyright: ignore[reportPrivateUsage]
 
 
 class Measurement:
@@ -73,8 +73,7 @@ def measure(
     """Traces photons of a scene: all its batches, or those of these numbers. Other threads of Python go on meanwhile."""
     scene = as_scene(scene, set, photons, seed, method)
     numbers = _batches(scene, batches)
-    if threads is not None and threads < 1:
-        raise ValueError(f"threads is {threads}; allowed: 1 or more")
+    threads = _threads(threads)
     with told(progress, scene.photons * len(numbers) // scene.batches, "photons") as tell:
         raw = scene._job.measure(numbers, threads, tell)  # pyright: ignore[reportPrivateUsage]
     return Measurement(scene, raw)
@@ -85,7 +84,7 @@ def predict(
 ) -> Prediction:
     """What theory says of each plane of a scene."""
     scene = as_scene(scene, set)
-    return Prediction(scene, scene._job.predict(threads))  # pyright: ignore[reportPrivateUsage]
+    return Prediction(scene, scene._job.predict(_threads(threads)))  # pyright: ignore[reportPrivateUsage]
 
 
 def merge(measurements: Iterable[Measurement]) -> Measurement:
@@ -117,7 +116,7 @@ def compare(measurement: Measurement, prediction: Prediction | None = None, *, t
     raw = scene._job.compare(  # pyright: ignore[reportPrivateUsage]
         measurement._raw,  # pyright: ignore[reportPrivateUsage]
         prediction._raw,  # pyright: ignore[reportPrivateUsage]
-        threads,
+        _threads(threads),
     )
     return Result(scene, raw)
 
@@ -138,7 +137,7 @@ def run(
     `set` overrides fields by their paths, as `{"blockers.0.pitch": 0.1}`; vectors are sequences, and text is as in a scene file: "Distance(1.5)".
     `photons` and `seed` are instead of the scene's. Noise falls with photons, most of all for powers of two.
     `method` is "photons", sent from the light, or "backward", rays traced from each window back to it.
-    `threads` is one for each core unless said; the result does not depend on it.
+    `threads` is 1 to 1024, one for each core unless said; the result does not depend on it.
     `progress` is whether a bar is shown, or a function that is told how many photons are done.
 
     The same bytes as `etendue run`. Ctrl-C stops it within a tenth of a second. Raises `SceneError` with all faults of the scene, and
@@ -184,10 +183,6 @@ def photons(
 def _batches(scene: Scene, batches: Iterable[int] | None) -> list[int]:
     if batches is None:
         return list(range(scene.batches))
-    try:
-        numbers = sorted({int(number) for number in batches})
-    except TypeError:
-        raise TypeError(f"batches is {batches!r}; allowed: their numbers, such as range(8)") from None
-    if numbers and not 0 <= numbers[0] <= numbers[-1] < scene.batches:
-        raise ValueError(f"batches are {numbers[0]} to {numbers[-1]}; allowed: 0 to {scene.batches - 1}")
-    return numbers
+    if not isinstance(batches, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
+        raise TypeError(f"batches is {batches!r}; allowed: their numbers, such as range(8)")
+    return sorted({_count("one of batches", number, 0, scene.batches - 1) for number in batches})

@@ -145,6 +145,45 @@ def test_rays_that_cannot_be():
             etendue.spectrum(*four, **{"window": window, "frequencies": frequencies, **change})
 
 
+@pytest.mark.parametrize("threads", [0, -1, 1025, 10**6, 10**30, 1.5, "2"])
+def test_threads_that_cannot_be(threads):
+    window, frequencies = {"x": {"Hann": 0.5}, "u": {"Hann": 0.5}}, {"rho": {"max": 4}, "nu": {"max": 4}}
+    four = [np.zeros(100)] * 4
+    measured = etendue.measure(FIG9B, photons=64)
+    for call in [
+        lambda: etendue.run(FIG9B, photons=64, threads=threads),
+        lambda: etendue.measure(FIG9B, photons=64, threads=threads),
+        lambda: etendue.predict(FIG9B, threads=threads),
+        lambda: etendue.compare(measured, threads=threads),
+        lambda: etendue.spectrum(*four, window=window, frequencies=frequencies, threads=threads),
+    ]:
+        with pytest.raises(ValueError, match="threads is .*; allowed: a whole number from 1 to 1024"):
+            call()
+
+
+@pytest.mark.parametrize("batch", [1.5, -1, 64, "1"])
+def test_batches_that_cannot_be(batch):
+    for call in [
+        lambda: etendue.measure(FIG9B, photons=2**16, batches=[batch]),
+        lambda: etendue.photons(FIG9B, "receiver", photons=2**16, batches=[batch]),
+    ]:
+        with pytest.raises(ValueError, match="one of batches is .*; allowed: a whole number from 0 to 63"):
+            call()
+
+
+def test_a_path_is_no_option(tmp_path):
+    for call in [
+        lambda: etendue.render("--help", out=tmp_path / "out"),
+        lambda: etendue.probe("--version", (1, 1), out=tmp_path / "out"),
+        lambda: etendue.sweep("--help", {"blockers.0.pitch": [0.1]}, out=tmp_path / "out"),
+    ]:
+        with pytest.raises(ValueError, match="--help|--version"):
+            call()
+    assert not (tmp_path / "out").exists()
+    with pytest.raises(ValueError, match="photons is 1.5; allowed"):
+        etendue.sweep(FIG9B, {"blockers.0.pitch": [0.1]}, out=tmp_path / "out", photons=1.5)
+
+
 def test_an_interrupt_ends_a_billion_photons():
     code = (
         "import etendue, sys, time\n"
