@@ -13,6 +13,7 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 pub(crate) use data::data;
 use etendue_scene::read_file;
+use serde::de::IgnoredAny;
 use std::path::{Path, PathBuf};
 
 /// The page of a run, among its results.
@@ -70,6 +71,8 @@ fn stored(folder: &Path) -> Result<String, Failure> {
         .split_once(BEFORE)
         .and_then(|(_, rest)| rest.split_once(AFTER));
     let (data, _) = inside.ok_or_else(|| fault("it holds no data of a run"))?;
+    // An index can be made anew around any page: what is taken from it is data.
+    serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;
     Ok(data.to_owned())
 }
 
@@ -81,10 +84,12 @@ fn address(folder: &Path, from: &Path) -> String {
     format!("{}/", inside.display())
 }
 
-/// A page of the data of some runs, each with the folder it is in, as seen from the page.
+/// A page of the data of some runs in JSON, each with the folder it is in, as seen from the page.
 pub(crate) fn page(title: &str, blocks: &[(String, String)]) -> String {
     let block = |(folder, data): &(String, String)| {
         let folder = escaped(folder).replace('"', "&quot;");
+        // In JSON it is in strings alone: no name in a scene ends the data.
+        let data = data.replace('<', "\\u003c");
         format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
     };
     let data: Vec<String> = blocks.iter().map(block).collect();

@@ -152,6 +152,55 @@ fn what_is_no_whole_result_is_refused() {
     );
 }
 
+/// Whoever changes a page and makes its index anew brings no markup into a page of several runs.
+#[test]
+fn pages_are_made_from_data() {
+    let folder = runs();
+    let path = folder.path();
+    let page = path.join("b/report.html");
+    let original = fs::read_to_string(&page).unwrap();
+    let forge = |from: &str, to: &str| {
+        assert!(original.contains(from), "{from}");
+        let forged = original.replacen(from, to, 1);
+        fs::write(&page, &forged).unwrap();
+        let index = path.join("b/summary.json");
+        let mut text = fs::read_to_string(&index).unwrap();
+        let hash = json(&index)["files"]["report.html"]
+            .as_str()
+            .unwrap()
+            .to_owned();
+        text = text.replace(&hash, blake3::hash(forged.as_bytes()).to_hex().as_str());
+        let body = text[..text.rfind(",\n  \"index_hash\"").unwrap()].to_owned();
+        let hash = blake3::hash(body.as_bytes()).to_hex();
+        fs::write(
+            &index,
+            format!("{body},\n  \"index_hash\": \"{hash}\"\n}}\n"),
+        )
+        .unwrap();
+        fs::remove_file(path.join("both.html")).unwrap_or_default();
+        call_report(path, "report a b --out both.html")
+    };
+    const MARKUP: &str = "</SCRIPT><img src=x onerror=alert(1)>";
+    let data = "class=\"run-data\">";
+    // Beside the data, it is none.
+    for to in [format!("{data}{MARKUP}"), format!("{data}0{MARKUP}")] {
+        let output = forge(data, &to);
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        assert!(!path.join("both.html").exists());
+    }
+    // In the data, it is text.
+    let output = forge("\"words\":\"", &format!("\"words\":\"{MARKUP}"));
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    let both = fs::read_to_string(path.join("both.html")).unwrap();
+    assert!(!both.to_lowercase().contains("<img src=x"));
+    assert!(
+        !both.contains("innerHTML"),
+        "nor does the script make it markup"
+    );
+    let words = self::data(&path.join("both.html"))[1]["words"].clone();
+    assert!(words.as_str().unwrap().starts_with(MARKUP));
+}
+
 fn call_report(path: &Path, arguments: &str) -> std::process::Output {
     let mut command = common::etendue();
     command

@@ -113,7 +113,7 @@ fn encoded(values: ArrayView2<'_, f64>) -> String {
     STANDARD.encode(bytes.collect::<Vec<u8>>())
 }
 
-/// The data of a run as JSON that may stand in a page.
+/// The data of a run as JSON.
 pub(crate) fn data(
     case: &Case,
     summary: &Summary,
@@ -152,9 +152,7 @@ pub(crate) fn data(
         path,
         planes: each.collect(),
     };
-    // No name in a scene ends the data.
-    let json = serde_json::to_string(&run).unwrap_or_default();
-    json.replace("</", "<\\/").replace("<!--", "<\\u0021--")
+    serde_json::to_string(&run).unwrap_or_default()
 }
 
 impl<'a> Plane<'a> {

@@ -210,9 +210,9 @@ const showRun = (run) => {
   const article = make("article", null, document.getElementById("runs"), { class: "run" });
   make("h2", run.scene, article);
   make("p", run.words, article, { class: `verdict ${run.verdict}` });
-  const drawing = make("div", null, article, { class: "path" });
-  // An SVG of Étendue's own making: it has no script and names nothing outside.
-  drawing.innerHTML = run.path;
+  // As an image, an SVG runs no script and asks for nothing from outside, whoever made it.
+  const src = `data:image/svg+xml,${encodeURIComponent(run.path)}`;
+  make("img", null, make("div", null, article, { class: "path" }), { src, alt: "light fields and spectra along the path" });
   if (run.explorer !== null) {
     // Beside its results; a file has no other address than its own.
     const href = `${encodeURI(run.folder)}explorer.html#${run.explorer}`;
