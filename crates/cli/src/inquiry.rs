@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::judge::Judge;
 use crate::method::Method;
 use crate::results::summary::Inquiry;
+use crate::table::percent;
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare};
 use etendue_spectrum::estimate::TooFewBatches;
 
@@ -21,7 +22,8 @@ pub(crate) fn inquire(
     let test = Test::of(&case.scene);
     let judged = |i: usize| {
         let (judge, at) = Judge::of(&judges, i)?;
-        Some(Inquiry::of(case, i, (judge, at), &test).map_err(Failure::cannot_run))
+        let inquiry = Inquiry::of(case, (i, &planes[i].report), (judge, at), &test);
+        Some(inquiry.map_err(Failure::cannot_run))
     };
     failed.into_iter().filter_map(judged).collect()
 }
@@ -31,11 +33,14 @@ fn disagrees_with_theory(report: &PlaneReport) -> bool {
     report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
 }
 
+/// How many standard errors a disagreement must have, so that a test at 1 % finds it nine times in ten: 2.33 + 1.28.
+const DETECTABLE: f64 = 3.6;
+
 impl Inquiry {
     /// Compares a judge of plane `i`, which has it at number `at`, with photons and with theory.
     fn of(
         case: &Case,
-        i: usize,
+        (i, failed): (usize, &PlaneReport),
         (judge, at): (&Judge, usize),
         test: &Test,
     ) -> Result<Self, TooFewBatches> {
@@ -43,10 +48,19 @@ impl Inquiry {
         let reference = Prediction::reference(&case.scene, i, &case.theories[i], measured, at)?;
         let tracers = compare(&case.measurement, i, &reference, test)?.report;
         let theory = compare(measured, at, &case.predictions[i], test)?.report;
-        Ok(Self::new([case.method, judge.method], &tracers, &theory))
+        let methods = [case.method, judge.method];
+        let rays = measured.emitted() as f64;
+        Ok(Self::new(methods, failed, (&tracers, &theory), rays))
     }
 
-    fn new(methods: [Method; 2], tracers: &PlaneReport, theory: &PlaneReport) -> Self {
+    /// `failed` compares a measurement with its prediction. Another tracer with so many `rays` is compared with the measurement, and with
+    /// the prediction.
+    fn new(
+        methods: [Method; 2],
+        failed: &PlaneReport,
+        (tracers, theory): (&PlaneReport, &PlaneReport),
+        rays: f64,
+    ) -> Self {
         let [this, other] = methods.map(Method::words);
         let finding = match (tracers.verdict, theory.exact_verdict()) {
             (Verdict::Pass, Verdict::Fail) => {
@@ -58,9 +72,22 @@ impl Inquiry {
             (Verdict::Fail, Verdict::Fail) => {
                 format!("no two of {this}, {other} and the prediction agree")
             }
-            (Verdict::Pass, Verdict::Pass) => {
-                format!("{other} agree with both: chance may have made it fail; take another seed")
-            }
+            (Verdict::Pass, Verdict::Pass) => match rays_to_tell(failed, theory, rays) {
+                Some(needed) if needed <= rays => {
+                    format!(
+                        "{other} agree with both: chance may have made it fail; take another seed"
+                    )
+                }
+                Some(needed) => format!(
+                    "{other} cannot tell who is wrong: {this} and the prediction are {} apart, and the noise of {other} is {}; \
+                     about {needed:.1e} of them can tell (--photons)",
+                    percent(disagreement(failed).map(f64::sqrt)),
+                    percent(theory.noise_limit)
+                ),
+                None => format!(
+                    "{other} cannot tell who is wrong: the disagreement is within the noise; take more photons"
+                ),
+            },
             (Verdict::Undecided, _) | (_, Verdict::Undecided) => {
                 format!("{other} are too few to tell who is wrong; take more photons")
             }
@@ -72,6 +99,19 @@ impl Inquiry {
             finding,
         }
     }
+}
+
+/// The square of how far a plane that fails is from its prediction, beyond noise, as the test sees it: frequencies of less noise count
+/// more. `None` where there is nothing beyond noise.
+fn disagreement(failed: &PlaneReport) -> Option<f64> {
+    let squared = (failed.chi2_per_dof? - 1.0) * failed.noise_limit?.powi(2);
+    (squared > 0.0).then_some(squared)
+}
+
+/// How many rays would have seen the disagreement of a plane that fails, where `theory` compares so many of them with its prediction. The
+/// standard error of the square of a disagreement falls as their number, or faster.
+fn rays_to_tell(failed: &PlaneReport, theory: &PlaneReport, rays: f64) -> Option<f64> {
+    Some(rays * DETECTABLE * theory.excess_squared_error? / disagreement(failed)?)
 }
 
 #[cfg(test)]
@@ -94,8 +134,8 @@ mod tests {
         resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
     }
 
-    /// What is found where photons, backward rays and the prediction are of lights with these radiances.
-    fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
+    /// A plane whose photons, backward rays and prediction are of lights with these radiances.
+    fn compared(photons: f64, rays: f64, predicted: f64) -> (Case, PlaneComparison) {
         let of = |radiance| scene(radiance);
         let prediction = |scene: &Scene| {
             let theory = Applicability::new(scene, &scene.planes[0]);
@@ -112,6 +152,12 @@ mod tests {
         };
         let test = Test::of(&case.scene);
         let compared = compare(&case.measurement, 0, &case.predictions[0], &test).unwrap();
+        (case, compared)
+    }
+
+    /// What is found there.
+    fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
+        let (case, compared) = compared(photons, rays, predicted);
         let inquiries = inquire(&case, &[compared], true).unwrap();
         inquiries
             .into_iter()
@@ -128,5 +174,38 @@ mod tests {
         assert!(photons.ends_with("a finding about photons"), "{photons}");
         let all = found(1.2, 1.0, 0.8).concat();
         assert!(all.starts_with("no two of"), "{all}");
+    }
+
+    /// Photons are 0.55 % off their prediction. Rays that pass both may have had the power to see that, or not.
+    #[test]
+    fn rays_too_few_to_tell_are_no_sign_of_chance() {
+        let (_, PlaneComparison { report, .. }) = compared(1.0, 1.0, 1.0);
+        let with = |verdict, chi2, noise, squared_error| PlaneReport {
+            verdict,
+            chi2_per_dof: Some(chi2),
+            noise_limit: Some(noise),
+            excess_squared_error: Some(squared_error),
+            ..report.clone()
+        };
+        // 0.55 % is half of their noise of 1.1 %.
+        let found = |chi2, squared_error| {
+            let failed = with(Verdict::Fail, chi2, 0.011, 1e-6);
+            let passed = with(Verdict::Pass, 1.0, 0.015, squared_error);
+            let methods = [Method::Photons, Method::Backward];
+            Inquiry::new(methods, &failed, (&passed, &passed), 1e6).finding
+        };
+        let chance = "agree with both: chance may have made it fail";
+        assert!(found(1.25, 8.4e-6).contains(chance), "3.6 standard errors");
+        let open = found(1.25, 8.5e-6);
+        assert!(open.contains("cannot tell who is wrong"), "{open}");
+        let open = found(1.25, 3e-5);
+        for words in [
+            "0.550 % apart",
+            "noise of backward rays is 1.500 %",
+            "about 3.6e6",
+        ] {
+            assert!(open.contains(words), "{words}: {open}");
+        }
+        assert!(found(0.99, 1e-9).contains("within the noise"));
     }
 }
