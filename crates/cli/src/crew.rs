@@ -13,7 +13,7 @@ pub(crate) use message::{Packed, Piece, joined, split};
 use crate::args::{Cli, Command, RunArgs};
 use crate::failure::Failure;
 use crate::results::stored::VERSION;
-use crate::{ended, interrupt, predict, run, sweep};
+use crate::{ended, interrupt, not_parsed, predict, run, sweep};
 use clap::Parser;
 use etendue_scene::Scene;
 use std::ffi::OsString;
@@ -47,7 +47,7 @@ pub fn in_crew(line: impl IntoIterator<Item = OsString>, crew: &dyn Crew) -> u8 
         Err(error) => {
             // Whoever sees the terminal says it.
             if leads {
-                let _ = error.print();
+                return not_parsed(&error);
             }
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }

@@ -195,7 +195,7 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: &Subject) -> Result<Ve
         inputs: subject.inputs.clone(),
         force: args.force.force,
     };
-    let mut results = Results::claim(&args.out.join(&subject.name), plan)?;
+    let mut results = Results::claim_below(&args.out, &subject.name, plan)?;
     let files = subject.scenes.iter().filter(|_| subject.is_own);
     let files: BTreeMap<String, SceneFile> = files
         .map(|scene| (scene.name.clone(), scene.file.clone()))

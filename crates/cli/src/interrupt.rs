@@ -27,16 +27,21 @@ fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
 
 /// Makes what waits to become a result, and names all that is to be removed when the user asks to stop. A first
 /// signal waits for both.
-pub(crate) fn begin<E>(paths: Vec<PathBuf>, make: impl FnOnce() -> Result<(), E>) -> Result<(), E> {
+pub(crate) fn begin<T, E>(
+    paths: Vec<PathBuf>,
+    make: impl FnOnce() -> Result<T, E>,
+) -> Result<T, E> {
     let mut unfinished = unfinished();
-    make()?;
+    let made = make()?;
     *unfinished = paths;
-    Ok(())
+    Ok(made)
 }
 
-/// From now on nothing waits.
-pub(crate) fn ended() {
-    unfinished().clear();
+/// Releases what waited; from now on nothing waits. A first signal waits for both.
+pub(crate) fn ended(release: impl FnOnce()) {
+    let mut unfinished = unfinished();
+    release();
+    unfinished.clear();
 }
 
 /// Does short work that a first signal waits for.

@@ -57,7 +57,7 @@ pub use job::{Job, Options, Outcome};
 pub use method::Method;
 pub use results::arrays::SliceArrays;
 use std::ffi::OsString;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -69,9 +69,12 @@ pub fn main() -> ExitCode {
 
 /// Does what a command line says, whose first word is the program; returns the exit code.
 ///
-/// Signals are those of the command from then on, and a fault of the arguments ends the process.
+/// Signals are those of the command from then on.
 pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u8 {
-    let command = Cli::parse_from(line).command;
+    let command = match Cli::try_parse_from(line) {
+        Ok(cli) => cli.command,
+        Err(error) => return not_parsed(&error),
+    };
     let outcome = interrupt::install().and_then(|()| match command {
         Command::Run(args) => run::run(&args),
         Command::Measure(args) => measure::measure(&args),
@@ -93,6 +96,17 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Schema(args) => schema::schema(&args),
     });
     ended(outcome, false)
+}
+
+/// Prints the fault of a command line, or the help or the version that it asks for; returns the exit code.
+fn not_parsed(error: &clap::Error) -> u8 {
+    match error.print() {
+        Err(e) if !error.use_stderr() && e.kind() != ErrorKind::BrokenPipe => ended(
+            Err(Failure::write(Path::new("to standard output"), e)),
+            false,
+        ),
+        _ => u8::try_from(error.exit_code()).unwrap_or(2),
+    }
 }
 
 /// The exit code of what a command came to; a failure is told, unless somebody else tells it.
@@ -120,7 +134,7 @@ pub(crate) fn say(text: &str) {
 pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
     let text = printable(text, usize::MAX);
     match writeln!(std::io::stdout(), "{text}") {
-        Err(e) if e.kind() != std::io::ErrorKind::BrokenPipe => {
+        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
             Err(Failure::write(Path::new("to standard output"), e))
         }
         _ => Ok(()),

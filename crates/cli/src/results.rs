@@ -26,7 +26,7 @@ use lock::Lock;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The index of a comparison.
@@ -56,6 +56,9 @@ pub(crate) const MOST_INDEX: u64 = 1 << 26;
 /// Where new files wait.
 const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
+
+/// Why nothing is written below a folder.
+pub(crate) const LINKED: &str = "a link or a file stands where a folder is to be";
 
 /// How long another process may hold a folder before that is said.
 const PATIENCE: Duration = Duration::from_secs(3);
@@ -119,7 +122,8 @@ impl Results {
         let is_new = !folder.exists();
         fs::create_dir_all(folder).map_err(failure)?;
         let canonical = folder.canonicalize().map_err(failure)?;
-        let lock = Lock::take(&canonical.join(LOCK), folder)?;
+        let path = canonical.join(LOCK);
+        let lock = interrupt::begin(vec![path.clone()], || Lock::take(&path, folder))?;
         let mut results = Self {
             folder: canonical,
             shown: folder.to_owned(),
@@ -137,6 +141,15 @@ impl Results {
         interrupt::begin(unfinished.to_vec(), || fs::create_dir_all(&staged))
             .map_err(|e| Failure::write(&staged, e))?;
         Ok(results)
+    }
+
+    /// The same for a folder `name` of an `out` that the user names: below it nothing is written through a link.
+    pub(crate) fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
+        let folder = out.join(name);
+        if inside(out, &format!("{name}/{}", plan.index)).is_none() {
+            return Err(Failure::write(&folder, LINKED));
+        }
+        Self::claim(&folder, plan)
     }
 
     /// The same, but waits while another process writes there.
@@ -272,13 +285,32 @@ impl Drop for Results {
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
-        interrupt::ended();
-        drop(self.lock.take());
+        interrupt::ended(|| drop(self.lock.take()));
         if self.is_new {
             // Where nothing was written.
             let _ = fs::remove_dir(&self.folder);
         }
     }
+}
+
+/// The path of a file of a folder; `None` if it leads out of it, by `..` or by a link.
+pub(crate) fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+    let mut path = folder.to_owned();
+    let mut components = Path::new(name).components().peekable();
+    while let Some(component) = components.next() {
+        let Component::Normal(part) = component else {
+            return None;
+        };
+        path.push(part);
+        let is_folder = || match fs::symlink_metadata(&path) {
+            Ok(found) => found.is_dir(),
+            Err(_) => true,
+        };
+        if components.peek().is_some() && !is_folder() {
+            return None;
+        }
+    }
+    Some(path)
 }
 
 /// The files an index lists, with their hashes; `None` unless it is one as Étendue wrote it.

@@ -12,6 +12,7 @@ use crate::results::{Plan, Results, SUMMARY};
 use crate::table::word;
 use crate::threads::on_threads;
 use crate::{field, limits, load, method, photons, say, target, warnings};
+use clap::ValueEnum;
 use etendue_compare::{Applicability, Verdict};
 use etendue_scene::Scene;
 use std::path::Path;
@@ -24,6 +25,7 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 
 /// The same, with other processes that measure as well.
 pub(crate) fn run_with(args: &RunArgs, crew: Option<&Led<'_>>) -> Result<u8, Failure> {
+    check_saved(&args.save)?;
     let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
@@ -69,6 +71,17 @@ pub(crate) fn run_with(args: &RunArgs, crew: Option<&Led<'_>>) -> Result<u8, Fai
     })
 }
 
+/// Fails where something is to be saved twice.
+fn check_saved(save: &[Save]) -> Result<(), Failure> {
+    let mut each = save.iter().enumerate();
+    let Some((_, twice)) = each.find(|(i, what)| save[..*i].contains(what)) else {
+        return Ok(());
+    };
+    let value = twice.to_possible_value();
+    let name = value.as_ref().map_or("", |value| value.get_name());
+    Err(Failure::bad_input(format!("--save: {name} is given twice")))
+}
+
 /// Where a result is going to be.
 struct Place<'a> {
     folder: &'a Path,
@@ -79,9 +92,10 @@ struct Place<'a> {
     crew: Option<&'a Led<'a>>,
 }
 
-/// The exit code of a run that is done, whose verdict is told once more.
+/// The exit code of a run that is done, whose verdict is told once more. Batches that a process has left are removed.
 fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
+    Kept::of(folder, scene, args.photons.method).remove();
     let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
     if !args.quiet {
         say(&format!(
@@ -128,14 +142,8 @@ fn stages(
             Some(target::reached(&mut scene, method, target, args.quiet)?)
         }
     };
-    let done = |scene| {
-        let code = finished(place.folder, scene, args)?;
-        // A batch that was under way when another process ended the run.
-        kept.remove();
-        Some(code)
-    };
     let Some(measurement) = measurement else {
-        return done(&scene).ok_or_else(|| gone(place.folder));
+        return finished(place.folder, &scene, args).ok_or_else(|| gone(place.folder));
     };
     watch.lap("trace");
     let predictions = predicted(&scene, &theories, method, place.crew, args.quiet)?;
@@ -151,7 +159,7 @@ fn stages(
         Some(results) => results,
         None => {
             let results = Results::claim_in_turn(place.folder, place.plan)?;
-            if let Some(code) = done(&case.scene) {
+            if let Some(code) = finished(place.folder, &case.scene, args) {
                 return Ok(code);
             }
             results

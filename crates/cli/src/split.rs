@@ -4,7 +4,7 @@ use crate::args::SplitArgs;
 use crate::failure::Failure;
 use crate::method::Method;
 use crate::values::shell_word;
-use crate::{load, method, say};
+use crate::{deliver, load, method};
 use clap::ValueEnum;
 use std::path::Path;
 
@@ -31,11 +31,11 @@ pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
         predicted: below("predicted"),
         out: shell_word(&out.to_string_lossy()),
     };
-    say(&if args.slurm {
+    deliver(&if args.slurm {
         work.slurm()
     } else {
         work.commands()
-    });
+    })?;
     Ok(0)
 }
 

@@ -444,3 +444,40 @@ fn a_killed_run_leaves_no_half_result() {
         "{complete} of 20 complete: the kills do not try it"
     );
 }
+
+/// What a command is for goes to standard output: where that is full, the command has failed.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_standard_output_is_a_failure() {
+    let scene = scene("fig9b.ron");
+    let scene = scene.to_str().unwrap();
+    for arguments in [
+        &["split", scene, "--parts", "4"][..],
+        &["split", scene, "--parts", "4", "--slurm"],
+        &["check", scene],
+        &["schema"],
+        &["schema", "--page"],
+        &["--help"],
+        &["run", "--help"],
+        &["--version"],
+    ] {
+        let full = fs::File::options().write(true).open("/dev/full").unwrap();
+        let output = etendue().args(arguments).stdout(full).output().unwrap();
+        assert_eq!(output.status.code(), Some(3), "{arguments:?}: {output:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(message.contains("standard output"), "{message}");
+    }
+}
+
+#[test]
+fn what_is_saved_twice_is_refused_before_tracing() {
+    let folder = tempfile::tempdir().unwrap();
+    let output = run(folder.path(), &["--save", "photons,mcpl,photons"]);
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(
+        message.contains("--save: photons is given twice"),
+        "{message}"
+    );
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0);
+}

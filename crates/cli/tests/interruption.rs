@@ -105,3 +105,27 @@ fn memory_that_cannot_be_had_is_said() {
         );
     }
 }
+
+/// A signal that comes at any moment of the first steps leaves no lock.
+#[test]
+fn a_signal_leaves_no_lock() {
+    let folder = tempfile::tempdir().unwrap();
+    for moment in 0..100 {
+        let out = folder.path().join(moment.to_string());
+        let mut child = etendue()
+            .arg("run")
+            .arg(scene("fig9b.ron"))
+            .args(["--photons", "1e12", "--quiet", "--out"])
+            .arg(&out)
+            .stderr(Stdio::null())
+            .spawn()
+            .unwrap();
+        while !out.exists() && child.try_wait().unwrap().is_none() {
+            std::hint::spin_loop();
+        }
+        std::thread::sleep(Duration::from_micros(10 * moment));
+        send("TERM", &child);
+        assert_eq!(code(&mut child), Some(3));
+        assert!(!out.join(".etendue.lock").exists(), "after {moment}0 µs");
+    }
+}

@@ -8,7 +8,7 @@ use common::{SCENE, call, etendue, files, json};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Stdio};
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 const RUN: &str = "run small.ron --photons 2^22 --threads 2";
 
@@ -36,12 +36,17 @@ fn is_whole(folder: &Path, out: &str) {
 
 /// The batches that a run has left, or is about to leave.
 fn batches(folder: &Path, out: &str) -> Vec<PathBuf> {
+    left(folder, out, "batch")
+}
+
+/// The files of batches that end so.
+fn left(folder: &Path, out: &str, end: &str) -> Vec<PathBuf> {
     let below = |folder: PathBuf| fs::read_dir(folder).into_iter().flatten().flatten();
     let keys = below(folder.join(out).join("batches"));
     let all = keys.flat_map(|key| below(key.path()));
     let paths = all.map(|entry| entry.path());
     let mut paths: Vec<PathBuf> = paths
-        .filter(|path| path.extension().is_some_and(|end| end == "batch"))
+        .filter(|path| path.extension().is_some_and(|found| found == end))
         .collect();
     paths.sort();
     paths
@@ -165,4 +170,144 @@ fn what_another_process_ends_is_not_begun_anew() {
     while fs::remove_dir_all(path.join("parts/batches")).is_err() {}
     assert_eq!(child.wait().unwrap().code(), Some(0));
     is_whole(path, "parts");
+}
+
+/// A run whose batches take minutes each.
+const LONG: &str = "run small.ron --photons 2^36 --out long";
+
+/// The exit code and errors of a long run that ends by itself.
+fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
+    let mut child = etendue()
+        .current_dir(folder)
+        .args(LONG.split(' ').chain(arguments.split(' ')))
+        .arg("--quiet")
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    // A part of a batch takes about a second of one thread; the rest is for a busy machine.
+    while begun.elapsed() < Duration::from_secs(60) {
+        if child.try_wait().unwrap().is_some() {
+            let output = child.wait_with_output().unwrap();
+            let message = String::from_utf8(output.stderr).unwrap();
+            return (output.status.code(), message);
+        }
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().unwrap();
+    panic!("the run did not end");
+}
+
+/// How many parts are kept of batches on the way.
+fn parts(folder: &Path) -> u32 {
+    let names = left(folder, "long", "begun").into_iter();
+    let parts = names.map(|path| {
+        let name = path.file_name().unwrap().to_str().unwrap().to_owned();
+        name.split('-').nth(1).unwrap().parse::<u32>().unwrap()
+    });
+    parts.sum()
+}
+
+#[test]
+fn time_is_up_within_a_batch() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("small.ron"), SCENE).unwrap();
+    let mut kept = 0;
+    for arguments in ["--time 1s", "--time 1s --resume", "--time 1s --resume"] {
+        let (code, message) = ended(path, arguments);
+        assert_eq!(code, Some(3), "{message}");
+        assert!(
+            message.contains("0 of 64 batches, and the beginning of "),
+            "{message}"
+        );
+        assert!(parts(path) > kept, "{arguments}: {message}");
+        kept = parts(path);
+    }
+    let damaged = left(path, "long", "begun").remove(0);
+    fs::write(&damaged, "no batch").unwrap();
+    let (_, message) = ended(path, "--time 10ms --resume");
+    assert!(
+        message.contains("is damaged: the batch is measured again"),
+        "{message}"
+    );
+    // The run may have measured the same parts again.
+    assert_ne!(fs::read(&damaged).unwrap_or_default(), b"no batch");
+}
+
+/// What a process that dies within a batch had kept a few seconds before is there.
+#[test]
+fn a_killed_process_leaves_the_beginning_of_its_batch() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path();
+    fs::write(path.join("small.ron"), SCENE).unwrap();
+    let mut child = etendue()
+        .current_dir(path)
+        .args(LONG.split(' '))
+        .args(["--resume", "--quiet"])
+        .spawn()
+        .unwrap();
+    let begun = Instant::now();
+    while parts(path) < 3 {
+        assert!(
+            begun.elapsed() < Duration::from_secs(120),
+            "nothing is kept"
+        );
+        std::thread::sleep(Duration::from_millis(20));
+    }
+    child.kill().unwrap();
+    child.wait().unwrap();
+    // A newer beginning takes the place of an older one.
+    assert_eq!(left(path, "long", "begun").len(), 1);
+}
+
+/// A process that died just before it would have removed the batches of a run that is done.
+#[test]
+fn batches_of_a_run_that_is_done_are_removed() {
+    let folder = folder();
+    let path = folder.path();
+    let output = call(path, &format!("{RUN} --out parts --resume --time 100ms"));
+    if output.status.code() == Some(3) {
+        fs::rename(path.join("parts/batches"), path.join("batches")).unwrap();
+    } else {
+        panic!("the time was not up: {output:?}");
+    }
+    assert_eq!(
+        call(path, &format!("{RUN} --out parts --resume"))
+            .status
+            .code(),
+        Some(0)
+    );
+    fs::rename(path.join("batches"), path.join("parts/batches")).unwrap();
+    assert_eq!(
+        call(path, &format!("{RUN} --out parts --resume"))
+            .status
+            .code(),
+        Some(0)
+    );
+    is_whole(path, "parts");
+}
+
+/// Batches are neither written nor removed through a link.
+#[cfg(unix)]
+#[test]
+fn batches_go_through_no_link() {
+    let folder = folder();
+    let path = folder.path();
+    for linked in ["parts/batches", "other/batches"] {
+        let out = linked.split('/').next().unwrap();
+        fs::create_dir_all(path.join(out)).unwrap();
+        fs::create_dir_all(path.join("elsewhere/mine")).unwrap();
+        fs::write(path.join("elsewhere/mine/file"), "mine").unwrap();
+        std::os::unix::fs::symlink(path.join("elsewhere"), path.join(linked)).unwrap();
+        let resume = if out == "parts" {
+            "--resume"
+        } else {
+            "--seed 3"
+        };
+        let output = call(path, &format!("{RUN} --out {out} {resume}"));
+        assert_eq!(output.status.code(), Some(0), "{output:?}");
+        let left = files(&path.join("elsewhere"));
+        assert_eq!(left.keys().collect::<Vec<_>>(), ["mine/file"]);
+    }
 }

@@ -1,10 +1,10 @@
 //! What stands in a results folder before anything is written there.
 
-use super::{Results, TIMING, UNFINISHED, has_hash, listed, sealed_bytes};
+use super::{LINKED, Results, TIMING, UNFINISHED, has_hash, inside, listed, sealed_bytes};
 use crate::failure::Failure;
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
-use std::path::{Component, Path, PathBuf};
+use std::path::{Path, PathBuf};
 
 /// Names told in a message.
 const TOLD: usize = 10;
@@ -17,22 +17,7 @@ impl Results {
 
     /// The path of a file of the folder; `None` if it leads out of it, by `..` or by a link.
     pub(super) fn inside(&self, name: &str) -> Option<PathBuf> {
-        let mut path = self.folder.clone();
-        let mut components = Path::new(name).components().peekable();
-        while let Some(component) = components.next() {
-            let Component::Normal(part) = component else {
-                return None;
-            };
-            path.push(part);
-            let is_folder = || match fs::symlink_metadata(&path) {
-                Ok(found) => found.is_dir(),
-                Err(_) => true,
-            };
-            if components.peek().is_some() && !is_folder() {
-                return None;
-            }
-        }
-        Some(path)
+        inside(&self.folder, name)
     }
 
     /// Inputs are never among results.
@@ -67,8 +52,7 @@ impl Results {
         for name in self.planned() {
             let shown = self.shown.join(name);
             let Some(path) = self.inside(name) else {
-                let what = "a link or a file stands where a folder is to be";
-                return Err(Failure::write(&shown, what));
+                return Err(Failure::write(&shown, LINKED));
             };
             match fs::symlink_metadata(&path) {
                 Err(_) => {}

@@ -4,7 +4,9 @@
 //! this process, the next one into the folder can go on. Each step may have been done already. Earlier files
 //! move aside and are removed last: where a move fails, all that were made are undone.
 
-use super::{Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes};
+use super::{
+    LINKED, Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes,
+};
 use crate::failure::Failure;
 use std::fs::{self, File};
 use std::io;
@@ -148,7 +150,7 @@ impl Results {
     fn place(&self, from: PathBuf, name: &str, moved: &mut Moved) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
             let shown = self.shown.join(name);
-            Failure::write(&shown, "a link or a file stands where a folder is to be")
+            Failure::write(&shown, LINKED)
         })?;
         if self.plan.force && is_regular(&to) {
             let replaced = self.folder.join(UNFINISHED).join("replaced");

@@ -10,6 +10,7 @@ use crate::method::Method;
 use crate::results::batches::{Held, files, read_files};
 use crate::results::npz::NpzFile;
 use crate::results::stored::VERSION;
+use crate::results::{LINKED, inside};
 use etendue_field::VirtualPlane;
 use etendue_scene::{Scene, read_file};
 use etendue_spectrum::{Batch, Measurement, PartialBatch};
@@ -26,6 +27,8 @@ const FOLDER: &str = "batches";
 /// The batches of one run.
 #[derive(Debug)]
 pub(crate) struct Kept {
+    /// The folder of the results.
+    out: PathBuf,
     folder: PathBuf,
     planes: Vec<VirtualPlane>,
     seed: u64,
@@ -38,6 +41,7 @@ impl Kept {
         let what = format!("{VERSION} {} {}", scene.hash(), method.words());
         let key = &blake3::hash(what.as_bytes()).to_hex()[..16];
         Self {
+            out: out.to_owned(),
             folder: out.join(FOLDER).join(key),
             planes: scene.planes.clone(),
             seed: scene.run.seed,
@@ -75,8 +79,16 @@ impl Kept {
         furthest
     }
 
+    /// Whether no link leads out of the folder of the results.
+    fn is_inside(&self) -> bool {
+        let below = self.folder.strip_prefix(&self.out).ok();
+        let name = below.and_then(|below| below.join("batch").to_str().map(str::to_owned));
+        name.is_some_and(|name| inside(&self.out, &name).is_some())
+    }
+
     fn names(&self) -> impl Iterator<Item = Name> {
-        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
+        let entries = self.is_inside().then(|| fs::read_dir(&self.folder).ok());
+        let entries = entries.flatten().into_iter().flatten().flatten();
         entries.filter_map(|entry| Name::parse(entry.file_name().to_str()?))
     }
 
@@ -100,6 +112,9 @@ impl Kept {
 
     /// Writes a file, and removes those of the same batch that hold less.
     fn put(&self, batch: &Batch, parts: Option<u32>) -> Result<(), Failure> {
+        if !self.is_inside() {
+            return Err(Failure::write(&self.folder, LINKED));
+        }
         let bytes = packed(&self.planes, batch)?;
         let name = Name::new(batch.index, parts, &bytes);
         let put = || {
@@ -167,6 +182,9 @@ impl Kept {
 
     /// Removes them, and what a process that died has left unfinished.
     pub(crate) fn remove(&self) {
+        if !self.is_inside() {
+            return;
+        }
         // What stays is harmless.
         let _ = fs::remove_dir_all(&self.folder);
         if let Some(above) = self.folder.parent() {
