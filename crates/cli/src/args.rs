@@ -2,6 +2,7 @@ use crate::figure::Quality;
 use crate::method::Method;
 use crate::values::{Setting, Sweep, setting, sweep};
 use clap::{Args, Parser, Subcommand, ValueEnum};
+use etendue_field::tidy;
 use etendue_scene::RunFile;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -443,6 +444,11 @@ pub(crate) struct SweepArgs {
     #[arg(long, value_name = "PATH=VALUES", value_parser = setting)]
     pub(crate) set: Vec<Setting>,
 
+    /// All points have the seed of the scene or of --seed: differences between points have less noise, and their errors are not
+    /// independent. Otherwise each point has a seed of its own, made from that seed and its values
+    #[arg(long)]
+    pub(crate) common_seed: bool,
+
     /// Several fields take their values in step, instead of in all combinations; each must have as many
     #[arg(long)]
     pub(crate) together: bool,
@@ -602,15 +608,25 @@ fn range(text: &str) -> Result<Range<u32>, String> {
     }
 }
 
-/// A share in (0, 1], also in per cent.
+/// Shares without a unit are below this: a larger number is likely a percentage.
+const MAX_PLAIN_SHARE: f64 = 0.05;
+
+/// A share in (0, 1] in per cent, or a small one as a number.
 fn share(text: &str) -> Result<f64, String> {
-    let (number, unit) = match text.trim().strip_suffix('%') {
-        Some(number) => (number.trim(), 0.01),
-        None => (text.trim(), 1.0),
-    };
-    let share = number.parse().map(|number: f64| number * unit);
-    let share = share.ok().filter(|share| *share > 0.0 && *share <= 1.0);
-    share.ok_or_else(|| "must be a share of the spectrum, such as 0.1% or 0.001".to_owned())
+    let fault = || "must be a share of the spectrum, such as 0.1% or 0.001".to_owned();
+    let parsed = |number: &str| number.trim().parse().ok().filter(|x: &f64| *x > 0.0);
+    if let Some(number) = text.trim().strip_suffix('%') {
+        let share = parsed(number).map(|percent| 0.01 * percent);
+        return share.filter(|share| *share <= 1.0).ok_or_else(fault);
+    }
+    match parsed(text) {
+        Some(share) if share < MAX_PLAIN_SHARE => Ok(share),
+        Some(percent) if percent <= 100.0 => Err(format!(
+            "a number without % must be below {MAX_PLAIN_SHARE}: for {percent} per cent write {percent}% or {}",
+            tidy(0.01 * percent)
+        )),
+        _ => Err(fault()),
+    }
 }
 
 /// A whole number, also as 10_000_000, 1e7 or 2^23.
@@ -633,5 +649,28 @@ fn whole_number(text: &str) -> Result<u64, String> {
         Ok(x as u64)
     } else {
         Err("must be a whole number from 0 to 9e15".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::share;
+
+    #[test]
+    fn a_large_share_needs_its_unit() {
+        assert_eq!(share("0.3%"), share("0.003"));
+        assert_eq!(share("30 %"), Ok(0.3));
+        assert_eq!(share("0.049"), Ok(0.049));
+        for (text, advice) in [
+            ("0.3", "write 0.3% or 0.003"),
+            ("0.05", "write 0.05% or 0.0005"),
+            ("2", "write 2% or 0.02"),
+        ] {
+            let message = share(text).err().unwrap_or_default();
+            assert!(message.contains(advice), "{text}: {message}");
+        }
+        for text in ["0", "-1%", "101%", "101", "nan", "inf%", "x"] {
+            assert!(share(text).is_err(), "{text}");
+        }
     }
 }

@@ -15,7 +15,7 @@ use crate::method::Method;
 use crate::results::sealed::json;
 use crate::results::stored::{VERSION, check_earlier, summary_of};
 use crate::results::summary::Summary;
-use crate::results::{MOST_INDEX, Plan, Results, SUMMARY, SWEEP};
+use crate::results::{LINKED, MOST_INDEX, Plan, Results, SUMMARY, SWEEP, inside};
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::values::{Point, Setting, Sweep, points, shown};
@@ -90,7 +90,15 @@ impl Points {
         };
         let base = load::scene(&scene, |run| args.photons.set(run))?;
         let points = points(&sweeps, args.together)?;
-        let at = |point| load::scene_at(&scene, point, |run| args.photons.set(run));
+        let has_own_seed = !args.common_seed && sweeps.iter().all(|s| s.path != "run.seed");
+        let at = |point| {
+            let mut at = load::scene_at(&scene, point, |run| args.photons.set(run))?;
+            if has_own_seed {
+                at.run.seed = seed_of(&at);
+                at.file.run.seed = at.run.seed;
+            }
+            Ok(at)
+        };
         let scenes = points.iter().map(at).collect::<Result<_, _>>()?;
         Ok(Self {
             scene,
@@ -111,6 +119,17 @@ impl Points {
         let summary = Summary::new(&case, &judged(&case)?, Vec::new());
         Ok(summary.json(&BTreeMap::new()))
     }
+}
+
+/// The seed of a point, told by its scene and the seed of the sweep, whatever other points there are. A number that every reader of JSON
+/// holds exactly.
+fn seed_of(scene: &Scene) -> u64 {
+    let hash = blake3::hash(scene.hash().as_bytes());
+    let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
+        let word: [u8; 8] = word.try_into().unwrap_or_default();
+        u64::from_le_bytes(word)
+    });
+    words.next().unwrap_or(0) >> 24
 }
 
 /// Fails where nothing is swept, or a field is given its values twice.
@@ -217,7 +236,7 @@ fn run_all(
             inputs: inputs.to_vec(),
             force: args.force.force,
         };
-        Results::claim(&folder.join(&names[point as usize]), plan)
+        Results::claim_below(folder, &names[point as usize], plan)
     };
     let kept = |results: Results, summary: &[u8]| -> Result<Value, Failure> {
         results.finish(|_| summary.to_vec())?;
@@ -229,6 +248,11 @@ fn run_all(
         let results = claimed(point)?;
         kept(results, &all.summary(point)?)
     };
+    for name in &names {
+        if inside(folder, &format!("{name}/{SUMMARY}")).is_none() {
+            return Err(Failure::write(&folder.join(name), LINKED));
+        }
+    }
     let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
     let missing = (0..).zip(&summaries);
     let missing = missing.filter(|(_, summary)| summary.is_none());

@@ -7,7 +7,7 @@ mod common;
 use common::{SCENE, call, files, json, refused};
 use parquet::file::reader::SerializedFileReader;
 use parquet::record::Field;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
 use std::path::Path;
@@ -52,8 +52,15 @@ fn the_table_has_what_a_run_says_of_each_point() {
     let output = call(path, PITCH);
     assert_eq!(output.status.code(), Some(0), "{output:?}");
     let rows = rows(&path.join("s/sweep.csv"));
-    let run = "run small.ron --photons 4096 --out r --set blockers.0.pitch=0.15";
-    assert_eq!(call(path, run).status.code(), Some(0));
+    let seed = |pitch: &str| -> u64 {
+        let row = rows.iter().find(|row| row["blockers.0.pitch"] == pitch);
+        row.unwrap()["seed"].parse().unwrap()
+    };
+    let run = format!(
+        "run small.ron --photons 4096 --out r --set blockers.0.pitch=0.15 --seed {}",
+        seed("0.15")
+    );
+    assert_eq!(call(path, &run).status.code(), Some(0));
     let summary = json(&path.join("r/summary.json"));
     for plane in summary["planes"].as_array().unwrap() {
         let mut at = rows.iter().filter(|row| {
@@ -75,6 +82,62 @@ fn the_table_has_what_a_run_says_of_each_point() {
     let mut distinct = points.clone();
     distinct.dedup();
     assert_eq!(distinct, ["0.05", "0.1", "0.15", "0.2"]);
+    let seeds: BTreeSet<u64> = distinct.iter().map(|pitch| seed(pitch)).collect();
+    assert_eq!(seeds.len(), 4, "each point has a seed of its own");
+}
+
+#[test]
+fn points_have_one_seed_where_that_is_asked_for() {
+    let folder = folder();
+    let path = folder.path();
+    let seeds = |arguments: &str| -> BTreeSet<String> {
+        let line = PITCH.replace("--out s", &format!("--out s --force {arguments}"));
+        assert_eq!(call(path, &line).status.code(), Some(0), "{line}");
+        let rows = rows(&path.join("s/sweep.csv"));
+        rows.iter().map(|row| row["seed"].clone()).collect()
+    };
+    let own = seeds("--seed 7");
+    assert_eq!(own.len(), 4);
+    assert!(
+        own.is_disjoint(&seeds("--seed 8")),
+        "they depend on the seed of the sweep"
+    );
+    assert_eq!(seeds("--seed 7"), own);
+    assert_eq!(seeds("--seed 7 --common-seed"), ["7".to_owned()].into());
+    // A seed that is swept is the one that is used.
+    let line = "sweep small.ron --photons 4096 --out t --set run.seed=3,4";
+    assert_eq!(call(path, line).status.code(), Some(0));
+    let seeds: BTreeSet<String> = rows(&path.join("t/sweep.csv"))
+        .iter()
+        .map(|row| row["seed"].clone())
+        .collect();
+    assert_eq!(seeds, ["3", "4"].map(str::to_owned).into());
+}
+
+/// Points are written through no link that somebody has put there.
+#[test]
+fn points_go_through_no_link() {
+    for name in ["s/points", "s/points/POINT"] {
+        let folder = folder();
+        let path = folder.path();
+        assert_eq!(call(path, PITCH).status.code(), Some(0));
+        let point = json(&path.join("s/sweep.json"))["points"][0]
+            .as_str()
+            .unwrap()
+            .to_owned();
+        let linked = path.join(name.replace("points/POINT", &point));
+        fs::remove_dir_all(&linked).unwrap();
+        fs::create_dir(path.join("elsewhere")).unwrap();
+        std::os::unix::fs::symlink(path.join("elsewhere"), &linked).unwrap();
+        let output = call(path, PITCH);
+        assert_eq!(output.status.code(), Some(3), "{output:?}");
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert!(
+            message.contains("a link or a file stands where"),
+            "{message}"
+        );
+        assert_eq!(fs::read_dir(path.join("elsewhere")).unwrap().count(), 0);
+    }
 }
 
 #[test]
@@ -132,7 +195,7 @@ fn a_grid_and_fields_in_step() {
     assert_eq!(step, [grid[0].clone(), grid[3].clone()]);
     // The curves of a grid have a panel for each plane and each fill.
     let curves = rows(&path.join("grid/slope.csv"));
-    let panels: std::collections::BTreeSet<&String> = curves.iter().map(|r| &r["panel"]).collect();
+    let panels: BTreeSet<&String> = curves.iter().map(|r| &r["panel"]).collect();
     assert_eq!(panels.len(), 4, "{panels:?}");
     assert!(panels.contains(&"receiver, fill=0.6".to_owned()));
 }

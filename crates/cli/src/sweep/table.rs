@@ -101,6 +101,8 @@ fn columns(paths: &[String], found: &[Found]) -> Vec<(String, Column)> {
     let swept = swept.map(|(i, path)| (path.clone(), values(&|row| Some(row.at.point[i].1))));
     let rest = [
         ("point", words(&|row| row.at.folder.clone())),
+        // As text: not every seed is a double.
+        ("seed", words(&|row| row.at.summary["seed"].to_string())),
         ("plane", text("name")),
         ("class", text("class")),
         ("verdict", text("verdict")),
