@@ -72,22 +72,7 @@ impl Inquiry {
             (Verdict::Fail, Verdict::Fail) => {
                 format!("no two of {this}, {other} and the prediction agree")
             }
-            (Verdict::Pass, Verdict::Pass) => match rays_to_tell(failed, theory, rays) {
-                Some(needed) if needed <= rays => {
-                    format!(
-                        "{other} agree with both: chance may have made it fail; take another seed"
-                    )
-                }
-                Some(needed) => format!(
-                    "{other} cannot tell who is wrong: {this} and the prediction are {} apart, and the noise of {other} is {}; \
-                     about {needed:.1e} of them can tell (--photons)",
-                    percent(disagreement(failed).map(f64::sqrt)),
-                    percent(theory.noise_limit)
-                ),
-                None => format!(
-                    "{other} cannot tell who is wrong: the disagreement is within the noise; take more photons"
-                ),
-            },
+            (Verdict::Pass, Verdict::Pass) => both_pass([this, other], failed, theory, rays),
             (Verdict::Undecided, _) | (_, Verdict::Undecided) => {
                 format!("{other} are too few to tell who is wrong; take more photons")
             }
@@ -101,17 +86,41 @@ impl Inquiry {
     }
 }
 
-/// The square of how far a plane that fails is from its prediction, beyond noise, as the test sees it: frequencies of less noise count
-/// more. `None` where there is nothing beyond noise.
-fn disagreement(failed: &PlaneReport) -> Option<f64> {
-    let squared = (failed.chi2_per_dof? - 1.0) * failed.noise_limit?.powi(2);
-    (squared > 0.0).then_some(squared)
+/// What it means that so many rays of another tracer agree with a measurement and with its prediction, which do not agree.
+fn both_pass(
+    [this, other]: [&str; 2],
+    failed: &PlaneReport,
+    theory: &PlaneReport,
+    rays: f64,
+) -> String {
+    let squares = disagreement(failed);
+    let error = theory.excess_squared_error.unwrap_or(f64::INFINITY);
+    if squares.iter().all(|square| *square >= DETECTABLE * error) {
+        return format!("{other} agree with both: chance may have made it fail; take another seed");
+    }
+    let noise = percent(theory.noise_limit);
+    let cannot = format!("{other} cannot tell who is wrong: their noise is {noise}");
+    let positive = squares.into_iter().filter(|square| *square > 0.0);
+    let least = positive.fold(f64::INFINITY, f64::min);
+    // The standard error of a square falls as the number of rays, or faster.
+    let needed = rays * DETECTABLE * error / least;
+    if needed > rays && needed.is_finite() {
+        let apart = percent(Some(least.sqrt()));
+        format!(
+            "{cannot}, and {this} and the prediction are {apart} apart; it takes {needed:.1e} of them or more (--photons)"
+        )
+    } else {
+        format!("{cannot}, and the disagreement is within the noise; take more photons")
+    }
 }
 
-/// How many rays would have seen the disagreement of a plane that fails, where `theory` compares so many of them with its prediction. The
-/// standard error of the square of a disagreement falls as their number, or faster.
-fn rays_to_tell(failed: &PlaneReport, theory: &PlaneReport, rays: f64) -> Option<f64> {
-    Some(rays * DETECTABLE * theory.excess_squared_error? / disagreement(failed)?)
+/// Squares of how far a plane that fails is from its prediction, beyond noise: with all frequencies alike, and as the test has it, where
+/// frequencies of less noise count more. Another tracer has its noise elsewhere, so it must be able to see the smaller one.
+fn disagreement(failed: &PlaneReport) -> [f64; 2] {
+    let alike = failed.excess.map(|excess| excess * excess.abs());
+    let tested = failed.chi2_per_dof.zip(failed.noise_limit);
+    let tested = tested.map(|(chi2, noise)| (chi2 - 1.0) * noise * noise);
+    [alike, tested].map(|square| square.unwrap_or(0.0))
 }
 
 #[cfg(test)]
@@ -182,6 +191,7 @@ mod tests {
         let (_, PlaneComparison { report, .. }) = compared(1.0, 1.0, 1.0);
         let with = |verdict, chi2, noise, squared_error| PlaneReport {
             verdict,
+            excess: Some(0.006),
             chi2_per_dof: Some(chi2),
             noise_limit: Some(noise),
             excess_squared_error: Some(squared_error),
@@ -201,8 +211,8 @@ mod tests {
         let open = found(1.25, 3e-5);
         for words in [
             "0.550 % apart",
-            "noise of backward rays is 1.500 %",
-            "about 3.6e6",
+            "their noise is 1.500 %",
+            "it takes 3.6e6 of them or more",
         ] {
             assert!(open.contains(words), "{words}: {open}");
         }
