@@ -61,32 +61,14 @@ pub(crate) fn measured(
         kept.remove();
     }
     loop {
-        let mut begun = BTreeMap::new();
-        if lasting.resume {
-            // Then the batches are gone.
-            if is_done() {
-                bar.finish_and_clear();
-                return Ok(None);
-            }
-            let damaged;
-            (begun, damaged) = kept.read(&mut all, &emitted)?;
-            for path in damaged {
-                let path = path.display();
-                bar.suspend(|| warn(&format!("{path} is damaged: the batch is measured again")));
-            }
-            let photons = begun.values().map(|batch| photons_of(&*source, batch));
-            bar.set_position(all.emitted() + photons.sum::<u64>());
+        // Where another process has ended the run, the batches are gone.
+        if lasting.resume && is_done() {
+            bar.finish_and_clear();
+            return Ok(None);
         }
-        let missing = lit.iter().filter(|b| !all.contains(**b));
-        let missing = missing.map(|b| begun.remove(b).unwrap_or_else(|| PartialBatch::new(*b)));
-        let mut missing: Vec<PartialBatch> = missing.collect();
+        let missing = keeper.missing(&mut all, &*source, &lit)?;
         if missing.is_empty() {
             break;
-        }
-        if lasting.resume {
-            // Processes that share the work begin at different batches.
-            let begin = RandomState::new().hash_one(0) % missing.len() as u64;
-            missing.rotate_left(usize::try_from(begin).unwrap_or(0));
         }
         let (found, left) = match lasting.crew {
             Some(crew) => {
@@ -144,6 +126,36 @@ struct Keeper<'a> {
 }
 
 impl Keeper<'_> {
+    /// Reads what is kept, if the run goes on from it; returns the batches that are left to do, each from where it was left.
+    fn missing(
+        &self,
+        all: &mut Measurement,
+        source: &dyn PhotonSource,
+        lit: &[u32],
+    ) -> Result<Vec<PartialBatch>, Failure> {
+        let mut begun = BTreeMap::new();
+        if self.lasting.resume {
+            let damaged;
+            (begun, damaged) = self.kept.read(all, &|batch| source.emitted(batch))?;
+            for path in damaged {
+                let path = path.display();
+                let message = format!("{path} is damaged: the batch is measured again");
+                self.bar.suspend(|| warn(&message));
+            }
+            let photons = begun.values().map(|batch| photons_of(source, batch));
+            self.bar.set_position(all.emitted() + photons.sum::<u64>());
+        }
+        let missing = lit.iter().filter(|b| !all.contains(**b));
+        let missing = missing.map(|b| begun.remove(b).unwrap_or_else(|| PartialBatch::new(*b)));
+        let mut missing: Vec<PartialBatch> = missing.collect();
+        if self.lasting.resume && !missing.is_empty() {
+            // Processes that share the work begin at different batches.
+            let begin = RandomState::new().hash_one(0) % missing.len() as u64;
+            missing.rotate_left(usize::try_from(begin).unwrap_or(0));
+        }
+        Ok(missing)
+    }
+
     /// Whether anything is to be kept by now.
     fn keeps(&self) -> bool {
         let Lasting {

@@ -220,11 +220,7 @@ fn run_all(
     crew: Option<&Led<'_>>,
 ) -> Result<Vec<Found>, Failure> {
     let bar = progress::steps("running", all.points.len(), "points", args.quiet);
-    let names: Vec<String> = all
-        .scenes
-        .iter()
-        .map(|scene| format!("points/{}", name_of(scene, args)))
-        .collect();
+    let names = folders(args, folder, all)?;
     let earlier = |point: usize| {
         let there = folder.join(&names[point]);
         summary_of(&there, &all.scenes[point], args.photons.method)
@@ -248,11 +244,6 @@ fn run_all(
         let results = claimed(point)?;
         kept(results, &all.summary(point)?)
     };
-    for name in &names {
-        if inside(folder, &format!("{name}/{SUMMARY}")).is_none() {
-            return Err(Failure::write(&folder.join(name), LINKED));
-        }
-    }
     let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
     let missing = (0..).zip(&summaries);
     let missing = missing.filter(|(_, summary)| summary.is_none());
@@ -281,6 +272,18 @@ fn run_all(
         })
     });
     found.collect()
+}
+
+/// The folders of the points, none of which leads out of that of the sweep.
+fn folders(args: &SweepArgs, folder: &Path, all: &Points) -> Result<Vec<String>, Failure> {
+    let name = |scene: &Scene| {
+        let name = format!("points/{}", name_of(scene, args));
+        match inside(folder, &format!("{name}/{SUMMARY}")) {
+            Some(_) => Ok(name),
+            None => Err(Failure::write(&folder.join(name), LINKED)),
+        }
+    };
+    all.scenes.iter().map(name).collect()
 }
 
 /// The name of a point: the same for the same scene and method.
