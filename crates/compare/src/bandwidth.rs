@@ -3,10 +3,9 @@
 
 use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
-use crate::residuals::crossed_power;
 use etendue_field::{Lobe, Orientation, ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
-use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu, widest};
+use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::{CrossPower, Measurement, Uncertain};
 use etendue_theory::shading::{self, Criterion};
@@ -77,8 +76,8 @@ pub fn exact_bandwidth(
     let picture = ProjectionGrid::new(window, 1);
     let over = (window, grid, &picture);
     let exact = view.predict(&[], over, budget(scene));
-    let power = crossed_power(&exact.replicates);
-    Some(widest(power.view(), grid, bandwidth_nu)?.value)
+    let power = CrossPower::of_replicates(&exact.replicates, 0..grid.azimuths).ok()?;
+    Some(power.bandwidth(bandwidth_nu)?.value.value)
 }
 
 /// The bandwidth along ν as measured at plane `index`, with its error. `None` where no light came.

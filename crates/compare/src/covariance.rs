@@ -4,7 +4,6 @@ use crate::applicability::{Applicability, Theory};
 use crate::class::Class;
 use crate::prediction::Prediction;
 use crate::report::Pair;
-use crate::residuals::crossed_power;
 use etendue_field::{FieldGrid, SliceGrid, VirtualPlane, percent, tidy};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::field::{FieldCovariance, Moments, PowerMoments};
@@ -268,9 +267,10 @@ fn predicted_slice(prediction: &Prediction) -> Option<Array2<f64>> {
         return None;
     }
     let grid = &prediction.slices.grid;
-    let power = match prediction.replicates.len() {
-        0 | 1 => prediction.slices.half.mapv(|s| s.norm_sqr()),
-        _ => crossed_power(&prediction.replicates),
-    };
-    Some(grid.unfold_radial(power.index_axis(Axis(0), 0)))
+    if !prediction.replicates.is_empty() {
+        let crossed = CrossPower::of_replicates(&prediction.replicates, 0..1);
+        return Some(crossed.ok()?.power());
+    }
+    let power = prediction.slices.half.index_axis(Axis(0), 0);
+    Some(grid.unfold_radial(power.mapv(|s| s.norm_sqr()).view()))
 }

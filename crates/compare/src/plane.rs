@@ -7,16 +7,16 @@ use crate::prediction::Prediction;
 use crate::report::{
     Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
 };
-use crate::residuals::{Residuals, crossed_power, largest};
+use crate::residuals::{Residuals, largest};
 use crate::score::{ParameterReport, score};
 use crate::uneven::too_few;
 use crate::verdict::{Test, Verdict};
 use etendue_field::{SliceGrid, Slices, percent, tidy};
-use etendue_spectrum::bandwidth::{SliceBandwidth, bandwidth_nu, bandwidth_rho, widest};
+use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope};
-use etendue_spectrum::{CrossPower, Measurement, RadialPower};
-use ndarray::{Array2, Array3, ArrayView2, Axis};
+use etendue_spectrum::{CrossPower, Measurement, RadialPower, Uncertain};
+use ndarray::{Array2, Array3, ArrayView2};
 
 /// A plane compared: the report, and the arrays behind it.
 #[derive(Clone, Debug)]
@@ -36,6 +36,9 @@ pub struct PlaneComparison {
     /// Standard deviation of measured minus predicted radial power, [ρ, ν], if the prediction is
     /// true.
     pub radial_sigma: Array2<f64>,
+    /// |S − F₁|², F₁ being the first-order chain's slices, averaged over the azimuths, [ρ, ν]; `None`
+    /// where there is no chain.
+    pub off_chain: Option<Array2<f64>>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
 }
@@ -63,15 +66,17 @@ pub fn compare(
     let estimate = estimate::slices(measurement, index)?;
     let predicted = without_rounding(prediction);
     let residuals = Residuals::between(measurement, index, &predicted, &prediction.replicates);
-    let (variance, predicted_power) = if prediction.is_statistical() {
-        (residuals.variance(), crossed_power(&prediction.replicates))
-    } else {
-        let power = predicted.half.mapv(|s| s.norm_sqr());
-        (estimate.variance, power)
-    };
-    let mean = predicted_power.sum_axis(Axis(0)) / predicted.grid.azimuths as f64;
-    let predicted_radial = predicted.grid.unfold_radial(mean.view());
     let power = CrossPower::new(measurement, index)?;
+    let replicates = if prediction.is_statistical() {
+        let azimuths = 0..predicted.grid.azimuths;
+        Some(CrossPower::of_replicates(&prediction.replicates, azimuths)?)
+    } else {
+        None
+    };
+    let (variance, predicted_radial) = match &replicates {
+        Some(replicates) => (residuals.variance(), replicates.power()),
+        None => (estimate.variance, predicted.radial_power()),
+    };
     let sides = Compared {
         measurement,
         index,
@@ -80,12 +85,17 @@ pub fn compare(
         residuals: &residuals,
         variance: &variance,
         power: &power,
-        predicted_power: &predicted_power,
+        replicates: replicates.as_ref(),
         predicted_radial: &predicted_radial,
     };
     let report = sides.report(&sides.judged(test))?;
+    let off_chain = prediction.first_order.as_ref().map(|chain| Slices {
+        half: &estimate.mean.half - &chain.slices.half,
+        ..estimate.mean
+    });
     Ok(PlaneComparison {
         report,
+        off_chain: off_chain.map(|off| off.radial_power()),
         measured: estimate.mean,
         radial: power.radial(),
         radial_sigma: residuals.radial_sigma(&predicted, &variance),
@@ -106,8 +116,8 @@ struct Compared<'a> {
     /// The variance of the mean residual, noise of the prediction included.
     variance: &'a Array3<f64>,
     power: &'a CrossPower<'a>,
-    /// [azimuth, ρ ≥ 0, ν].
-    predicted_power: &'a Array3<f64>,
+    /// The power of a prediction that has replicates.
+    replicates: Option<&'a CrossPower<'a>>,
     predicted_radial: &'a Array2<f64>,
 }
 
@@ -315,7 +325,7 @@ impl Compared<'_> {
             chi2_per_dof: self.residuals.chi2_per_dof(self.variance),
             p_value: judged.p_value,
             parameters: self.parameters(),
-            slope: self.pair(|p| shear_slope(p, grid)),
+            slope: self.slope(grid),
             spectral_moments: [[2, 0], [1, 1], [0, 2]]
                 .map(|powers| self.pair(|p| second_moment(p, grid, powers))),
             bandwidth_95: Bandwidth {
@@ -338,9 +348,39 @@ impl Compared<'_> {
 
     fn parameters(&self) -> Vec<ParameterReport> {
         let parameters = self.prediction.parameters.iter();
+        let numerical = self.numerical_error();
         parameters
-            .filter_map(|parameter| score(self.residuals, self.variance, parameter))
+            .filter_map(|parameter| score(self.residuals, self.variance, parameter, numerical))
             .collect()
+    }
+
+    /// ‖error‖ of a prediction by quadrature, over the independent frequencies.
+    fn numerical_error(&self) -> f64 {
+        let half = &self.predicted.half;
+        let size = self.residuals.sum(half, half, |f, _| f.norm_sqr()).sqrt();
+        self.prediction.systematic_error().unwrap_or(0.0) * size
+    }
+
+    /// The shear slope s = Σ P ρν / Σ P ρ². A spectrum that is off by ‖dF‖ = ε ‖F‖ moves it by no more
+    /// than 2ε √(Σ P · Σ g² P), where g = ∂s/∂P = (ρν − s ρ²) / Σ P ρ² (Cauchy–Schwarz).
+    fn slope(&self, grid: &SliceGrid) -> Pair {
+        let pair = self.pair(|p| shear_slope(p, grid));
+        let epsilon = self.prediction.systematic_error();
+        let (Some(epsilon), Some(slope)) = (epsilon, pair.predicted) else {
+            return pair;
+        };
+        let [mut all, mut along, mut squares] = [0.0; 3];
+        for ((i, j), p) in self.predicted_radial.indexed_iter() {
+            let (rho, nu) = (grid.rho.value(i), grid.nu.value(j));
+            all += p;
+            along += p * rho * rho;
+            squares += p * (rho * nu - slope * rho * rho).powi(2);
+        }
+        let bound = 2.0 * epsilon * (all * squares).sqrt() / along;
+        Pair {
+            error: pair.error.map(|error| libm::hypot(error, bound)),
+            ..pair
+        }
     }
 
     fn high_frequency_shares(&self, grid: &SliceGrid) -> Vec<HighFrequencyShare> {
@@ -356,11 +396,24 @@ impl Compared<'_> {
     fn bandwidth(&self, of: SliceBandwidth) -> DirectedPair {
         let grid = &self.predicted.grid;
         let measured = self.power.bandwidth(of);
-        let predicted = widest(self.predicted_power.view(), grid, of);
+        let predicted = match self.replicates {
+            Some(power) => power.bandwidth(of),
+            None => {
+                let power = self.predicted.half.mapv(|s| s.norm_sqr());
+                widest(power.view(), grid, of).map(|exact| Widest {
+                    azimuth: exact.azimuth,
+                    value: Uncertain {
+                        value: exact.value,
+                        error: 0.0,
+                    },
+                })
+            }
+        };
+        let noise = predicted.map_or(0.0, |p| p.value.error);
         DirectedPair {
             measured: measured.map(|m| m.value.value),
-            predicted: predicted.map(|p| p.value),
-            error: measured.map(|m| m.value.error),
+            predicted: predicted.map(|p| p.value.value),
+            error: measured.map(|m| libm::hypot(m.value.error, noise)),
             azimuth: Azimuths {
                 measured: measured.map(|m| m.azimuth),
                 predicted: predicted.map(|p| p.azimuth),
@@ -371,10 +424,12 @@ impl Compared<'_> {
     /// A number read off both radial powers by the same estimator.
     fn pair(&self, of: impl Fn(ArrayView2<'_, f64>) -> Option<f64>) -> Pair {
         let measured = self.power.statistic(&of);
+        let predicted = self.replicates.and_then(|power| power.statistic(&of));
+        let noise = predicted.map_or(0.0, |p| p.error);
         Pair {
             measured: measured.map(|m| m.value),
             predicted: of(self.predicted_radial.view()),
-            error: measured.map(|m| m.error),
+            error: measured.map(|m| libm::hypot(m.error, noise)),
         }
     }
 }

@@ -15,7 +15,9 @@ pub struct Pair {
     pub measured: Option<f64>,
     /// The value of the prediction, by the same estimator.
     pub predicted: Option<f64>,
-    /// Standard error of the measured value.
+    /// Standard error of their difference: that of the measured value, and that of the predicted one
+    /// where the prediction has replicates. That of a shear slope holds what the prediction's
+    /// quadrature may be off by.
     pub error: Option<f64>,
 }
 

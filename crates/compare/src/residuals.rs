@@ -321,20 +321,6 @@ fn check(measured: &Slices, predicted: &Slices) {
     assert_eq!(measured, predicted, "frequencies measured and predicted");
 }
 
-/// The power of the mean of independent replicates, without their noise (docs/theory.md (13)):
-/// crossed with each other they have none in common. [azimuth, ρ ≥ 0, ν].
-pub(crate) fn crossed_power(replicates: &[Slices]) -> Array3<f64> {
-    let grid = replicates[0].grid;
-    let mut sum = Array3::<Complex>::zeros(grid.half_shape());
-    let mut own = Array3::<f64>::zeros(grid.half_shape());
-    for replicate in replicates {
-        sum += &replicate.half;
-        own.zip_mut_with(&replicate.half, |own, s| *own += s.norm_sqr());
-    }
-    let r = replicates.len() as f64;
-    (sum.mapv(|s| s.norm_sqr()) - own) / (r * (r - 1.0))
-}
-
 /// Σ_b<c ε_b ε_c H_bc; the diagonal is the same for all signs.
 fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
     let mut sum = 0.0;

@@ -16,7 +16,7 @@ pub struct ParameterReport {
     pub scene: f64,
     /// Its value as measured, with all others held at the scene's.
     pub measured: f64,
-    /// Standard error of the measured value.
+    /// Standard error of the measured value, the error of the prediction included.
     pub error: f64,
     /// Smallest change that would be seen at level 1 % nine times in ten: 3.86 errors.
     pub detectable: f64,
@@ -30,14 +30,17 @@ const DETECTABLE: f64 = 3.858;
 /// weighted by 1/σ².
 ///
 /// The step δ = Re Σ conj(D)(S − F)/σ² / Σ|D|²/σ² is the least-squares change of the parameter; its
-/// error is the spread of δ over the residuals, so it includes correlations between frequencies.
-/// Both are of first order in δ.
+/// error is the spread of δ over the residuals, so it includes correlations between frequencies and
+/// the noise of a prediction's replicates. A prediction that is off by `numerical` = ‖error‖ beside
+/// that moves δ by no more than `numerical` ‖D/σ²‖ / Σ|D|²/σ² (Cauchy–Schwarz), which is added in
+/// quadrature. Both are of first order in δ.
 ///
 /// `None` when the prediction does not depend on the parameter, or no photon came.
 pub(crate) fn score(
     residuals: &Residuals,
     variance: &Array3<f64>,
     parameter: &PredictedParameter,
+    numerical: f64,
 ) -> Option<ParameterReport> {
     let derivative = &parameter.derivative;
     let mut weighted = derivative.half.clone();
@@ -57,7 +60,11 @@ pub(crate) fn score(
     let count = steps.len() as f64;
     let step = steps.iter().sum::<f64>() / count;
     let spread: f64 = steps.iter().map(|s| (s - step).powi(2)).sum();
-    let error = (spread / (count * (count - 1.0))).sqrt();
+    let noise = (spread / (count * (count - 1.0))).sqrt();
+    let weight = residuals
+        .sum(&weighted, variance, |w, _| w.norm_sqr())
+        .sqrt();
+    let error = libm::hypot(noise, numerical * weight / information);
     Some(ParameterReport {
         name: parameter.name.clone(),
         unit: parameter.unit.clone(),

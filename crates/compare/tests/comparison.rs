@@ -368,6 +368,61 @@ fn a_coarse_quadrature_decides_nothing() {
     }
 }
 
+/// What a quadrature may be off by is in the errors of what is measured: next to no noise, and a
+/// prediction that is wrong by just its stated error, along a derivative or by a shear.
+#[test]
+fn errors_of_measured_numbers_hold_that_of_a_quadrature() {
+    const STATED: f64 = 1e-3;
+    let [truth, derivative] = spectrum(1.0);
+    let measurement = measurement(&truth, 1e-6, 2);
+    let mut sheared = truth.clone();
+    for ((_, m, n), f) in sheared.half.indexed_iter_mut() {
+        *f *= m as f64 * truth.grid.nu.value(n);
+    }
+    let norm = |s: &Slices| s.half.iter().map(|f| f.norm_sqr()).sum::<f64>().sqrt();
+    let pulls = |direction: &Slices, quadrature_error| {
+        let mut expected = prediction(1.0);
+        let scale = STATED * norm(&truth) / norm(direction);
+        expected.slices.half += &(&direction.half * Complex::from(scale));
+        expected.quadrature_error = quadrature_error;
+        let report = compare(&measurement, 0, &expected, &TEST).unwrap().report;
+        let (width, slope) = (&report.parameters[0], report.slope);
+        let off = slope.measured.unwrap() - slope.predicted.unwrap();
+        [
+            (width.measured - width.scene) / width.error,
+            off / slope.error.unwrap(),
+        ]
+    };
+    for (direction, which) in [(&derivative, 0), (&sheared, 1)] {
+        // Without the stated error the noise of 10⁻⁶ is all there is.
+        assert!(pulls(direction, None)[which].abs() > 30.0);
+        // The bound is reached along a derivative whose weights are even, and never exceeded; what
+        // is left of the weights' noise is a few per cent.
+        let held = pulls(direction, Some(STATED))[which].abs();
+        assert!((0.3..1.1).contains(&held), "{which}: {held}");
+    }
+}
+
+/// The noise of replicates is in the error of the shear slope, which is that of the difference.
+#[test]
+fn errors_of_slopes_hold_the_noise_of_replicates() {
+    let [truth, _] = spectrum(1.0);
+    let pull = |seed: u64| {
+        let measured = measurement(&truth, 0.01, seed + 10);
+        let expected = sampled(1.0, 0.02, 32, seed + 5000);
+        let slope = compare(&measured, 0, &expected, &TEST)
+            .unwrap()
+            .report
+            .slope;
+        (slope.measured.unwrap() - slope.predicted.unwrap()) / slope.error.unwrap()
+    };
+    let squares: f64 = (0..100).map(|seed| pull(seed).powi(2)).sum();
+    // 100 squares of unit variance: four times √(2/100) is 0.57. Without the replicates, whose
+    // noise power is eight times the photons', it is 9.
+    let mean = squares / 100.0;
+    assert!((mean - 1.0).abs() < 0.57, "{mean}");
+}
+
 /// The total of photons that all weigh the same has no noise: a quadrature is never as exact, and its
 /// error there is no disagreement.
 #[test]

@@ -39,6 +39,9 @@ pub struct CrossPower<'m> {
     pairs: Array3<f64>,
 }
 
+/// Fewest batches of a jackknife.
+const NEED: usize = 3;
+
 impl<'m> CrossPower<'m> {
     /// The cross power of plane `plane`.
     ///
@@ -72,9 +75,41 @@ impl<'m> CrossPower<'m> {
         plane: usize,
         azimuths: Range<usize>,
     ) -> Result<Self, TooFewBatches> {
-        TooFewBatches::check(measurement, 3)?;
         let grid = measurement.planes()[plane].grid;
-        let batches: Vec<_> = measurement.at_plane(plane).map(|b| &b.slices).collect();
+        let batches = measurement.at_plane(plane).map(|b| &b.slices).collect();
+        Self::between(grid, batches, azimuths)
+    }
+
+    /// That of independent replicates of a prediction, over some of their azimuths.
+    ///
+    /// # Errors
+    ///
+    /// With fewer than three.
+    ///
+    /// # Panics
+    ///
+    /// When there are not so many slices.
+    pub fn of_replicates(
+        replicates: &'m [Slices],
+        azimuths: Range<usize>,
+    ) -> Result<Self, TooFewBatches> {
+        let none = TooFewBatches {
+            have: 0,
+            need: NEED,
+        };
+        let grid = replicates.first().ok_or(none)?.grid;
+        Self::between(grid, replicates.iter().collect(), azimuths)
+    }
+
+    fn between(
+        grid: SliceGrid,
+        batches: Vec<&'m Slices>,
+        azimuths: Range<usize>,
+    ) -> Result<Self, TooFewBatches> {
+        let have = batches.len();
+        if have < NEED {
+            return Err(TooFewBatches { have, need: NEED });
+        }
         let [_, rho, nu] = grid.half_shape();
         let mut sum = Array3::zeros([azimuths.len(), rho, nu]);
         let mut squares = Array3::zeros(sum.raw_dim());
