@@ -26,8 +26,11 @@ pub const REPLICATES: usize = 32;
 const OF_DERIVATIVES: usize = 8;
 /// Independent nets by which ways of drawing rays are told apart.
 const OF_TRIALS: usize = 16;
-/// Nodes of each net of a derivative: a derivative good to a per cent is good enough.
-const NODES_OF_DERIVATIVES: u32 = 1 << 15;
+/// Fewest and most nodes of each net of a derivative.
+const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
+/// ‖error‖/‖D‖ at which a derivative is good enough. A measured parameter is off by the square of
+/// it, as a share of its distance from the scene's.
+const DERIVATIVE_ERROR: f64 = 0.03;
 /// Nodes of a net before its error is first looked at.
 const FIRST: u32 = 1 << 11;
 
@@ -65,7 +68,11 @@ impl Node {
 pub(crate) trait Integrand: Sync {
     /// How many there are.
     fn fields(&self) -> usize;
-    /// The ray of each at a point. All are dark before the call.
+    /// Rays that a point stands for in each.
+    fn rays(&self) -> usize {
+        1
+    }
+    /// The rays of each at a point, field by field. All are dark before the call.
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]);
 }
 
@@ -157,7 +164,10 @@ fn doubled(
     }
 }
 
-/// The mean of each field over a fixed number of nodes.
+/// The mean of each field, to [`DERIVATIVE_ERROR`] of it or over the most nodes.
+///
+/// Its nets are others than those of [`sums`]: a derivative that shares its noise with the
+/// prediction moves every measured parameter to one side.
 pub(crate) fn means(
     integrand: &(impl Integrand + ?Sized),
     window: &Window,
@@ -165,17 +175,29 @@ pub(crate) fn means(
 ) -> Vec<Slices> {
     let picture = ProjectionGrid::new(window, 1);
     let transform = SliceTransform::new(grid);
-    let mut running = begin(integrand, grid, 1, 0, OF_DERIVATIVES);
-    running
-        .par_iter_mut()
-        .for_each(|net| net.add(integrand, &transform, &picture, NODES_OF_DERIVATIVES));
-    let of = |field: usize| {
+    let first = REPLICATES + OF_TRIALS;
+    let mut running = begin(integrand, grid, 1, first, OF_DERIVATIVES);
+    let of_field = |running: &[Running], field: usize| {
         let replicates = running.iter().map(|net| &net.slices[field]);
-        let mut mean = mean(replicates);
-        mean.half /= Complex::from(f64::from(NODES_OF_DERIVATIVES));
-        mean
+        (mean(replicates.clone()), relative_error(replicates))
     };
-    (0..integrand.fields()).map(of).collect()
+    let [mut more, most] = DERIVATIVE_NODES;
+    let mut each = 0;
+    loop {
+        running
+            .par_iter_mut()
+            .for_each(|net| net.add(integrand, &transform, &picture, more));
+        each += more;
+        let fields = (0..integrand.fields()).map(|field| of_field(&running, field));
+        let (mut means, errors): (Vec<_>, Vec<_>) = fields.unzip();
+        if each >= most || errors.iter().all(|error| *error <= DERIVATIVE_ERROR) {
+            for mean in &mut means {
+                mean.half /= Complex::from(f64::from(each));
+            }
+            return means;
+        }
+        more = each;
+    }
 }
 
 /// Steps of a ray, and those of spreading it on an azimuth.
@@ -195,7 +217,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
     let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST))).max(1.0);
     let derivatives = OF_DERIVATIVES as f64 * FIELDS;
     let rays = budget.nodes * (RAY + SPREAD * azimuths);
-    let rays_of_derivatives = derivatives * f64::from(NODES_OF_DERIVATIVES) * SPREAD * azimuths;
+    let rays_of_derivatives = derivatives * f64::from(DERIVATIVE_NODES[1]) * SPREAD * azimuths;
     let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
     let slice = 16.0 * cells;
     Work {
@@ -241,12 +263,13 @@ impl Running {
             .iter()
             .map(|_| transform.accumulator())
             .collect();
-        let mut nodes = vec![Node::DARK; sums.len()];
+        let rays = integrand.rays();
+        let mut nodes = vec![Node::DARK; sums.len() * rays];
         for _ in 0..count {
             nodes.fill(Node::DARK);
             integrand.nodes(&self.net.point(), &mut nodes);
-            for (Node { z, weight }, sum) in nodes.iter().zip(&mut sums) {
-                if *weight != 0.0 {
+            for (nodes, sum) in nodes.chunks(rays).zip(&mut sums) {
+                for Node { z, weight } in nodes.iter().filter(|node| node.weight != 0.0) {
                     let [x, y, u, v] = *z;
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
                 }
@@ -415,6 +438,21 @@ mod tests {
             // The bound of the transform, 2·10⁻⁷ of the mean weight.
             assert!((value - plain).norm() < 4e-7, "{k} {m} {n}");
         }
+    }
+
+    /// Noise that derivatives have in common with the prediction biases what is measured by them.
+    #[test]
+    fn derivatives_have_nets_of_their_own() {
+        let (window, grid) = (window(Profile::Box(0.5), Profile::Box(0.5)), grid());
+        let derivative = &means(&Waves, &window, &grid)[0];
+        let mut running = begin(&Waves, &grid, 1, 0, OF_DERIVATIVES);
+        let (picture, transform) = (ProjectionGrid::new(&window, 1), SliceTransform::new(&grid));
+        for net in &mut running {
+            net.add(&Waves, &transform, &picture, DERIVATIVE_NODES[0]);
+        }
+        let mut same = mean(running.iter().map(|net| &net.slices[0]));
+        same.half /= Complex::from(f64::from(DERIVATIVE_NODES[0]));
+        assert_ne!(derivative.half, same.half);
     }
 
     #[test]

@@ -9,7 +9,7 @@ use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
 use crate::predicted::Predicted;
-use etendue_field::{Complex, FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
+use etendue_field::{FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
 /// Of a prediction that needs neither picture nor moments.
@@ -91,7 +91,7 @@ fn derivatives(
         })
         .collect();
     let Some(draws) = draws else { return zeros() };
-    let fields: Vec<Drawn<'_>> = sides()
+    let sides: Vec<Drawn<'_>> = sides()
         .zip(masks.iter().zip(&draws))
         .map(|(view, (masks, draw))| Drawn {
             field: Box::new(exact_field(view, masks)),
@@ -99,14 +99,11 @@ fn derivatives(
             window: over.0,
         })
         .collect();
-    let mut means = nets::means(&fields[..], over.0, over.1).into_iter();
-    let derivative = |moved: &Moved<Observed<System>>| {
-        let (mut above, below) = (means.next()?, means.next()?);
-        above.half -= &below.half;
-        above.half /= Complex::from(moved.apart);
-        Some(above)
+    let differences = Differences {
+        apart: moved.iter().map(|moved| moved.apart).collect(),
+        sides,
     };
-    moved.iter().filter_map(derivative).collect()
+    nets::means(&differences, over.0, over.1)
 }
 
 fn exact_field<'a>(view: &'a Observed<System>, masks: &'a Masks<'a>) -> impl RayField + 'a {
@@ -169,11 +166,11 @@ fn summed(
     let (Some((lands, _)), Some(draw)) = (way, draw) else {
         return Predicted::dark(grid, picture);
     };
-    let drawn = [Drawn {
+    let drawn = Drawn {
         field: Box::new(field),
         draw: &draw,
         window,
-    }];
+    };
     let opaque = |(_, mask): &(f64, Mask)| matches!(mask, Mask::Opaque { .. });
     let emission = system.emission();
     let is_smooth = emission.shape.is_none() && !system.layers.iter().any(opaque);
@@ -183,10 +180,12 @@ fn summed(
         emission,
         neighbourhood: lands,
     };
-    let by_rule = is_smooth.then(|| finder.slices(grid)).flatten();
+    let by_rule = is_smooth
+        .then(|| finder.slices(grid, nets::work_of_nets(grid, of_slices).steps))
+        .flatten();
     // A rule that meets no light is no proof that there is none.
     let by_rule = by_rule.filter(|(slices, _)| !slices.is_dark());
-    let by_nets = |grid, budget| nets::sums(&drawn[..], (window, grid), picture.bins, budget);
+    let by_nets = |grid, budget| nets::sums(&drawn, (window, grid), picture.bins, budget);
     match by_rule {
         Some((slices, error)) => Predicted {
             slices,
@@ -207,12 +206,12 @@ fn best(
 ) -> Option<RayStrategy> {
     let tried = RayStrategy::ALL.iter().filter_map(|&strategy| {
         let draw = Draw::new(observed, window, lands, strategy)?;
-        let drawn = [Drawn {
+        let drawn = Drawn {
             field: Box::new(field),
             draw: &draw,
             window,
-        }];
-        Some((nets::trial(&drawn[..], (window, grid)), strategy))
+        };
+        Some((nets::trial(&drawn, (window, grid)), strategy))
     });
     let best = tried.min_by(|(a, _), (b, _)| a.total_cmp(b));
     best.map(|(_, strategy)| strategy)
@@ -225,21 +224,52 @@ struct Drawn<'a> {
     window: &'a Window,
 }
 
-impl Integrand for [Drawn<'_>] {
+impl Drawn<'_> {
+    fn node(&self, at: &[f64; DIMENSIONS]) -> Node {
+        let arrives = self.draw.draw(at).and_then(|(ray, density)| {
+            let (z, weight) = (self.field)(ray)?;
+            let [x, y, u, v] = z;
+            let seen = self.window.value(&TwoPlane { x, y, u, v });
+            let weight = weight * seen / density;
+            weight.is_finite().then_some(Node { z, weight })
+        });
+        arrives.unwrap_or(Node::DARK)
+    }
+}
+
+impl Integrand for Drawn<'_> {
     fn fields(&self) -> usize {
-        self.len()
+        1
     }
 
     fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
-        for (drawn, node) in self.iter().zip(nodes) {
-            let arrives = drawn.draw.draw(at).and_then(|(ray, density)| {
-                let (z, weight) = (drawn.field)(ray)?;
-                let [x, y, u, v] = z;
-                let seen = drawn.window.value(&TwoPlane { x, y, u, v });
-                let weight = weight * seen / density;
-                weight.is_finite().then_some(Node { z, weight })
-            });
-            *node = arrives.unwrap_or(Node::DARK);
+        nodes[0] = self.node(at);
+    }
+}
+
+/// Derivatives: light fields with more and with less of each parameter.
+struct Differences<'a> {
+    /// How far apart the two values of each parameter are.
+    apart: Vec<f64>,
+    /// With more and with less of each.
+    sides: Vec<Drawn<'a>>,
+}
+
+impl Integrand for Differences<'_> {
+    fn fields(&self) -> usize {
+        self.apart.len()
+    }
+
+    fn rays(&self) -> usize {
+        2
+    }
+
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+        for (i, (side, node)) in self.sides.iter().zip(nodes).enumerate() {
+            let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
+            let Node { z, weight } = side.node(at);
+            let weight = sign * weight / self.apart[i / 2];
+            *node = Node { z, weight };
         }
     }
 }

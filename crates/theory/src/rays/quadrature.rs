@@ -13,40 +13,54 @@ use crate::numerics::distance;
 use etendue_field::{SliceGrid, Slices};
 use rayon::prelude::*;
 
-/// Most nodes along each coordinate.
-const MOST: usize = 1500;
+/// Most nodes along each coordinate of a rule that is accepted.
+const MAX_NODES: usize = 1500;
 /// Fewest nodes along a coordinate.
-const FEWEST: f64 = 16.0;
-/// Relative change at which a rule is good enough.
-const ENOUGH: f64 = 1e-4;
-/// What is left of an error over what a finer rule takes off: a Hann window's falls as n⁻³ beyond
-/// its frequencies, (5/4)³ being 2.
-const LEFT: f64 = 2.0;
+const MIN_NODES: f64 = 16.0;
+/// The largest relative error of a rule that is accepted.
+const MAX_ERROR: f64 = 1e-4;
+/// Steps of a ray, and of its share in the sum at a frequency.
+const RAY: f64 = 300.0;
+const FREQUENCY: f64 = 0.5;
+/// The relative error at which a rule is not refined further: below what the transform of photons
+/// leaves, 2·10⁻⁷, so that no number of photons sees it.
+const TARGET_ERROR: f64 = 1e-7;
+/// The error of the finer of two rules over their difference: a Hann window's falls as n⁻³ beyond
+/// its frequencies, and (5/4)³ is 2.
+const FINER_ERROR: f64 = 1.0;
 
 impl<F: RayField> Finder<'_, F> {
-    /// The slices, and ‖error‖/‖F‖: twice what finer rules change on slices at right angles, and what
-    /// edges may add. `None` if that does not come below 10⁻⁴.
-    pub(super) fn slices(&self, grid: &SliceGrid) -> Option<(Slices, f64)> {
+    /// The slices, and ‖error‖/‖F‖: what the last refinement changes on slices at right angles, and
+    /// what edges may add. Rules are refined to 10⁻⁷, or until the next takes more than `max_steps`.
+    /// `None` if the error does not come below 10⁻⁴.
+    pub(super) fn slices(&self, grid: &SliceGrid, max_steps: f64) -> Option<(Slices, f64)> {
         let trial = SliceGrid {
             azimuths: grid.azimuths.min(2),
             ..*grid
         };
         let edges = self.edges();
-        if edges > ENOUGH * MOST as f64 {
+        if edges > MAX_ERROR * MAX_NODES as f64 {
             return None;
         }
+        let cells: usize = grid.half_shape().iter().product();
+        let max_rays = max_steps / (RAY + FREQUENCY * cells as f64);
+        let is_affordable = |n: usize| n <= MAX_NODES && (n * n) as f64 <= max_rays;
+        let finer = |n: usize| (n * 5).div_ceil(4);
         let mut count = self.count(grid);
-        let mut coarse = sums(&self.nodes(count), &trial);
-        while count <= MOST {
-            let finer = (count * 5).div_ceil(4);
-            let fine = sums(&self.nodes(finer), &trial);
-            let error = LEFT * distance(&coarse, &fine) + edges / count as f64;
-            if error <= ENOUGH {
-                return Some((sums(&self.nodes(count), grid), error));
-            }
-            (count, coarse) = (finer, fine);
+        if !is_affordable(finer(count)) {
+            return None;
         }
-        None
+        let mut coarse = sums(&self.nodes(count), &trial);
+        loop {
+            count = finer(count);
+            let nodes = self.nodes(count);
+            let fine = sums(&nodes, &trial);
+            let error = FINER_ERROR * distance(&coarse, &fine) + edges / count as f64;
+            if error <= TARGET_ERROR || !is_affordable(finer(count)) {
+                return (error <= MAX_ERROR).then(|| (sums(&nodes, grid), error));
+            }
+            coarse = fine;
+        }
     }
 
     /// All rays that land in the window. Always in the same order.
@@ -83,13 +97,13 @@ impl<F: RayField> Finder<'_, F> {
             let window = widths.map(|(c, profile)| c.abs() / profile.half_width());
             phase + window.fold(0.0, f64::max)
         };
-        let count = self.region().map_or(FEWEST, |region| {
+        let count = self.region().map_or(MIN_NODES, |region| {
             let along = |axis: usize| {
                 let [low, high] = region[axis];
                 let frequency = cycles(self.emission.inner[axis]) + self.emission.cycles[axis];
                 (high - low) * frequency
             };
-            FEWEST + along(0).max(along(1))
+            MIN_NODES + along(0).max(along(1))
         });
         count.ceil().clamp(1.0, 1e6) as usize
     }

@@ -6,8 +6,8 @@ use crate::testing::{chain_of, disc, lambertian, opaque, rectangles, spot, squar
 use etendue_field::{Grating, Mask, Shape};
 use std::f64::consts::{PI, TAU};
 
-/// What is asked of a midpoint rule, which is where it stops.
-const GOOD: f64 = 1e-4;
+/// What is asked of a midpoint rule: ten times the error at which it stops.
+const GOOD: f64 = 1e-6;
 /// What is asked of nets of two million rays.
 const OF_NETS: f64 = 1.5e-3;
 
