@@ -1,6 +1,7 @@
 //! What a run holds in memory, before it begins.
 
 use crate::applicability::{Applicability, Theory};
+use crate::budget::budget;
 use crate::work;
 use etendue_field::{ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_scene::Scene;
@@ -60,8 +61,9 @@ impl Memory {
             batches: batches * sum(&|plane, of| kept(of) * (spectra(plane) + picture)),
             threads: busy * sum(&|plane, _| SliceTransform::new(&plane.grid).bytes()),
             predictions: sum(&|plane, of| {
-                let held =
-                    3.0 + of.theory.parameters().len() as f64 + replicates(plane, &of.theory);
+                let held = 3.0
+                    + of.theory.parameters().len() as f64
+                    + replicates(scene, plane, &of.theory);
                 held * spectra(plane)
             }) + largest(&|plane, of| {
                 let work = work::of(scene, plane, of);
@@ -106,11 +108,12 @@ fn cells(grid: &SliceGrid) -> f64 {
 }
 
 /// Replicates that a prediction by nets holds, of itself and of the first-order chain.
-fn replicates(plane: &VirtualPlane, theory: &Theory) -> f64 {
+fn replicates(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> f64 {
     let each = etendue_theory::REPLICATES as f64;
     let picture = ProjectionGrid::new(&plane.window, PROJECTION_BINS);
+    let over = (&plane.window, &plane.grid, &picture);
     match theory {
-        Theory::Parallel(chain) if chain.is_sampled((&plane.window, &plane.grid, &picture)) => each,
+        Theory::Parallel(chain) if chain.is_sampled(over, budget(scene)) => each,
         Theory::Parallel(_) | Theory::None => 0.0,
         Theory::Specular(_) | Theory::Scattering(_) => 2.0 * each,
     }

@@ -88,7 +88,7 @@ impl Model for Chain {
         if let Some(rays) = self.given() {
             return given::predicted(self, rays, over);
         }
-        if self.is_sampled(over) {
+        if self.is_sampled(over, budget) {
             return self.sampled(parameters, over, budget);
         }
         let (window, grid, picture) = over;
@@ -111,7 +111,7 @@ impl Model for Chain {
     fn work(&self, over: Over<'_>, budget: Budget) -> Work {
         if let Some(rays) = self.given() {
             given::work(rays, over.1)
-        } else if self.is_sampled(over) {
+        } else if self.is_sampled(over, budget) {
             work_of_nets(over.1, budget)
         } else {
             work(self, over.0, over.1, over.2)
@@ -119,29 +119,26 @@ impl Model for Chain {
     }
 }
 
-/// Steps of a quadrature over a receiver that are accepted, some five seconds of two cores.
-const OF_QUADRATURES: f64 = 1e10;
-/// Steps of a closed form that are accepted: nets need as many rays as photons to come near it.
-const OF_CLOSED_FORMS: f64 = 1e11;
+/// Steps of a closed form or a quadrature that are accepted for each ray of the budget, of which
+/// there are a quarter as many as photons or 1.1·10⁶: some six seconds of one core, or as long as
+/// the photons take. Nets of so few rays have more noise than the photons, so a closed form is worth
+/// some time.
+const MAX_STEPS_PER_RAY: f64 = 9e3;
 /// Bytes of a closed form on one core that are accepted.
-const BYTES: f64 = 1e9;
+const MAX_BYTES: f64 = 1e9;
 
 impl Chain {
-    /// Whether nets of rays take the place of its closed form or quadrature: where that takes very
-    /// long, or does not resolve a pattern.
+    /// Whether nets of rays take the place of its closed form or quadrature: where that takes longer
+    /// than the photons, or does not resolve a pattern.
     #[must_use]
-    pub fn is_sampled(&self, (window, grid, picture): Over<'_>) -> bool {
+    pub fn is_sampled(&self, (window, grid, picture): Over<'_>, budget: Budget) -> bool {
         if self.given().is_some() {
             return false;
         }
         let path = self.path();
         let work = work(self, window, grid, picture);
-        let accepted = if path.reflection.is_some() {
-            OF_QUADRATURES
-        } else {
-            OF_CLOSED_FORMS
-        };
-        if work.steps > accepted || work.bytes + work.bytes_each > BYTES {
+        if work.steps > MAX_STEPS_PER_RAY * budget.nodes || work.bytes + work.bytes_each > MAX_BYTES
+        {
             return true;
         }
         match path.receiver() {
@@ -197,7 +194,9 @@ fn of_mask(mask: &Mask, index: usize) -> Vec<Parameter> {
 mod tests {
     use super::*;
     use crate::testing::*;
-    use etendue_field::{FrequencyAxis, HalfPlane, Profile, ProjectionGrid, Rectangle, SliceGrid};
+    use etendue_field::{
+        FrequencyAxis, HalfPlane, Profile, ProjectionGrid, Rectangle, Shape, SliceGrid,
+    };
 
     #[test]
     fn parameters_follow_the_light() {
@@ -227,10 +226,40 @@ mod tests {
                 nu: axis(0.5),
             };
             let picture = ProjectionGrid::new(&window, 1);
-            chain.is_sampled((&window, &grid, &picture))
+            let budget = Budget {
+                nodes: 1e6,
+                error: 1e-3,
+            };
+            chain.is_sampled((&window, &grid, &picture), budget)
         };
         assert!(!sampled(0.1));
         assert!(sampled(20.0));
+    }
+
+    /// A narrow spot has a long series of cosines, and a product of it with each blocker.
+    #[test]
+    fn closed_forms_that_take_longer_than_photons_are_sampled() {
+        let window = window(Profile::Hann(0.5), Profile::Hann(0.5));
+        let axis = |half| FrequencyAxis { half, spacing: 1.0 };
+        let grid = SliceGrid {
+            azimuths: 8,
+            rho: axis(16),
+            nu: axis(32),
+        };
+        let picture = ProjectionGrid::new(&window, 64);
+        let over = (&window, &grid, &picture);
+        let budget = Budget {
+            nodes: 1.1e6,
+            error: 3e-3,
+        };
+        for (exponent, is_sampled) in [(0.0, false), (10_000.0, true)] {
+            let light = spot(Shape::Rectangle(square([0.0; 2], 0.2)), exponent);
+            let masks = rectangles(&blockers(20, 0.2, 0.12));
+            let chain = chain_of(light, [(1.0, Some(masks)), (1.0, None)]);
+            assert_eq!(chain.is_sampled(over, budget), is_sampled, "{exponent}");
+            let steps = chain.work(over, budget).steps;
+            assert!(steps <= MAX_STEPS_PER_RAY * budget.nodes, "{exponent}");
+        }
     }
 
     #[test]
