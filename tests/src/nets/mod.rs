@@ -8,6 +8,13 @@ mod scene;
 use std::fs;
 use std::process::ExitCode;
 
+/// The text of the scene with this number; the kinds take turns.
+pub(crate) fn scene(number: u64) -> String {
+    let kinds = draw::Kind::ALL;
+    let (kind, _) = kinds[usize::try_from(number).unwrap_or_default() % kinds.len()];
+    draw::scene(kind, &mut draw::Dice::new(number))
+}
+
 /// Draws the scenes, prints what was found, and writes docs/nets.md.
 #[expect(
     clippy::print_stdout,

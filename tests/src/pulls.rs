@@ -1,0 +1,364 @@
+//! Pulls of measured parameters and slopes, and the cost of predictions, over random scenes.
+//!
+//! A pull is the distance of a measured value from the scene's, or of a measured slope from the
+//! predicted one, in stated errors. If the errors are right, pulls have mean 0 and standard
+//! deviation 1, and their tails are those of a normal distribution.
+
+use crate::progress::progress;
+use crate::report::Bound::Below;
+use crate::report::{Check, Row, Section};
+use crate::scenes::traced;
+use crate::statistics::mean;
+use crate::{nets, wild};
+use etendue_compare::{
+    Applicability, Class, Prediction, Test, Theory, Verdict, compare, too_much_work,
+};
+use etendue_scene::{Scene, SceneFile, resolve};
+use std::collections::BTreeMap;
+use std::fs;
+use std::io;
+
+/// Which scenes are measured, and with how many photons.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Options {
+    /// Scenes.
+    #[arg(long, default_value_t = 300)]
+    scenes: u64,
+    /// Number of the first.
+    #[arg(long, default_value_t = 0)]
+    first: u64,
+    /// Another seed gives other scenes.
+    #[arg(long, default_value_t = 1)]
+    seed: u64,
+    /// Photons of each scene.
+    #[arg(long, default_value_t = 1_000_000)]
+    photons: u64,
+}
+
+/// Shares of a normal distribution beyond 2, 3 and 4 standard deviations.
+const NORMAL: [(f64, f64); 3] = [(2.0, 0.0455), (3.0, 0.0027), (4.0, 6.3e-5)];
+/// How far the mean may be from 0 and the standard deviation from 1, beside their standard errors.
+const MAX_DEVIATION: f64 = 0.05;
+/// Standard errors that a deviation may have: one figure in 400 is beyond by chance.
+const MAX_ERRORS: f64 = 3.0;
+/// Noise as a share of the spectrum above which a plane is not judged.
+const MAX_NOISE: f64 = 0.25;
+/// Rows of the tables of single pulls and scenes.
+const LISTED: usize = 12;
+/// CPU seconds that no prediction exceeds where its photons take fewer.
+const MAX_SECONDS: f64 = 10.0;
+
+/// One measured number in stated errors.
+struct Pull {
+    scene: u64,
+    plane: String,
+    kind: &'static str,
+    parameter: String,
+    value: f64,
+}
+
+/// CPU seconds of a scene.
+struct Cost {
+    scene: u64,
+    traced: f64,
+    predicted: f64,
+    slowest: String,
+}
+
+/// Measures and predicts all scenes.
+pub(crate) fn pulls(options: &Options) -> io::Result<Vec<Section>> {
+    let bar = progress(options.scenes, "scenes");
+    let (mut pulls, mut costs) = (Vec::new(), Vec::new());
+    for number in options.first..options.first + options.scenes {
+        if let Some(scene) = drawn(options, number)? {
+            costs.extend(judged(&scene, number, &mut pulls)?);
+        }
+        bar.one();
+    }
+    bar.end();
+    Ok(vec![
+        grouped(
+            &pulls,
+            options,
+            "Pulls by kind of prediction",
+            |pull| pull.kind.to_owned(),
+            true,
+        ),
+        grouped(
+            &pulls,
+            options,
+            "Pulls by parameter",
+            |pull| pull.parameter.clone(),
+            false,
+        ),
+        largest(&pulls),
+        cost(&costs),
+    ])
+}
+
+/// A scene of the hunt for wrong scenes and one of those for nets by turns; `None` where it is not
+/// sound.
+fn drawn(options: &Options, number: u64) -> io::Result<Option<Scene>> {
+    let folder = tempfile::tempdir()?;
+    let file = if number.is_multiple_of(2) {
+        wild::scene(options.seed, number, options.photons, folder.path()).ok()
+    } else {
+        SceneFile::parse(&nets::scene(number)).ok()
+    };
+    Ok(file.and_then(|mut file| {
+        file.run.photons = options.photons;
+        file.run.seed = options.seed;
+        file.run.resolution = MAX_NOISE;
+        resolve("scene", file, folder.path(), u64::MAX).ok()
+    }))
+}
+
+/// Adds the pulls of a scene, and returns what it costs. `None` if no plane has a theory, or the
+/// work is refused.
+fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Option<Cost>> {
+    let planes = scene.planes.iter();
+    let theories: Vec<Applicability> = planes
+        .map(|plane| Applicability::new(scene, plane))
+        .collect();
+    let has_theory =
+        |theory: &Applicability| theory.class() != Class::Reference && theory.dark.is_none();
+    if too_much_work(scene, &theories).is_some() || !theories.iter().any(has_theory) {
+        return Ok(None);
+    }
+    let start = cpu_seconds()?;
+    let measurement = traced(scene);
+    let mut cost = Cost {
+        scene: number,
+        traced: cpu_seconds()? - start,
+        predicted: 0.0,
+        slowest: String::new(),
+    };
+    let mut slowest = 0.0;
+    for (i, (plane, theory)) in scene.planes.iter().zip(&theories).enumerate() {
+        if !has_theory(theory) {
+            continue;
+        }
+        let start = cpu_seconds()?;
+        let prediction = Prediction::new(scene, plane, theory);
+        let seconds = cpu_seconds()? - start;
+        cost.predicted += seconds;
+        let kind = kind(theory, &prediction);
+        if seconds >= slowest {
+            slowest = seconds;
+            cost.slowest = format!("{} ({kind}, {seconds:.1} s)", plane.name);
+        }
+        let Ok(compared) = compare(&measurement, i, &prediction, &Test::of(scene)) else {
+            continue;
+        };
+        let report = compared.report;
+        // Noise above the resolution: errors of so few photons are not those of a normal law.
+        if report.exact_verdict() == Verdict::Undecided {
+            continue;
+        }
+        let mut add = |parameter: &str, value: f64| {
+            if value.is_finite() {
+                pulls.push(Pull {
+                    scene: number,
+                    plane: plane.name.clone(),
+                    kind,
+                    parameter: parameter.to_owned(),
+                    value,
+                });
+            }
+        };
+        let slope = report.slope;
+        if let (Some(measured), Some(predicted), Some(error)) =
+            (slope.measured, slope.predicted, slope.error)
+        {
+            add("shear slope", (measured - predicted) / error);
+        }
+        for parameter in &report.parameters {
+            // What the photons do not determine is not reported as measured.
+            if parameter.detectable < parameter.scene.abs() {
+                let word = parameter.name.split(' ').next().unwrap_or_default();
+                add(
+                    word,
+                    (parameter.measured - parameter.scene) / parameter.error,
+                );
+            }
+        }
+    }
+    Ok(Some(cost))
+}
+
+/// The theory of a plane, and how it is evaluated.
+fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
+    let nets = !prediction.replicates.is_empty();
+    let is_rule = prediction.quadrature_error.is_some();
+    match (&theory.theory, nets, is_rule) {
+        (Theory::Parallel(_), true, _) => "exact, nets",
+        (Theory::Parallel(_), false, true) => "exact, quadrature",
+        (Theory::Parallel(_), false, false) => "exact, closed form",
+        (Theory::Specular(_), true, _) => "specular, nets",
+        (Theory::Specular(_), false, _) => "specular, quadrature",
+        _ => "scattering, nets",
+    }
+}
+
+/// User and system time of this process.
+fn cpu_seconds() -> io::Result<f64> {
+    /// Linux reports times in hundredths of a second, whatever its clock.
+    const TICK: f64 = 0.01;
+    let stat = fs::read_to_string("/proc/self/stat")?;
+    // The name of the program, in parentheses, may hold spaces.
+    let fields = stat.rsplit(')').next().unwrap_or_default();
+    let ticks = fields.split_whitespace().skip(11).take(2);
+    Ok(ticks.filter_map(|t| t.parse::<f64>().ok()).sum::<f64>() * TICK)
+}
+
+/// The pulls of each group in a row.
+fn grouped(
+    pulls: &[Pull],
+    options: &Options,
+    title: &str,
+    group: impl Fn(&Pull) -> String,
+    is_judged: bool,
+) -> Section {
+    let mut groups: BTreeMap<String, Vec<&Pull>> = BTreeMap::new();
+    for pull in pulls {
+        groups.entry("all".into()).or_default().push(pull);
+        groups.entry(group(pull)).or_default().push(pull);
+    }
+    let required = if is_judged {
+        format!(
+            "Required: mean 0 and standard deviation 1, each to {MAX_DEVIATION} or {MAX_ERRORS} \
+             standard errors (over scenes)."
+        )
+    } else {
+        "Required: nothing more than above.".into()
+    };
+    Section {
+        title: title.to_owned(),
+        text: format!(
+            "Seed {}, {} photons for each scene. Of a normal distribution, 4.55, 0.27 and 0.006 % are beyond 2, 3 and \
+             4. {required}",
+            options.seed, options.photons
+        ),
+        header: vec![
+            "pulls", "scenes", "number", "mean", "sd", "> 2", "> 3", "> 4", "",
+        ],
+        rows: groups
+            .iter()
+            .map(|(name, pulls)| row(name, pulls, is_judged))
+            .collect(),
+        checks: Vec::new(),
+    }
+}
+
+fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
+    let mut scenes: BTreeMap<u64, Vec<f64>> = BTreeMap::new();
+    for pull in pulls {
+        scenes.entry(pull.scene).or_default().push(pull.value);
+    }
+    let count = pulls.len() as f64;
+    let total = |of: &dyn Fn(f64) -> f64| pulls.iter().map(|p| of(p.value)).sum::<f64>() / count;
+    // The pulls of a scene depend on each other, so errors are over scenes.
+    let error = |of: &dyn Fn(f64) -> f64| {
+        let all = total(of);
+        let apart = scenes
+            .values()
+            .map(|s| s.iter().map(|v| of(*v) - all).sum::<f64>());
+        apart.map(|d| d * d).sum::<f64>().sqrt() / count
+    };
+    let [mean, mean_error] = [total(&|v| v), error(&|v| v)];
+    let sd = total(&|v| v * v).sqrt();
+    let sd_error = 0.5 * error(&|v| v * v) / sd;
+    let mut cells = vec![
+        name.to_owned(),
+        scenes.len().to_string(),
+        pulls.len().to_string(),
+        format!("{mean:+.3} ± {mean_error:.3}"),
+        format!("{sd:.3} ± {sd_error:.3}"),
+    ];
+    for (distance, _) in NORMAL {
+        let share = total(&|v| f64::from(v.abs() > distance));
+        cells.push(format!("{:.2} %", 100.0 * share));
+    }
+    let within = |id, off: f64, error: f64| {
+        let bound = MAX_DEVIATION.max(MAX_ERRORS * error);
+        Check::new(id, off, Below(bound), "0.05, or three standard errors")
+    };
+    let checks = vec![
+        within("mean", mean.abs(), mean_error),
+        within("sd", (sd - 1.0).abs(), sd_error),
+    ];
+    if is_judged {
+        Row::new(cells, checks)
+    } else {
+        cells.push(String::new());
+        Row::new(cells, Vec::new())
+    }
+}
+
+/// The largest pulls.
+fn largest(pulls: &[Pull]) -> Section {
+    let mut sorted: Vec<&Pull> = pulls.iter().collect();
+    sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
+    let row = |pull: &&Pull| {
+        let cells = vec![
+            pull.scene.to_string(),
+            pull.plane.clone(),
+            pull.kind.to_owned(),
+            pull.parameter.clone(),
+            format!("{:+.2}", pull.value),
+        ];
+        Row::new(cells, Vec::new())
+    };
+    Section {
+        title: "The largest pulls".into(),
+        text: "Required: nothing more than above.".into(),
+        header: vec!["scene", "plane", "kind", "parameter", "pull"],
+        rows: sorted.iter().take(LISTED).map(row).collect(),
+        checks: Vec::new(),
+    }
+}
+
+/// What predictions cost, beside the photons.
+fn cost(costs: &[Cost]) -> Section {
+    let ratio = |cost: &Cost| cost.predicted / cost.traced.max(0.01);
+    let mut sorted: Vec<&Cost> = costs.iter().collect();
+    sorted.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
+    let row = |name: String, cost: &&Cost| {
+        let cells = vec![
+            name,
+            cost.scene.to_string(),
+            format!("{:.2}", cost.traced),
+            format!("{:.2}", cost.predicted),
+            format!("{:.1}", ratio(cost)),
+            cost.slowest.clone(),
+        ];
+        Row::new(cells, Vec::new())
+    };
+    let worst = sorted.iter().take(LISTED);
+    let mut rows: Vec<Row> = worst.map(|cost| row("worst".into(), cost)).collect();
+    rows.extend(
+        sorted
+            .get(sorted.len() / 2)
+            .map(|cost| row("median".into(), cost)),
+    );
+    let slow = |cost: &&Cost| cost.predicted > MAX_SECONDS.max(cost.traced);
+    let count = costs.iter().filter(slow).count();
+    let [mean, _] = mean(&costs.iter().map(ratio).collect::<Vec<_>>());
+    Section {
+        title: "The cost of predictions".into(),
+        text: format!(
+            "CPU seconds of all predictions of a scene, and of its photons; the mean ratio is \
+             {mean:.2}. Required: no prediction takes more than {MAX_SECONDS} s where the photons take less."
+        ),
+        header: vec![
+            "",
+            "scene",
+            "photons",
+            "predictions",
+            "ratio",
+            "slowest plane",
+        ],
+        rows,
+        checks: vec![Check::none("slow", count)],
+    }
+}
