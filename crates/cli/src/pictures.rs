@@ -14,16 +14,17 @@ use crate::failure::Failure;
 use crate::results::Results;
 use crate::results::arrays::{radial_z, z};
 use crate::results::summary::Summary;
-use crate::table::{grouped, spaced, word};
+use crate::table::{self, grouped, spaced, word};
 use across::differs_across;
 use etendue_compare::{
-    Applicability, Class, PlaneComparison, Prediction, Theory, Verdict, stands_before,
+    Applicability, Class, PlaneComparison, PlaneReport, Prediction, Theory, Verdict, stands_before,
 };
 use etendue_field::{Side, VirtualPlane, percent};
 use etendue_figures::{
     Column, Comparison, Figure, Guide, Picture, Scale, Strip, Style, comparison, section, strip,
 };
 use etendue_scene::Scene;
+use ndarray::Array2;
 use std::cmp::Ordering;
 use std::path::Path;
 use words::Words;
@@ -154,6 +155,18 @@ pub(crate) fn strip_of(
     });
     let mut columns: Vec<Column<'_>> = columns.collect();
     let dashed = dashed(&columns, planes);
+    let chain_fails = planes.iter().any(|plane| {
+        let chain = plane.report.first_order.as_ref();
+        chain.is_some_and(|chain| chain.verdict == Verdict::Fail)
+    });
+    let off_chain = along.iter().map(|(_, (compared, _))| off_chain(compared));
+    let off_chain: Vec<_> = off_chain.filter(|_| chain_fails).collect();
+    for (column, values) in columns.iter_mut().zip(&off_chain) {
+        column.off_chain = Some(Picture {
+            values: values.view(),
+            ..column.spectrum.clone()
+        });
+    }
     let mut section = drawing::cross_section(scene, along.iter().map(|(plane, _)| *plane));
     if predicted {
         // A figure has no room for a second cut, nor for the light field in it.
@@ -217,6 +230,16 @@ fn dashed(columns: &[Column<'_>], planes: &[PlaneComparison]) -> &'static str {
     }
 }
 
+/// How far photons are from the first-order chain, in percent of the largest measured |S|, [ρ, ν].
+fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
+    let power = &compared.radial.power;
+    let peak = power.iter().copied().fold(0.0, f64::max);
+    match &compared.off_chain {
+        Some(off) => off.mapv(|off| 100.0 * (off / peak).sqrt()),
+        None => Array2::from_elem(power.dim(), f64::NAN),
+    }
+}
+
 /// What is shown under a plane.
 fn column<'a>(
     scene: &Scene,
@@ -241,6 +264,7 @@ fn column<'a>(
         },
         across: None,
         predicted: None,
+        off_chain: None,
         verdict: verdict_lines(compared),
         guides: match (&applicability.theory, &compared.report.first_order) {
             (Theory::Parallel(_), _) if compared.report.in_window > 0 => guides(scene, plane),
@@ -332,43 +356,43 @@ pub(crate) fn write(results: &mut Results, name: &str, figure: &Figure) -> Resul
     results.write(&format!("{name}.csv"), figure.csv.as_bytes())
 }
 
-fn verdict_line(plane: &PlaneComparison) -> String {
-    let (p, verdict) = (p_value(plane), plane.report.verdict);
-    // The longest word takes the room of χ².
-    let chi2 = chi2(plane).filter(|_| verdict != Verdict::Undecided);
-    let chi2 = chi2.map_or(String::new(), |chi2| format!(", {chi2}"));
-    format!("{p}{chi2}, {}", word(verdict))
+/// The verdict on a plane and what it rests on, in a line.
+pub(crate) fn verdict_line(plane: &PlaneComparison) -> String {
+    verdict_lines(plane).join(", ")
 }
 
-/// The same in two lines.
+/// The same in lines as narrow as a picture.
 pub(crate) fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
-    let (p, verdict) = (p_value(plane), plane.report.verdict);
-    if verdict == Verdict::Undecided {
-        // The longest word takes the room of χ².
-        return vec![p, word(verdict).to_owned()];
+    let report = &plane.report;
+    let verdict = word(report.verdict);
+    if report.verdict == Verdict::Undecided {
+        return vec![p_value(report), verdict.to_owned()];
     }
-    let mut lines = vec![format!("{p}, {}", word(verdict))];
-    lines.extend(chi2(plane));
-    if plane.predicted.is_dark() && verdict == Verdict::Pass {
+    let chain = report.first_order.as_ref();
+    let mut lines = match chain.filter(|chain| chain.verdict == Verdict::Fail) {
+        Some(chain) => vec![
+            format!("chain {} off: fail", table::percent(chain.excess)),
+            format!("computed: {}", percent(chain.chain.error, 3)),
+            format!("rays: {}", p_value(report)),
+        ],
+        None => vec![format!("{}, {verdict}", p_value(report))],
+    };
+    let chi2 = report.chi2_per_dof;
+    lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
+    // What photons disagree with is that error: it is why the plane passes.
+    let is_excused = report.exact_verdict() == Verdict::Pass && report.p_value < Some(0.001);
+    let error = report.quadrature_error.filter(|_| is_excused);
+    lines.extend(error.map(|error| format!("quadrature ± {}", percent(error, 3))));
+    if plane.predicted.is_dark() && report.verdict == Verdict::Pass {
         lines.push("dark, as predicted".to_owned());
     }
     lines
 }
 
-fn p_value(plane: &PlaneComparison) -> String {
-    let report = &plane.report;
-    match (report.p_value, report.quadrature_error) {
-        (None, _) => "no photons".to_owned(),
-        // What photons disagree with is that error: it is why the plane passes.
-        (Some(p), Some(error)) if p < 0.001 && report.verdict == Verdict::Pass => {
-            format!("within the {} of the quadrature", percent(error, 3))
-        }
-        (Some(p), _) if p < 0.001 => "*p* < 0.001".to_owned(),
-        (Some(p), _) => format!("*p* = {p:.3}"),
+fn p_value(report: &PlaneReport) -> String {
+    match report.p_value {
+        None => "no photons".to_owned(),
+        Some(p) if p < 0.001 => "*p* < 0.001".to_owned(),
+        Some(p) => format!("*p* = {p:.3}"),
     }
-}
-
-fn chi2(plane: &PlaneComparison) -> Option<String> {
-    let chi2 = plane.report.chi2_per_dof;
-    chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}"))
 }

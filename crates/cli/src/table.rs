@@ -46,18 +46,22 @@ pub(crate) fn text(summary: &Summary) -> String {
 }
 
 /// What is to be said of a first-order chain that does not pass.
-fn on_chain(plane: &PlaneReport) -> Option<String> {
+pub(crate) fn on_chain(plane: &PlaneReport) -> Option<String> {
     let FirstOrderReport { chain, verdict, .. } = plane.first_order.as_ref()?;
     let name = &plane.name;
+    let printed = if chain.as_printed {
+        ", as printed,"
+    } else {
+        ""
+    };
     match verdict {
         Verdict::Pass => None,
+        Verdict::Fail if chain.radiance_defect.abs() >= chain.defect => Some(format!(
+            "{name}: the first-order chain{printed} has a wrong scale: it leaves the central ray {} of its radiance",
+            percent(Some(1.0 + chain.radiance_defect)),
+        )),
         Verdict::Fail => Some(format!(
-            "{name}: the first-order chain{} has a wrong map: however near to the central ray, its rays stay {} off",
-            if chain.as_printed {
-                ", as printed,"
-            } else {
-                ""
-            },
+            "{name}: the first-order chain{printed} has a wrong map: however near to the central ray, its rays stay {} of the window's half-width off",
             percent(Some(chain.defect)),
         )),
         Verdict::Undecided => Some(format!(
@@ -68,7 +72,7 @@ fn on_chain(plane: &PlaneReport) -> Option<String> {
 }
 
 /// How far measured and predicted are apart, plane by plane.
-fn planes(summary: &Summary) -> Vec<Vec<String>> {
+pub(crate) fn planes(summary: &Summary) -> Vec<Vec<String>> {
     let mut header = vec![
         "plane",
         "class",
@@ -108,7 +112,7 @@ fn planes(summary: &Summary) -> Vec<Vec<String>> {
 }
 
 /// How far the photons are from the first-order chain, beyond noise, and how far they should be.
-fn chain(plane: &PlaneReport) -> String {
+pub(crate) fn chain(plane: &PlaneReport) -> String {
     let Some(first_order) = &plane.first_order else {
         return "–".to_owned();
     };
@@ -117,7 +121,7 @@ fn chain(plane: &PlaneReport) -> String {
 }
 
 /// The parameters of the chain as the photons measure them.
-fn parameters(summary: &Summary) -> Vec<Vec<String>> {
+pub(crate) fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     let header = [
         "plane",
         "parameter",
@@ -224,7 +228,7 @@ pub(crate) fn verdict_text(summary: &Summary) -> String {
             };
             let said = [
                 said("measured and predicted disagree", &measured),
-                said("the first-order chain has a wrong map", &chains),
+                said("the first-order chain is wrong", &chains),
             ];
             format!(
                 "fail: {}",

@@ -35,6 +35,10 @@ pub struct FirstOrderChain {
     /// rounding if every map is right (see [`rays::defect`]). Of the printed formulas where
     /// `slices` are of those.
     pub defect: f64,
+    /// What of it is in the factor of the chain: the radiance that it gives the central ray, over
+    /// the radiance that the ray has, less 1.
+    #[serde(default)]
+    pub radiance_defect: f64,
     /// The matrix A that takes rays from the light to the plane, z' = A z, by the corrected
     /// formulas.
     pub matrix: Matrix<4>,
@@ -110,6 +114,7 @@ impl FirstOrder {
         let mut chain = FirstOrderChain {
             error: distance(&linear.slices, &exact.slices),
             defect: rays::defect(view, &corrected.map, over.0)?,
+            radiance_defect: rays::radiance_defect(view, &corrected.map)?,
             matrix,
             covariance: [exact.covariance, propagated(&view.system, &matrix, over.0)],
             foci: corrected.foci,
@@ -119,6 +124,7 @@ impl FirstOrder {
             let (printed, by_print) = by(print(scene))?;
             linear = by_print;
             chain.defect = rays::defect(view, &printed.map, over.0)?;
+            chain.radiance_defect = rays::radiance_defect(view, &printed.map)?;
         }
         Some(Self {
             slices: linear.slices,
@@ -144,6 +150,7 @@ impl FirstOrder {
             chain: FirstOrderChain {
                 error: distance(&slices, &exact.slices),
                 defect: scattering::defect(view, &chain)?,
+                radiance_defect: 0.0,
                 matrix: chain.rays().matrix,
                 covariance: [exact.covariance, None],
                 foci: Vec::new(),

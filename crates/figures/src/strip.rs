@@ -22,6 +22,9 @@ pub struct Column<'a> {
     pub spectrum: Picture<'a>,
     /// The predicted one. There is a row of them if each column has one.
     pub predicted: Option<Picture<'a>>,
+    /// How far the measured spectrum is from a first-order chain, in percent of its largest modulus.
+    /// There is a row of them if each column has one.
+    pub off_chain: Option<Picture<'a>>,
     /// Lines below, such as "*p* = 0.43, pass", markup; may be empty.
     pub verdict: Vec<String>,
     /// Dashed lines over the spectrum.
@@ -54,6 +57,7 @@ enum Row {
     Across,
     Spectrum,
     Predicted,
+    OffChain,
 }
 
 impl Row {
@@ -68,6 +72,14 @@ impl Row {
         rows.extend(across.then_some(Self::Across));
         rows.push(Self::Spectrum);
         rows.extend(predicted.then_some(Self::Predicted));
+        let off_chain = |column: &Column<'_>| column.off_chain.is_some();
+        rows.extend(
+            strip
+                .columns
+                .iter()
+                .all(off_chain)
+                .then_some(Self::OffChain),
+        );
         rows
     }
 
@@ -77,6 +89,7 @@ impl Row {
             Self::Across => "across",
             Self::Spectrum => "spectrum",
             Self::Predicted => "predicted",
+            Self::OffChain => "off the chain",
         }
     }
 
@@ -85,19 +98,21 @@ impl Row {
         let other = match self {
             Self::Across => &column.across,
             Self::Predicted => &column.predicted,
+            Self::OffChain => &column.off_chain,
             Self::LightField | Self::Spectrum => &None,
         };
         other.as_ref().unwrap_or(match self {
             Self::LightField | Self::Across => &column.light_field,
-            Self::Spectrum | Self::Predicted => &column.spectrum,
+            Self::Spectrum | Self::Predicted | Self::OffChain => &column.spectrum,
         })
     }
 
     /// What its pictures hold.
-    fn quantity<'b>(self, strip: &'b Strip<'_>) -> &'b Quantity {
+    fn quantity(self, strip: &Strip<'_>) -> Quantity {
         match self {
-            Self::LightField | Self::Across => &strip.light_field,
-            Self::Spectrum | Self::Predicted => &strip.spectrum,
+            Self::LightField | Self::Across => strip.light_field.clone(),
+            Self::Spectrum | Self::Predicted => strip.spectrum.clone(),
+            Self::OffChain => Quantity::new("off the chain", "% of the peak"),
         }
     }
 }
@@ -159,19 +174,23 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> Grid<'b, 'a> {
     let row = |row: Row| {
         let cell = |column: &'b Column<'a>| {
             let guides = match row {
-                Row::LightField | Row::Across => &[],
+                Row::LightField | Row::Across | Row::OffChain => &[],
                 Row::Spectrum | Row::Predicted => &column.guides[..],
             };
             (row.picture(column), guides)
         };
         crate::grid::Row {
             name: row.name(),
-            bar: ["of each peak".to_owned(), String::new()],
+            bar: if row == Row::OffChain {
+                ["|*S* − chain|".to_owned(), "% of the peak".to_owned()]
+            } else {
+                ["of each peak".to_owned(), String::new()]
+            },
             scale: match row {
-                Row::LightField | Row::Across => Scale::Linear,
+                Row::LightField | Row::Across | Row::OffChain => Scale::Linear,
                 Row::Spectrum | Row::Predicted => Scale::Decibel { floor: strip.floor },
             },
-            shared: false,
+            shared: row == Row::OffChain,
             cells: strip.columns.iter().map(cell).collect(),
         }
     };

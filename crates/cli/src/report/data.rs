@@ -3,10 +3,10 @@
 use super::explorer;
 use crate::case::Case;
 use crate::method::Method;
-use crate::pictures::{light_field_axes, spectrum_axes};
+use crate::pictures::{light_field_axes, spectrum_axes, verdict_line};
 use crate::results::arrays::{radial_z, z};
 use crate::results::summary::Summary;
-use crate::table::{grouped, verdict_text};
+use crate::table::{self, grouped, on_chain, verdict_text};
 use crate::values::shell_word;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -33,11 +33,17 @@ struct Run<'a> {
     /// The strip along the path, SVG.
     path: &'a str,
     planes: Vec<Plane<'a>>,
+    /// The tables of the terminal, headers first.
+    tables: [Vec<Vec<String>>; 2],
 }
 
 #[derive(Serialize)]
 struct Plane<'a> {
     report: &'a PlaneReport,
+    /// Its verdict with p.
+    words: String,
+    /// What is to be said of a first-order chain that does not pass.
+    on_chain: Option<String>,
     axes: Axes,
     /// Radians.
     azimuths: Vec<f64>,
@@ -151,6 +157,7 @@ pub(crate) fn data(
         explorer: explorer::fragment(&summary.scene_file),
         path,
         planes: each.collect(),
+        tables: [table::planes(summary), table::parameters(summary)],
     };
     serde_json::to_string(&run).unwrap_or_default()
 }
@@ -182,6 +189,8 @@ impl<'a> Plane<'a> {
         .map(half);
         Self {
             report: &found.report,
+            words: verdict_line(found).replace('*', ""),
+            on_chain: on_chain(&found.report),
             axes: Axes {
                 x: Labelled::new(&x, field.grid.bins),
                 u: Labelled::new(&u, field.grid.bins),

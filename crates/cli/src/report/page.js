@@ -19,7 +19,6 @@ const make = (name, content, parent, attributes = {}) => {
   return element;
 };
 const digits = (x, n = 4) => (x === null || x === undefined ? "–" : Number(x.toPrecision(n)).toString());
-const percent = (x) => (x === null || x === undefined ? "–" : digits(100 * x, 3) + " %");
 const color = (table, t) => {
   const i = 3 * Math.round(255 * Math.min(1, Math.max(0, t)));
   return [table[i], table[i + 1], table[i + 2]];
@@ -173,7 +172,7 @@ const decoded = (plane) => {
   plane.slices = plane.slices && plane.slices.map((slice) => grids(HalfGrid, [rho, nu], slice));
 };
 
-const table = (parent, header, rows) => {
+const table = (parent, [header, ...rows]) => {
   const table = make("table", null, parent);
   const head = make("tr", null, make("thead", null, table));
   for (const name of header) make("th", name, head, { scope: "col" });
@@ -189,10 +188,8 @@ const showPlane = (plane, parent) => {
   const report = plane.report;
   const section = make("section", null, parent);
   make("h3", report.name.replaceAll("_", " "), section);
-  make("p", `${report.verdict}${report.p_value === null ? "" : `, p = ${digits(report.p_value, 3)}`}`, section, {
-    class: `verdict ${report.verdict}`,
-  });
-  if (report.undecided) make("p", report.undecided, section);
+  make("p", plane.words, section, { class: `verdict ${report.verdict}` });
+  for (const said of [report.undecided, plane.on_chain]) if (said) make("p", said, section);
   const captions = (what) => [
     ["measured", `${what}, measured`],
     ["predicted", "predicted"],
@@ -218,23 +215,11 @@ const showRun = (run) => {
     const href = `${encodeURI(run.folder)}explorer.html#${run.explorer}`;
     make("a", "this scene in the explorer, to be dragged", make("p", null, article), { href, class: "explorer" });
   }
-  table(
-    article,
-    ["plane", "class", "in window", "χ²/dof", "p", "rel. error", "noise alone", "verdict"],
-    run.planes.map(({ report: r }) => [
-      r.name, r.class.replace("_", " "), String(r.in_window), digits(r.chi2_per_dof, 3), digits(r.p_value, 3),
-      percent(r.relative_error), percent(r.noise_limit), r.verdict,
-    ]),
-  );
+  const [planes, parameters] = run.tables;
+  table(article, planes);
   for (const plane of run.planes) showPlane(plane, article);
   make("h3", "Parameters, measured from the spectra alone", article);
-  const rows = run.planes.flatMap(({ report: r }) =>
-    r.parameters.map((p) => [
-      r.name, `${p.name}${p.unit ? ` [${p.unit}]` : ""}`, digits(p.scene, 6), digits(p.measured, 6), digits(p.error, 2),
-      p.error === null ? "–" : digits((p.measured - p.scene) / p.error, 2),
-    ]),
-  );
-  table(article, ["plane", "parameter", "scene", "measured", "± error", "off, in errors"], rows);
+  table(article, parameters);
   make("h3", "Where it comes from", article);
   make("pre", run.provenance, article);
   const scene = make("details", null, article);

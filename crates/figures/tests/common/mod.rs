@@ -128,6 +128,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         spectrum: picture(),
         across: None,
         predicted: None,
+        off_chain: None,
         verdict: vec![
             "*p* = 0.5, pass".to_owned(),
             "*χ*^{2}/dof = 1.01".to_owned(),

@@ -18,11 +18,18 @@ use etendue_field::Window;
 #[must_use]
 pub fn defect(view: &Observed<System>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
     let Observed { system, plane } = view;
-    let lands = |ray| plane.coordinates(&system.follow(ray)?);
     let half = [window.x, window.y, window.u, window.v].map(|profile| profile.half_width());
+    let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
+    let off = map.rays().off_touching(lands, &half)?;
+    Some(off.max(radiance_defect(view, map)?.abs()))
+}
+
+/// The part of [`defect`] that is in the factor of the chain: the radiance that it gives the central
+/// ray over the radiance that the ray has, less 1.
+#[must_use]
+pub fn radiance_defect(view: &Observed<System>, map: &SpectrumMap<4>) -> Option<f64> {
+    let Observed { system, plane } = view;
     // What becomes of flux along the central ray; at the light it stands for radiance.
-    let (center, per_flux) = lands([0.0; 4])?;
-    let radiance = map.factor * plane.factor(center) / per_flux;
-    let off = map.rays().off_touching(|ray| Some(lands(ray)?.0), &half)?;
-    Some(off.max((radiance - 1.0).abs()))
+    let (center, per_flux) = plane.coordinates(&system.follow([0.0; 4])?)?;
+    Some(map.factor * plane.factor(center) / per_flux - 1.0)
 }

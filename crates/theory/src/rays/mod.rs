@@ -78,7 +78,7 @@ mod tests;
 mod trace;
 
 pub use chain::{AffineChain, chain};
-pub use defect::defect;
+pub use defect::{defect, radiance_defect};
 pub use predict::linear;
 
 pub use crate::plane::Plane;
