@@ -107,7 +107,8 @@ fn drawn(options: &Options, number: u64) -> io::Result<Option<Scene>> {
     };
     Ok(file.and_then(|mut file| {
         file.run.photons = options.photons;
-        file.run.seed = options.seed;
+        // Photons of one seed are the same in all scenes, and so would their noise be.
+        file.run.seed = options.seed + number;
         file.run.resolution = MAX_NOISE;
         resolve("scene", file, folder.path(), u64::MAX).ok()
     }))

@@ -220,6 +220,7 @@ fn every_step_of_a_chain_counts() {
                 let tried = FirstOrderChain {
                     error: 0.0,
                     defect,
+                    radiance_defect: 0.0,
                     matrix: map.rays().matrix,
                     covariance: [None; 2],
                     foci: Vec::new(),
