@@ -141,6 +141,32 @@ fn expecting_disagreement_turns_the_exit_code() {
     assert_eq!(code("few", &[few, expect].concat()), Some(4));
 }
 
+/// A chain that is wrong in amplitude alone is not said to send rays wrong, and its failure is in the
+/// picture and on the page.
+#[test]
+fn a_failing_chain_is_told_and_drawn() {
+    let folder = tempfile::tempdir().unwrap();
+    let run = |name: &str, arguments: &[&str]| {
+        let out = folder.path().join(name);
+        let mut command = etendue();
+        command.arg("run").arg(scene("table1/printed_outgoing.ron"));
+        command.args(["--photons", "1e5", "--out"]).arg(&out);
+        let told = command.args(arguments).output().unwrap().stdout;
+        let read = |file: &str| fs::read_to_string(out.join(file)).unwrap();
+        let told = String::from_utf8(told).unwrap();
+        (told, read("path.svg"), read("report.html"))
+    };
+    let (told, picture, page) = run("printed", &[]);
+    // cos² 37.24° of the radiance is left.
+    assert!(told.contains("leaves the central ray 63.375 %"), "{told}");
+    assert!(!told.contains("its rays stay"), "{told}");
+    assert!(picture.contains("chain 36.6") && picture.contains("off the chain"));
+    assert!(page.contains("chain off by (computed)") && page.contains("leaves the central ray"));
+    let (told, picture, _) = run("corrected", &["--set", "as_printed=false"]);
+    assert!(!told.contains("the first-order chain"), "{told}");
+    assert!(!picture.contains("off the chain"));
+}
+
 #[test]
 fn noise_leaves_a_run_undecided() {
     let folder = tempfile::tempdir().unwrap();
