@@ -43,6 +43,8 @@ const MAX_DEVIATION: f64 = 0.05;
 const MAX_ERRORS: f64 = 3.0;
 /// Noise as a share of the spectrum above which a plane is not judged.
 const MAX_NOISE: f64 = 0.25;
+/// Fewest scenes of a group that is judged: errors over fewer scenes are not known themselves.
+const MIN_SCENES: usize = 10;
 /// Rows of the tables of single pulls and scenes.
 const LISTED: usize = 12;
 /// CPU seconds that no prediction exceeds where its photons take fewer.
@@ -228,7 +230,7 @@ fn grouped(
     let required = if is_judged {
         format!(
             "Required: mean 0 and standard deviation 1, each to {MAX_DEVIATION} or {MAX_ERRORS} \
-             standard errors (over scenes)."
+             standard errors (over scenes), where there are {MIN_SCENES} scenes."
         )
     } else {
         "Required: nothing more than above.".into()
@@ -288,7 +290,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
         within("mean", mean.abs(), mean_error),
         within("sd", (sd - 1.0).abs(), sd_error),
     ];
-    if is_judged {
+    if is_judged && scenes.len() >= MIN_SCENES {
         Row::new(cells, checks)
     } else {
         cells.push(String::new());
