@@ -186,16 +186,18 @@ fn ended(folder: &Path, arguments: &str) -> (Option<i32>, String) {
         .unwrap();
     let begun = Instant::now();
     // A part of a batch takes about a second of one thread; the rest is for a busy machine.
-    while begun.elapsed() < Duration::from_secs(60) {
-        if child.try_wait().unwrap().is_some() {
-            let output = child.wait_with_output().unwrap();
-            let message = String::from_utf8(output.stderr).unwrap();
-            return (output.status.code(), message);
-        }
+    let mut by_itself = true;
+    while by_itself && child.try_wait().unwrap().is_none() {
         std::thread::sleep(Duration::from_millis(20));
+        by_itself = begun.elapsed() < Duration::from_secs(60);
     }
-    child.kill().unwrap();
-    panic!("the run did not end");
+    if !by_itself {
+        child.kill().unwrap();
+    }
+    let output = child.wait_with_output().unwrap();
+    assert!(by_itself, "the run did not end");
+    let message = String::from_utf8(output.stderr).unwrap();
+    (output.status.code(), message)
 }
 
 /// How many parts are kept of batches on the way.

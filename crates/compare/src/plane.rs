@@ -16,7 +16,7 @@ use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidt
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
 use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope};
 use etendue_spectrum::{CrossPower, Measurement, RadialPower, Uncertain};
-use ndarray::{Array2, Array3, ArrayView2};
+use ndarray::{Array2, Array3, ArrayView2, Axis};
 
 /// A plane compared: the report, and the arrays behind it.
 #[derive(Clone, Debug)]

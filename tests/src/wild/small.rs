@@ -2,19 +2,21 @@
 //! not speak of the plane.
 
 use super::draw::Draw;
+use super::run::text;
 use super::scene;
 use crate::progress::progress;
 use crate::report::{Check, Row, Section};
 use crate::scenes::traced;
 use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare, seconds};
-use etendue_field::{Orientation, Quantity, VirtualPlane};
+use etendue_field::{Orientation, Profile, Quantity, VirtualPlane};
 use etendue_scene::{
-    BlockersFile, MeshSource, Place, PlaneFile, Scene, SceneFile, ShapeFile, SurfaceFile, resolve,
+    AxisFile, BlockersFile, FrequenciesFile, MeshSource, Place, PlaneFile, Scene, SceneFile,
+    ShapeFile, SurfaceFile, WindowFile, resolve,
 };
 use glam::DVec3;
 use rayon::prelude::*;
-use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 /// Which scenes are tried.
 #[derive(Debug, clap::Args)]
@@ -34,6 +36,9 @@ pub(crate) struct SmallOptions {
     /// Only counts classes, and traces nothing.
     #[arg(long)]
     classes: bool,
+    /// Where scenes are kept whose prediction photons reject.
+    #[arg(long, default_value = "target/small")]
+    out: PathBuf,
 }
 
 /// Seconds of one core that a prediction may take at most.
@@ -73,18 +78,34 @@ pub(crate) fn small(options: &SmallOptions) -> io::Result<Section> {
         .into_par_iter()
         .map(|number| {
             let folder = tempfile::tempdir()?;
-            let drawn = drawn(options, number, folder.path());
-            let tried = drawn.map(|(scene, kind)| Tried {
+            let Some((scene, kind)) = drawn(options, number, folder.path()) else {
+                bar.one();
+                return Ok(None);
+            };
+            let ending = ending(&scene, options.classes);
+            if matches!(ending, Ending::Judged(_, Verdict::Fail)) {
+                keep(options, number, &scene, folder.path())?;
+            }
+            bar.one();
+            Ok(Some(Tried {
                 number,
                 kind,
-                ending: ending(&scene, options.classes),
-            });
-            bar.one();
-            Ok(tried)
+                ending,
+            }))
         })
         .collect();
     bar.end();
     Ok(section(options, &tried?))
+}
+
+/// Keeps a scene and the files it names.
+fn keep(options: &SmallOptions, number: u64, scene: &Scene, from: &Path) -> io::Result<()> {
+    let folder = options.out.join(format!("{}-{number}", options.seed));
+    fs::create_dir_all(&folder)?;
+    for name in scene.inputs.keys() {
+        fs::copy(from.join(name), folder.join(name))?;
+    }
+    fs::write(folder.join("scene.ron"), text(&scene.file)?)
 }
 
 /// A scene with one plane and a small object in its light, of one of [`KINDS`].
@@ -93,6 +114,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
     let mut file = scene(options.seed, number, options.photons, folder).ok()?;
     file.blockers.clear();
     file.run.photons = options.photons;
+    sharpen(&mut file);
     let resolved = |file: &SceneFile| resolve("small", file.clone(), folder, u64::MAX).ok();
     for _ in 0..TRIES {
         file.planes = vec![plane(&mut draw, &resolved(&file)?)];
@@ -106,6 +128,24 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
         }
     }
     None
+}
+
+/// Gives a scene a window with edges and the frequencies of a shadow an eighth as wide, so that a
+/// small object at its border is not dim.
+fn sharpen(file: &mut SceneFile) {
+    let WindowFile { x, y, u, v } = &mut file.window;
+    let halves = [*x, y.unwrap_or(*x), *u, v.unwrap_or(*u)].map(|profile| profile.half_width());
+    let [box_x, box_y, box_u, box_v] = halves.map(Profile::Box);
+    (*x, *y, *u, *v) = (box_x, Some(box_y), box_u, Some(box_v));
+    let axis = |half: f64| AxisFile {
+        max: 8.0 * 0.5 / half,
+        spacing: None,
+    };
+    file.frequencies = FrequenciesFile {
+        azimuths: 4,
+        rho: axis(halves[0].max(halves[1])),
+        nu: axis(halves[2].max(halves[3])),
+    };
 }
 
 /// A plane across a leg, mostly the last.
@@ -156,7 +196,7 @@ fn place(draw: &mut Draw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
 fn object(draw: &mut Draw, scene: &Scene, file: &mut SceneFile) -> usize {
     let (at, wide) = place(draw, scene, &scene.planes[0]);
     let center = scene.path.frame.to_world(at).to_array();
-    let radius = wide * draw.value([3e-3, 0.2], [3e-3, 0.2]);
+    let radius = wide * draw.value([5e-3, 0.05], [5e-3, 0.05]);
     let kind = *draw.pick(&[0, 0, 0, 1, 2]);
     let name = "object".to_owned();
     match kind {

@@ -108,11 +108,14 @@ impl Watch for Until {
     }
 }
 
+/// What comes of an order, with the bytes it came with.
+type Done = Result<Vec<Packed>, Failure>;
+
 /// Follows orders by `done`, until one is empty.
 fn obey(
     crew: &dyn Crew,
     key: &str,
-    done: &mut dyn FnMut(&Order, &[u8]) -> Result<Vec<Packed>, Failure>,
+    done: &mut dyn FnMut(&Order, &[u8]) -> Done,
 ) -> Result<(), Failure> {
     let ready = Said::Ready {
         key: key.to_owned(),
