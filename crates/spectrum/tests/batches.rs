@@ -1,5 +1,7 @@
 //! Batches, partial results, threads.
 
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
 mod common;
 
 use common::{Shower, boxed, grid, hann, plane};
