@@ -120,10 +120,10 @@ impl Model for Chain {
 }
 
 /// Steps of a closed form or a quadrature that are accepted for each ray of the budget, of which
-/// there are a quarter as many as photons or 1.1·10⁶: some six seconds of one core, or as long as
+/// there are a quarter as many as photons or 1.1·10⁶: some ten seconds of one core, or as long as
 /// the photons take. Nets of so few rays have more noise than the photons, so a closed form is worth
 /// some time.
-const MAX_STEPS_PER_RAY: f64 = 9e3;
+const MAX_STEPS_PER_RAY: f64 = 1.5e4;
 /// Bytes of a closed form on one core that are accepted.
 const MAX_BYTES: f64 = 1e9;
 
