@@ -330,7 +330,7 @@ fn bad_input_is_refused_with_a_message() {
         ),
         (
             "plane off the path",
-            text.replace("at: Emission", "at: Distance(3)"),
+            text.replace("at: Emission", "at: Distance(4.5)"),
             2,
             &["planes[0].at", "0 to 2"],
         ),

@@ -191,8 +191,8 @@ const MISTAKES: &[[&str; 3]] = &[
     // A plane beyond the path.
     [
         r#"Before("floor")"#,
-        "Distance(3.5)",
-        "line 14, column 31: planes[0].at is Distance(3.5); allowed: 0 to 2 m on the way to the last surface, up to 3 m on the way from it, where something stands",
+        "Distance(4.5)",
+        "line 14, column 31: planes[0].at is Distance(4.5); allowed: 0 to 2 m on the way to the last surface, up to 4 m on the way from it, where something stands",
     ],
     // Jitter that makes squares overlap.
     [

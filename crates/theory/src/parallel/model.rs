@@ -123,7 +123,7 @@ impl Model for Chain {
 /// there are a quarter as many as photons or 1.1·10⁶: some ten seconds of one core, or as long as
 /// the photons take. Nets of so few rays have more noise than the photons, so a closed form is worth
 /// some time.
-const MAX_STEPS_PER_RAY: f64 = 1.5e4;
+const MAX_STEPS_PER_RAY: f64 = 3e4;
 /// Bytes of a closed form on one core that are accepted.
 const MAX_BYTES: f64 = 1e9;
 
@@ -137,8 +137,9 @@ impl Chain {
         }
         let path = self.path();
         let work = work(self, window, grid, picture);
-        if work.steps > MAX_STEPS_PER_RAY * budget.nodes || work.bytes + work.bytes_each > MAX_BYTES
-        {
+        let fits = |work: &Work| work.bytes + work.bytes_each <= MAX_BYTES;
+        let is_slow = work.steps > MAX_STEPS_PER_RAY * budget.nodes;
+        if !fits(&work) || is_slow && fits(&work_of_nets(grid, budget)) {
             return true;
         }
         match path.receiver() {
