@@ -103,7 +103,7 @@ fn faults_are_reported_together_with_field_value_and_range() {
 fn each_bad_value_is_named() {
     for (from, to, field) in [
         ("at: Emission", "at: Distance(-0.5)", "planes[0].at"),
-        ("at: Emission", "at: Distance(3.5)", "planes[0].at"),
+        ("at: Emission", "at: Distance(4.5)", "planes[0].at"),
         ("at: Emission", "at: Distance(1)", "planes[0].at"),
         ("at: Emission", "at: Distance(NaN)", "planes[0].at"),
         ("Before(\"floor\")", "Before(\"roof\")", "planes[3].at"),

@@ -50,25 +50,18 @@ pub(super) enum What {
 const AT_END: f64 = 1e-6;
 
 impl Suspect {
-    /// Everything that rays may meet on the legs from the light to a plane.
-    pub(super) fn all(around: &Surroundings<'_>, legs: usize) -> Vec<Self> {
-        let of_layer = |(layer, mask): (usize, &Mask)| match mask {
-            Mask::Grating(_) => vec![What::Grating { layer }],
-            Mask::Opaque {
-                shapes,
-                half_planes,
-            } => {
-                let shapes = (0..shapes.len()).map(|shape| What::Shape { layer, shape });
-                let halves = (0..half_planes.len()).map(|half| What::HalfPlane { layer, half });
-                shapes.chain(halves).collect()
-            }
+    /// Everything that rays may meet on the legs of these paths. Of a layer with many shapes, those
+    /// nearest to where the rays cross it.
+    pub(super) fn all(around: &Surroundings<'_>, paths: &[&[Piece]]) -> Vec<Self> {
+        let legs = paths.first().map_or(0, |pieces| pieces.len());
+        let on_leg = |leg: usize| {
+            let layers = 0..around.scene.blockers.len();
+            let of_layers = layers.flat_map(move |layer| of_layer(around, layer, paths, leg));
+            let objects = (0..around.objects.len()).map(What::Object);
+            let things: Vec<What> = of_layers.chain(objects).collect();
+            things.into_iter().map(move |what| Self { leg, what })
         };
-        let layers = around.scene.blockers.iter().map(|layer| &layer.mask);
-        let mut things: Vec<What> = layers.enumerate().flat_map(of_layer).collect();
-        things.extend((0..around.objects.len()).map(What::Object));
-        (0..legs)
-            .flat_map(|leg| things.iter().map(move |what| Self { leg, what: *what }))
-            .collect()
+        (0..legs).flat_map(on_leg).collect()
     }
 
     /// What is said of it once a ray meets it.
@@ -124,6 +117,46 @@ impl Suspect {
         };
         off.hypot(outside(piece.ray.at(t)))
     }
+}
+
+/// Shapes of a layer that are all looked at on a leg.
+const MAX_SHAPES: usize = 64;
+/// How many are looked at where there are more: each costs thousands of rays past all of them.
+const NEAREST_SHAPES: usize = 16;
+/// Rays whose crossings say which shapes of a layer are the nearest.
+const CROSSINGS: usize = 300;
+
+/// The parts of a layer that rays may meet on a leg.
+fn of_layer(around: &Surroundings<'_>, layer: usize, paths: &[&[Piece]], leg: usize) -> Vec<What> {
+    let Mask::Opaque {
+        shapes,
+        half_planes,
+    } = &around.scene.blockers[layer].mask
+    else {
+        return vec![What::Grating { layer }];
+    };
+    let mut nearest: Vec<usize> = (0..shapes.len()).collect();
+    if shapes.len() > MAX_SHAPES {
+        let some = paths.iter().step_by(paths.len().div_ceil(CROSSINGS));
+        let crossings = some.filter_map(|pieces| {
+            let ray = &pieces[leg].ray;
+            Some(ray.at(around.crossing(ray, layer)?))
+        });
+        let crossings: Vec<DVec3> = crossings.collect();
+        let far = |shape: &usize| {
+            let distances = crossings
+                .iter()
+                .map(|at| outside_shape(&shapes[*shape], *at));
+            distances.fold(f64::INFINITY, f64::min)
+        };
+        nearest.sort_by_cached_key(|shape| far(shape).to_bits());
+        nearest.truncate(NEAREST_SHAPES);
+    }
+    let shapes = nearest
+        .into_iter()
+        .map(|shape| What::Shape { layer, shape });
+    let halves = (0..half_planes.len()).map(|half| What::HalfPlane { layer, half });
+    shapes.chain(halves).collect()
 }
 
 /// How far a number lies outside an interval.

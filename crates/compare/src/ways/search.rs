@@ -63,7 +63,8 @@ pub(super) fn found(rays: &impl Followed) -> Vec<Meets> {
         return found;
     };
     let around = rays.around();
-    for suspect in Suspect::all(around, pieces.len()) {
+    let all: Vec<&[Piece]> = paths.iter().map(|(_, pieces)| pieces.as_slice()).collect();
+    for suspect in Suspect::all(around, &all) {
         if found.contains(&suspect.meets(around, &pieces[suspect.leg])) {
             continue;
         }

@@ -120,11 +120,13 @@ impl Model for Chain {
 }
 
 /// Steps of a closed form or a quadrature that are accepted for each ray of the budget, of which
-/// there are a quarter as many as photons or 1.1·10⁶: some ten seconds of one core, or as long as
+/// there are a quarter as many as photons or 1.1·10⁶: up to ten seconds of one core, or as long as
 /// the photons take. Nets of so few rays have more noise than the photons, so a closed form is worth
 /// some time.
 const MAX_STEPS_PER_RAY: f64 = 3e4;
-/// Bytes of a closed form on one core that are accepted.
+/// The same in all, where nets do not fit into memory.
+const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
+/// Bytes of a prediction on one core that are accepted.
 const MAX_BYTES: f64 = 1e9;
 
 impl Chain {
@@ -138,8 +140,12 @@ impl Chain {
         let path = self.path();
         let work = work(self, window, grid, picture);
         let fits = |work: &Work| work.bytes + work.bytes_each <= MAX_BYTES;
-        let is_slow = work.steps > MAX_STEPS_PER_RAY * budget.nodes;
-        if !fits(&work) || is_slow && fits(&work_of_nets(grid, budget)) {
+        let max_steps = if fits(&work_of_nets(grid, budget)) {
+            MAX_STEPS_PER_RAY * budget.nodes
+        } else {
+            MAX_STEPS_WITHOUT_NETS
+        };
+        if !fits(&work) || work.steps > max_steps {
             return true;
         }
         match path.receiver() {
