@@ -115,7 +115,7 @@ impl Suspect {
             // Theory has it: what would be wrong is to meet the surface first.
             (to - t).max(0.0)
         };
-        off.hypot(outside(piece.ray.at(t)))
+        libm::hypot(off, outside(piece.ray.at(t)))
     }
 }
 
@@ -218,7 +218,10 @@ fn flat_gap(surface: &Surface, ray: &Ray, extent: [f64; 2]) -> f64 {
         return f64::INFINITY;
     }
     let at = local.at(t);
-    beyond(t, extent).hypot(outside_rectangle([at.x, at.y], surface.size))
+    libm::hypot(
+        beyond(t, extent),
+        outside_rectangle([at.x, at.y], surface.size),
+    )
 }
 
 /// The points where a line meets the quadric of a patch, or where it passes it nearest, may lie
@@ -230,7 +233,7 @@ fn patch_gap(patch: &Patch, ray: &Ray, extent: [f64; 2]) -> f64 {
         let aside = (libm::hypot(at.x, at.y) - patch.aperture).max(0.0);
         // The other half of a sphere or a cylinder.
         let below = patch.aperture * (-patch.gradient(at).z).max(0.0);
-        beyond(t, extent).hypot(aside).hypot(below)
+        libm::hypot(libm::hypot(beyond(t, extent), aside), below)
     };
     let curved = DVec3::from(patch.curvature) * direction;
     let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
@@ -240,7 +243,7 @@ fn patch_gap(patch: &Patch, ray: &Ray, extent: [f64; 2]) -> f64 {
         let t = -b / a;
         let at = point + t * direction;
         let passes = (0.5 * patch.value(at) / patch.gradient(at).length()).abs();
-        return off(t).hypot(passes);
+        return libm::hypot(off(t), passes);
     }
     let q = -(b + squared.sqrt().copysign(b));
     let roots = [q / a, c / q].into_iter().filter(|t| t.is_finite());
