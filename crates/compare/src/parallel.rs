@@ -93,14 +93,9 @@ fn in_the_way(scene: &Scene, plane: &VirtualPlane) -> Vec<String> {
 
 /// Corners of rectangles that hold all of a layer that light for a plane may meet.
 fn parts(layer: &BlockerLayer, scene: &Scene, plane: &VirtualPlane) -> Vec<[DVec3; 4]> {
-    // Where light goes; what has no end reaches a thousand times as far.
-    let [from, to] = tube(scene, plane);
-    let far = 1e3
-        * from
-            .into_iter()
-            .chain(to)
-            .fold(layer.distance, f64::max)
-            .min(1e30);
+    // A half-plane or grating reaches a thousand times as far as light does.
+    let lengths = tube(scene, plane).into_iter().flatten();
+    let far = 1e3 * lengths.fold(layer.distance, f64::max).min(1e30);
     let corners = |[[x0, x1], [y0, y1]]: [[f64; 2]; 2]| {
         [[x0, y0], [x1, y0], [x1, y1], [x0, y1]].map(|[x, y]| DVec3::new(x, y, layer.distance))
     };

@@ -232,15 +232,15 @@ fn object(draw: &mut Draw, scene: &Scene, file: &mut SceneFile) -> usize {
             name,
             center,
             size: [2.0 * radius; 2],
-            facing: Some(draw.along(draw_direction(scene))),
+            facing: Some(draw.along(towards_light(scene))),
             albedo: 0.5,
         }),
     }
     kind
 }
 
-/// A surface looks towards the light that comes to the plane.
-fn draw_direction(scene: &Scene) -> DVec3 {
+/// The direction from which light comes to the plane.
+fn towards_light(scene: &Scene) -> DVec3 {
     let plane = &scene.planes[0];
     -scene.path.frame.decompose(&plane.frame).d
 }

@@ -27,21 +27,15 @@ pub(super) struct Suspect {
     pub(super) what: What,
 }
 
+/// The object, or the part of a layer of blockers, that a ray may meet.
 #[derive(Clone, Copy, Debug)]
 pub(super) enum What {
-    /// A shape or half-plane of a layer of blockers, by their numbers.
-    Shape {
-        layer: usize,
-        shape: usize,
-    },
-    HalfPlane {
-        layer: usize,
-        half: usize,
-    },
+    /// A shape of a layer, by their numbers.
+    Shape { layer: usize, shape: usize },
+    /// A half-plane of a layer.
+    HalfPlane { layer: usize, half: usize },
     /// A grating, which has no edge.
-    Grating {
-        layer: usize,
-    },
+    Grating { layer: usize },
     /// A surface of the path, by its number among the objects of the surroundings.
     Object(usize),
 }
@@ -164,6 +158,7 @@ fn beyond(t: f64, [from, to]: [f64; 2]) -> f64 {
     (from - t).max(t - to).max(0.0)
 }
 
+/// How far a point of its plane lies outside a shape, metres.
 fn outside_shape(shape: &Shape, at: DVec3) -> f64 {
     match *shape {
         Shape::Rectangle(Rectangle { center, size }) => {
@@ -182,13 +177,14 @@ fn outside_rectangle(at: [f64; 2], size: [f64; 2]) -> f64 {
     libm::hypot(x, y)
 }
 
+/// How far a point of its plane lies outside a half-plane, metres.
 fn outside_half_plane(half: &HalfPlane, at: DVec3) -> f64 {
     let coordinate = if half.axis == 0 { at.x } else { at.y };
     let off = half.edge - coordinate;
     if half.above { off } else { -off }.max(0.0)
 }
 
-/// The same for a surface of the path.
+/// How far a piece of a path passes from a surface of the path where theory does not have it.
 fn object_gap(around: &Surroundings<'_>, index: usize, piece: &Piece) -> f64 {
     let (object, form) = &around.objects[index];
     let [from, to] = piece.extent;
@@ -211,6 +207,7 @@ fn object_gap(around: &Surroundings<'_>, index: usize, piece: &Piece) -> f64 {
     }
 }
 
+/// How far a ray passes from a rectangle between two distances.
 fn flat_gap(surface: &Surface, ray: &Ray, extent: [f64; 2]) -> f64 {
     let local = ray.seen_from(&surface.frame);
     let t = -local.point.z / local.direction.z;
@@ -224,8 +221,8 @@ fn flat_gap(surface: &Surface, ray: &Ray, extent: [f64; 2]) -> f64 {
     )
 }
 
-/// The points where a line meets the quadric of a patch, or where it passes it nearest, may lie
-/// beside the patch or off the piece.
+/// How far a ray passes from a patch between two distances: it may meet the quadric beside the
+/// patch or off the piece, or pass the quadric.
 fn patch_gap(patch: &Patch, ray: &Ray, extent: [f64; 2]) -> f64 {
     let Ray { point, direction } = ray.seen_from(&patch.frame);
     let off = |t: f64| {

@@ -44,7 +44,7 @@ struct Scatterer<'a> {
 
 impl Followed for Scatterer<'_> {
     fn check(&self, draw: &Draw) -> Option<(f64, Option<Meets>)> {
-        let Followable {
+        let LightPath {
             light,
             arriving,
             end,
@@ -89,7 +89,7 @@ impl Followed for Scatterer<'_> {
 }
 
 /// Light that comes to the surface and leaves it into the window.
-struct Followable {
+struct LightPath {
     light: f64,
     arriving: Ray,
     /// How far the surface is from the light.
@@ -101,7 +101,7 @@ struct Followable {
 
 impl Scatterer<'_> {
     /// A path from the light to the window; `None` if it brings no light.
-    fn follow(&self, draw: &Draw) -> Option<Followable> {
+    fn follow(&self, draw: &Draw) -> Option<LightPath> {
         let leaving = self.leaving(draw)?;
         let Ray { point, direction } = leaving;
         let normal = self.system.patch.normal(point);
@@ -113,7 +113,7 @@ impl Scatterer<'_> {
         let end = (point - arriving.point).length();
         let ([photons, theory], meets) = self.around.first_leg(&arriving, end);
         let light = emitted * photons.max(theory) * window.value(&z);
-        (faces && light > 0.0).then_some(Followable {
+        (faces && light > 0.0).then_some(LightPath {
             light,
             arriving,
             end,

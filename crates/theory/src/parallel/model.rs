@@ -124,7 +124,7 @@ impl Model for Chain {
 /// the photons take. Nets of so few rays have more noise than the photons, so a closed form is worth
 /// some time.
 const MAX_STEPS_PER_RAY: f64 = 3e4;
-/// The same in all, where nets do not fit into memory.
+/// Steps of a closed form or a quadrature that are accepted where nets do not fit into memory.
 const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
 /// Bytes of a prediction on one core that are accepted.
 const MAX_BYTES: f64 = 1e9;
