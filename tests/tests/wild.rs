@@ -176,15 +176,38 @@ fn a_mesh_beside_its_patch_is_no_disagreement() {
         let prediction = by_theory(&scene, plane);
         let verdict = |p: &Prediction| report(&scene, &photons, i, p).verdict;
         assert_eq!(verdict(&prediction), Verdict::Pass, "{}", plane.name);
-        let error = prediction.quadrature_error.unwrap();
+        let error = prediction.mesh_error.unwrap_or(0.0);
         assert!(error < 1e-4, "{error:e} at {}", plane.name); // ten times the 10⁻⁵ by which photons are off
         let unaware = Prediction {
-            quadrature_error: Some(1e-6),
+            mesh_error: Some(1e-6),
             ..prediction
         };
         let fails = verdict(&unaware) == Verdict::Fail;
         assert_eq!(fails, i > 0, "{}", plane.name); // nothing is reflected before
     }
+}
+
+/// What is stated for the triangles of a mesh is what photons are off by.
+#[test]
+fn triangles_are_as_far_off_as_is_stated() {
+    let scene = scene("coarse_paraboloid");
+    let photons = photons(&scene);
+    let prediction = by_theory(&scene, &scene.planes[0]);
+    let judged = report(&scene, &photons, 0, &prediction);
+    assert_eq!(judged.verdict, Verdict::Pass);
+    let [stated, seen] = [prediction.mesh_error, judged.excess].map(Option::unwrap);
+    let ratio = stated / seen;
+    // Stated is a sample with its standard error added, seen has a noise of a fifth of itself.
+    assert!(
+        (1.0..1.3).contains(&ratio),
+        "{stated:e} stated, {seen:e} seen"
+    );
+    let unaware = Prediction {
+        mesh_error: Some(0.4 * stated),
+        ..prediction
+    };
+    let judged = report(&scene, &photons, 0, &unaware);
+    assert_eq!(judged.verdict, Verdict::Fail);
 }
 
 #[test]
@@ -401,6 +424,7 @@ fn by_scattering(
 fn replaced(like: Prediction, slices: Slices, replicates: Vec<Slices>) -> Prediction {
     Prediction {
         quadrature_error: None,
+        mesh_error: None,
         slices,
         replicates,
         ..like

@@ -5,7 +5,7 @@ use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
 use crate::system::{print, scattered, system, unvisited};
-use crate::ways::{off_patches, unforeseen_by_rays, unforeseen_by_scattering};
+use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::{Budget, Chain, Model, Observed, Over, Parameter, Work, rays, scattering};
@@ -19,9 +19,8 @@ pub struct Applicability {
     pub reasons: Vec<String>,
     /// Why no light reaches the plane, in words; `None` where some may.
     pub dark: Option<String>,
-    /// How far smooth meshes lead rays beside where their osculating patches do, in half-widths of
-    /// the window; `None` without one.
-    pub off_patches: Option<f64>,
+    /// How far smooth meshes lead rays beside where their osculating patches do; `None` without one.
+    pub off_patches: Option<OffPatches>,
 }
 
 /// The theories of a windowed light field.
@@ -52,7 +51,12 @@ impl Theory {
     }
 
     /// What of a scene is not as the theory takes it to be, in words.
-    fn obstacles(&self, scene: &Scene, plane: &VirtualPlane, off: Option<f64>) -> Vec<String> {
+    fn obstacles(
+        &self,
+        scene: &Scene,
+        plane: &VirtualPlane,
+        off: Option<OffPatches>,
+    ) -> Vec<String> {
         let mut found = match self {
             Self::Specular(view) => unforeseen_by_rays(scene, plane, view, off),
             Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),

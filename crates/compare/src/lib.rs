@@ -48,4 +48,5 @@ pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::{scattered, system};
 pub use verdict::{Test, Verdict, sidak};
+pub use ways::OffPatches;
 pub use work::{TooMuchWork, seconds, too_much_work};

@@ -207,10 +207,12 @@ impl Compared<'_> {
             ))
         } else if agrees && error > test.resolution {
             let error = percent(error);
-            let what = if self.prediction.class == Class::Reference {
-                "behind a mesh this coarse photons and backward rays may differ"
-            } else {
-                "the quadrature of the prediction may be off"
+            let what = match (self.prediction.mesh_error, self.prediction.class) {
+                (None, _) => "the quadrature of the prediction may be off",
+                (Some(_), Class::Reference) => {
+                    "behind a mesh this coarse photons and backward rays may differ"
+                }
+                (Some(_), _) => "behind a mesh this coarse photons and the prediction may differ",
             };
             Some(format!(
                 "{what} by {error}, noise is {}; more photons do not help",
@@ -311,7 +313,7 @@ impl Compared<'_> {
             class: prediction.class,
             chain: prediction.steps.clone(),
             // That of a dark field is a ratio of roundings.
-            quadrature_error: prediction.quadrature_error.filter(|_| noise.is_some()),
+            quadrature_error: prediction.error().filter(|_| noise.is_some()),
             frame: plane.frame,
             distance: plane.distance,
             crossed: tally.crossed,
@@ -478,7 +480,7 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
     let mut warnings = Vec::new();
     if let Some((error, noise)) = blur.filter(|(error, noise)| *error > UNSEEN * noise) {
         warnings.push(format!(
-            "the prediction's quadrature may be off by {} of the spectrum; noise is {}",
+            "the prediction may be off by {} of the spectrum; noise is {}",
             percent(error, 4),
             percent(noise, 4)
         ));

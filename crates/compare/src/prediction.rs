@@ -4,13 +4,13 @@ use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
 use crate::class::Class;
 use crate::first_order::FirstOrder;
-use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane, Window};
+use crate::ways::OffPatches;
+use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
 use etendue_theory::{Budget, Model, Over};
 use ndarray::Array2;
-use std::f64::consts::TAU;
 
 /// Everything a measurement of a plane is held against.
 #[derive(Clone, Debug)]
@@ -22,9 +22,11 @@ pub struct Prediction {
     /// The slices of the windowed spectrum.
     pub slices: Slices,
     /// ‖error‖/‖slices‖, estimated: the standard error where there are replicates of theory, else
-    /// that of a quadrature. Of a reference, how far the two tracers may differ because a smooth
-    /// mesh is too coarse. `None` for a closed form, and for any other reference.
+    /// that of a quadrature. `None` for a closed form, and for a reference.
     pub quadrature_error: Option<f64>,
+    /// ‖error‖/‖slices‖ of smooth meshes: theory follows patches that osculate them, and of a
+    /// reference the two tracers turn rays differently. `None` without such a mesh.
+    pub mesh_error: Option<f64>,
     /// The first-order chain; `slices` and all else are then those of the exact ray-space
     /// prediction.
     pub first_order: Option<FirstOrder>,
@@ -65,14 +67,18 @@ impl Prediction {
 
     /// ‖error‖/‖slices‖ that no replicates show.
     pub(crate) fn systematic_error(&self) -> Option<f64> {
-        let shows = self.is_statistical() && self.class != Class::Reference;
-        self.quadrature_error.filter(|_| !shows)
+        let quadrature = self.quadrature_error.filter(|_| !self.is_statistical());
+        both(quadrature, self.mesh_error)
     }
 
     /// ‖error‖/‖slices‖ of theory's own replicates, which stays however many photons are measured.
     pub(crate) fn statistical_error(&self) -> Option<f64> {
-        let shows = self.is_statistical() && self.class != Class::Reference;
-        self.quadrature_error.filter(|_| shows)
+        self.quadrature_error.filter(|_| self.is_statistical())
+    }
+
+    /// ‖error‖/‖slices‖ of all kinds.
+    pub(crate) fn error(&self) -> Option<f64> {
+        both(self.quadrature_error, self.mesh_error)
     }
 
     /// What theory predicts for a plane of a scene: nothing where none applies, and
@@ -92,38 +98,19 @@ impl Prediction {
                 let found = empty.by(view.as_ref(), over, budget(scene), |exact| {
                     FirstOrder::new(scene, view, over, exact)
                 });
-                match applicability.off_patches {
-                    Some(off) => found.shifted(off, &plane.window),
-                    None => found,
+                let half = &found.slices.half;
+                let size = half.iter().map(|s| s.norm_sqr()).sum::<f64>().sqrt();
+                let meshes = applicability.off_patches.filter(|_| size > 0.0);
+                let error = |off: OffPatches| off.change * found.slices.at_zero() / size;
+                Self {
+                    mesh_error: meshes.map(error),
+                    ..found
                 }
             }
             Theory::Scattering(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
                 FirstOrder::of_reflection(view, exact)
             }),
         }
-    }
-
-    /// The same with an error beside its own: rays arrive `off` half-widths of the window from where
-    /// they are predicted. At (ρ, ν) that changes the spectrum by 2π `off` times ρ and ν in cycles
-    /// per half-width, as a share.
-    fn shifted(mut self, off: f64, window: &Window) -> Self {
-        if self.is_statistical() {
-            return self;
-        }
-        let grid = self.slices.grid;
-        let [x, u] = [window.x, window.u].map(|profile| profile.half_width());
-        let [mut changes, mut whole] = [0.0; 2];
-        for ((_, m, n), value) in self.slices.half.indexed_iter() {
-            let [rho, nu] = [grid.rho.spacing * m as f64, grid.nu.value(n)];
-            let cycles = libm::hypot(rho * x, nu * u);
-            changes += value.norm_sqr() * (TAU * off * cycles).powi(2);
-            whole += value.norm_sqr();
-        }
-        if whole > 0.0 {
-            let own = self.quadrature_error.unwrap_or(0.0);
-            self.quadrature_error = Some(libm::hypot(own, (changes / whole).sqrt()));
-        }
-        self
     }
 
     /// What a model says, and the first-order chain beside it.
@@ -168,6 +155,7 @@ impl Prediction {
             steps: applicability.steps(scene, plane),
             slices: Slices::zeros(plane.grid),
             quadrature_error: None,
+            mesh_error: None,
             first_order: None,
             replicates: Vec::new(),
             unblocked: 0.0,
@@ -195,7 +183,7 @@ impl Prediction {
         let plane = &scene.planes[index];
         Ok(Self {
             steps: applicability.steps(scene, plane),
-            quadrature_error: scene.mesh_mismatch(plane),
+            mesh_error: scene.mesh_mismatch(plane),
             cuts: cuts(scene, plane),
             ..Self::measured(measurement, at)?
         })
@@ -212,6 +200,7 @@ impl Prediction {
             steps: Vec::new(),
             slices: estimate::slices(measurement, plane)?.mean,
             quadrature_error: None,
+            mesh_error: None,
             first_order: None,
             replicates: batches.map(|batch| batch.slices.clone()).collect(),
             unblocked: 0.0,
@@ -219,6 +208,14 @@ impl Prediction {
             parameters: Vec::new(),
             cuts: Vec::new(),
         })
+    }
+}
+
+/// The root of the sum of squares of two errors.
+fn both(a: Option<f64>, b: Option<f64>) -> Option<f64> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(libm::hypot(a, b)),
+        (a, b) => a.or(b),
     }
 }
 

@@ -15,5 +15,6 @@ mod search;
 mod specular;
 mod surroundings;
 
+pub use meshes::OffPatches;
 pub(crate) use scattered::unforeseen_by_scattering;
 pub(crate) use specular::{off_patches, unforeseen_by_rays};

@@ -120,6 +120,7 @@ fn prediction(width: f64) -> Prediction {
         class: Class::Exact,
         steps: Vec::new(),
         quadrature_error: None,
+        mesh_error: None,
         first_order: None,
         replicates: Vec::new(),
         cuts: Vec::new(),

@@ -31,6 +31,7 @@ pub(crate) struct PredictedPlane {
     class: Class,
     chain: Vec<String>,
     quadrature_error: Option<f64>,
+    mesh_error: Option<f64>,
     /// Of the chain of affine maps, whose slices are in the arrays.
     first_order: Option<FirstOrderChain>,
     /// Names and units of the parameters, in the order of the arrays.
@@ -90,6 +91,7 @@ fn stored(
         steps,
         slices,
         quadrature_error,
+        mesh_error,
         first_order,
         replicates,
         unblocked,
@@ -130,6 +132,7 @@ fn stored(
         class: *class,
         chain: steps.clone(),
         quadrature_error: *quadrature_error,
+        mesh_error: *mesh_error,
         first_order: first_order.as_ref().map(|f| f.chain.clone()),
         parameters: parameters
             .iter()
@@ -225,6 +228,7 @@ fn read_plane(
         steps: words.chain.clone(),
         slices: slices(half),
         quadrature_error: words.quadrature_error,
+        mesh_error: words.mesh_error,
         first_order: first_order.map(|(slices, chain)| FirstOrder {
             slices,
             replicates: linear_replicates,

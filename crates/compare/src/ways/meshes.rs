@@ -1,26 +1,50 @@
 //! How far smooth meshes lead light beside where their osculating patches do.
 
 use super::coordinates::coordinates;
-use super::rays::{Draw, Ray, bright};
+use super::rays::{Draw, Ray, bright, density, offset_of};
 use super::specular::{Arrival, Follower, on};
-use etendue_field::{Profile, interpolated_normal};
+use etendue_field::transform::SliceTransform;
+use etendue_field::{Complex, Light, Profile, TwoPlane, interpolated_normal};
 use etendue_scene::{MeshObject, Object};
 use glam::DVec3;
+use ndarray::Array3;
 
-/// Rays with light in the window that are followed.
-const LIT: usize = 300;
-/// Triangles looked at for these.
+/// Rays that are drawn for those with light in the window.
+const TRIES: u32 = 300_000;
+/// Fewest and most rays with light in the window that are followed.
+const FEWEST: usize = 300;
+const MOST: usize = 3000;
+/// Triangles looked at for these, where more than the fewest are followed.
 const LOOKED_AT: usize = 30_000_000;
 /// Edges of a triangle within which it is around the point that a ray leaves.
 const NEIGHBOURS: f64 = 5.0;
 /// What light meets again is as far off as can be.
 const LOST: f64 = 1.0;
 
+/// How far rays that meet the triangles of smooth meshes are from those that meet the patches that
+/// osculate them.
+#[derive(Clone, Copy, Debug)]
+pub struct OffPatches {
+    /// How far apart they arrive, in half-widths of the window: the root of the mean square over
+    /// light.
+    pub apart: f64,
+    /// ‖change of the slices‖, as a share of their value at frequency zero: an upper estimate,
+    /// from a sample of rays with its standard error added.
+    pub change: f64,
+}
+
+/// A ray that brings light into the window: where it is predicted, and where it arrives by
+/// triangles, if it does.
+struct Displaced {
+    predicted: TwoPlane,
+    by_triangles: Option<TwoPlane>,
+    /// Light before the window weighs it.
+    before: f64,
+}
+
 impl Follower<'_> {
-    /// How far rays that meet the triangles of smooth meshes arrive from where they do by the
-    /// patches that osculate them, in half-widths of the window: the root of the mean square over
-    /// light. `None` without a mesh.
-    pub(super) fn off_patches(&self) -> Option<f64> {
+    /// How far smooth meshes lead light beside where their patches do; `None` without a mesh.
+    pub(super) fn off_patches(&self) -> Option<OffPatches> {
         let legs = &self.scene.path.legs[1..=self.plane.leg];
         let objects = legs.iter().filter_map(|leg| Some(leg.leaves?.object));
         let meshes = objects.filter_map(|object| match object {
@@ -31,32 +55,105 @@ impl Follower<'_> {
         if triangles == 0 {
             return None;
         }
-        let tries = u32::try_from(LOOKED_AT / triangles).unwrap_or(u32::MAX);
-        let rays = (0..tries).filter_map(|index| self.ray(&Draw::new(index)));
-        let of_window = (0..tries).filter_map(|index| self.ray_of_window(&Draw::new(index)));
-        self.off_on_average(rays)
-            .or_else(|| self.off_on_average(of_window))
+        let most = (LOOKED_AT / triangles).clamp(FEWEST, MOST);
+        let draws = || (0..TRIES).map(Draw::new);
+        match self.system.light {
+            // Evenly in the window, and the volume of rays stays what it is on their way.
+            Light::Environment { .. } => {
+                self.displacement(draws().filter_map(|draw| self.ray_of_window(&draw)), most)
+            }
+            _ => self.displacement(draws().filter_map(|draw| self.weighted(&draw)), most),
+        }
     }
 
-    /// The same of given rays; `None` if none brings light into the window.
-    fn off_on_average(&self, rays: impl Iterator<Item = (Ray, f64)>) -> Option<f64> {
+    /// A ray of the light, and how much light it stands for beside others.
+    fn weighted(&self, draw: &Draw) -> Option<(Ray, f64)> {
+        let (ray, strength) = self.ray(draw)?;
+        let patch = &self.system.elements.first()?.patch;
+        let length = ray.theory_hit(patch)?;
+        let [point, normal] = on(patch, ray.at(length));
+        let center = patch.frame.to_local(self.scene.path.ends_at(0)?.point);
+        let offset = patch.frame.to_local(point) - center;
+        let drawn = [offset.x, offset.y].map(|d| d / (2.0 * patch.aperture));
+        // Seen along the ray, of what is one on the tangent plane at the vertex.
+        let area = ray.direction.dot(normal) / normal.dot(patch.frame.d);
+        let on_surface = strength * area.abs() / density(drawn);
+        let squared = length * length;
+        Some(match &self.system.light {
+            Light::Area { shape, .. } => {
+                let (area, offset) = offset_of(shape, ray.point);
+                let on_light = area * ray.direction.z / density(offset);
+                (ray, on_surface * on_light / squared)
+            }
+            Light::Beam { .. } => (ray, on_surface),
+            _ => (ray, on_surface / squared),
+        })
+    }
+
+    /// The same of at most so many given rays; `None` if none brings light into the window.
+    fn displacement(
+        &self,
+        rays: impl Iterator<Item = (Ray, f64)>,
+        most: usize,
+    ) -> Option<OffPatches> {
+        let displaced = |(ray, emitted): (Ray, f64)| {
+            let (predicted, share) = self.theory(ray)?;
+            let before = emitted * share;
+            let light = before * self.plane.window.value(&predicted);
+            (light > 0.0).then(|| {
+                let by_triangles = self.by_triangles(ray).map(|(seen, _)| seen);
+                let displaced = Displaced {
+                    predicted,
+                    by_triangles,
+                    before,
+                };
+                (light, displaced)
+            })
+        };
+        let lit = bright(rays.filter_map(displaced), most);
+        let [all, squares] = lit.iter().fold([0.0; 2], |[all, squares], (light, ray)| {
+            [all + light, squares + light * self.apart(ray).powi(2)]
+        });
+        (all > 0.0).then(|| OffPatches {
+            apart: (squares / all).sqrt(),
+            change: self.change(&lit),
+        })
+    }
+
+    /// How far apart a ray arrives, in half-widths of the window along the axis where that is most.
+    fn apart(&self, ray: &Displaced) -> f64 {
         let window = &self.plane.window;
         let half = [window.x, window.y, window.u, window.v].map(|p| Profile::half_width(&p));
-        let off = |(ray, emitted): (Ray, f64)| {
-            let (z, share) = self.theory(ray)?;
-            let light = Some(emitted * share * window.value(&z)).filter(|light| *light > 0.0)?;
-            let apart = self.by_triangles(ray).map_or(LOST, |(seen, _)| {
-                let apart = [seen.x - z.x, seen.y - z.y, seen.u - z.u, seen.v - z.v];
-                let shares = apart.iter().zip(half).map(|(d, half)| (d / half).abs());
-                shares.fold(0.0, f64::max).min(LOST)
-            });
-            Some((light, apart))
+        ray.by_triangles.map_or(LOST, |seen| {
+            let z = &ray.predicted;
+            let apart = [seen.x - z.x, seen.y - z.y, seen.u - z.u, seen.v - z.v];
+            let shares = apart.iter().zip(half).map(|(d, half)| (d / half).abs());
+            shares.fold(0.0, f64::max).min(LOST)
+        })
+    }
+
+    /// How much rays change the slices when they arrive by triangles: the mean of two halves of
+    /// the rays, and half of their difference, which is its standard error.
+    fn change(&self, lit: &[(f64, Displaced)]) -> f64 {
+        let transform = SliceTransform::new(&self.plane.grid);
+        let mut sum = transform.accumulator();
+        let mut half_of = |first: usize| {
+            let mut all = 0.0;
+            for (light, ray) in lit.iter().skip(first).step_by(2) {
+                all += light;
+                sum.deposit(&ray.predicted, -light);
+                if let Some(seen) = &ray.by_triangles {
+                    sum.deposit(seen, ray.before * self.plane.window.value(seen));
+                }
+            }
+            sum.finish(if all > 0.0 { 1.0 / all } else { 0.0 }).half
         };
-        let lit = bright(rays.filter_map(off), LIT).into_iter();
-        let [light, squares] = lit.fold([0.0; 2], |[all, squares], (light, apart)| {
-            [all + light, squares + light * apart * apart]
-        });
-        (light > 0.0).then(|| (squares / light).sqrt())
+        let [a, b] = [0, 1].map(&mut half_of);
+        let norm = |slices: Array3<Complex>| {
+            let squares: f64 = slices.iter().map(|s| s.norm_sqr()).sum();
+            0.5 * squares.sqrt()
+        };
+        norm(&a + &b) + norm(a - b)
     }
 
     /// Where a ray arrives by the triangles of smooth meshes; nowhere if it misses one or meets it

@@ -1,6 +1,6 @@
 //! Rays of the light, drawn for a check: the same in every run.
 
-use etendue_field::{EnvironmentMap, Frame, Light, Patch, Shape, Window};
+use etendue_field::{EnvironmentMap, Frame, Light, Patch, Rectangle, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
@@ -135,6 +135,9 @@ pub(super) fn within(window: &Window, r: [f64; 6]) -> [f64; 4] {
     std::array::from_fn(|axis| (2.0 * r[axis] - 1.0) * profiles[axis].half_width())
 }
 
+/// The smallest number that [`centred`] draws densely.
+const CENTRE: f64 = 1e-3;
+
 /// A number in [−1, 1]: every other one evenly, else as densely near zero as its size, down to a
 /// thousandth.
 pub(super) fn centred(index: u32, r: f64) -> f64 {
@@ -142,8 +145,18 @@ pub(super) fn centred(index: u32, r: f64) -> f64 {
     if index.is_multiple_of(2) {
         s
     } else {
-        s.signum() * libm::pow(1e-3_f64, 1.0 - s.abs())
+        s.signum() * libm::pow(CENTRE, 1.0 - s.abs())
     }
+}
+
+/// The density of pairs of numbers that [`centred`] draws with one index, over all indices.
+pub(super) fn density(pair: [f64; 2]) -> f64 {
+    let dense = pair.map(|s| {
+        let is_drawn = (CENTRE..=1.0).contains(&s.abs());
+        let density = -0.5 / (s.abs() * libm::log(CENTRE));
+        if is_drawn { density } else { 0.0 }
+    });
+    0.5 * (0.25 + dense[0] * dense[1])
 }
 
 /// A ray of the light through a point, and how strong it is; `None` where none is.
@@ -213,6 +226,26 @@ fn point_of(shape: &Shape, [a, b]: [f64; 2]) -> DVec3 {
             let scale =
                 disc.radius * a.abs().max(b.abs()) / libm::hypot(a, b).max(f64::MIN_POSITIVE);
             DVec3::new(x + scale * a, y + scale * b, 0.0)
+        }
+    }
+}
+
+/// The area of a shape over that of the square of offsets that [`point_of`] turns into it, and the
+/// offset of a point.
+pub(super) fn offset_of(shape: &Shape, point: DVec3) -> (f64, [f64; 2]) {
+    match shape {
+        Shape::Rectangle(Rectangle { center, size }) => {
+            let offset = [point.x - center[0], point.y - center[1]];
+            let [w, h] = size.map(|s| 0.5 * s);
+            (w * h, [offset[0] / w, offset[1] / h])
+        }
+        Shape::Disc(disc) => {
+            let [x, y] = [point.x - disc.center[0], point.y - disc.center[1]];
+            // The circle of radius r comes from the square of side 2 r/R.
+            let wide = x.abs().max(y.abs()).max(f64::MIN_POSITIVE);
+            let share = wide / libm::hypot(x, y).max(f64::MIN_POSITIVE);
+            let scale = disc.radius * share;
+            (scale * scale, [x / scale, y / scale])
         }
     }
 }

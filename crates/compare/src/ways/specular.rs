@@ -2,6 +2,7 @@
 
 use super::clearance::Piece;
 use super::coordinates::{coordinates, seen};
+use super::meshes::OffPatches;
 use super::rays::{Draw, Ray, centred, point_on, ray_to, strength, within};
 use super::search::{Followed, found};
 use super::surroundings::{Meets, Surroundings, in_words};
@@ -12,31 +13,31 @@ use etendue_theory::rays::{Plane, System};
 use glam::DVec3;
 
 /// What light for a plane meets between or at the surfaces of a system that theory does not know
-/// of, in words; [`off_patches`] says how far `off` meshes lead it.
+/// of, in words; `off` is how far meshes lead it beside, see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
     view: &Observed<System>,
-    off: Option<f64>,
+    off: Option<OffPatches>,
 ) -> Vec<String> {
     let follower = Follower::new(scene, plane, view);
     let mut meets = found(&Drawn(&follower, Follower::ray));
     meets.extend(found(&Drawn(&follower, Follower::ray_of_window)));
     let mut found = in_words(meets, scene);
-    found.extend(off.filter(|off| *off > OFF_PATCHES).map(|off| {
-        let percent = 100.0 * off;
+    let apart = off.map(|off| off.apart);
+    found.extend(apart.filter(|apart| *apart > OFF_PATCHES).map(|apart| {
+        let percent = 100.0 * apart;
         format!("a mesh that sends light {percent:.3} % of the window beside its osculating patch")
     }));
     found
 }
 
-/// How far smooth meshes lead rays beside where their osculating patches do, in half-widths of the
-/// window (root mean square); `None` without a mesh.
+/// How far smooth meshes lead rays beside where their osculating patches do; `None` without a mesh.
 pub(crate) fn off_patches(
     scene: &Scene,
     plane: &VirtualPlane,
     view: &Observed<System>,
-) -> Option<f64> {
+) -> Option<OffPatches> {
     Follower::new(scene, plane, view).off_patches()
 }
 
