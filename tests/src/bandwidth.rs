@@ -47,7 +47,7 @@ for light from far away (Eq. 20), and B' with an edge at d' before the surface (
     corrected   B = Ω_ρ |1 + 2kd/cos θ₁|       B' = Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|
     printed     B = Ω_ρ 2kd/cos θ₁             B' = Ω_ρ d (1/d' + 2|k|)/cos θ₁
 
-The print lacks the 1, the sign of k and a cosine. At the surface a flat mirror shows the lobe as wide as it is, so B = Ω_ρ there, not 0; and a hollow one first undoes \
+The print is an approximation for an eye far away, |2kd/cos θ₁| ≫ 1, and for light along the normal, with |k|; it leaves the 1 and a cosine out. The distances here are not far. At the surface a flat mirror shows the lobe as wide as it is, so B = Ω_ρ there, not 0; and a hollow one first undoes \
 what travel does, so that B has a least value, not at k = 0. Photons say so; next to that least value the window, not the surface, sets what they show:
 
 ![Bandwidth over curvature, angles, distances and the width of the BRDF: photons lie on the corrected curves, and off those of the print](bandwidth.svg)

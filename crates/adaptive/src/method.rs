@@ -18,7 +18,7 @@ pub enum Method {
     Uniform,
     /// By the criteria of Durand et al. 2005, Eqs. 20 and 21, corrected.
     Predicted,
-    /// By the same as printed, to see what their misprints cost.
+    /// By the same as printed, to see what their approximations cost.
     Printed,
     /// Half by the criteria, and half by the light that is really there: by the error that planes through some of a first quarter of the samples have at
     /// the others.

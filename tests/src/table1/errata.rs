@@ -30,7 +30,7 @@ fn all() -> Vec<(&'static str, &'static str, Misprint)> {
     };
     let cosine = |cosine: fn(f64) -> f64, sign: f64| -> Misprint {
         Box::new(move |steps, theta0, shape| {
-            // Eq. 19 alone has the cosine of 1 beside M; its sign stays right.
+            // The shear by M alone has the cosine of 1 beside M; its sign stays right.
             let longitude = cosine(theta0);
             steps.curvature =
                 Map::<4>::curvature(shape.map(|r| r.map(|m| sign * m)), longitude).spectrum_map();

@@ -145,7 +145,7 @@ samples (bandwidth, curvature, blockers, shadow, density, samples, variance), pi
 two of them, and timing.json says how long each stage took. Methods:
   uniform     blue noise, even over all that is shaded
   predicted   by the criteria of the paper, Eqs. 20 and 21, corrected
-  printed     by the same as they are printed, to see what their misprints cost
+  printed     by the same as they are printed, to see what their approximations cost
   weighted    half by these, half by the error found between a first quarter of the samples: the least error
   variance    by the standard deviation among a first quarter of the samples, and by no theory
 Pixels are boxes, whatever filter the file names: each is the mean of the radiance over its area.")]

@@ -9,10 +9,10 @@ use std::f64::consts::TAU;
 pub enum Edition {
     /// As ray geometry has it: the maps of this module.
     Corrected,
-    /// The numbered equations: 9, 11, 10, and 19 for a surface in 3D.
+    /// The numbered equations: 9, 11, 10, and for a surface in 3D the shear by M in the text after 19.
     Equations,
-    /// Table 1: its light incidence, curvature and outgoing angle. It has no line for 3D; there Eq.
-    /// 19 with the table's sign.
+    /// Table 1: its light incidence, curvature and outgoing angle. It has no line for 3D;
+    /// there the shear by M with the table's sign.
     Table,
 }
 
@@ -78,7 +78,7 @@ impl Edition {
         SpectrumMap::sections(&self.incidence(theta0), &Map::mirror().spectrum_map())
     }
 
-    /// Curvature in 4D. Eq. 19: a shear by M, without the cosine.
+    /// Curvature in 4D. The text after Eq. 19: a shear by M, without the cosine.
     #[must_use]
     pub fn curvature_4d(self, shape: Matrix<2>, theta0: f64) -> SpectrumMap<4> {
         Map::<4>::curvature(self.signed(shape), self.longitude(theta0)).spectrum_map()
@@ -118,8 +118,8 @@ impl Edition {
         shape.map(|row| row.map(|entry| self.sign() * entry))
     }
 
-    /// The longitude whose cosine is in Eq. 19: the print leaves it out, as if the longitude were
-    /// 0.
+    /// The longitude whose cosine is beside M: the text after Eq. 19 leaves it out, as if the
+    /// longitude were 0.
     fn longitude(self, theta: f64) -> f64 {
         match self {
             Self::Corrected => theta,

@@ -66,8 +66,9 @@ impl Map<4> {
     /// directions about the longitude θ₀.
     ///
     /// `shape` is M, the derivative of the normal along (T, B), symmetric, in 1/m, convex positive:
-    /// diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 leaves cos θ₀ out: tilting the
-    /// normal about T moves a direction at longitude θ₀ by that much less.
+    /// diag(k₁, k₂) in principal axes. Eq. 19 of Durand et al. 2005 is this M. Their text takes
+    /// the step for a shear by M, without cos θ₀; but tilting the normal about T moves a direction at
+    /// longitude θ₀ by that much less.
     #[must_use]
     pub fn curvature(shape: Matrix2, theta0: f64) -> Self {
         Self::tilt(shape, -1.0, theta0)

@@ -30,7 +30,7 @@ pub struct Criterion {
 }
 
 impl Criterion {
-    /// Eq. 20 of Durand et al. 2005, corrected: Ω_ρ |1 + 2kd/cos θ₁|, for an environment with
+    /// Eq. 20 of Durand et al. 2005, at any distance: Ω_ρ |1 + 2kd/cos θ₁|, for an environment with
     /// content at all frequencies.
     #[must_use]
     pub fn environment(&self) -> f64 {
@@ -43,8 +43,8 @@ impl Criterion {
         self.lobe_cutoff.min(self.environment_cutoff) * self.doubled_shear().abs()
     }
 
-    /// An edge before an even environment: Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|. The right form of
-    /// Eq. 21.
+    /// An edge before an even environment: Ω_ρ |1 + d (cos θ₀/d' + 2k)/cos θ₁|. Eq. 21
+    /// at any distance and angle.
     #[must_use]
     pub fn blocker(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() + self.edge()).abs()
@@ -69,15 +69,15 @@ impl Criterion {
         (self.nearness() * behind + turned) / libm::cos(self.outgoing)
     }
 
-    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as a size: it drops the 1. That is right
-    /// where 2kd/cos θ₁ ≫ 1, and not, as the paper says, where d ≫ 1.
+    /// Eq. 20 as printed, d 2k/cos θ₁ Ω_ρ, as a size: an approximation for a far eye, without the 1.
+    /// What must be large is |2kd/cos θ₁|; the paper says d ≫ 1.
     #[must_use]
     pub fn printed_environment(&self) -> f64 {
         self.lobe_cutoff * (self.doubled_shear() - 1.0).abs()
     }
 
-    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|: it lacks the 1 and cos θ₀, and the
-    /// text takes the absolute value of the curvature.
+    /// Eq. 21 as printed, d/cos θ₁ (1/d' + 2k) Ω_ρ, with |k|, as the text says: an
+    /// approximation for a far eye and light along the normal, without the 1 and cos θ₀.
     #[must_use]
     pub fn printed_blocker(&self) -> f64 {
         let nearness = self.blocker_distance.map_or(0.0, f64::recip);

@@ -21,7 +21,7 @@ pub fn cosine_hat(omega: f64) -> f64 {
 /// The coefficient of e^(inθ) in the Fourier series of the clamped cosine on the full circle:
 /// [`cosine_hat`](n/2π)/2π.
 ///
-/// Durand et al. 2005, Eq. 13, is the transform; its values at n/2π over 2π are these.
+/// Durand et al. 2005 print the transform alone (Eq. 13); its values at n/2π over 2π are these.
 #[must_use]
 pub fn cosine_series(n: i32) -> f64 {
     cosine_hat(f64::from(n) / TAU) / TAU

@@ -23,8 +23,8 @@ pub fn differential_irradiance(
 
 /// The differential irradiance dE'_r after the mirror step: 1/|k| env^(Ωx/k) cos⁺^(Ωθ + Ωx/k).
 ///
-/// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺(Ωx/k − Ωθ), without hats and 1/|k|,
-/// and with the sign from before the mirror.
+/// Section 6.1 of Durand et al. 2005 prints ℓ_i(0, Ωx/k) cos⁺^(Ωx/k − Ωθ), without the hat of ℓ_i
+/// and 1/|k|, and with the sign from before the mirror.
 #[must_use]
 pub fn mirrored_differential_irradiance(
     k: f64,
@@ -39,6 +39,7 @@ pub fn mirrored_differential_irradiance(
 /// − k s) dθ.
 ///
 /// A product of spectra, and so a convolution in the primal (Ramamoorthi and Hanrahan 2001).
+/// Section 6.1 of Durand et al. 2005 leaves 1/|k| out.
 #[must_use]
 pub fn irradiance(k: f64, omega_x: f64, environment: &dyn Fn(f64) -> Complex) -> Complex {
     differential_irradiance(k, [omega_x, 0.0], environment)

@@ -117,7 +117,7 @@ impl Reflection<'_> {
     ///
     /// L_o(Ω) = ρ̂'(Ωθ) ∫ L_i(Ωx + k Ωθ − k q, q) f̂(−Ωθ − q) dq after step 6 for one term without
     /// h (docs/theory.md (36)). For an asymmetric f that is f̂(−Ωθ), of which Table 1 of Durand
-    /// et al. 2005 drops the sign; their Eqs. 15 to 17 lack primes and hats.
+    /// et al. 2005 drops the sign, and the hat of ρ̂'; their Eqs. 15 and 17 lack primes.
     #[must_use]
     pub fn spectrum(&self, step: Step, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
         let k = self.curvature;

@@ -140,7 +140,7 @@ fn specular_steps_keep_etendue() {
     let flat = Map::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
     assert!(flat.symplectic_defect(ratio) < ROUNDING);
     assert!((flat.det() - ratio).abs() < ROUNDING);
-    // A surface is no plane across the light; nor is Eq. 19 without its cosine a thing that light
+    // A surface is no plane across the light; nor is a shear by M without its cosine a thing that light
     // does.
     assert!(Map::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
     let nan = Map::<2>::travel(f64::NAN);

@@ -233,7 +233,7 @@ impl<'a> Receiver<'a> {
     }
 
     /// Radiance that leaves the receiver, the same in all directions: albedo / π · E (the paper's
-    /// Eq. 6 with the π that energy asks for).
+    /// Eq. 6, whose ρ is the BRDF, albedo / π).
     fn exitance(&self) -> f64 {
         self.albedo / PI
     }
