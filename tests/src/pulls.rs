@@ -1,8 +1,9 @@
 //! Pulls of measured parameters and slopes, and the cost of predictions, over random scenes.
 //!
 //! A pull is the distance of a measured value from the scene's, or of a measured slope from the
-//! predicted one, in stated errors. If the errors are right, pulls have mean 0 and standard
-//! deviation 1, and their tails are those of a normal distribution.
+//! predicted one, in stated errors, taken from Student's distribution to the normal one. If the
+//! errors are right, pulls have mean 0 and standard deviation 1, and their tails are those of a
+//! normal distribution.
 
 use crate::progress::progress;
 use crate::report::Bound::Below;
@@ -17,6 +18,7 @@ use etendue_scene::{Scene, SceneFile, resolve};
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
+use std::path::PathBuf;
 
 /// Which scenes are measured, and with how many photons.
 #[derive(Debug, clap::Args)]
@@ -33,6 +35,9 @@ pub(crate) struct Options {
     /// Photons of each scene.
     #[arg(long, default_value_t = 1_000_000)]
     photons: u64,
+    /// A folder that all scenes are written to.
+    #[arg(long)]
+    keep: Option<PathBuf>,
 }
 
 /// Shares of a normal distribution beyond 2, 3 and 4 standard deviations.
@@ -107,13 +112,18 @@ fn drawn(options: &Options, number: u64) -> io::Result<Option<Scene>> {
     } else {
         SceneFile::parse(&nets::scene(number)).ok()
     };
-    Ok(file.and_then(|mut file| {
-        file.run.photons = options.photons;
-        // Photons of one seed are the same in all scenes, and so would their noise be.
-        file.run.seed = options.seed + number;
-        file.run.resolution = MAX_NOISE;
-        resolve("scene", file, folder.path(), u64::MAX).ok()
-    }))
+    let Some(mut file) = file else {
+        return Ok(None);
+    };
+    file.run.photons = options.photons;
+    // Photons of one seed are the same in all scenes, and so would their noise be.
+    file.run.seed = options.seed + number;
+    file.run.resolution = MAX_NOISE;
+    if let Some(kept) = &options.keep {
+        fs::create_dir_all(kept)?;
+        fs::write(kept.join(format!("{number}.ron")), wild::text(&file)?)?;
+    }
+    Ok(resolve("scene", file, folder.path(), u64::MAX).ok())
 }
 
 /// Adds the pulls of a scene, and returns what it costs. `None` if no plane has a theory, or the
@@ -154,6 +164,10 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
             continue;
         };
         let report = compared.report;
+        let groups = match prediction.replicates.len() {
+            0 => measurement.batches().len(),
+            replicates => replicates.min(measurement.batches().len()),
+        };
         // Noise above the resolution: errors of so few photons are not those of a normal law.
         if report.exact_verdict() == Verdict::Undecided {
             continue;
@@ -165,7 +179,7 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
                     plane: plane.name.clone(),
                     kind,
                     parameter: parameter.to_owned(),
-                    value,
+                    value: normal(value, groups - 1),
                 });
             }
         };
@@ -187,6 +201,14 @@ fn judged(scene: &Scene, number: u64, pulls: &mut Vec<Pull>) -> io::Result<Optio
         }
     }
     Ok(Some(cost))
+}
+
+/// The number as far out on a normal distribution as `t` is on Student's with so many degrees of
+/// freedom, to 0.01 where these are 30 or more (Abramowitz and Stegun 1964, 26.7.8): an error comes
+/// from the spread of a few dozen batches.
+fn normal(t: f64, freedom: usize) -> f64 {
+    let freedom = freedom as f64;
+    t * (1.0 - 0.25 / freedom) / (1.0 + t * t / (2.0 * freedom)).sqrt()
 }
 
 /// The theory of a plane, and how it is evaluated.

@@ -19,6 +19,7 @@ mod surfaces;
 mod tally;
 
 pub(crate) use judge::HANDFUL;
+pub(crate) use run::text;
 pub(crate) use scene::scene;
 pub(crate) use small::{SmallOptions, small};
 
@@ -26,7 +27,7 @@ use crate::hostile::{child, on_threads};
 use crate::progress::progress;
 use crate::report::Section;
 use judge::{Judged, judge};
-use run::{Runner, text};
+use run::Runner;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};

@@ -83,7 +83,7 @@ impl PlaneSummary {
 }
 
 /// A scene file as its text.
-pub(super) fn text(file: &SceneFile) -> io::Result<String> {
+pub(crate) fn text(file: &SceneFile) -> io::Result<String> {
     let pretty = PrettyConfig::new().depth_limit(3);
     ron::Options::default()
         .with_default_extension(Extensions::IMPLICIT_SOME)

@@ -201,7 +201,7 @@ pub(crate) fn means(
 }
 
 /// Steps of a ray, and those of spreading it on an azimuth.
-const RAY: f64 = 300.0;
+const RAY: f64 = 400.0;
 const SPREAD: f64 = 15.0;
 /// Fields of a pass over derivatives, about.
 const FIELDS: f64 = 12.0;
@@ -216,12 +216,13 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
     let replicates = REPLICATES as f64;
     let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST))).max(1.0);
     let derivatives = OF_DERIVATIVES as f64 * FIELDS;
-    let rays = budget.nodes * (RAY + SPREAD * azimuths);
-    let rays_of_derivatives = derivatives * f64::from(DERIVATIVE_NODES[1]) * SPREAD * azimuths;
+    // Each field of a derivative has rays of its own.
+    let rays = budget.nodes + derivatives * f64::from(DERIVATIVE_NODES[1]);
+    let rays = rays * (RAY + SPREAD * azimuths);
     let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
     let slice = 16.0 * cells;
     Work {
-        steps: rays + rays_of_derivatives + transforms,
+        steps: rays + transforms,
         // Sums of all nets, means of those that end, and the fine grids of a thread.
         bytes: slice * (2.0 * replicates).max(derivatives),
         bytes_each: SliceTransform::new(grid).bytes() * FIELDS,

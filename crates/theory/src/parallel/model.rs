@@ -119,11 +119,11 @@ impl Model for Chain {
     }
 }
 
-/// Steps of a closed form or a quadrature that are accepted for each ray of the budget, of which
-/// there are a quarter as many as photons or 1.1·10⁶: up to ten seconds of one core, or as long as
-/// the photons take. Nets of so few rays have more noise than the photons, so a closed form is worth
-/// some time.
-const MAX_STEPS_PER_RAY: f64 = 3e4;
+/// Steps of a closed form or a quadrature that are accepted: about ten seconds of one core. Nets of
+/// rays that take less have more noise than the photons, so a closed form is worth some time.
+const MAX_STEPS: f64 = 1e10;
+/// Those that are accepted for each ray of the budget, about as long as its four photons take.
+const MAX_STEPS_PER_RAY: f64 = 2e3;
 /// Steps of a closed form or a quadrature that are accepted where nets do not fit into memory.
 const MAX_STEPS_WITHOUT_NETS: f64 = 1e11;
 /// Bytes of a prediction on one core that are accepted.
@@ -141,7 +141,7 @@ impl Chain {
         let work = work(self, window, grid, picture);
         let fits = |work: &Work| work.bytes + work.bytes_each <= MAX_BYTES;
         let max_steps = if fits(&work_of_nets(grid, budget)) {
-            MAX_STEPS_PER_RAY * budget.nodes
+            MAX_STEPS.max(MAX_STEPS_PER_RAY * budget.nodes)
         } else {
             MAX_STEPS_WITHOUT_NETS
         };
@@ -265,7 +265,7 @@ mod tests {
             let chain = chain_of(light, [(1.0, Some(masks)), (1.0, None)]);
             assert_eq!(chain.is_sampled(over, budget), is_sampled, "{exponent}");
             let steps = chain.work(over, budget).steps;
-            assert!(steps <= MAX_STEPS_PER_RAY * budget.nodes, "{exponent}");
+            assert!(steps <= MAX_STEPS, "{exponent}");
         }
     }
 

@@ -75,11 +75,13 @@ fn waves(path: &Path<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
 
 /// Steps at a frequency for a wave and two directions of edges; for a wave and a polygon, whose
 /// corners cancel at some; for a wave at a corner; for a corner; for a product of shapes.
-const WAVE: f64 = 70.0;
-const CANCELLED: f64 = 12.0;
-const AT_CORNER: f64 = 2.0;
-const CORNER: f64 = 10.0;
-const TERM: f64 = 3.0;
+const WAVE: f64 = 13.0;
+const CANCELLED: f64 = 2.3;
+const AT_CORNER: f64 = 0.4;
+const CORNER: f64 = 1.9;
+const TERM: f64 = 0.6;
+/// Frequencies that take as long as the beginning of a row.
+const ROW: f64 = 40.0;
 
 fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &SliceGrid) -> Work {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
@@ -104,7 +106,7 @@ fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &Slice
         let wave = WAVE * pairs[axis] + CANCELLED * polygons[axis] + AT_CORNER * corners[axis];
         waves[axis] * wave + CORNER * corners[axis]
     };
-    let row = count * products * (along(0) + along(1) + TERM * terms);
+    let row = (ROW + count) * products * (along(0) + along(1) + TERM * terms);
     let [p, q] = polygons;
     let phases = corners[0] * waves[0] + corners[1] * waves[1];
     Work {
