@@ -27,6 +27,7 @@ pub(crate) use world::{
   etendue run scenes/fig9b.ron --set blockers.0.pitch=0.05
   etendue check scenes/fig9b.ron                        what the scene says, nothing traced
   etendue measure | predict | compare                   the stages of run, over files
+  etendue diff results/fig9b out/fig9b                  two results of one scene
   etendue sweep scenes/fig9b.ron --set blockers.0.pitch=0.05..0.4:8
 
 Exit codes: 0 pass, 1 disagreement, 2 bad input, 3 cannot run (directory, memory, interrupted), 4 undecided"
@@ -52,6 +53,8 @@ pub(crate) enum Command {
     Check(CheckArgs),
     /// Shrink the neighbourhood of the central ray: how fast the first-order chain comes to the exact prediction.
     Converge(ConvergeArgs),
+    /// Compare two results of one scene: slices, parameters, predictions and the scenes, field by field.
+    Diff(DiffArgs),
     /// Put the pages of several results side by side.
     Report(ReportArgs),
     /// Make figures of Durand et al. 2005 anew: measured and predicted, with data and recipe.
@@ -120,6 +123,10 @@ pub(crate) struct RunArgs {
     /// What else to keep
     #[arg(long, value_name = "WHAT", value_delimiter = ',')]
     pub(crate) save: Vec<Save>,
+
+    /// A small folder for an archive: without CSV and SVG beside the pictures, and without the explorer
+    #[arg(long)]
+    pub(crate) compact: bool,
 
     /// Succeed when measured and predicted disagree, fail when they agree
     #[arg(long, value_name = "OUTCOME")]
@@ -265,6 +272,35 @@ pub(crate) struct ConvergeArgs {
 
     #[command(flatten)]
     pub(crate) threads: ThreadArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue diff results/fig9b out/fig9b                 of two versions of the program
+  etendue diff out/seed1 out/seed2                     is a disagreement chance?
+  etendue diff out/photons out/backward                of two methods
+
+Tested are, over all planes together at level α: the measured slices, by χ² of their difference over both variances, and each
+parameter of the chain, by its pull. Both results need noise of their own: other seeds, or other methods. Results with one
+seed share photons; they are then the same number for number, or undecided. Predictions of one scene must be equal within
+their stated errors. Of scenes with another window or other frequencies at a plane, the plane is not compared.
+
+The test assumes that each result is a mean of many independent batches, so that its noise is normal, and that the noise of both
+is correlated alike from frequency to frequency; where it is not, p is too large rather than too small.
+
+Exit codes: 0 the same but for noise, 1 different, 2 bad input, 4 undecided")]
+pub(crate) struct DiffArgs {
+    /// Folder of `etendue run` or `compare`
+    #[arg(value_name = "A")]
+    pub(crate) a: PathBuf,
+
+    /// Another
+    #[arg(value_name = "B")]
+    pub(crate) b: PathBuf,
+
+    /// Probability of finding a difference where there is none
+    #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share)]
+    pub(crate) alpha: f64,
 }
 
 /// How a scene is measured, where it is not as the scene says.

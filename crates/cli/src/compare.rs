@@ -36,6 +36,7 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
     let ending = Ending {
         save: &[],
         expect: args.expect,
+        compact: false,
         quiet: args.quiet,
     };
     on_threads(&args.threads, || conclude(&case, &ending, results, watch))

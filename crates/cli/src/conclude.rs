@@ -40,8 +40,13 @@ impl Case {
 pub(crate) struct Ending<'a> {
     pub(crate) save: &'a [Save],
     pub(crate) expect: Option<Expect>,
+    /// Without the files that pictures and arrays already say.
+    pub(crate) compact: bool,
     pub(crate) quiet: bool,
 }
+
+/// Ends of names of files that a compact result does without: `report.html` has what is drawn, arrays have the numbers.
+const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
 
 /// What a comparison of a scene writes.
 pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> Plan {
@@ -172,6 +177,9 @@ pub(crate) fn written(
     Judged { planes, summary }: &Judged,
     mut watch: Stopwatch,
 ) -> Result<Finished, Failure> {
+    if ending.compact {
+        results.leave_out(NOT_COMPACT);
+    }
     let each = case.predictions.iter().zip(planes);
     for ((prediction, plane), at) in each.zip(&case.scene.planes) {
         arrays::write(&mut results, summary.made_from(), plane)?;
@@ -184,12 +192,13 @@ pub(crate) fn written(
         )?;
     }
     let path = pictures::path(&mut results, case, planes)?;
-    let data = report::data(case, summary, planes, &path);
+    let explorer = explorer::fragment(&summary.scene_file).filter(|_| !ending.compact);
+    let data = report::data(case, summary, planes, (&path, explorer.as_deref()));
     results.write(
         report::NAME,
         report::page(&case.scene.name, &[(String::new(), data)]).as_bytes(),
     )?;
-    if explorer::fragment(&summary.scene_file).is_some() {
+    if explorer.is_some() {
         results.write(explorer::NAME, explorer::PAGE)?;
     }
     for save in ending.save {

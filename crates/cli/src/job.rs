@@ -279,6 +279,7 @@ impl Outcome {
         let ending = Ending {
             save: &[],
             expect: None,
+            compact: false,
             quiet: true,
         };
         let finished = written(

@@ -13,6 +13,7 @@ mod conclude;
 mod converge;
 mod covariance;
 mod crew;
+mod diff;
 mod drawing;
 mod export;
 mod failure;
@@ -84,6 +85,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Check(args) => check::check(&args),
         Command::Converge(args) => converge::converge(&args),
         Command::Figure(args) => figure::figure(&args),
+        Command::Diff(args) => diff::diff(&args),
         Command::Report(args) => report::report(&args),
         Command::Sweep(args) => sweep::sweep(&args),
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),

@@ -9,6 +9,7 @@ pub(crate) mod batches;
 mod claim;
 mod commit;
 pub(crate) mod exr;
+pub(crate) mod fields;
 pub(crate) mod kept;
 mod lock;
 pub(crate) mod npz;
@@ -83,6 +84,8 @@ pub(crate) struct Results {
     shown: PathBuf,
     plan: Plan,
     hashes: BTreeMap<String, String>,
+    /// Ends of names of planned files that are not written.
+    left_out: &'static [&'static str],
     /// Whether there was no such folder before.
     is_new: bool,
     /// Files of somebody else that a dead process's files replaced.
@@ -129,6 +132,7 @@ impl Results {
             shown: folder.to_owned(),
             plan,
             hashes: BTreeMap::new(),
+            left_out: &[],
             is_new,
             replaced: Vec::new(),
             lock: Some(lock),
@@ -169,6 +173,11 @@ impl Results {
         }
     }
 
+    /// Does not write planned files whose names end so.
+    pub(crate) fn leave_out(&mut self, ends: &'static [&'static str]) {
+        self.left_out = ends;
+    }
+
     /// Writes a file that the index lists.
     pub(crate) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         self.stream(name, &mut |file| file.write_all(bytes))
@@ -180,6 +189,9 @@ impl Results {
         name: &str,
         content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
     ) -> Result<(), Failure> {
+        if self.left_out.iter().any(|end| name.ends_with(end)) {
+            return Ok(());
+        }
         let hash = self.put(name, content)?;
         self.hashes.insert(name.to_owned(), hash);
         Ok(())

@@ -168,6 +168,7 @@ fn stages(
     let ending = Ending {
         save: &args.save,
         expect: args.expect,
+        compact: args.compact,
         quiet: args.quiet,
     };
     let code = conclude(&case, &ending, results, watch)?;

@@ -145,7 +145,7 @@ pub(crate) fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     rows
 }
 
-fn with_unit(name: &str, unit: &str) -> String {
+pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
     } else {
@@ -262,7 +262,7 @@ pub(crate) fn word(verdict: Verdict) -> &'static str {
     }
 }
 
-fn number(value: Option<f64>, digits: usize) -> String {
+pub(crate) fn number(value: Option<f64>, digits: usize) -> String {
     value.map_or("–".to_owned(), |v| fixed(v, digits))
 }
 

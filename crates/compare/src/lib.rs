@@ -3,7 +3,8 @@
 //! [`Applicability`] decides which theory applies to a plane of a scene, or why none does, and
 //! holds what that theory needs to know of the scene. A [`Prediction`] is all that the theory says
 //! about the plane. [`compare`] compares a measurement with it and returns a [`Verdict`].
-//! [`Residuals`] are the differences, with the tests made on them.
+//! [`Residuals`] are the differences, with the tests made on them. [`TwoSamples`] holds two
+//! measurements against each other.
 //!
 //! Nothing here traces photons, and nothing is tuned: the only freedom is the level α of the test,
 //! which the scene sets.
@@ -19,6 +20,7 @@ mod covariance;
 mod dark;
 mod first_order;
 mod memory;
+mod noise;
 mod parallel;
 mod plane;
 mod prediction;
@@ -26,6 +28,8 @@ mod report;
 mod residuals;
 mod score;
 mod system;
+mod tail;
+mod two_samples;
 mod uneven;
 mod verdict;
 mod ways;
@@ -39,6 +43,7 @@ pub use converge::{Convergence, converge};
 pub use covariance::{AXES, CovarianceReport, SliceMoment, TracedPlane};
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use memory::Memory;
+pub use noise::noise_dof;
 pub use plane::{EACH, PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction};
 pub use report::{
@@ -47,6 +52,7 @@ pub use report::{
 pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::{scattered, system};
+pub use two_samples::{Estimate, Sample, TwoSamples, pull};
 pub use verdict::{Test, Verdict, sidak};
 pub use ways::OffPatches;
 pub use work::{TooMuchWork, seconds, too_much_work};

@@ -3,6 +3,7 @@
 use crate::agreement::{Agreement, UNSEEN};
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
+use crate::noise::noise_dof;
 use crate::prediction::Prediction;
 use crate::report::{
     Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
@@ -29,6 +30,9 @@ pub struct PlaneComparison {
     pub predicted: Slices,
     /// Standard deviation of |S − F|, [azimuth, ρ ≥ 0, ν].
     pub sigma: Array3<f64>,
+    /// Standard deviation of |S| alone, likewise, where the prediction has replicates and so noise of
+    /// its own; elsewhere it is `sigma`.
+    pub measured_sigma: Option<Array3<f64>>,
     /// The measured radial spectrum.
     pub radial: RadialPower,
     /// The predicted radial spectrum, [ρ, ν].
@@ -73,9 +77,12 @@ pub fn compare(
     } else {
         None
     };
-    let (variance, predicted_radial) = match &replicates {
-        Some(replicates) => (residuals.variance(), replicates.power()),
-        None => (estimate.variance, predicted.radial_power()),
+    let (variance, measured_variance, predicted_radial) = match &replicates {
+        Some(replicates) => {
+            let variance = residuals.variance();
+            (variance, Some(estimate.variance), replicates.power())
+        }
+        None => (estimate.variance, None, predicted.radial_power()),
     };
     let sides = Compared {
         measurement,
@@ -89,6 +96,7 @@ pub fn compare(
         predicted_radial: &predicted_radial,
     };
     let report = sides.report(&sides.judged(test))?;
+    let measured_sigma = measured_variance.map(|variance| variance.mapv(f64::sqrt));
     let off_chain = prediction.first_order.as_ref().map(|chain| Slices {
         half: &estimate.mean.half - &chain.slices.half,
         ..estimate.mean
@@ -100,6 +108,7 @@ pub fn compare(
         radial: power.radial(),
         radial_sigma: residuals.radial_sigma(&predicted, &variance),
         sigma: variance.mapv(f64::sqrt),
+        measured_sigma,
         predicted_radial,
         predicted,
         projection: estimate::projection(measurement, index)?,
@@ -324,6 +333,7 @@ impl Compared<'_> {
             excess: agreement.excess(),
             excess_squared_error: agreement.excess_squared_error,
             noise_floor_db: agreement.noise_floor_db,
+            noise_dof: noise_dof(self.measurement, self.index)?,
             chi2_per_dof: self.residuals.chi2_per_dof(self.variance),
             p_value: judged.p_value,
             parameters: self.parameters(),

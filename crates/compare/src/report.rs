@@ -111,6 +111,9 @@ pub struct PlaneReport {
     pub excess_squared_error: Option<f64>,
     /// 10 log₁₀ of the mean σ² over the largest |F|².
     pub noise_floor_db: Option<f64>,
+    /// Independent real numbers that the noise of the measured slices amounts to, for a test of two
+    /// results ([`crate::noise_dof`]); `None` without noise.
+    pub noise_dof: Option<f64>,
     /// Mean of |S − F|²/σ², corrected for σ² being estimated.
     pub chi2_per_dof: Option<f64>,
     /// Probability of a disagreement as large as the one seen, if there is none.

@@ -1,6 +1,5 @@
 //! What a page shows of a run.
 
-use super::explorer;
 use crate::case::Case;
 use crate::method::Method;
 use crate::pictures::{light_field_axes, spectrum_axes, verdict_line};
@@ -29,7 +28,7 @@ struct Run<'a> {
     provenance: String,
     scene_file: &'a SceneFile,
     /// What shows it in the explorer.
-    explorer: Option<String>,
+    explorer: Option<&'a str>,
     /// The strip along the path, SVG.
     path: &'a str,
     planes: Vec<Plane<'a>>,
@@ -119,12 +118,13 @@ fn encoded(values: ArrayView2<'_, f64>) -> String {
     STANDARD.encode(bytes.collect::<Vec<u8>>())
 }
 
-/// The data of a run as JSON.
+/// The data of a run as JSON, with the strip along its path as SVG and, where there is one, what shows it in
+/// the explorer beside it.
 pub(crate) fn data(
     case: &Case,
     summary: &Summary,
     planes: &[PlaneComparison],
-    path: &str,
+    (path, explorer): (&str, Option<&str>),
 ) -> String {
     let slices: usize = planes.iter().map(|plane| 3 * 4 * plane.sigma.len()).sum();
     let each = case.scene.planes.iter().zip(planes).zip(&case.predictions);
@@ -154,7 +154,7 @@ pub(crate) fn data(
         words: verdict_text(summary),
         provenance,
         scene_file: &summary.scene_file,
-        explorer: explorer::fragment(&summary.scene_file),
+        explorer,
         path,
         planes: each.collect(),
         tables: [table::planes(summary), table::parameters(summary)],

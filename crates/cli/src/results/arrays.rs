@@ -38,6 +38,8 @@ pub struct SliceArrays {
     pub predicted: Array3<Complex>,
     /// Standard deviation of |measured − predicted| if the prediction is true.
     pub sigma: Array3<f64>,
+    /// Standard deviation of |measured| alone, where the prediction has noise too; elsewhere it is `sigma`.
+    pub measured_sigma: Option<Array3<f64>>,
     /// Cycles per metre.
     pub rho: Array1<f64>,
     /// Cycles per unit of u.
@@ -49,11 +51,13 @@ impl SliceArrays {
     #[must_use]
     pub fn of(plane: &PlaneComparison) -> Self {
         let grid = plane.measured.grid;
+        let measured_sigma = plane.measured_sigma.as_ref();
         Self {
             azimuth: azimuths(&grid),
             measured: plane.measured.full(),
             predicted: plane.predicted.full(),
             sigma: grid.unfold_even(plane.sigma.view()),
+            measured_sigma: measured_sigma.map(|sigma| grid.unfold_even(sigma.view())),
             rho: Array1::from(grid.rho.values()),
             nu: Array1::from(grid.nu.values()),
         }
@@ -62,14 +66,17 @@ impl SliceArrays {
 
 fn slices(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
     let arrays = SliceArrays::of(plane);
-    Npz::new()
+    let npz = Npz::new()
         .add("azimuth", &arrays.azimuth)?
         .add("measured", &arrays.measured)?
         .add("predicted", &arrays.predicted)?
         .add("sigma", &arrays.sigma)?
         .add("rho", &arrays.rho)?
-        .add("nu", &arrays.nu)?
-        .bytes()
+        .add("nu", &arrays.nu)?;
+    match &arrays.measured_sigma {
+        Some(sigma) => npz.add("measured_sigma", sigma)?.bytes(),
+        None => npz.bytes(),
+    }
 }
 
 fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {

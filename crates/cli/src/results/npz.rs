@@ -140,18 +140,8 @@ impl NpzFile {
         shape: I,
     ) -> Result<Array<A, I::Dim>, Failure> {
         let shape = shape.into_dimension();
-        let bytes = self.entry(name, shape.size().saturating_mul(size_of::<A>()))?;
-        if !has_plain_header(&bytes) {
-            return Err(self.fault(name, "its header is not one of an array of numbers"));
-        }
-        // A view takes no memory, whatever size the file claims the array to have: it sees that it is too short.
-        let found = match ArrayView::<A, I::Dim>::view_npy(&bytes) {
-            Ok(view) => view.to_owned(),
-            Err(ViewNpyError::MisalignedData) => {
-                Array::read_npy(&bytes[..]).map_err(|e| self.fault(name, e))?
-            }
-            Err(e) => return Err(self.fault(name, e)),
-        };
+        let found: Array<A, I::Dim> =
+            self.finite(name, shape.size().saturating_mul(size_of::<A>()))?;
         if found.raw_dim() != shape {
             let is = format!(
                 "its shape is {:?}; must be {:?}",
@@ -160,10 +150,49 @@ impl NpzFile {
             );
             return Err(self.fault(name, is));
         }
+        Ok(found.as_standard_layout().into_owned())
+    }
+
+    /// The numbers of an axis, of any length.
+    pub(crate) fn axis(&mut self, name: &str) -> Result<Array1<f64>, Failure> {
+        // What is not compressed is no larger than the file.
+        self.finite(name, self.length)
+    }
+
+    /// Whether the file is long enough for so many numbers of eight bytes, as it is where nothing is compressed.
+    pub(crate) fn may_hold(&self, numbers: usize) -> bool {
+        numbers <= self.length / size_of::<f64>()
+    }
+
+    /// An array of finite numbers that needs at most `bytes`.
+    fn finite<A: Number, D: Dimension>(
+        &mut self,
+        name: &str,
+        bytes: usize,
+    ) -> Result<Array<A, D>, Failure> {
+        let bytes = self.entry(name, bytes)?;
+        if !has_plain_header(&bytes) {
+            return Err(self.fault(name, "its header is not one of an array of numbers"));
+        }
+        // A view takes no memory, whatever size the file claims the array to have: it sees that it is too short.
+        let found = match ArrayView::<A, D>::view_npy(&bytes) {
+            Ok(view) => view.to_owned(),
+            Err(ViewNpyError::MisalignedData) => {
+                Array::read_npy(&bytes[..]).map_err(|e| self.fault(name, e))?
+            }
+            Err(e) => return Err(self.fault(name, e)),
+        };
         if !found.iter().all(|number| number.is_finite()) {
             return Err(self.fault(name, "it holds numbers that are not finite"));
         }
-        Ok(found.as_standard_layout().into_owned())
+        Ok(found)
+    }
+
+    /// Whether it has an array of this name.
+    pub(crate) fn has(&self, name: &str) -> bool {
+        self.archive
+            .index_for_name(&format!("{name}.npy"))
+            .is_some()
     }
 
     /// Its axes must be those of a grid, to the bit.

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use crate::machine;
 use crate::method::Method;
+use crate::results::fields::{FieldChange, difference};
 use crate::results::npz::NpzFile;
 use crate::results::sealed;
 use crate::results::sealed::json;
@@ -148,18 +149,7 @@ impl<T> Stored<T> {
 
     /// The file `name`, whose bytes must be those that were written.
     fn bytes(&self, name: &str) -> Result<Vec<u8>, Failure> {
-        let shown = self.folder.join(name);
-        let shown = shown.display();
-        let hash = self.index.files.get(name);
-        let hash = hash.ok_or_else(|| self.fault(format!("files does not list {name}")))?;
-        let bytes = read_below(&self.folder, name, machine::available_memory())
-            .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
-        if *hash != blake3::hash(&bytes).to_hex().as_str() {
-            let index = self.path.display();
-            let message = format!("{shown} is damaged: its hash is not the one in {index}");
-            return Err(Failure::bad_input(message));
-        }
-        Ok(bytes)
+        listed_bytes(&self.folder, self.name, &self.index.files, name)
     }
 
     /// Fails when `other` is of another scene; with `run`, also when the scene is to be measured in another way.
@@ -186,9 +176,10 @@ impl<T> Stored<T> {
         own: &Value,
         others: &Value,
     ) -> Result<(), Failure> {
-        let Some((field, own, others)) = difference(own, others) else {
+        let Some(FieldChange { field, values }) = difference(own, others) else {
             return Ok(());
         };
+        let [own, others] = values;
         let (path, other) = (self.path.display(), other.path.display());
         Err(Failure::bad_input(format!(
             "{path} and {other} do not fit together: {field} is {own} and {others}"
@@ -199,6 +190,27 @@ impl<T> Stored<T> {
     pub(crate) fn fault(&self, what: impl Display) -> Failure {
         Failure::bad_input(format!("{}: {what}", self.path.display()))
     }
+}
+
+/// The file `name` of a folder, whose bytes must be those that the index called `index` lists in `files`.
+pub(crate) fn listed_bytes(
+    folder: &Path,
+    index: &str,
+    files: &BTreeMap<String, String>,
+    name: &str,
+) -> Result<Vec<u8>, Failure> {
+    let [shown, index] = [name, index].map(|name| folder.join(name));
+    let (shown, index) = (shown.display(), index.display());
+    let hash = files
+        .get(name)
+        .ok_or_else(|| Failure::bad_input(format!("{index}: files does not list {name}")))?;
+    let bytes = read_below(folder, name, machine::available_memory())
+        .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
+    if *hash != blake3::hash(&bytes).to_hex().as_str() {
+        let message = format!("{shown} is damaged: its hash is not the one in {index}");
+        return Err(Failure::bad_input(message));
+    }
+    Ok(bytes)
 }
 
 /// The summary of a run of this very scene, by the same method and version.
@@ -233,40 +245,12 @@ pub(crate) fn check_earlier(
     }
     match difference(&earlier, &now).filter(|_| !force) {
         None => Ok(()),
-        Some((field, earlier, now)) => Err(Failure::cannot_run(format!(
-            "{} holds the result of another scene, in which {field} is {earlier} and not {now}: \
+        Some(FieldChange { field, values }) => Err(Failure::cannot_run(format!(
+            "{} holds the result of another scene, in which {field} is {} and not {}: \
              choose another folder with --out, or replace it with --force",
-            folder.display()
+            folder.display(),
+            values[0],
+            values[1]
         ))),
     }
-}
-
-/// The first field in which two trees differ, named as for `--set`, and what it is in each.
-fn difference(a: &Value, b: &Value) -> Option<(String, String, String)> {
-    let child = |name: &str, a: Option<&Value>, b: Option<&Value>| {
-        let (field, a, b) = difference(a.unwrap_or(&Value::Null), b.unwrap_or(&Value::Null))?;
-        let dot = if field.is_empty() { "" } else { "." };
-        Some((format!("{name}{dot}{field}"), a, b))
-    };
-    match (a, b) {
-        (Value::Object(a), Value::Object(b)) => {
-            let added = b.keys().filter(|name| !a.contains_key(*name));
-            let mut names = a.keys().chain(added);
-            names.find_map(|name| child(name, a.get(name), b.get(name)))
-        }
-        (Value::Array(a), Value::Array(b)) => {
-            (0..a.len().max(b.len())).find_map(|i| child(&i.to_string(), a.get(i), b.get(i)))
-        }
-        _ => (a != b).then(|| (String::new(), brief(a), brief(b))),
-    }
-}
-
-/// A value on part of a line.
-fn brief(value: &Value) -> String {
-    const MOST: usize = 60;
-    let text = value.to_string();
-    if text.chars().count() <= MOST {
-        return text;
-    }
-    text.chars().take(MOST).chain("…".chars()).collect()
 }

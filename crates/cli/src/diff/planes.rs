@@ -1,0 +1,355 @@
+//! One plane of two results: which tests are made, and what they come to.
+
+use super::stored::{StoredPlane, StoredResult, StoredSlices};
+use crate::failure::Failure;
+use crate::results::fields::{FieldChange, differences};
+use etendue_compare::{Class, EACH, Estimate, Sample, TwoSamples, Verdict, pull};
+use etendue_field::{Complex, SliceGrid, percent, tidy};
+use ndarray::Array3;
+use serde_json::{Value, json};
+use std::f64::consts::SQRT_2;
+
+/// A plane of either result.
+pub(super) struct PlaneDiff {
+    pub(super) name: String,
+    pub(super) found: Found,
+}
+
+/// What there is to say of a plane.
+pub(super) enum Found {
+    /// This result does not have it: 0 for the first, 1 for the second.
+    Missing(usize),
+    /// It is measured in other units, on other frequencies or in another window, in words.
+    Unlike(String),
+    /// It is in both, and both look at the same.
+    Compared(Box<Compared>),
+}
+
+/// A plane that both results have.
+pub(super) struct Compared {
+    pub(super) test: TwoSamples,
+    pub(super) parameters: Vec<ParameterDiff>,
+    pub(super) slopes: [Option<Estimate>; 2],
+    pub(super) prediction: PredictionDiff,
+    /// Why the tests leave it undecided although they see no difference.
+    unresolved: Option<String>,
+    /// Why they say nothing whatever they see.
+    invalid: Option<String>,
+    /// The same photons came to the same numbers.
+    pub(super) is_identical: bool,
+}
+
+/// A parameter that both measure.
+pub(super) struct ParameterDiff {
+    pub(super) name: String,
+    pub(super) unit: String,
+    pub(super) estimates: [Estimate; 2],
+    /// (a − b)/√(e_a² + e_b²) and its p-value.
+    pub(super) pull: (f64, f64),
+}
+
+/// How far two predictions are apart.
+pub(super) struct PredictionDiff {
+    /// ‖F_A − F_B‖ over the larger norm.
+    pub(super) difference: f64,
+    /// Both were predicted for one scene, and are farther apart than their errors.
+    pub(super) is_wrong: bool,
+}
+
+/// Numbers that differ by less are equal but for the rounding of sums.
+pub(super) const ROUNDING: f64 = 1e-12;
+/// Closed forms of two versions may order their sums in other ways: rounding of their largest terms.
+const CLOSED_FORM: f64 = 1e-9;
+/// Combined standard errors beyond which two predictions are not the same. The error is a norm over
+/// all frequencies, which hardly fluctuates.
+const APART: f64 = 3.0;
+/// Probability, over all planes, that independent noise passes for shared photons.
+const SHARED: f64 = 1e-4;
+
+impl PlaneDiff {
+    pub(super) fn compared(&self) -> Option<&Compared> {
+        match &self.found {
+            Found::Compared(compared) => Some(compared),
+            _ => None,
+        }
+    }
+
+    pub(super) fn verdict(&self, level: f64) -> Verdict {
+        self.compared()
+            .map_or(Verdict::Undecided, |compared| compared.verdict(level))
+    }
+
+    /// Why it is undecided.
+    pub(super) fn undecided(&self, level: f64) -> Option<String> {
+        match &self.found {
+            Found::Missing(0) => Some("only the second result has this plane".to_owned()),
+            Found::Missing(_) => Some("only the first result has this plane".to_owned()),
+            Found::Unlike(why) => Some(why.clone()),
+            Found::Compared(compared) => {
+                let reason = compared.invalid.as_ref().or(compared.unresolved.as_ref());
+                let is_open = compared.verdict(level) == Verdict::Undecided;
+                reason.filter(|_| is_open).cloned()
+            }
+        }
+    }
+}
+
+impl Compared {
+    /// Parameters with their pulls, those that are tested.
+    pub(super) fn pulls(&self) -> impl Iterator<Item = &ParameterDiff> {
+        self.parameters.iter().filter(|_| self.invalid.is_none())
+    }
+
+    /// What differs beyond noise, in words.
+    pub(super) fn differing(&self, level: f64) -> Vec<String> {
+        let mut differing = Vec::new();
+        if self.invalid.is_none() && self.test.p_value.is_some_and(|p| p < level) {
+            differing.push("slices".to_owned());
+        }
+        let pulls = self.pulls().filter(|parameter| parameter.pull.1 < level);
+        differing.extend(pulls.map(|parameter| parameter.name.clone()));
+        differing.extend(self.prediction.is_wrong.then(|| "prediction".to_owned()));
+        differing
+    }
+
+    fn verdict(&self, level: f64) -> Verdict {
+        if !self.differing(level).is_empty() {
+            Verdict::Fail
+        } else if self.invalid.is_some() || self.unresolved.is_some() {
+            Verdict::Undecided
+        } else {
+            Verdict::Pass
+        }
+    }
+}
+
+/// All planes of two results, those of the first in its order.
+pub(super) fn of_results(
+    a: &StoredResult,
+    b: &StoredResult,
+    is_one_scene: bool,
+) -> Result<Vec<PlaneDiff>, Failure> {
+    let common = a.index.planes.iter().map(|plane| {
+        let found = match b.plane(&plane.name) {
+            Some(other) => Pair { a, b, is_one_scene }.found(plane, other)?,
+            None => Found::Missing(1),
+        };
+        let name = plane.name.clone();
+        Ok(PlaneDiff { name, found })
+    });
+    let mut planes: Vec<PlaneDiff> = common.collect::<Result<_, Failure>>()?;
+    let added = b.index.planes.iter();
+    let added = added.filter(|plane| a.plane(&plane.name).is_none());
+    planes.extend(added.map(|plane| PlaneDiff {
+        name: plane.name.clone(),
+        found: Found::Missing(0),
+    }));
+    Ok(planes)
+}
+
+/// Two results, of one scene or not.
+struct Pair<'a> {
+    a: &'a StoredResult,
+    b: &'a StoredResult,
+    is_one_scene: bool,
+}
+
+impl Pair<'_> {
+    fn found(&self, of_a: &StoredPlane, of_b: &StoredPlane) -> Result<Found, Failure> {
+        let (a, b) = (self.a.slices(of_a)?, self.b.slices(of_b)?);
+        if let Some(why) = self.unlike(&of_a.name, &a, &b) {
+            return Ok(Found::Unlike(why));
+        }
+        let test = TwoSamples::new(&a.grid, &a.sample, &b.sample);
+        let is_identical = self.has_one_seed() && test.difference <= ROUNDING;
+        let compared = Compared {
+            parameters: self.parameters(of_a, of_b),
+            slopes: [
+                of_a.slope.estimate(self.a.index.batches),
+                of_b.slope.estimate(self.b.index.batches),
+            ],
+            prediction: self.prediction([of_a, of_b], &a, &b),
+            invalid: (!is_identical)
+                .then(|| self.invalid([of_a, of_b], [&a, &b]))
+                .flatten(),
+            unresolved: (!is_identical).then(|| self.unresolved(&test)).flatten(),
+            is_identical,
+            test,
+        };
+        Ok(Found::Compared(Box::new(compared)))
+    }
+
+    /// Whether both have the same photons, as far as the scenes let them.
+    fn has_one_seed(&self) -> bool {
+        let [a, b] = [self.a, self.b].map(|result| {
+            let index = &result.index;
+            (&index.method, index.seed, index.photons, index.batches)
+        });
+        a == b
+    }
+
+    /// Why slices of both cannot be subtracted.
+    fn unlike(&self, name: &str, a: &StoredSlices, b: &StoredSlices) -> Option<String> {
+        let [left, right] = [self.a, self.b].map(|result| view(&result.index.scene_file, name));
+        if let Some(FieldChange { field, values }) = differences(&left, &right).into_iter().next() {
+            return Some(format!("its {field} is {}", values.join(" and ")));
+        }
+        let names = ["azimuths", "frequencies ρ", "frequencies ν"];
+        let mut axes = names.iter().zip(a.axes.iter().zip(&b.axes));
+        let (name, (a, b)) = axes.find(|(_, (a, b))| a != b)?;
+        let brief = |axis: &ndarray::Array1<f64>| {
+            let last = axis.iter().copied().fold(0.0, f64::max);
+            format!("{} up to {}", axis.len(), tidy(last))
+        };
+        Some(format!(
+            "it has other {name}: {} and {}",
+            brief(a),
+            brief(b)
+        ))
+    }
+
+    fn parameters(&self, a: &StoredPlane, b: &StoredPlane) -> Vec<ParameterDiff> {
+        let batches = [self.a, self.b].map(|result| result.index.batches);
+        let each = a.parameters.iter().filter(|p| p.is_determined());
+        let each = each.filter_map(|of_a| {
+            let mut others = b.parameters.iter().filter(|p| p.is_determined());
+            let of_b = others.find(|p| p.name == of_a.name && p.unit == of_a.unit)?;
+            let estimates = [
+                of_a.number.estimate(batches[0])?,
+                of_b.number.estimate(batches[1])?,
+            ];
+            Some(ParameterDiff {
+                name: of_a.name.clone(),
+                unit: of_a.unit.clone(),
+                pull: pull(estimates[0], estimates[1])?,
+                estimates,
+            })
+        });
+        each.collect()
+    }
+
+    fn prediction(
+        &self,
+        planes: [&StoredPlane; 2],
+        a: &StoredSlices,
+        b: &StoredSlices,
+    ) -> PredictionDiff {
+        let difference = apart(&a.grid, &a.predicted, &b.predicted);
+        let error = |plane: &StoredPlane| plane.quadrature_error.unwrap_or(0.0).powi(2);
+        let error: f64 = planes.into_iter().map(error).sum();
+        // What stands in for a prediction there is another measurement.
+        let reference = Class::Reference.to_string();
+        let is_reference = planes.iter().any(|plane| plane.class == reference);
+        let allowed = CLOSED_FORM.max(APART * error.sqrt());
+        PredictionDiff {
+            difference,
+            is_wrong: self.is_one_scene && !is_reference && difference > allowed,
+        }
+    }
+
+    /// Why the tests say nothing of these photons, whatever they see.
+    fn invalid(&self, planes: [&StoredPlane; 2], slices: [&StoredSlices; 2]) -> Option<String> {
+        let results = [self.a, self.b];
+        for ((plane, slices), result) in planes.into_iter().zip(slices).zip(results) {
+            let folder = result.folder.display();
+            let Sample {
+                sigma, noise_dof, ..
+            } = &slices.sample;
+            if noise_dof.is_none() && sigma.iter().any(|sigma| *sigma > 0.0) {
+                return Some(format!(
+                    "{folder} keeps no noise_dof, which results have from this version on: run it again"
+                ));
+            }
+            let each = plane.in_window as f64 / result.index.batches as f64;
+            // The other's light says enough of a plane that is dark here.
+            if plane.in_window > 0 && each < EACH {
+                return Some(format!(
+                    "{folder} has {} photons in its window, too few for a test",
+                    plane.in_window
+                ));
+            }
+            if let Some(each) = carried_by(&slices.sample, &slices.grid) {
+                return Some(format!(
+                    "a few heavy photons carry the light of {folder}, which varies as if each batch held {each:.1}"
+                ));
+            }
+        }
+        None
+    }
+
+    /// Why a test that sees no difference does not mean that there is none.
+    fn unresolved(&self, test: &TwoSamples) -> Option<String> {
+        let [a, b] = [self.a, self.b].map(|result| &result.index);
+        let [apart, noise] = [test.difference, test.noise].map(|share| percent(share, 3));
+        let planes = a.planes.len().max(1) as f64;
+        if test.p_shared.is_some_and(|p| p < SHARED / planes) {
+            let seeds = if a.seed == b.seed {
+                format!("both have seed {}, and share photons", a.seed)
+            } else {
+                "they share photons, or their noise is overstated".to_owned()
+            };
+            return Some(format!(
+                "{apart} apart, where independent noise makes {noise}: {seeds}; run one with another seed"
+            ));
+        }
+        let resolution = [a, b].map(|r| r.scene_file["run"]["resolution"].as_f64());
+        // Two results of this noise each are as far apart as its root mean square sum.
+        let resolution = SQRT_2 * resolution.into_iter().flatten().fold(0.0, f64::max);
+        (test.noise > resolution).then(|| {
+            let resolution = percent(resolution, 3);
+            format!("noise is {noise} of the spectrum, above {resolution}, √2 times the resolution of the scene")
+        })
+    }
+}
+
+/// Photons of equal weight in a batch that would vary as the light of this sample does, where they
+/// are so few that a batch would hold none: as for a single run (`etendue_compare`).
+fn carried_by(sample: &Sample, grid: &SliceGrid) -> Option<f64> {
+    let zero = [0, 0, grid.nu.half];
+    let batches = sample.batches as f64;
+    let [light, sigma] = [sample.mean[zero].re, sample.sigma[zero]];
+    let each = light * light / (batches * sigma * sigma);
+    (sigma > 0.0 && each < libm::log(batches)).then_some(each)
+}
+
+/// ‖a − b‖ over the larger norm; 0 if both are dark.
+fn apart(grid: &SliceGrid, a: &Array3<Complex>, b: &Array3<Complex>) -> f64 {
+    let sample = |mean: &Array3<Complex>| Sample {
+        mean: mean.clone(),
+        sigma: Array3::zeros(mean.raw_dim()),
+        noise_dof: None,
+        batches: 3,
+    };
+    TwoSamples::new(grid, &sample(a), &sample(b)).difference
+}
+
+/// What the slices of a plane are of: its window, quantity and coordinates.
+fn view(scene_file: &Value, name: &str) -> Value {
+    let planes = scene_file["planes"].as_array();
+    let mut planes = planes.into_iter().flatten();
+    let plane = planes.find(|plane| plane["name"] == name);
+    let plane = plane.unwrap_or(&Value::Null);
+    let own = &plane["window"];
+    let window = if own.is_null() {
+        &scene_file["window"]
+    } else {
+        own
+    };
+    // Profiles across are those along unless the scene has others.
+    let profile = |name: &str, along: &str| {
+        let own = &window[name];
+        if own.is_null() {
+            window[along].clone()
+        } else {
+            own.clone()
+        }
+    };
+    json!({
+        "window": {
+            "x": window["x"], "y": profile("y", "x"),
+            "u": window["u"], "v": profile("v", "u"),
+        },
+        "quantity": plane["quantity"],
+        "orientation": plane["orientation"],
+    })
+}

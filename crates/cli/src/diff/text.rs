@@ -1,0 +1,210 @@
+//! What `etendue diff` prints.
+
+use super::planes::{Compared, Found, PlaneDiff, ROUNDING};
+use super::stored::{ResultIndex, StoredResult};
+use super::{Diff, has_other_inputs, is_of_run};
+use crate::results::fields::FieldChange;
+use crate::table::{aligned, grouped, number, percent, with_unit};
+use etendue_compare::{Estimate, Verdict};
+use etendue_field::{percent as percent_of, tidy, uncertain};
+
+/// Most fields of the scene that are listed.
+const MOST_FIELDS: usize = 20;
+
+pub(super) fn text(diff: &Diff) -> String {
+    let mut lines = vec![header('A', &diff.results[0]), header('B', &diff.results[1])];
+    lines.extend(scene(diff));
+    lines.push(String::new());
+    lines.extend(aligned(planes(diff)));
+    let parameters = parameters(diff);
+    if parameters.len() > 1 {
+        lines.push(String::new());
+        lines.extend(aligned(parameters));
+    }
+    lines.push(String::new());
+    lines.push(format!("verdict: {}", verdict(diff)));
+    lines.join("\n")
+}
+
+fn header(letter: char, result: &StoredResult) -> String {
+    let ResultIndex {
+        scene,
+        version,
+        seed,
+        method,
+        photons,
+        batches,
+        ..
+    } = &result.index;
+    format!(
+        "{letter}: {}: {scene}, {} photons in {batches} batches, method {method}, seed {seed}, version {version}",
+        result.folder.display(),
+        grouped(*photons)
+    )
+}
+
+/// How the scenes differ.
+fn scene(diff: &Diff) -> Vec<String> {
+    let [a, b] = &diff.results;
+    let changes = &diff.scene;
+    if has_other_inputs(a, b, changes) {
+        return vec!["scene: its fields are the same, a mesh or a picture is another".to_owned()];
+    }
+    if changes.is_empty() {
+        return vec!["scene: the same".to_owned()];
+    }
+    let head = if changes.iter().all(is_of_run) {
+        "scene: the same, but run in another way"
+    } else {
+        "scene: another"
+    };
+    let shown = changes.iter().take(MOST_FIELDS);
+    let mut lines = vec![head.to_owned()];
+    lines.extend(shown.map(|FieldChange { field, values }| {
+        format!("  {}: {}", without_variants(field), values.join(" and "))
+    }));
+    let more = changes.len().saturating_sub(MOST_FIELDS);
+    lines.extend((more > 0).then(|| format!("  and {more} more")));
+    lines
+}
+
+/// A field as `--set` takes it: `blockers.0.pitch`, not `blockers.0.JitteredSquares.pitch`.
+fn without_variants(field: &str) -> String {
+    let parts: Vec<&str> = field.split('.').collect();
+    let last = parts.len() - 1;
+    let is_variant = |part: &str| part.starts_with(char::is_uppercase);
+    let kept = parts.iter().enumerate();
+    let kept = kept.filter(|(i, part)| *i == last || !is_variant(part));
+    kept.map(|(_, part)| *part).collect::<Vec<_>>().join(".")
+}
+
+fn planes(diff: &Diff) -> Vec<Vec<String>> {
+    let header = [
+        "plane",
+        "χ²/dof",
+        "p",
+        "difference",
+        "noise alone",
+        "shear slope A [m]",
+        "B",
+        "σ apart",
+        "predictions",
+        "verdict",
+    ];
+    let level = diff.level();
+    let rows = diff.planes.iter().map(|plane| {
+        let mut row = vec![plane.name.clone()];
+        row.extend(match plane.compared() {
+            Some(compared) => cells(compared),
+            None => vec!["–".to_owned(); 8],
+        });
+        row.push(word(plane.verdict(level)).to_owned());
+        row
+    });
+    std::iter::once(header.map(str::to_owned).to_vec())
+        .chain(rows)
+        .collect()
+}
+
+fn cells(plane: &Compared) -> Vec<String> {
+    let test = &plane.test;
+    let slope = |slope: Option<Estimate>| slope.map_or("–".to_owned(), shown);
+    let [a, b] = plane.slopes;
+    let pull = a.zip(b).and_then(|(a, b)| etendue_compare::pull(a, b));
+    let predictions = if plane.prediction.difference <= ROUNDING {
+        "the same".to_owned()
+    } else {
+        format!("{} apart", percent_of(plane.prediction.difference, 3))
+    };
+    vec![
+        number(test.chi2_per_dof, 3),
+        number(test.p_value, 5),
+        percent(Some(test.difference)),
+        percent(Some(test.noise)),
+        slope(a),
+        slope(b),
+        number(pull.map(|(pull, _)| pull), 2),
+        predictions,
+    ]
+}
+
+fn shown(estimate: Estimate) -> String {
+    uncertain(estimate.value, estimate.error)
+}
+
+fn parameters(diff: &Diff) -> Vec<Vec<String>> {
+    let header = ["plane", "parameter", "A", "B", "σ apart", "p"];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for plane in &diff.planes {
+        let found = plane.compared().map(|compared| &compared.parameters);
+        for parameter in found.into_iter().flatten() {
+            let [a, b] = parameter.estimates;
+            let (pull, p) = parameter.pull;
+            rows.push(vec![
+                plane.name.clone(),
+                with_unit(&parameter.name, &parameter.unit),
+                shown(a),
+                shown(b),
+                number(Some(pull), 2),
+                number(Some(p), 5),
+            ]);
+        }
+    }
+    rows
+}
+
+fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "same",
+        Verdict::Fail => "different",
+        Verdict::Undecided => "undecided",
+    }
+}
+
+/// The verdict in a sentence, with its reasons.
+fn verdict(diff: &Diff) -> String {
+    let level = diff.level();
+    let alpha = format!("{} %", tidy(100.0 * diff.alpha));
+    match diff.verdict() {
+        Verdict::Pass if diff.planes.iter().all(is_identical) => {
+            let same_bytes = diff.planes.iter().all(|plane| has_same_bytes(diff, plane));
+            let how = if same_bytes {
+                "byte for byte"
+            } else {
+                "but for rounding"
+            };
+            format!("same: both have the same seed and photons, and the same numbers {how}")
+        }
+        Verdict::Pass => {
+            let [slices, parameters] = diff.tests();
+            format!(
+                "same: nothing differs beyond noise (α = {alpha} over {slices} planes and {parameters} parameters: p ≥ {level:.1e} at each)"
+            )
+        }
+        Verdict::Fail => {
+            let differing = diff.planes.iter().filter_map(|plane| {
+                let what = plane.compared()?.differing(level);
+                (!what.is_empty()).then(|| format!("{} at {}", what.join(", "), plane.name))
+            });
+            let differing: Vec<String> = differing.collect();
+            let differing = differing.join("; ");
+            format!("different: {differing} (α = {alpha} over all tests: p < {level:.1e})")
+        }
+        Verdict::Undecided => {
+            let reasons = diff.planes.iter().filter_map(|plane| {
+                let reason = plane.undecided(level)?;
+                Some(format!("\n  {}: {reason}", plane.name))
+            });
+            format!("undecided:{}", reasons.collect::<String>())
+        }
+    }
+}
+
+fn is_identical(plane: &PlaneDiff) -> bool {
+    matches!(&plane.found, Found::Compared(compared) if compared.is_identical)
+}
+
+fn has_same_bytes(diff: &Diff, plane: &PlaneDiff) -> bool {
+    let [a, b] = &diff.results;
+    a.hash(&plane.name) == b.hash(&plane.name)
+}

@@ -1,0 +1,325 @@
+//! `etendue diff`: two results of one scene.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{SCENE, call, etendue, json, refused, sealed};
+use std::fs;
+use std::path::Path;
+use tempfile::TempDir;
+
+/// The small scene with enough photons for a verdict, and runs of it into folders.
+fn runs(each: &[&str]) -> TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    for arguments in each {
+        let output = call(
+            folder.path(),
+            &format!("run small.ron --compact {arguments}"),
+        );
+        assert!(
+            matches!(output.status.code(), Some(0 | 4)),
+            "{arguments}: {output:?}"
+        );
+    }
+    folder
+}
+
+/// Exit code and text of `diff`.
+fn diff(folder: &Path, arguments: &str) -> (Option<i32>, String) {
+    let output = etendue()
+        .current_dir(folder)
+        .arg("diff")
+        .args(arguments.split_whitespace())
+        .output()
+        .unwrap();
+    assert!(output.stderr.is_empty(), "{output:?}");
+    let text = String::from_utf8(output.stdout).unwrap();
+    (output.status.code(), text)
+}
+
+#[track_caller]
+fn found(folder: &TempDir, arguments: &str, code: i32, parts: &[&str]) {
+    let (found, text) = diff(folder.path(), arguments);
+    assert_eq!(found, Some(code), "{arguments}: {text}");
+    for part in parts {
+        assert!(text.contains(part), "{arguments}: no {part} in {text}");
+    }
+}
+
+#[test]
+fn two_results_are_told_apart_when_they_differ() {
+    let folder = runs(&[
+        "--photons 2^16 --seed 1 --out a",
+        "--photons 2^16 --seed 2 --out b",
+        "--photons 2^16 --seed 2 --method backward --out backward",
+        "--photons 2^16 --seed 1 --threads 1 --out again",
+        "--photons 2^15 --seed 1 --out half",
+        "--photons 2^16 --seed 3 --set blockers.0.pitch=0.11 --out pitch",
+        "--photons 2^16 --seed 3 --set light.radiance=1.1 --out bright",
+        "--photons 2^9 --seed 3 --out few",
+        "--photons 2^16 --seed 3 --set window.u=Hann(0.2) --out window",
+        "--photons 2^16 --seed 3 --set frequencies.rho.max=7 --out grid",
+    ]);
+    let seeds = ["seed 1, version", "seed 2, version", "run.seed: 1 and 2"];
+    let same = "verdict: same: nothing differs beyond noise";
+    found(
+        &folder,
+        "a b",
+        0,
+        &[&seeds[..], &[same, "the same, but run"]].concat(),
+    );
+    found(&folder, "a backward", 0, &["method backward", same]);
+    // Shared photons: the same bytes, or undecided.
+    found(
+        &folder,
+        "a again",
+        0,
+        &["scene: the same\n", "the same numbers byte for byte"],
+    );
+    found(
+        &folder,
+        "a half",
+        4,
+        &["both have seed 1, and share photons"],
+    );
+    // Other scenes.
+    let pitch = [
+        "scene: another",
+        "blockers.0.pitch: 0.10000000000000002 and 0.11",
+        "verdict: different: slices",
+        "side of blockers at receiver",
+    ];
+    found(&folder, "a pitch", 1, &pitch);
+    let bright = [
+        "light.radiance: 1.0 and 1.1",
+        "different: slices at light; slices at receiver",
+    ];
+    found(&folder, "a bright", 1, &bright);
+    // Noise, windows and frequencies.
+    found(&folder, "a few", 4, &["undecided:", "light: noise is"]);
+    found(
+        &folder,
+        "a window",
+        4,
+        &["its window.u.Hann is 0.30000000000000004 and 0.2"],
+    );
+    found(
+        &folder,
+        "a grid",
+        4,
+        &["it has other frequencies ρ: 13 up to 6 and 15 up to 7"],
+    );
+}
+
+#[test]
+fn planes_that_one_result_lacks_are_named() {
+    let folder = runs(&["--photons 2^14 --seed 1 --out a"]);
+    let lone = SCENE.replace("(name: \"light\", at: Emission), ", "");
+    assert_ne!(lone, SCENE);
+    fs::write(folder.path().join("small.ron"), &lone).unwrap();
+    call(
+        folder.path(),
+        "run small.ron --photons 2^14 --seed 2 --out lone",
+    );
+    found(
+        &folder,
+        "a lone",
+        4,
+        &["light: only the first result has this plane"],
+    );
+    found(
+        &folder,
+        "lone a",
+        4,
+        &["light: only the second result has this plane"],
+    );
+    let renamed = lone.replace("receiver", "elsewhere");
+    fs::write(folder.path().join("small.ron"), renamed).unwrap();
+    call(
+        folder.path(),
+        "run small.ron --photons 2^14 --seed 2 --out other",
+    );
+    let output = etendue()
+        .current_dir(folder.path())
+        .args(["diff", "a", "other"])
+        .output()
+        .unwrap();
+    assert_eq!(output.status.code(), Some(2), "{output:?}");
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(message.contains("no plane in common"), "{message}");
+}
+
+/// Refuses in one line that names the file.
+#[track_caller]
+fn refuses(folder: &Path, parts: &[&str]) {
+    for arguments in ["a b", "b a"] {
+        let output = etendue()
+            .current_dir(folder)
+            .arg("diff")
+            .args(arguments.split_whitespace())
+            .output()
+            .unwrap();
+        let message = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(2), "{parts:?}: {message}");
+        assert_eq!(message.lines().count(), 1, "{message}");
+        for part in parts {
+            assert!(message.contains(part), "no {part} in {message}");
+        }
+        assert!(output.stdout.is_empty());
+    }
+}
+
+#[test]
+fn damaged_folders_are_refused_by_name() {
+    let folder = runs(&[
+        "--photons 2^12 --seed 1 --out a",
+        "--photons 2^12 --seed 2 --out b",
+    ]);
+    let path = folder.path();
+    let [summary, slices] = ["b/summary.json", "b/light/slices.npz"].map(|name| path.join(name));
+    let [index, arrays] = [&summary, &slices].map(|file| fs::read(file).unwrap());
+
+    fs::write(&slices, &arrays[..arrays.len() / 2]).unwrap();
+    refuses(path, &["b/light/slices.npz is damaged"]);
+    fs::remove_file(&slices).unwrap();
+    refuses(path, &["cannot read b/light/slices.npz"]);
+    fs::write(&slices, &arrays).unwrap();
+
+    for broken in [
+        &b"{"[..],
+        b"",
+        b"[]",
+        b"{\"planes\": []}",
+        &index[..index.len() / 2],
+    ] {
+        fs::write(&summary, broken).unwrap();
+        refuses(path, &["b/summary.json: it is no summary of a run"]);
+    }
+    let text = String::from_utf8(index.clone()).unwrap();
+    fs::write(&summary, text.replace("\"seed\": 2", "\"seed\": 3")).unwrap();
+    refuses(
+        path,
+        &["b/summary.json: it was changed since it was written"],
+    );
+    fs::remove_file(&summary).unwrap();
+    refuses(path, &["cannot read b/summary.json"]);
+
+    // Indices that were made anew around anything.
+    let mut tree: serde_json::Value = serde_json::from_slice(&index).unwrap();
+    tree["batches"] = 2.into();
+    fs::write(&summary, sealed(tree.clone())).unwrap();
+    refuses(path, &["b/summary.json: batches: 2"]);
+    tree["batches"] = 64.into();
+    tree["files"]["light/slices.npz"] = "".into();
+    fs::write(&summary, sealed(tree.clone())).unwrap();
+    refuses(path, &["b/light/slices.npz is damaged"]);
+    tree["files"]
+        .as_object_mut()
+        .unwrap()
+        .remove("light/slices.npz");
+    fs::write(&summary, sealed(tree)).unwrap();
+    refuses(
+        path,
+        &["b/summary.json: files does not list light/slices.npz"],
+    );
+}
+
+#[test]
+fn arrays_that_do_not_fit_are_refused() {
+    let folder = runs(&[
+        "--photons 2^12 --seed 1 --out a",
+        "--photons 2^12 --seed 2 --out b",
+    ]);
+    let path = folder.path();
+    let mut tree = json(&path.join("b/summary.json"));
+    // The arrays of another plane's radial spectrum have no slices.
+    let other = fs::read(path.join("b/light/radial.npz")).unwrap();
+    fs::write(path.join("b/light/slices.npz"), &other).unwrap();
+    tree["files"]["light/slices.npz"] = blake3::hash(&other).to_hex().as_str().into();
+    fs::write(path.join("b/summary.json"), sealed(tree)).unwrap();
+    refuses(path, &["b/light/slices.npz: array azimuth"]);
+}
+
+#[test]
+fn results_of_earlier_versions_are_undecided() {
+    let folder = runs(&[
+        "--photons 2^14 --seed 1 --out a",
+        "--photons 2^14 --seed 2 --out b",
+    ]);
+    let summary = folder.path().join("b/summary.json");
+    let mut tree = json(&summary);
+    tree["version"] = "0.0.1".into();
+    for plane in tree["planes"].as_array_mut().unwrap() {
+        plane.as_object_mut().unwrap().remove("noise_dof");
+    }
+    fs::write(&summary, sealed(tree)).unwrap();
+    let parts = ["version 0.0.1", "b keeps no noise_dof"];
+    found(&folder, "a b", 4, &parts);
+}
+
+#[test]
+fn the_same_photons_are_compared_number_by_number() {
+    let folder = runs(&[
+        "--photons 2^16 --seed 1 --out a",
+        "--photons 2^16 --seed 1 --set run.alpha=0.02 --out b",
+        "--photons 2^16 --seed 1 --set blockers.0.pitch=0.11 --out pitch",
+        "--photons 2^16 --seed 1 --set blockers.0.fill=0.601 --out fill",
+    ]);
+    let parts = ["run.alpha: 0.01 and 0.02", "the same numbers"];
+    found(&folder, "a b", 0, &parts);
+    // Light has not met the blockers at the first plane.
+    let (code, text) = diff(folder.path(), "a pitch");
+    assert_eq!(code, Some(1), "{text}");
+    let light = text
+        .lines()
+        .find(|line| line.starts_with("light "))
+        .unwrap();
+    assert!(
+        light.ends_with("same") && light.contains("0.000 %"),
+        "{text}"
+    );
+    // A difference far below the noise, behind noise that both share.
+    found(
+        &folder,
+        "a fill",
+        4,
+        &["receiver: ", "both have seed 1, and share photons"],
+    );
+}
+
+#[test]
+fn a_compact_result_is_whole() {
+    let folder = runs(&["--photons 2^12 --seed 1 --out a"]);
+    let listed = json(&folder.path().join("a/summary.json"));
+    let listed: Vec<&String> = listed["files"].as_object().unwrap().keys().collect();
+    assert!(
+        listed
+            .iter()
+            .all(|name| folder.path().join("a").join(name).exists())
+    );
+    assert!(
+        !listed
+            .iter()
+            .any(|name| name.ends_with(".csv") || name.ends_with(".svg"))
+    );
+    for name in ["report.html", "path.png", "receiver/slices.npz"] {
+        assert!(listed.iter().any(|listed| *listed == name), "{name}");
+    }
+    let output = call_report(folder.path());
+    assert_eq!(output.status.code(), Some(0), "{output:?}");
+    refused(
+        folder.path(),
+        "run nothing.ron --compact --out out",
+        &["nothing.ron"],
+    );
+}
+
+fn call_report(folder: &Path) -> std::process::Output {
+    etendue()
+        .current_dir(folder)
+        .args(["report", "a", "--out", "page.html"])
+        .output()
+        .unwrap()
+}

@@ -1,0 +1,44 @@
+//! How many independent numbers the noise of measured slices amounts to.
+
+use crate::residuals::Residuals;
+use etendue_spectrum::Measurement;
+use etendue_spectrum::estimate::{self, TooFewBatches};
+
+/// The number of independent normal real numbers whose mean square fluctuates as that of the noise
+/// of plane `plane` does, each frequency in units of its own σ.
+///
+/// The window correlates neighbouring frequencies. With C the covariance of the noise over its σ,
+/// the mean of |S − E S|²/σ² over m frequencies has the variance 2 tr C²/m², like the mean square of
+/// (tr C)²/tr C² numbers (Satterthwaite 1946). The batches give the sample covariance Ĉ of n = R − 1
+/// degrees of freedom, and n²/((n − 1)(n + 2)) · (tr Ĉ² − (tr Ĉ)²/n) is an unbiased estimate of
+/// tr C² for normal noise (Srivastava 2005, Eq. 2.4).
+///
+/// `None` without noise.
+///
+/// # Errors
+/// With fewer than three batches.
+pub fn noise_dof(measurement: &Measurement, plane: usize) -> Result<Option<f64>, TooFewBatches> {
+    let batches = measurement.batches().len();
+    if batches < 3 {
+        let have = batches;
+        return Err(TooFewBatches { have, need: 3 });
+    }
+    let mean = estimate::slices(measurement, plane)?.mean;
+    Ok(of_batches(&Residuals::new(measurement, plane, &mean)))
+}
+
+/// The same from each batch's difference to their mean.
+fn of_batches(centred: &Residuals) -> Option<f64> {
+    // tr Ĉ and, the matrix of products having the same eigenvalues, tr Ĉ².
+    let products = centred.products(true);
+    let trace = products.diag().sum();
+    if trace <= 0.0 {
+        return None;
+    }
+    let n = centred.count() as f64 - 1.0;
+    let squares: f64 = products.iter().map(|h| h * h).sum();
+    let square = n * n / ((n - 1.0) * (n + 2.0)) * (squares - trace * trace / n);
+    // Between one number and two, real and imaginary, for each frequency.
+    let most = 2.0 * trace;
+    Some((trace * trace / square.max(trace * trace / most)).clamp(1.0, most.max(1.0)))
+}

@@ -1,0 +1,175 @@
+//! Two measurements of one plane held against each other, by what a result keeps of them.
+
+use crate::tail::{chi_squared_above, student_beyond};
+use etendue_field::{Complex, SliceGrid, modulus};
+use ndarray::{Array3, Zip};
+
+/// One measurement of a plane: the mean over its batches, and its noise.
+#[derive(Clone, Debug)]
+pub struct Sample {
+    /// The measured slices S, [azimuth, ρ ≥ 0, ν].
+    pub mean: Array3<Complex>,
+    /// The standard deviation of |S|, likewise.
+    pub sigma: Array3<f64>,
+    /// Independent real numbers that the noise amounts to ([`crate::noise_dof`]); `None` without noise.
+    pub noise_dof: Option<f64>,
+    /// Number of batches that `sigma` was estimated from.
+    pub batches: usize,
+}
+
+/// What a test of two samples finds.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TwoSamples {
+    /// Mean of |A − B|²/(σ_A² + σ_B²), corrected for σ being estimated: 1 if only noise is between them.
+    pub chi2_per_dof: Option<f64>,
+    /// Probability of differences at least as large if both measure the same.
+    pub p_value: Option<f64>,
+    /// Probability of differences as small, or smaller, if the noise of both is independent. Nearly 0
+    /// means that they share photons, or that σ is overstated.
+    pub p_shared: Option<f64>,
+    /// ‖A − B‖ over the larger of ‖A‖ and ‖B‖, over the independent frequencies; 0 if both are dark.
+    pub difference: f64,
+    /// √Σ(σ_A² + σ_B²) over the same: the difference that noise alone makes.
+    pub noise: f64,
+}
+
+/// The larger of the rounding of two programs' sums, as a share of the largest value.
+const ROUNDING: f64 = 1e-12;
+
+impl TwoSamples {
+    /// Tests whether two samples are of the same slices.
+    ///
+    /// χ² over the independent frequencies is taken as that of ν independent numbers, with
+    /// ν^(−1/2) = w_A ν_A^(−1/2) + w_B ν_B^(−1/2), w the mean shares in the variance: exact if the noise
+    /// of both is correlated alike, and on the safe side if not (Cauchy–Schwarz for tr C_A C_B). That σ
+    /// is known from n = 1/Σ w²/(R − 1) degrees of freedom alone makes χ² larger by n/(n − 1) and its
+    /// relative variance by n/(n − 2), as of an F distribution (docs/theory.md, section 6).
+    ///
+    /// # Panics
+    /// When the arrays have other shapes than the grid.
+    #[must_use]
+    pub fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
+        let sums = Sums::new(grid, a, b);
+        let norm = sums.norms[0].max(sums.norms[1]).sqrt();
+        let relative = |square: f64| {
+            if norm > 0.0 {
+                square.sqrt() / norm
+            } else {
+                0.0
+            }
+        };
+        let found = Self {
+            chi2_per_dof: None,
+            p_value: None,
+            p_shared: None,
+            difference: relative(sums.difference),
+            noise: relative(sums.noise),
+        };
+        if sums.count == 0 {
+            // No noise anywhere: any difference is one.
+            let apart = sums.without_noise;
+            let p_value = apart.then_some(0.0);
+            return Self { p_value, ..found };
+        }
+        let count = sums.count as f64;
+        let share = sums.share_of_a / count;
+        let shares = [(share, a), (1.0 - share, b)];
+        let root = |(w, sample): &(f64, &Sample)| w / sample.noise_dof.unwrap_or(1.0).sqrt();
+        let known = |(w, sample): &(f64, &Sample)| w * w / (sample.batches as f64 - 1.0);
+        let n = 1.0 / shares.iter().map(known).sum::<f64>();
+        let dof = shares.iter().map(root).sum::<f64>().powi(-2) * (n - 2.0) / n;
+        let chi2 = sums.chi2 / count * (n - 1.0) / n;
+        let above = if sums.without_noise {
+            0.0
+        } else {
+            chi_squared_above(dof * chi2, dof)
+        };
+        Self {
+            chi2_per_dof: Some(chi2),
+            p_value: Some(above),
+            p_shared: Some(1.0 - above),
+            ..found
+        }
+    }
+}
+
+/// Sums over the independent frequencies.
+#[derive(Debug, Default)]
+struct Sums {
+    /// Frequencies with noise.
+    count: usize,
+    /// Σ|A − B|²/(σ_A² + σ_B²).
+    chi2: f64,
+    /// Σσ_A²/(σ_A² + σ_B²).
+    share_of_a: f64,
+    /// Σ|A − B|².
+    difference: f64,
+    /// Σ(σ_A² + σ_B²).
+    noise: f64,
+    /// Σ|A|² and Σ|B|².
+    norms: [f64; 2],
+    /// Whether they differ at a frequency where neither has noise.
+    without_noise: bool,
+}
+
+impl Sums {
+    fn new(grid: &SliceGrid, a: &Sample, b: &Sample) -> Self {
+        let largest = |sample: &Sample| sample.mean.iter().map(|s| modulus(*s)).fold(0.0, f64::max);
+        let rounding = ROUNDING * largest(a).max(largest(b));
+        let mut sums = Self::default();
+        let variances = Zip::from(&a.sigma)
+            .and(&b.sigma)
+            .map_collect(|a, b| [a * a, b * b]);
+        Zip::indexed(&a.mean).and(&b.mean).and(&variances).for_each(
+            |(_, m, n), a, b, variances| {
+                if grid.is_independent(m, n) {
+                    sums.add(*a, *b, *variances, rounding);
+                }
+            },
+        );
+        sums
+    }
+
+    fn add(&mut self, a: Complex, b: Complex, [of_a, of_b]: [f64; 2], rounding: f64) {
+        let (square, variance) = ((a - b).norm_sqr(), of_a + of_b);
+        self.difference += square;
+        self.noise += variance;
+        self.norms[0] += a.norm_sqr();
+        self.norms[1] += b.norm_sqr();
+        if variance > 0.0 {
+            self.count += 1;
+            self.chi2 += square / variance;
+            self.share_of_a += of_a / variance;
+        } else {
+            self.without_noise |= square.sqrt() > rounding;
+        }
+    }
+}
+
+/// A number with its standard error from so many batches.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Estimate {
+    /// The number.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+    /// The batches that the error was estimated from.
+    pub batches: usize,
+}
+
+/// The pull of two estimates of one number, (a − b)/√(e_a² + e_b²), and the probability of one at
+/// least as far from zero if both estimate the same.
+///
+/// The error is that of Welch (1947): Student's t with n = (e_a² + e_b²)²/Σ e⁴/(R − 1) degrees of
+/// freedom. `None` where neither has an error.
+#[must_use]
+pub fn pull(a: Estimate, b: Estimate) -> Option<(f64, f64)> {
+    let squares = [a, b].map(|e| (e.error * e.error, e.batches as f64 - 1.0));
+    let variance: f64 = squares.iter().map(|(square, _)| square).sum();
+    if variance.is_nan() || variance <= 0.0 {
+        return None;
+    }
+    let known: f64 = squares.iter().map(|(square, n)| square * square / n).sum();
+    let pull = (a.value - b.value) / variance.sqrt();
+    Some((pull, student_beyond(pull, variance * variance / known)))
+}

@@ -1,0 +1,87 @@
+//! Two results of one scene, photon against photon: the test of `etendue diff` over many seeds.
+
+#[path = "../src/statistics.rs"]
+#[allow(dead_code, reason = "the mean is for others")]
+mod statistics;
+
+use etendue_compare::{Sample, TwoSamples, noise_dof};
+use etendue_field::PhotonSource;
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::{estimate, measure};
+use etendue_trace::{Backward, Tracer};
+use statistics::uniformity;
+
+/// fig9b with few photons, on few frequencies.
+fn scene(seed: u64) -> Scene {
+    let text = include_str!("../../scenes/fig9b.ron");
+    let mut file = SceneFile::parse(text).expect("a scene of the repository");
+    file.run.photons = 1 << 14;
+    file.run.seed = seed;
+    let mut scene = resolve("fig9b", file, ".".as_ref(), u64::MAX).expect("a sound scene");
+    for plane in &mut scene.planes {
+        plane.grid.azimuths = 3;
+        plane.grid.rho.half = plane.grid.rho.half.min(8);
+        plane.grid.nu.half = plane.grid.nu.half.min(10);
+    }
+    scene
+}
+
+/// What a result of `scene` keeps of each plane.
+fn samples(scene: &Scene, source: &dyn PhotonSource) -> Vec<Sample> {
+    let batches = scene.run.batches;
+    let measurement = measure(source, &scene.planes, 0..batches, &|_| ());
+    let sample = |plane| {
+        let slices = estimate::slices(&measurement, plane).expect("enough batches");
+        Sample {
+            mean: slices.mean.half,
+            sigma: slices.variance.mapv(f64::sqrt),
+            noise_dof: noise_dof(&measurement, plane).expect("enough batches"),
+            batches: slices.batches,
+        }
+    };
+    (0..scene.planes.len()).map(sample).collect()
+}
+
+fn photons(seed: u64) -> Vec<Sample> {
+    let scene = scene(seed);
+    samples(&scene, &Tracer::new(&scene))
+}
+
+fn backward(seed: u64) -> Vec<Sample> {
+    let scene = scene(seed);
+    samples(
+        &scene,
+        &Backward::new(&scene).expect("light that rays can find"),
+    )
+}
+
+#[test]
+fn p_is_uniform_over_200_pairs_of_seeds() {
+    let planes = scene(1).planes;
+    let mut p = vec![Vec::new(); planes.len()];
+    let mut across = p.clone();
+    for seed in 1..=200 {
+        let a = photons(2 * seed);
+        let b = photons(2 * seed + 1);
+        // The tracers have noise of unlike size and correlation.
+        let c = backward(2 * seed + 1);
+        for (i, plane) in planes.iter().enumerate() {
+            let test = |other: &Sample| TwoSamples::new(&plane.grid, &a[i], other).p_value;
+            p[i].extend(test(&b[i]));
+            across[i].extend(test(&c[i]));
+        }
+    }
+    for (name, all) in [("photons", &p), ("backward rays", &across)] {
+        for (plane, p) in planes.iter().zip(all) {
+            let uniform = uniformity(p);
+            let low = p.iter().filter(|p| **p < 0.05).count();
+            let line = format!(
+                "{name} at {}: p of uniformity {uniform:.3}, {low} of 200 below 5 %",
+                plane.name
+            );
+            println!("{line}");
+            // Ten tests at 1 % together.
+            assert!(uniform > 1e-3, "{line}");
+        }
+    }
+}
