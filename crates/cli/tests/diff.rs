@@ -323,3 +323,40 @@ fn call_report(folder: &Path) -> std::process::Output {
         .output()
         .unwrap()
 }
+
+/// The folders of `results/` are whole: each listed file is there as it was written, and small.
+#[test]
+fn committed_results_are_whole() {
+    let results = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../results");
+    for name in ["fig9b", "fig10"] {
+        let folder = results.join(name);
+        let listed = json(&folder.join("summary.json"));
+        let mut names: Vec<String> = vec!["summary.json".to_owned()];
+        for (file, hash) in listed["files"].as_object().unwrap() {
+            let bytes = fs::read(folder.join(file)).unwrap();
+            assert_eq!(*hash, *blake3::hash(&bytes).to_hex(), "{name}/{file}");
+            let is_array = file.ends_with(".npz") || file.ends_with(".csv");
+            assert!(!is_array || bytes.len() < 200_000, "{name}/{file}");
+            names.push(file.clone());
+        }
+        names.sort();
+        let found: Vec<String> = common::files(&folder).into_keys().collect();
+        assert_eq!(found, names, "{name}");
+    }
+    let out = tempfile::tempdir().unwrap();
+    let page = out.path().join("page.html");
+    let [report, diff] = [
+        &["report", "fig9b", "fig10", "--out"][..],
+        &["diff", "fig9b", "fig9b"],
+    ]
+    .map(|arguments| {
+        let mut command = etendue();
+        command.current_dir(&results).args(arguments);
+        if arguments[0] == "report" {
+            command.arg(&page);
+        }
+        command.output().unwrap()
+    });
+    assert_eq!(report.status.code(), Some(0), "{report:?}");
+    assert_eq!(diff.status.code(), Some(0), "{diff:?}");
+}

@@ -166,7 +166,7 @@ fn p_is_uniform_for_two_measurements_of_one_plane() {
         let found = distance(&p_values(&planted));
         assert!(found > SMIRNOV, "σ × {scale}: {found}");
     }
-    let mut planted = alike.clone();
+    let mut planted = alike;
     for (a, b) in &mut planted {
         a.noise_dof = a.noise_dof.map(|dof| 4.0 * dof);
         b.noise_dof = b.noise_dof.map(|dof| 4.0 * dof);

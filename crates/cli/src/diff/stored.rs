@@ -184,7 +184,7 @@ fn slices_of(plane: &str) -> String {
 /// An axis of an odd number of frequencies with zero in the middle.
 fn axis(file: &mut NpzFile, name: &str, values: &Array1<f64>) -> Result<FrequencyAxis, Failure> {
     let half = values.len() / 2;
-    if values.len() % 2 == 0 || values[half].abs() > 0.0 {
+    if values.len().is_multiple_of(2) || values[half].abs() > 0.0 {
         return Err(file.fault(name, "must be an odd number of frequencies around 0"));
     }
     let spacing = values.get(half + 1).copied().unwrap_or(1.0);
