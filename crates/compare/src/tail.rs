@@ -87,7 +87,8 @@ mod tests {
             (77.9295, 100.0, 0.95),
         ] {
             let found = chi_squared_above(x, dof);
-            assert!((found / p - 1.0).abs() < 2e-5, "{x} {dof}: {found}"); // six digits of the table
+            // The table's x ends after six digits, 5e-4 at most, and the tail falls by 0.2 of itself a unit.
+            assert!((found / p - 1.0).abs() < 1e-4, "{x} {dof}: {found}");
         }
         // Two degrees of freedom: an exponential.
         assert!((chi_squared_above(9.0, 2.0) / (-4.5f64).exp() - 1.0).abs() < 1e-13); // rounding
