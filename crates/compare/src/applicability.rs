@@ -4,7 +4,7 @@ use crate::chain::chain;
 use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
-use crate::system::{print, scattered, system, unvisited};
+use crate::system::{on_later_legs, print, scattered, system, too_fine};
 use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
 use etendue_scene::Scene;
@@ -50,31 +50,35 @@ impl Theory {
         }
     }
 
-    /// What of a scene is not as the theory takes it to be, in words.
+    /// What of a scene is not as the theory takes it to be, in words. Blockers that light meets on
+    /// later legs become obstacles of the theory.
     fn obstacles(
-        &self,
+        &mut self,
         scene: &Scene,
         plane: &VirtualPlane,
         off: Option<OffPatches>,
     ) -> Vec<String> {
-        let mut found = match self {
+        let (mut found, later) = match self {
             Self::Specular(view) => unforeseen_by_rays(scene, plane, view, off),
             Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),
             Self::Parallel(_) => return obstacles_to_theory(scene, plane),
             Self::None => return Vec::new(),
         };
-        found.extend(unvisited(scene));
+        let later = on_later_legs(scene, &later);
+        match self {
+            Self::Specular(view) => view.system.obstacles.extend(later),
+            Self::Scattering(view) => view.system.obstacles.extend(later),
+            Self::Parallel(_) | Self::None => {}
+        }
+        found.extend(too_fine(scene));
         found
     }
 
     /// What the theory takes for granted of a scene, each checked where it applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
-        const FOLLOWED: &[&str] = &[
-            "light meets masks on the first leg alone",
-            "light meets each surface once, in the order of the path, \
-             and where it is not in its own shadow",
-        ];
+        const FOLLOWED: &[&str] = &["light meets each surface once, in the order of the path, \
+             and where it is not in its own shadow"];
         match self {
             Self::Parallel(_) => &[
                 "all that light meets lies in planes across the path",
@@ -117,7 +121,7 @@ impl Applicability {
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let theory = Theory::of(scene, plane);
+        let mut theory = Theory::of(scene, plane);
         let off_patches = match &theory {
             Theory::Specular(view) => off_patches(scene, plane, view),
             Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,

@@ -47,8 +47,33 @@ impl Meets {
     }
 }
 
-/// What light meets that theory does not know of, in words, each once.
-pub(super) fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
+/// What light meets that theory does not know of, in words, each once, and the blockers that it
+/// meets on later legs, which theory takes.
+///
+/// A ray tells of the first thing that it meets. Blockers are therefore taken and rays followed
+/// again, until they meet no others.
+pub(super) fn unforeseen<'a>(
+    scene: &Scene,
+    mut around: Surroundings<'a>,
+    found: impl Fn(&Surroundings<'a>) -> Vec<Meets>,
+) -> (Vec<String>, Vec<usize>) {
+    loop {
+        let meets = found(&around);
+        let layers = meets.iter().filter_map(|meets| match meets {
+            Meets::Layer { index, leg } if *leg > 0 => Some(*index),
+            _ => None,
+        });
+        let before = around.later.len();
+        around.later.extend(layers);
+        around.later.sort_unstable();
+        around.later.dedup();
+        if around.later.len() == before {
+            return (in_words(meets, scene), around.later);
+        }
+    }
+}
+
+fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
     for meets in found {
         let reason = meets.describe(scene);
@@ -64,6 +89,8 @@ pub(super) struct Surroundings<'a> {
     pub(super) scene: &'a Scene,
     plane: &'a VirtualPlane,
     pub(super) objects: Vec<(Object, Form<'a>)>,
+    /// Blockers that theory has on the later legs too, by number.
+    pub(super) later: Vec<usize>,
 }
 
 pub(super) enum Form<'a> {
@@ -97,6 +124,7 @@ impl<'a> Surroundings<'a> {
             scene,
             plane,
             objects,
+            later: Vec::new(),
         }
     }
 
@@ -171,7 +199,9 @@ impl<'a> Surroundings<'a> {
             let crossed = self.crossing(ray, *index);
             crossed.is_some_and(|t| t > from && t < end) && self.transmittance(ray, *index) < 1.0
         };
-        let index = (0..self.scene.blockers.len()).find(met)?;
+        let mut unknown =
+            (0..self.scene.blockers.len()).filter(|index| !self.later.contains(index));
+        let index = unknown.find(met)?;
         Some(Meets::Layer { index, leg })
     }
 

@@ -105,6 +105,7 @@ fn system(light: Light, theta0: f64, curvature: [f64; 3], reflectance: Reflectan
     System {
         light,
         layers: vec![],
+        obstacles: vec![],
         name: "surface".into(),
         patch: Patch {
             frame: Frame::new(DVec3::Z * DISTANCE, d, DVec3::X).unwrap(),
