@@ -47,9 +47,8 @@ pub(crate) fn off_patches(
 }
 
 /// How far rays of a mesh may arrive from those of its osculating patch, in half-widths of the
-/// window. Fine meshes are 10⁻⁵ off. One that was 1.3·10⁻⁴ off had a spectrum 4·10⁻⁴ off, where
-/// nets of photons have half of that as noise.
-const OFF_PATCHES: f64 = 3e-5;
+/// window. What such rays change of a spectrum is some ten times as much, and is stated.
+const OFF_PATCHES: f64 = 1e-4;
 
 pub(super) struct Follower<'a> {
     pub(super) scene: &'a Scene,
