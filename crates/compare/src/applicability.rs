@@ -4,10 +4,10 @@ use crate::chain::chain;
 use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
-use crate::system::{on_later_legs, print, scattered, system, too_fine};
+use crate::system::{in_the_way, print, scattered, system, too_fine};
 use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
-use etendue_scene::Scene;
+use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{Budget, Chain, Model, Observed, Over, Parameter, Work, rays, scattering};
 
 /// What theory says of a plane: which one applies, or why none does.
@@ -50,28 +50,49 @@ impl Theory {
         }
     }
 
-    /// What of a scene is not as the theory takes it to be, in words. Blockers that light meets on
-    /// later legs become obstacles of the theory.
+    /// What of a scene is not as the theory takes it to be, in words. Blockers that light meets where
+    /// the central ray does not become obstacles of the theory.
     fn obstacles(
         &mut self,
         scene: &Scene,
         plane: &VirtualPlane,
         off: Option<OffPatches>,
     ) -> Vec<String> {
-        let (mut found, later) = match self {
+        let (mut found, layers) = match self {
             Self::Specular(view) => unforeseen_by_rays(scene, plane, view, off),
             Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),
             Self::Parallel(_) => return obstacles_to_theory(scene, plane),
             Self::None => return Vec::new(),
         };
-        let later = on_later_legs(scene, &later);
-        match self {
-            Self::Specular(view) => view.system.obstacles.extend(later),
-            Self::Scattering(view) => view.system.obstacles.extend(later),
-            Self::Parallel(_) | Self::None => {}
+        for layer in layers {
+            self.take(&scene.blockers[layer.index], layer.from);
         }
         found.extend(too_fine(scene));
         found
+    }
+
+    /// Makes an obstacle of blockers that light meets from a leg on.
+    fn take(&mut self, layer: &BlockerLayer, from: usize) {
+        let (layers, obstacles) = match self {
+            Self::Specular(view) => (&mut view.system.layers, &mut view.system.obstacles),
+            Self::Scattering(view) => (&mut view.system.layers, &mut view.system.obstacles),
+            Self::Parallel(_) | Self::None => return,
+        };
+        // Not twice on the first leg.
+        layers.retain(|(distance, _)| from > 0 || *distance != layer.distance);
+        obstacles.push(in_the_way(layer, from));
+    }
+
+    /// Whether all light meets blockers before it comes to a surface.
+    pub(crate) fn has_all_light_meet(&self, layer: &BlockerLayer) -> bool {
+        let layers = match self {
+            Self::Specular(view) => &view.system.layers,
+            Self::Scattering(view) => &view.system.layers,
+            Self::Parallel(_) | Self::None => return true,
+        };
+        layers
+            .iter()
+            .any(|(distance, _)| *distance == layer.distance)
     }
 
     /// What the theory takes for granted of a scene, each checked where it applies.
@@ -136,7 +157,7 @@ impl Applicability {
             };
         }
         // Light that goes other ways than theory's might pass beside what stands in these.
-        let dark = dark::reason(scene, plane);
+        let dark = dark::reason(scene, plane, &theory);
         Self {
             theory,
             reasons,

@@ -2,7 +2,7 @@
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Side, Specular, VirtualPlane};
-use etendue_scene::{Event, Hit, Object, Scene};
+use etendue_scene::{BlockerLayer, Event, Hit, Object, Scene};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Element, Plane, System};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, scattering};
@@ -172,17 +172,16 @@ fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     obstacles.collect()
 }
 
-/// Layers of blockers that light meets again on later legs, by number.
-pub(crate) fn on_later_legs(scene: &Scene, layers: &[usize]) -> Vec<Obstacle> {
-    let layers = layers.iter().map(|index| &scene.blockers[*index]);
-    let obstacles = layers.map(|layer| Obstacle {
+/// A layer of blockers that light meets where the central ray does not: from this leg on.
+pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
+    Obstacle {
         name: layer.name.clone(),
         form: ObstacleForm::Mask {
+            from,
             distance: layer.distance,
             mask: layer.mask.clone(),
         },
-    });
-    obstacles.collect()
+    }
 }
 
 /// The objects beside the path that no ray is followed past, in words.

@@ -17,9 +17,11 @@ pub struct Obstacle {
 /// What an obstacle is.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ObstacleForm {
-    /// A mask across the first leg, which light meets again on later ones: of the first leg it is
-    /// among the layers.
+    /// A mask across the first leg that light meets from a leg on, by number: where that is not the
+    /// first, it is among the layers too.
     Mask {
+        /// The first leg on which it counts.
+        from: usize,
         /// Of its plane from the light, metres.
         distance: f64,
         /// What it lets through, over x and y.
@@ -44,7 +46,7 @@ pub(crate) struct Obstacles<'a>(Vec<Ready<'a>>);
 
 #[derive(Debug)]
 enum Ready<'a> {
-    Mask(Barrier<'a>),
+    Mask(usize, Barrier<'a>),
     Rectangle(&'a Frame, [f64; 2]),
     Patch(&'a Patch),
     Mesh {
@@ -61,7 +63,11 @@ const ROUNDING: f64 = 1e-9;
 impl<'a> Obstacles<'a> {
     pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
         let ready = obstacles.iter().map(|obstacle| match &obstacle.form {
-            ObstacleForm::Mask { distance, mask } => Ready::Mask(Barrier::new(*distance, mask)),
+            ObstacleForm::Mask {
+                from,
+                distance,
+                mask,
+            } => Ready::Mask(*from, Barrier::new(*distance, mask)),
             ObstacleForm::Rectangle { frame, size } => Ready::Rectangle(frame, *size),
             ObstacleForm::Patch(patch) => Ready::Patch(patch),
             ObstacleForm::Mesh(triangles) => around(triangles),
@@ -71,12 +77,12 @@ impl<'a> Obstacles<'a> {
 
     /// The share of a ray of this leg that passes on its first metres.
     pub(crate) fn passes(&self, leg: usize, ray: &Ray, length: f64) -> f64 {
-        let from = ROUNDING * ray.point.length();
-        let is_between = |t: f64| from < t && t < length;
+        let start = ROUNDING * ray.point.length();
+        let is_between = |t: f64| start < t && t < length;
         let mut passes = 1.0;
         for ready in &self.0 {
             passes *= match ready {
-                Ready::Mask(barrier) if leg > 0 => {
+                Ready::Mask(from, barrier) if leg >= *from => {
                     let t = (barrier.distance - ray.point.z) / ray.direction.z;
                     let at = ray.point + t * ray.direction;
                     if is_between(t) {
@@ -85,7 +91,7 @@ impl<'a> Obstacles<'a> {
                         1.0
                     }
                 }
-                Ready::Mask(_) => 1.0,
+                Ready::Mask(..) => 1.0,
                 Ready::Rectangle(frame, size) => {
                     let t = on_rectangle(frame, *size, ray);
                     let is_met = t.is_some_and(is_between);
@@ -190,12 +196,13 @@ mod tests {
             shapes,
             half_planes: vec![],
         };
-        let form = || ObstacleForm::Mask {
+        let form = |from| ObstacleForm::Mask {
+            from,
             distance: 0.5,
             mask: mask.clone(),
         };
-        assert!(passes(form(), 1, 0.6) == 0.0 && passes(form(), 0, 0.6) == 1.0);
-        assert!(passes(form(), 1, 0.4) == 1.0);
+        assert!(passes(form(1), 1, 0.6) == 0.0 && passes(form(1), 0, 0.6) == 1.0);
+        assert!(passes(form(1), 1, 0.4) == 1.0 && passes(form(0), 0, 0.6) == 0.0);
     }
 
     /// A square, a bowl that holds it at its vertex, and two triangles in its place.

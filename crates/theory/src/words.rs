@@ -58,7 +58,9 @@ pub(crate) fn mask(named: &str, mask: &Mask) -> String {
 pub(crate) fn obstacle(obstacle: &Obstacle) -> String {
     let name = &obstacle.name;
     match obstacle.form {
-        ObstacleForm::Mask { .. } => format!("multiply  visibility of {name} on later legs"),
+        ObstacleForm::Mask { from: 1.., .. } => {
+            format!("multiply  visibility of {name} on later legs")
+        }
         _ => format!("multiply  visibility of {name} on any leg"),
     }
 }

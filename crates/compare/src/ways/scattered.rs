@@ -5,7 +5,7 @@ use super::clearance::Piece;
 use super::coordinates::{coordinates, direction, seen};
 use super::rays::{Draw, Ray, point_on, ray_to, within};
 use super::search::{Followed, found};
-use super::surroundings::{Meets, Surroundings, unforeseen};
+use super::surroundings::{Meets, Surroundings, TakenLayer, unforeseen};
 use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Hit, Scene};
 use etendue_theory::Observed;
@@ -13,12 +13,12 @@ use etendue_theory::rays::Plane;
 use etendue_theory::scattering::System;
 
 /// What light for a plane meets before or behind a surface with a BRDF that theory does not know
-/// of, in words; and the blockers that it meets behind it.
+/// of, in words; and the blockers that theory takes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
     view: &Observed<System>,
-) -> (Vec<String>, Vec<usize>) {
+) -> (Vec<String>, Vec<TakenLayer>) {
     let Some(hit) = scene.path.ends_at(0) else {
         return (Vec::new(), Vec::new());
     };

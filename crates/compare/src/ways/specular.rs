@@ -5,7 +5,7 @@ use super::coordinates::{coordinates, seen};
 use super::meshes::OffPatches;
 use super::rays::{Draw, Ray, centred, point_on, ray_to, strength, within};
 use super::search::{Followed, found};
-use super::surroundings::{Meets, Surroundings, unforeseen};
+use super::surroundings::{Meets, Surroundings, TakenLayer, unforeseen};
 use etendue_field::{Light, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::Observed;
@@ -13,14 +13,14 @@ use etendue_theory::rays::{Plane, System};
 use glam::DVec3;
 
 /// What light for a plane meets between or at the surfaces of a system that theory does not know
-/// of, in words, and the blockers that it meets on later legs; `off` is how far meshes lead it
+/// of, in words, and the blockers that theory takes; `off` is how far meshes lead it
 /// beside, see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
     view: &Observed<System>,
     off: Option<OffPatches>,
-) -> (Vec<String>, Vec<usize>) {
+) -> (Vec<String>, Vec<TakenLayer>) {
     let around = Surroundings::new(scene, plane);
     let (mut found, later) = unforeseen(scene, around, |around| {
         let follower = Follower::new(scene, plane, view, around);

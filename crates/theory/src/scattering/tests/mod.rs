@@ -410,7 +410,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     ] {
         let system = under(map);
         let plane = on_it(&system);
-        let masks = crate::mask::Masks::new(&[]);
+        let masks = crate::mask::Masks::new(&[], &[]);
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
             let lights = draw::Lights::new(&system, leaving.normal, draw::LightStrategy::default());
