@@ -4,10 +4,10 @@ use crate::chain::chain;
 use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
-use crate::system::{print, scattered, system, unvisited};
+use crate::system::{in_the_way, print, scattered, system, too_fine};
 use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Orientation, VirtualPlane, Window};
-use etendue_scene::Scene;
+use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{Budget, Chain, Model, Observed, Over, Parameter, Work, rays, scattering};
 
 /// What theory says of a plane: which one applies, or why none does.
@@ -50,31 +50,56 @@ impl Theory {
         }
     }
 
-    /// What of a scene is not as the theory takes it to be, in words.
+    /// What of a scene is not as the theory takes it to be, in words. Blockers that light meets where
+    /// the central ray does not become obstacles of the theory.
     fn obstacles(
-        &self,
+        &mut self,
         scene: &Scene,
         plane: &VirtualPlane,
         off: Option<OffPatches>,
     ) -> Vec<String> {
-        let mut found = match self {
+        let (mut found, layers) = match self {
             Self::Specular(view) => unforeseen_by_rays(scene, plane, view, off),
             Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),
             Self::Parallel(_) => return obstacles_to_theory(scene, plane),
             Self::None => return Vec::new(),
         };
-        found.extend(unvisited(scene));
+        for layer in layers {
+            self.take(&scene.blockers[layer.index], layer.from);
+        }
+        found.extend(too_fine(scene));
         found
+    }
+
+    /// Makes an obstacle of blockers that light meets from a leg on.
+    fn take(&mut self, layer: &BlockerLayer, from: usize) {
+        let (layers, obstacles) = match self {
+            Self::Specular(view) => (&mut view.system.layers, &mut view.system.obstacles),
+            Self::Scattering(view) => (&mut view.system.layers, &mut view.system.obstacles),
+            Self::Parallel(_) | Self::None => return,
+        };
+        // Not twice on the first leg.
+        layers.retain(|(distance, _)| from > 0 || *distance != layer.distance);
+        obstacles.push(in_the_way(layer, from));
+    }
+
+    /// Whether all light meets blockers before it comes to a surface.
+    pub(crate) fn has_all_light_meet(&self, layer: &BlockerLayer) -> bool {
+        let layers = match self {
+            Self::Specular(view) => &view.system.layers,
+            Self::Scattering(view) => &view.system.layers,
+            Self::Parallel(_) | Self::None => return true,
+        };
+        layers
+            .iter()
+            .any(|(distance, _)| *distance == layer.distance)
     }
 
     /// What the theory takes for granted of a scene, each checked where it applies.
     #[must_use]
     pub fn assumptions(&self) -> &'static [&'static str] {
-        const FOLLOWED: &[&str] = &[
-            "light meets masks on the first leg alone",
-            "light meets each surface once, in the order of the path, \
-             and where it is not in its own shadow",
-        ];
+        const FOLLOWED: &[&str] = &["light meets each surface once, in the order of the path, \
+             and where it is not in its own shadow"];
         match self {
             Self::Parallel(_) => &[
                 "all that light meets lies in planes across the path",
@@ -117,7 +142,7 @@ impl Applicability {
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let theory = Theory::of(scene, plane);
+        let mut theory = Theory::of(scene, plane);
         let off_patches = match &theory {
             Theory::Specular(view) => off_patches(scene, plane, view),
             Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,
@@ -132,7 +157,7 @@ impl Applicability {
             };
         }
         // Light that goes other ways than theory's might pass beside what stands in these.
-        let dark = dark::reason(scene, plane);
+        let dark = dark::reason(scene, plane, &theory);
         Self {
             theory,
             reasons,

@@ -1,5 +1,6 @@
 //! Planes that no light reaches, by what stands on the first leg.
 
+use crate::applicability::Theory;
 use crate::chain::stands_before;
 use etendue_field::{Mask, Orientation, Profile, Shape, VirtualPlane};
 use etendue_scene::{BlockerLayer, Object, Scene};
@@ -21,9 +22,11 @@ const MOST_PARTS: usize = 4096;
 /// Half-planes cut the rays of a section, (position at the light, slope), to a convex polygon,
 /// which is empty if they leave nothing. A layer that covers all places where these rays cross it
 /// leaves nothing either.
-pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane) -> Option<String> {
+pub(crate) fn reason(scene: &Scene, plane: &VirtualPlane, theory: &Theory) -> Option<String> {
     let layers = scene.blockers.iter();
-    let layers = layers.filter(|layer| stands_before(layer.distance, scene, plane));
+    let layers = layers.filter(|layer| {
+        stands_before(layer.distance, scene, plane) && theory.has_all_light_meet(layer)
+    });
     let layers: Vec<&BlockerLayer> = layers.collect();
     let mut sections = [0, 1].map(|axis| RaySection::new(scene, plane, axis));
     for (axis, section) in sections.iter_mut().enumerate() {

@@ -2,10 +2,10 @@
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Side, Specular, VirtualPlane};
-use etendue_scene::{Event, Hit, Object, Scene};
+use etendue_scene::{BlockerLayer, Event, Hit, Object, Scene};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Element, Plane, System};
-use etendue_theory::{Observed, scattering};
+use etendue_theory::{Observed, Obstacle, ObstacleForm, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
 /// where light comes from an environment or a ray file, and where a surface is not specular.
@@ -43,6 +43,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
     let system = System {
         light: scene.light.clone(),
         layers: layers_before(scene, plane),
+        obstacles: beside_the_path(scene),
         elements: elements?,
     };
     Some(Observed {
@@ -84,6 +85,7 @@ pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scatter
     let system = scattering::System {
         light: scene.light.clone(),
         layers: layers_before(scene, plane),
+        obstacles: beside_the_path(scene),
         name: object.name.clone(),
         patch: object.patch,
         reflectance: reflectance.clone(),
@@ -135,16 +137,61 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
     }
 }
 
-/// The objects of the scene that the path does not visit, in words: no ray is followed past them.
-pub(crate) fn unvisited(scene: &Scene) -> Vec<String> {
+/// Triangles of a mesh past which each ray of a prediction is followed: of more it would not end.
+const MAX_TRIANGLES: usize = 500;
+
+/// The objects that the path does not visit: they stop light.
+fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
     let surfaces = (0..scene.surfaces.len()).map(Object::Surface);
     let patches = (0..scene.patches.len()).map(Object::Patch);
     let meshes = (0..scene.meshes.len()).map(Object::Mesh);
     let all = surfaces.chain(patches).chain(meshes);
     all.filter(|object| !scene.path.visits(*object))
-        .map(|object| {
-            let name = scene.name_of(object);
-            format!("visibility of {name}, which the path does not visit")
-        })
-        .collect()
+}
+
+fn is_too_fine(scene: &Scene, object: Object) -> bool {
+    matches!(object, Object::Mesh(i) if scene.meshes[i].triangles.len() > MAX_TRIANGLES)
+}
+
+/// What stands beside the path, for rays to be followed past.
+fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
+    let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
+    let obstacles = coarse.map(|object| Obstacle {
+        name: scene.name_of(object).to_owned(),
+        form: match object {
+            Object::Surface(i) => ObstacleForm::Rectangle {
+                frame: scene.surfaces[i].frame,
+                size: scene.surfaces[i].size,
+            },
+            Object::Patch(i) => ObstacleForm::Patch(scene.patches[i].patch),
+            Object::Mesh(i) => {
+                ObstacleForm::Mesh(scene.meshes[i].triangles.iter().copied().collect())
+            }
+        },
+    });
+    obstacles.collect()
+}
+
+/// A layer of blockers that light meets where the central ray does not: from this leg on.
+pub(crate) fn in_the_way(layer: &BlockerLayer, from: usize) -> Obstacle {
+    Obstacle {
+        name: layer.name.clone(),
+        form: ObstacleForm::Mask {
+            from,
+            distance: layer.distance,
+            mask: layer.mask.clone(),
+        },
+    }
+}
+
+/// The objects beside the path that no ray is followed past, in words.
+pub(crate) fn too_fine(scene: &Scene) -> Vec<String> {
+    let fine = unvisited(scene).filter(|object| is_too_fine(scene, *object));
+    fine.map(|object| {
+        let name = scene.name_of(object);
+        format!(
+            "visibility of {name}, a mesh of more than {MAX_TRIANGLES} triangles beside the path"
+        )
+    })
+    .collect()
 }

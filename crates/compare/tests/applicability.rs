@@ -2,9 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_compare::{Applicability, Class, Prediction};
+use etendue_compare::{Applicability, Class, Prediction, Theory};
 use etendue_field::Profile;
 use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_theory::ObstacleForm;
 
 const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
 const PROJECTOR: &str = "Projector(center: (0, 0, 0), image: (width: (0.3, 0.3)))";
@@ -40,6 +41,20 @@ fn applies_only(narrow: f64, wide: f64, reason: &str, scene: impl Fn(f64) -> Sce
     assert!(steps.contains(&format!("without theory  {reason}")));
 }
 
+/// What a theory follows rays past.
+fn obstacles(theory: Theory) -> Vec<String> {
+    let obstacles = match theory {
+        Theory::Specular(view) => view.system.obstacles,
+        Theory::Scattering(view) => view.system.obstacles,
+        other => panic!("{other:?}"),
+    };
+    let words = obstacles.into_iter().map(|obstacle| match obstacle.form {
+        ObstacleForm::Mask { from, .. } => format!("{} on legs from {from}", obstacle.name),
+        _ => obstacle.name,
+    });
+    words.collect()
+}
+
 fn half_planes(shapes: &str) -> String {
     format!(r#"Shapes(name: "edge", center: (0, 0, 0.9), shapes: [{shapes}])"#)
 }
@@ -56,10 +71,12 @@ fn a_blocker_that_reaches_into_a_later_leg() {
             r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
                 form: Plane, aperture: 0.3, event: {event})"#
         );
-        let reason = "visibility of edge to light that has left mirror";
-        applies_only(0.04, 0.3, reason, |half| {
-            scene(LIGHT, &edge, &surface, r#""mirror""#, "Distance(1.8)", half)
-        });
+        let obstacles = |half| {
+            let scene = scene(LIGHT, &edge, &surface, r#""mirror""#, "Distance(1.8)", half);
+            obstacles(of(&scene).theory)
+        };
+        assert_eq!(obstacles(0.04), [""; 0], "{event}");
+        assert_eq!(obstacles(0.3), ["edge on legs from 1"], "{event}");
     }
 }
 
@@ -113,7 +130,7 @@ fn a_mirror_that_is_met_out_of_turn() {
     });
 }
 
-/// No ray is followed past a surface that the path does not visit.
+/// Rays are followed past a surface that the path does not visit.
 #[test]
 fn a_surface_that_the_path_does_not_visit() {
     let surfaces = format!(
@@ -123,8 +140,8 @@ fn a_surface_that_the_path_does_not_visit() {
     );
     let at = r#"After("mirror")"#;
     let found = of(&scene(LIGHT, "", &surfaces, r#""mirror""#, at, 0.1));
-    let reason = "visibility of beside, which the path does not visit";
-    assert_eq!(found.reasons, [reason]);
+    assert_eq!(found.reasons, [""; 0]);
+    assert_eq!(obstacles(found.theory), ["beside"]);
 }
 
 /// A wall that leans away from the first leg is not in the way, but the box around it is; one that
@@ -250,8 +267,8 @@ fn light_that_turns_before_the_masks_is_not_taken_for_dark() {
     let dark = "half-planes of edge leave no way open";
     assert_eq!(narrow.dark.as_deref(), Some(dark), "{:?}", narrow.reasons);
     let wide = of(&built(0.4));
-    assert_eq!((wide.class(), wide.dark), (Class::Reference, None));
-    assert_eq!(wide.reasons, ["visibility of edge, partly beyond mirror"]);
+    assert_eq!((wide.class(), wide.dark), (Class::FirstOrder, None));
+    assert_eq!(obstacles(wide.theory), ["edge on legs from 0"]);
 }
 
 /// A flat mesh has no curvature that could change from triangle to triangle, only rounding.

@@ -36,6 +36,7 @@ pub(crate) fn followed(plane: Plane, setup: &Setup) -> Option<Predicted> {
             let system = rays::System {
                 light,
                 layers,
+                obstacles: Vec::new(),
                 elements: Vec::new(),
             };
             let plane = seen(&patch, Orientation::LocalNormals, true);
@@ -50,6 +51,7 @@ pub(crate) fn followed(plane: Plane, setup: &Setup) -> Option<Predicted> {
             let system = scattering::System {
                 light,
                 layers,
+                obstacles: Vec::new(),
                 name: "receiver".to_owned(),
                 patch,
                 reflectance: reflectance(setup),

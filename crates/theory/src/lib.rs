@@ -57,6 +57,7 @@ mod mask;
 mod model;
 mod nets;
 mod numerics;
+mod obstacle;
 mod parallel;
 mod parameter;
 mod plane;
@@ -73,6 +74,7 @@ mod work;
 
 pub use model::{Model, Observed, Over};
 pub use nets::{Budget, REPLICATES};
+pub use obstacle::{Obstacle, ObstacleForm};
 pub use parallel::{
     Chain, Harmonics, Operator, Source, at, blurred_projection, blurred_slices, derivative,
     projection, quadrature_error, slices,

@@ -1,5 +1,6 @@
 //! Masks made ready for many questions: the share of a ray that passes, and the shapes in its way.
 
+use crate::obstacle::{Obstacle, Obstacles};
 use etendue_field::{HalfPlane, Mask, Shape};
 use glam::DVec3;
 
@@ -57,21 +58,27 @@ impl<'a> Barrier<'a> {
     }
 }
 
-/// Masks across the way from the light.
+/// Masks across the way from the light, and what else stands in the way.
 #[derive(Debug)]
-pub(crate) struct Masks<'a>(Vec<Barrier<'a>>);
+pub(crate) struct Masks<'a> {
+    first_leg: Vec<Barrier<'a>>,
+    pub(crate) obstacles: Obstacles<'a>,
+}
 
 impl<'a> Masks<'a> {
     /// Masks with their distances from the light, metres.
-    pub(crate) fn new(layers: &'a [(f64, Mask)]) -> Self {
+    pub(crate) fn new(layers: &'a [(f64, Mask)], obstacles: &'a [Obstacle]) -> Self {
         let barriers = layers.iter();
-        Self(barriers.map(|(at, mask)| Barrier::new(*at, mask)).collect())
+        Self {
+            first_leg: barriers.map(|(at, mask)| Barrier::new(*at, mask)).collect(),
+            obstacles: Obstacles::new(obstacles),
+        }
     }
 
-    /// The share of a ray with slopes (u, v) through a point that passes.
+    /// The share of a ray with slopes (u, v) through a point that passes the masks of the first leg.
     pub(crate) fn transmittance(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
         let mut passes = 1.0;
-        for barrier in &self.0 {
+        for barrier in &self.first_leg {
             let back = barrier.distance - point.z;
             passes *= barrier.transmittance(point.x + back * u, point.y + back * v);
             if passes == 0.0 {

@@ -1,6 +1,7 @@
 //! Steps of light in words: maps, masks and numbers.
 
 use crate::geometry::Matrix;
+use crate::obstacle::{Obstacle, ObstacleForm};
 use etendue_field::{Grating, Mask, Shape, tidy};
 
 /// A number to six decimals, without those that are zero.
@@ -51,6 +52,16 @@ pub(crate) fn mask(named: &str, mask: &Mask) -> String {
             let formula = formula(grating, ["x", "y"]);
             format!("multiply  grating {named}{formula}")
         }
+    }
+}
+
+pub(crate) fn obstacle(obstacle: &Obstacle) -> String {
+    let name = &obstacle.name;
+    match obstacle.form {
+        ObstacleForm::Mask { from: 1.., .. } => {
+            format!("multiply  visibility of {name} on later legs")
+        }
+        _ => format!("multiply  visibility of {name} on any leg"),
     }
 }
 

@@ -119,6 +119,7 @@ impl Met {
         let system = scattering::System {
             light: Light::Point { intensity: 1.0 },
             layers: Vec::new(),
+            obstacles: vec![],
             name: "it".to_owned(),
             patch: self.patch,
             reflectance: Reflectance {
@@ -162,6 +163,7 @@ fn at_mirror(dice: &mut Dice, fault: &str) -> f64 {
     let system = rays::System {
         light: Light::Point { intensity: 1.0 },
         layers: Vec::new(),
+        obstacles: vec![],
         elements: if looking.arrives {
             Vec::new()
         } else {

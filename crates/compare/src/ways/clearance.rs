@@ -50,6 +50,7 @@ impl Suspect {
         let legs = paths.first().map_or(0, |pieces| pieces.len());
         let on_leg = |leg: usize| {
             let layers = 0..around.scene.blockers.len();
+            let layers = layers.filter(move |layer| !around.has_taken(*layer, leg));
             let of_layers = layers.flat_map(move |layer| of_layer(around, layer, paths, leg));
             let objects = (0..around.objects.len()).map(What::Object);
             let things: Vec<What> = of_layers.chain(objects).collect();

@@ -5,7 +5,7 @@ use super::clearance::Piece;
 use super::coordinates::{coordinates, direction, seen};
 use super::rays::{Draw, Ray, point_on, ray_to, within};
 use super::search::{Followed, found};
-use super::surroundings::{Meets, Surroundings, in_words};
+use super::surroundings::{Meets, Surroundings, TakenLayer, unforeseen};
 use etendue_field::{Orientation, VirtualPlane};
 use etendue_scene::{Hit, Scene};
 use etendue_theory::Observed;
@@ -13,24 +13,25 @@ use etendue_theory::rays::Plane;
 use etendue_theory::scattering::System;
 
 /// What light for a plane meets before or behind a surface with a BRDF that theory does not know
-/// of, in words.
+/// of, in words; and the blockers that theory takes.
 pub(crate) fn unforeseen_by_scattering(
     scene: &Scene,
     plane: &VirtualPlane,
     view: &Observed<System>,
-) -> Vec<String> {
+) -> (Vec<String>, Vec<TakenLayer>) {
     let Some(hit) = scene.path.ends_at(0) else {
-        return Vec::new();
+        return (Vec::new(), Vec::new());
     };
-    let scatterer = Scatterer {
-        scene,
-        plane,
-        system: &view.system,
-        at: &view.plane,
-        hit,
-        around: Surroundings::new(scene, plane),
-    };
-    in_words(found(&scatterer), scene)
+    unforeseen(scene, Surroundings::new(scene, plane), |around| {
+        found(&Scatterer {
+            scene,
+            plane,
+            system: &view.system,
+            at: &view.plane,
+            hit,
+            around,
+        })
+    })
 }
 
 struct Scatterer<'a> {
@@ -39,7 +40,7 @@ struct Scatterer<'a> {
     system: &'a System,
     at: &'a Plane,
     hit: &'a Hit,
-    around: Surroundings<'a>,
+    around: &'a Surroundings<'a>,
 }
 
 impl Followed for Scatterer<'_> {
@@ -84,7 +85,7 @@ impl Followed for Scatterer<'_> {
     }
 
     fn around(&self) -> &Surroundings<'_> {
-        &self.around
+        self.around
     }
 }
 

@@ -5,7 +5,7 @@ use super::coordinates::{coordinates, seen};
 use super::meshes::OffPatches;
 use super::rays::{Draw, Ray, centred, point_on, ray_to, strength, within};
 use super::search::{Followed, found};
-use super::surroundings::{Meets, Surroundings, in_words};
+use super::surroundings::{Meets, Surroundings, TakenLayer, unforeseen};
 use etendue_field::{Light, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use etendue_theory::Observed;
@@ -13,23 +13,27 @@ use etendue_theory::rays::{Plane, System};
 use glam::DVec3;
 
 /// What light for a plane meets between or at the surfaces of a system that theory does not know
-/// of, in words; `off` is how far meshes lead it beside, see [`off_patches`].
+/// of, in words, and the blockers that theory takes; `off` is how far meshes lead it
+/// beside, see [`off_patches`].
 pub(crate) fn unforeseen_by_rays(
     scene: &Scene,
     plane: &VirtualPlane,
     view: &Observed<System>,
     off: Option<OffPatches>,
-) -> Vec<String> {
-    let follower = Follower::new(scene, plane, view);
-    let mut meets = found(&Drawn(&follower, Follower::ray));
-    meets.extend(found(&Drawn(&follower, Follower::ray_of_window)));
-    let mut found = in_words(meets, scene);
+) -> (Vec<String>, Vec<TakenLayer>) {
+    let around = Surroundings::new(scene, plane);
+    let (mut found, later) = unforeseen(scene, around, |around| {
+        let follower = Follower::new(scene, plane, view, around);
+        let mut meets = found(&Drawn(&follower, Follower::ray));
+        meets.extend(found(&Drawn(&follower, Follower::ray_of_window)));
+        meets
+    });
     let apart = off.map(|off| off.apart);
     found.extend(apart.filter(|apart| *apart > OFF_PATCHES).map(|apart| {
         let percent = 100.0 * apart;
         format!("a mesh that sends light {percent:.3} % of the window beside its osculating patch")
     }));
-    found
+    (found, later)
 }
 
 /// How far smooth meshes lead rays beside where their osculating patches do; `None` without a mesh.
@@ -38,7 +42,8 @@ pub(crate) fn off_patches(
     plane: &VirtualPlane,
     view: &Observed<System>,
 ) -> Option<OffPatches> {
-    Follower::new(scene, plane, view).off_patches()
+    let around = Surroundings::new(scene, plane);
+    Follower::new(scene, plane, view, &around).off_patches()
 }
 
 /// How far rays of a mesh may arrive from those of its osculating patch, in half-widths of the
@@ -50,7 +55,7 @@ pub(super) struct Follower<'a> {
     pub(super) plane: &'a VirtualPlane,
     pub(super) system: &'a System,
     pub(super) at: &'a Plane,
-    around: Surroundings<'a>,
+    around: &'a Surroundings<'a>,
 }
 
 /// Rays of a follower, in one of two ways to draw them.
@@ -73,7 +78,7 @@ impl Followed for Drawn<'_> {
     }
 
     fn around(&self) -> &Surroundings<'_> {
-        &self.0.around
+        self.0.around
     }
 }
 
@@ -84,13 +89,18 @@ pub(super) type Arrival = Option<(TwoPlane, f64)>;
 const SAME: f64 = 1e-6;
 
 impl<'a> Follower<'a> {
-    fn new(scene: &'a Scene, plane: &'a VirtualPlane, view: &'a Observed<System>) -> Self {
+    fn new(
+        scene: &'a Scene,
+        plane: &'a VirtualPlane,
+        view: &'a Observed<System>,
+        around: &'a Surroundings<'a>,
+    ) -> Self {
         Self {
             scene,
             plane,
             system: &view.system,
             at: &view.plane,
-            around: Surroundings::new(scene, plane),
+            around,
         }
     }
 }

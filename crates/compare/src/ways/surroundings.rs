@@ -18,40 +18,55 @@ pub(super) enum Meets {
 }
 
 impl Meets {
-    pub(super) fn describe(self, scene: &Scene) -> String {
+    /// In words; blockers are taken.
+    fn describe(self, scene: &Scene) -> Option<String> {
         match self {
-            Self::Layer { index, leg } => {
-                let layer = &scene.blockers[index].name;
-                let name = |hit: &Hit| scene.name_of(hit.object).to_owned();
-                match &scene.path.legs[leg].leaves {
-                    Some(left) => {
-                        format!(
-                            "visibility of {layer} to light that has left {}",
-                            name(left)
-                        )
-                    }
-                    None => {
-                        let first = scene.path.ends_at(leg).map(name).unwrap_or_default();
-                        format!("visibility of {layer}, partly beyond {first}")
-                    }
-                }
-            }
+            Self::Layer { .. } => None,
             Self::OutOfTurn(object) => {
-                format!("light that meets {} out of turn", scene.name_of(object))
+                let name = scene.name_of(object);
+                Some(format!("light that meets {name} out of turn"))
             }
             Self::Itself(object) => {
                 let name = scene.name_of(object);
-                format!("light that meets {name} twice, or {name} in its own shadow")
+                Some(format!(
+                    "light that meets {name} twice, or {name} in its own shadow"
+                ))
             }
         }
     }
 }
 
-/// What light meets that theory does not know of, in words, each once.
-pub(super) fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
+/// What light meets that theory does not know of, in words, each once, and the blockers that it
+/// meets where the central ray does not, which theory takes.
+///
+/// A ray tells of the first thing that it meets. Blockers are therefore taken and rays followed
+/// again, until they meet no others.
+pub(super) fn unforeseen<'a>(
+    scene: &Scene,
+    mut around: Surroundings<'a>,
+    found: impl Fn(&Surroundings<'a>) -> Vec<Meets>,
+) -> (Vec<String>, Vec<TakenLayer>) {
+    loop {
+        let meets = found(&around);
+        let mut has_more = false;
+        for layer in &meets {
+            let Meets::Layer { index, leg } = *layer else {
+                continue;
+            };
+            if !around.has_taken(index, leg) {
+                around.take(index, leg);
+                has_more = true;
+            }
+        }
+        if !has_more {
+            return (in_words(meets, scene), around.taken);
+        }
+    }
+}
+
+fn in_words(found: Vec<Meets>, scene: &Scene) -> Vec<String> {
     let mut words: Vec<String> = Vec::new();
-    for meets in found {
-        let reason = meets.describe(scene);
+    for reason in found.into_iter().filter_map(|meets| meets.describe(scene)) {
         if !words.contains(&reason) {
             words.push(reason);
         }
@@ -64,6 +79,17 @@ pub(super) struct Surroundings<'a> {
     pub(super) scene: &'a Scene,
     plane: &'a VirtualPlane,
     pub(super) objects: Vec<(Object, Form<'a>)>,
+    /// Blockers that theory has wherever light meets them.
+    pub(super) taken: Vec<TakenLayer>,
+}
+
+/// Blockers that light meets where the central ray does not.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TakenLayer {
+    /// Among those of the scene.
+    pub(crate) index: usize,
+    /// The first leg on which that is so.
+    pub(crate) from: usize,
 }
 
 pub(super) enum Form<'a> {
@@ -97,6 +123,7 @@ impl<'a> Surroundings<'a> {
             scene,
             plane,
             objects,
+            taken: Vec::new(),
         }
     }
 
@@ -152,6 +179,12 @@ impl<'a> Surroundings<'a> {
             let known = self.is_known(index);
             let crossed = self.crossing(ray, index).filter(|t| *t > 0.0 && *t < end);
             let passes = self.transmittance(ray, index);
+            if self.has_taken(index, 0) {
+                if crossed.is_some() {
+                    shares = shares.map(|share| share * passes);
+                }
+                continue;
+            }
             if crossed.is_some() {
                 shares[0] *= passes;
             }
@@ -171,8 +204,20 @@ impl<'a> Surroundings<'a> {
             let crossed = self.crossing(ray, *index);
             crossed.is_some_and(|t| t > from && t < end) && self.transmittance(ray, *index) < 1.0
         };
-        let index = (0..self.scene.blockers.len()).find(met)?;
+        let mut unknown = (0..self.scene.blockers.len()).filter(|i| !self.has_taken(*i, leg));
+        let index = unknown.find(met)?;
         Some(Meets::Layer { index, leg })
+    }
+
+    /// Whether theory has blockers wherever light meets them on a leg.
+    pub(super) fn has_taken(&self, index: usize, leg: usize) -> bool {
+        let mut taken = self.taken.iter();
+        taken.any(|layer| layer.index == index && layer.from <= leg)
+    }
+
+    fn take(&mut self, index: usize, from: usize) {
+        self.taken.retain(|layer| layer.index != index);
+        self.taken.push(TakenLayer { index, from });
     }
 
     /// Whether theory has a layer of blockers on the first leg, before the plane.

@@ -17,6 +17,8 @@ use std::fmt::{self, Display};
 pub enum Untraced {
     /// A mask stops the central ray, or has an edge on it: it is no window about the ray.
     Blocked,
+    /// An obstacle stands around the path: it is no window about the ray.
+    Obstacles,
     /// The light is a map, or several lobes: no Gaussian stands for it.
     Light,
     /// The reflectance varies by a picture, squares or another BRDF: no Gaussian stands for it.
@@ -29,6 +31,7 @@ impl Display for Untraced {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Blocked => "a blocker stands in the central ray or has an edge there",
+            Self::Obstacles => "what stands around the path is no window about the central ray",
             Self::Light => "no Gaussian stands for this light",
             Self::Reflectance => "no Gaussian stands for how this reflectance varies",
             Self::Lost => "the central ray does not get there by maps that have an inverse",
@@ -67,6 +70,9 @@ impl Traced for Observed<rays::System> {
     fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
         let Self { system, plane } = self;
         let chain = rays::chain(self, Edition::Corrected).ok_or(Untraced::Lost)?;
+        if !system.obstacles.is_empty() {
+            return Err(Untraced::Obstacles);
+        }
         let (light, travelled) = past_masks(&system.light, &system.layers)?;
         let rest = Map::travel(-travelled).then(&chain.map.rays());
         let light = moved(&light, &rest)?;
@@ -81,6 +87,9 @@ impl Traced for Observed<scattering::System> {
         let reflectance = &system.reflectance;
         if reflectance.blend.is_some() {
             return Err(Untraced::Reflectance);
+        }
+        if !system.obstacles.is_empty() {
+            return Err(Untraced::Obstacles);
         }
         let (light, travelled) = past_masks(&system.light, &system.layers)?;
         let onto = Map::travel(-travelled).then(&chain.onto);

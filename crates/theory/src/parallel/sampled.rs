@@ -88,6 +88,7 @@ impl Chain {
             let system = rays::System {
                 light,
                 layers,
+                obstacles: Vec::new(),
                 elements: Vec::new(),
             };
             return Sampled::Rays(Box::new(Observed { system, plane }));
@@ -101,6 +102,7 @@ impl Chain {
         let system = scattering::System {
             light,
             layers,
+            obstacles: Vec::new(),
             name: String::new(),
             patch: Patch {
                 frame: facing,

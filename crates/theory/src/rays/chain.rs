@@ -85,6 +85,8 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
             _ => walk.arriving_surface(plane),
         }
     }
+    walk.steps
+        .extend(system.obstacles.iter().map(words::obstacle));
     Some(AffineChain {
         map: walk.map(),
         maps: walk.maps,

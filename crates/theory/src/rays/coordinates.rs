@@ -24,6 +24,19 @@ impl Plane {
         }
     }
 
+    /// How far along a ray of the last leg the plane is, or the surface it is on; zero where light
+    /// leaves that. `None` if the ray misses it.
+    pub(crate) fn along(&self, ray: &Ray) -> Option<f64> {
+        if self.orientation != Orientation::Orthogonal && !self.arriving {
+            return Some(0.0);
+        }
+        if let Some(patch) = &self.patch {
+            return Some(ray.met(patch)?.0);
+        }
+        let t = (self.frame.origin - ray.point).dot(self.frame.d) / ray.direction.dot(self.frame.d);
+        t.is_finite().then_some(t)
+    }
+
     /// The inverse of [`Self::coordinates`]: a ray, light going along it, from a point of the plane,
     /// or of the surface it is on; and étendue over dx dy du dv there. `None` where there is none.
     pub(super) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(Ray, f64)> {
@@ -85,13 +98,10 @@ impl Plane {
     }
 
     fn across(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
-        let (x, y) = crossing(&self.frame, ray)?;
-        let towards = self.frame.vector_to_local(ray.direction);
-        let (u, v) = (towards.x / towards.z, towards.y / towards.z);
+        let z = ray.across(&self.frame)?;
+        let [x, y, u, v] = z;
         let secant_squared = TwoPlane { x, y, u, v }.secant_squared();
-        let z = [x, y, u, v];
-        let passes = towards.z > 0.0;
-        passes.then(|| (z, secant_squared * secant_squared * self.factor(z)))
+        Some((z, secant_squared * secant_squared * self.factor(z)))
     }
 
     /// Where light leaves the surface it met last, or meets this one; and the unit normal there, on
@@ -130,6 +140,16 @@ impl Plane {
         let z = [s, t, theta - self.longitude, phi];
         let projected = libm::cos(theta) * libm::cos(phi) * libm::cos(phi);
         (away.z > 0.0).then(|| (z, self.factor(z) / projected))
+    }
+}
+
+impl Ray {
+    /// Its place and slopes across the D of a frame; `None` if it does not go forward.
+    pub(super) fn across(&self, frame: &Frame) -> Option<[f64; 4]> {
+        let (x, y) = crossing(frame, self)?;
+        let towards = frame.vector_to_local(self.direction);
+        let slopes = [towards.x, towards.y].map(|t| t / towards.z);
+        (towards.z > 0.0).then_some([x, y, slopes[0], slopes[1]])
     }
 }
 

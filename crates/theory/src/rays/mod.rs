@@ -1,7 +1,7 @@
 //! Windowed spectra behind specular surfaces, by following rays (docs/theory.md, section 8).
 //!
-//! In goes a [`System`]: a light, masks across its first leg, and the mirrors, refracting surfaces
-//! and lenses that the central ray visits. In goes a [`Plane`]. The [`Observed`](crate::Observed)
+//! In goes a [`System`]: a light, masks across its first leg, obstacles in the way of any, and the
+//! mirrors, refracting surfaces and lenses that the central ray visits. In goes a [`Plane`]. The [`Observed`](crate::Observed)
 //! of both is a [`Model`](crate::Model): it follows rays through the real geometry and sums them,
 //! by a rule where that converges and over scrambled nets elsewhere. Beside it are the
 //! [`chain`](chain()) of first-order maps ([`geometry`](crate::geometry)) read off the same system,
@@ -35,7 +35,7 @@
 //! };
 //! let mirror = Element { name: "mirror".into(), patch, event: Specular::Mirror };
 //! let light = Light::Beam { irradiance: 1.0, image };
-//! let system = System { light, layers: vec![], elements: vec![mirror] };
+//! let system = System { light, layers: vec![], obstacles: vec![], elements: vec![mirror] };
 //! let plane = Plane {
 //!     frame: Frame::new(0.5 * DVec3::Z, -DVec3::Z, -DVec3::X).unwrap(),
 //!     orientation: Orientation::Orthogonal,
@@ -88,6 +88,7 @@ pub(crate) use emission::{emitted, point_of};
 pub(crate) use predict::predict;
 pub(crate) use trace::Ray;
 
+use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
 /// A light and the specular surfaces its central ray visits, in the frame at the light.
@@ -98,6 +99,8 @@ pub struct System {
     /// Masks across the first leg and their distances from the light, metres. Where one is
     /// opaque, rays are summed over nets and by no rule.
     pub layers: Vec<(f64, Mask)>,
+    /// What else stops rays, on any leg.
+    pub obstacles: Vec<Obstacle>,
     /// The surfaces, in the order of light.
     pub elements: Vec<Element>,
 }

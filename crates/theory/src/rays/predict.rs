@@ -3,13 +3,14 @@
 use super::draw::{Draw, RayStrategy};
 use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
-use super::{Plane, System};
-use crate::geometry::SpectrumMap;
+use super::{Plane, Ray, System};
+use crate::geometry::{Map, SpectrumMap};
 use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::obstacle::Obstacles;
 use crate::predicted::Predicted;
-use etendue_field::{FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
+use etendue_field::{Frame, FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
 /// Of a prediction that needs neither picture nor moments.
@@ -36,7 +37,7 @@ pub(crate) fn predict(
 ) -> Predicted {
     let Observed { system, plane } = view;
     let observed = (system, Some(plane));
-    let masks = Masks::new(&system.layers);
+    let masks = Masks::new(&system.layers, &system.obstacles);
     let field = exact_field(view, &masks);
     let way = neighbourhood(system, plane)
         .and_then(|lands| Some((lands, best(&field, observed, &lands, over)?)));
@@ -52,7 +53,8 @@ pub(crate) fn predict(
 ///
 /// The radiance of ray z at the light goes to A z + t, A being the transpose of the map's matrix
 /// and t its phase, and its spectrum is multiplied by the map's factor: F = factor · ∫ ℓ(z) W(A z +
-/// t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact.
+/// t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles are met by the rays of
+/// each leg to first order.
 #[must_use]
 pub fn linear(
     view: &Observed<System>,
@@ -63,7 +65,7 @@ pub fn linear(
     let system = &view.system;
     // Rays land as the map has them.
     let mapped = (system, None);
-    let masks = Masks::new(&system.layers);
+    let masks = Masks::new(&system.layers, &system.obstacles);
     let rays = map.rays();
     let lands = (rays.offset, rays.matrix);
     let field = linear_field(view, &masks, map);
@@ -82,7 +84,7 @@ fn derivatives(
     };
     let sides = || moved.iter().flat_map(|moved| &moved.sides);
     let masks: Vec<_> = sides()
-        .map(|view| Masks::new(&view.system.layers))
+        .map(|view| Masks::new(&view.system.layers, &view.system.obstacles))
         .collect();
     let draws: Option<Vec<Draw>> = sides()
         .map(|Observed { system, plane }| {
@@ -116,9 +118,12 @@ fn exact_field<'a>(view: &'a Observed<System>, masks: &'a Masks<'a>) -> impl Ray
         if flux <= 0.0 {
             return None;
         }
-        let (z, per_flux) = plane.coordinates(&system.follow(ray)?)?;
+        let (ray, mut passes) = system.follow_past(&masks.obstacles, ray)?;
+        let last = system.elements.len();
+        passes *= masks.obstacles.passes(last, &ray, plane.along(&ray)?);
+        let (z, per_flux) = plane.coordinates(&ray)?;
         let lit = !on_first_leg || plane.frame.to_world(DVec3::new(z[0], z[1], 0.0)).z > 0.0;
-        lit.then_some((z, flux * per_flux))
+        (lit && passes > 0.0).then_some((z, passes * flux * per_flux))
     }
 }
 
@@ -129,11 +134,71 @@ fn linear_field<'a>(
 ) -> impl RayField + 'a {
     let Observed { system, plane } = view;
     let rays = map.rays();
+    let legs = AffineLeg::all(view);
     move |ray: [f64; 4]| {
         let [.., u, v] = ray;
-        let radiance = flux(system, masks, ray) * (1.0 + u * u + v * v).powi(2);
+        let flux = flux(system, masks, ray);
+        if flux <= 0.0 {
+            return None;
+        }
+        let legs = legs.iter().enumerate();
+        let passes: f64 = legs
+            .map(|(i, leg)| leg.passes(&masks.obstacles, i, ray))
+            .product();
+        let radiance = passes * flux * (1.0 + u * u + v * v).powi(2);
         let z = rays.apply(ray);
         Some((z, map.factor * radiance * plane.factor(z)))
+    }
+}
+
+/// Where rays of the light are on a leg, to first order about the central ray.
+struct AffineLeg {
+    /// From (x, y, u, v) at the light to those across the leg where it begins.
+    map: Map<4>,
+    frame: Frame,
+    /// Along the central ray, metres.
+    length: f64,
+}
+
+impl AffineLeg {
+    /// Those on which obstacles may stand; none where there are no obstacles.
+    fn all(view: &Observed<System>) -> Vec<Self> {
+        let Observed { system, plane } = view;
+        let Some(hits) = system.hits().filter(|_| !system.obstacles.is_empty()) else {
+            return Vec::new();
+        };
+        let starts = std::iter::once(Frame::IDENTITY).chain(hits.iter().map(|hit| hit.leaving));
+        let leg = |(number, frame): (usize, Frame)| {
+            let ray = Ray {
+                point: frame.origin,
+                direction: frame.d,
+            };
+            let length = match hits.get(number) {
+                Some(hit) => hit.distance,
+                None => plane.along(&ray)?,
+            };
+            let before = &system.elements[..number];
+            let map = Map::touching(|emission| {
+                let start = Ray::new(emission);
+                let ray = before
+                    .iter()
+                    .try_fold(start, |ray, element| element.follow(&ray))?;
+                ray.across(&frame)
+            })?;
+            Some(Self { map, frame, length })
+        };
+        starts.enumerate().filter_map(leg).collect()
+    }
+
+    /// The share of a ray of the light that passes obstacles on this leg, by number.
+    fn passes(&self, obstacles: &Obstacles<'_>, number: usize, ray: [f64; 4]) -> f64 {
+        let [x, y, u, v] = self.map.apply(ray);
+        let along = DVec3::new(u, v, 1.0);
+        let ray = Ray {
+            point: self.frame.to_world(DVec3::new(x, y, 0.0)),
+            direction: self.frame.vector_to_world(along.normalize()),
+        };
+        obstacles.passes(number, &ray, self.length * along.length())
     }
 }
 
@@ -173,7 +238,8 @@ fn summed(
     };
     let opaque = |(_, mask): &(f64, Mask)| matches!(mask, Mask::Opaque { .. });
     let emission = system.emission();
-    let is_smooth = emission.shape.is_none() && !system.layers.iter().any(opaque);
+    let is_cut = system.layers.iter().any(opaque) || !system.obstacles.is_empty();
+    let is_smooth = emission.shape.is_none() && !is_cut;
     let finder = Finder {
         field,
         window,

@@ -1,6 +1,7 @@
 //! One ray through the system.
 
 use super::{Element, System};
+use crate::obstacle::Obstacles;
 use etendue_field::{Patch, Specular};
 use glam::DVec3;
 
@@ -119,6 +120,23 @@ impl Element {
 }
 
 impl System {
+    /// The last leg of the same ray, and the share of it that passes obstacles before that.
+    pub(super) fn follow_past(
+        &self,
+        obstacles: &Obstacles<'_>,
+        emission: [f64; 4],
+    ) -> Option<(Ray, f64)> {
+        let mut ray = Ray::new(emission);
+        let mut passes = 1.0;
+        for (leg, element) in self.elements.iter().enumerate() {
+            let (distance, normal) = ray.met(&element.patch)?;
+            passes *= obstacles.passes(leg, &ray, distance);
+            let point = ray.point + ray.direction * distance;
+            ray = element.turned(ray.direction, point, normal)?;
+        }
+        Some((ray, passes))
+    }
+
     /// The last leg of the ray (x, y, u, v) of the light's plane; masks are not looked at.
     pub(super) fn follow(&self, emission: [f64; 4]) -> Option<Ray> {
         let start = Ray::new(emission);

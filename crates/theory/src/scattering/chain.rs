@@ -158,6 +158,7 @@ fn steps(
     steps.push("multiply  cosine, cos⁺ θ cos² φ".to_owned());
     steps.push("map  mirror: ℓ̂(Ωx, −Ωθ)".to_owned());
     steps.extend(reflection(system));
+    steps.extend(system.obstacles.iter().map(words::obstacle));
     if plane.orientation.is_local() {
         return steps;
     }

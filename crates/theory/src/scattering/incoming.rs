@@ -1,7 +1,7 @@
 //! What shines on a point from one part of the light.
 
 use crate::mask::Masks;
-use crate::rays::emitted;
+use crate::rays::{Ray, emitted};
 use etendue_field::Light;
 use glam::DVec3;
 
@@ -51,7 +51,7 @@ impl Masks<'_> {
         };
         // Light begins in its plane, also that from far away.
         let passes = if weight > 0.0 && z > 0.0 {
-            self.transmittance(point, slopes)
+            self.transmittance(point, slopes) * self.past_obstacles(point, slopes)
         } else {
             0.0
         };
@@ -61,6 +61,22 @@ impl Masks<'_> {
         }
     }
 }
+
+impl Masks<'_> {
+    /// The share of light with these slopes that passes obstacles on its way to a point.
+    fn past_obstacles(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
+        let along = DVec3::new(u, v, 1.0);
+        let ray = Ray {
+            point: point - along * point.z,
+            direction: along.normalize(),
+        };
+        let length = point.z * along.length();
+        self.obstacles.passes(0, &ray, length * (1.0 - ROUNDING))
+    }
+}
+
+/// What stands at the point itself is no obstacle: share of a distance that rounding may make.
+const ROUNDING: f64 = 1e-9;
 
 /// 1/cos of the angle to the central ray.
 pub(super) fn secant([u, v]: [f64; 2]) -> f64 {

@@ -1,6 +1,6 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
-//! In goes a [`System`]: a light, masks across its way, and a curved surface with a BRDF that may
+//! In goes a [`System`]: a light, masks across its way, obstacles, and a curved surface with a BRDF that may
 //! vary over it. In goes a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or
 //! across its way onwards. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model):
 //! it sums rays of the plane over scrambled nets, and for each of them a part of the light that
@@ -33,6 +33,7 @@ pub use predict::beside;
 
 pub(crate) use predict::predict;
 
+use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Reflectance};
 
 /// A light and the surface its central ray meets, in the frame at the light.
@@ -42,6 +43,8 @@ pub struct System {
     pub light: Light,
     /// Masks between them and their distances from the light, metres.
     pub layers: Vec<(f64, Mask)>,
+    /// What else stops rays, before and behind the surface.
+    pub obstacles: Vec<Obstacle>,
     /// The name of the surface, for texts.
     pub name: String,
     /// The surface; it faces along D of its frame, and is black on the other side.

@@ -9,6 +9,7 @@ use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
 use crate::predicted::Predicted;
+use crate::rays::{Plane, Ray};
 use etendue_field::{EnvironmentMap, Light, TwoPlane, Window};
 use glam::DVec3;
 
@@ -110,7 +111,7 @@ impl<'a> ScatteredField<'a> {
         Self {
             view,
             window,
-            masks: Masks::new(&system.layers),
+            masks: Masks::new(&system.layers, &system.obstacles),
             rays: Rays::new(system, window, chain, strategy),
             lights: Lights::new(system, normal, strategy),
         }
@@ -146,13 +147,28 @@ fn over(radiance: f64, density: f64) -> f64 {
 /// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
 fn radiance(view: &Observed<System>, masks: &Masks<'_>, leaving: &Leaving, part: Part) -> f64 {
     let Observed { system, plane } = view;
-    let radiance = system.radiance(masks, leaving, part);
+    let passes = past_obstacles(plane, masks, leaving);
+    let radiance = if passes > 0.0 {
+        passes * system.radiance(masks, leaving, part)
+    } else {
+        0.0
+    };
     if plane.orientation.is_local() {
         // On the surface itself the integral is over its area, larger than the tangent plane's.
         radiance / leaving.normal.dot(plane.frame.d).abs()
     } else {
         radiance
     }
+}
+
+/// The share of a ray that passes obstacles between the surface and the plane.
+fn past_obstacles(plane: &Plane, masks: &Masks<'_>, leaving: &Leaving) -> f64 {
+    let ray = Ray {
+        point: leaving.point,
+        direction: leaving.direction,
+    };
+    let along = plane.along(&ray);
+    along.map_or(0.0, |length| masks.obstacles.passes(1, &ray, length))
 }
 
 impl Integrand for ScatteredField<'_> {
@@ -200,7 +216,7 @@ impl<'a> Side<'a> {
             moves_surface,
             moves_light: view.system.light != system.light
                 || moves_surface && field.lights.is_by_lobe(),
-            masks: Masks::new(&view.system.layers),
+            masks: Masks::new(&view.system.layers, &view.system.obstacles),
             lights: field.lights.of(&view.system, strategy),
         }
     }
@@ -274,7 +290,10 @@ impl Integrand for Around<'_> {
         if let Some(linear) = linear {
             put(own.1.map_or(0.0, |(part, density)| {
                 let exact = field.radiance(&leaving, part);
-                over(linear.radiance(&field.masks, z, part) - exact, density)
+                // Across a straight leg the chain is exact.
+                let passes = past_obstacles(&field.view.plane, &field.masks, &leaving);
+                let first_order = passes * linear.radiance(&field.masks, z, part);
+                over(first_order - exact, density)
             }));
         }
         for (apart, sides) in moved {

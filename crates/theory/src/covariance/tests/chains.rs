@@ -124,6 +124,7 @@ fn behind_a_curved_mirror() {
         system: rays::System {
             light: lamp(),
             layers: layers(),
+            obstacles: vec![],
             elements: vec![Element {
                 name: "mirror".into(),
                 patch: patch(),
@@ -158,6 +159,7 @@ fn behind_a_textured_lobe() {
                 },
             },
             layers: vec![],
+            obstacles: vec![],
             name: "sphere".into(),
             patch: patch(),
             reflectance: Reflectance {

@@ -139,6 +139,7 @@ fn system(light: Light, elements: Vec<Element>) -> System {
     System {
         light,
         layers: vec![],
+        obstacles: vec![],
         elements,
     }
 }

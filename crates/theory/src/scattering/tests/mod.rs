@@ -105,6 +105,7 @@ fn system(light: Light, theta0: f64, curvature: [f64; 3], reflectance: Reflectan
     System {
         light,
         layers: vec![],
+        obstacles: vec![],
         name: "surface".into(),
         patch: Patch {
             frame: Frame::new(DVec3::Z * DISTANCE, d, DVec3::X).unwrap(),
@@ -409,7 +410,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
     ] {
         let system = under(map);
         let plane = on_it(&system);
-        let masks = crate::mask::Masks::new(&[]);
+        let masks = crate::mask::Masks::new(&[], &[]);
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
             let lights = draw::Lights::new(&system, leaving.normal, draw::LightStrategy::default());

@@ -1,0 +1,248 @@
+//! What stands in the way of rays beside the masks of the first leg.
+
+use crate::mask::Barrier;
+use crate::rays::Ray;
+use etendue_field::{Frame, Mask, Patch};
+use glam::DVec3;
+
+/// Something that stops rays wherever it stands in their way, in the frame at the light.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Obstacle {
+    /// Name, for texts.
+    pub name: String,
+    /// What it is.
+    pub form: ObstacleForm,
+}
+
+/// What an obstacle is.
+#[derive(Clone, Debug, PartialEq)]
+pub enum ObstacleForm {
+    /// A mask across the first leg that light meets from a leg on, by number: where that is not the
+    /// first, it is among the layers too.
+    Mask {
+        /// The first leg on which it counts.
+        from: usize,
+        /// Of its plane from the light, metres.
+        distance: f64,
+        /// What it lets through, over x and y.
+        mask: Mask,
+    },
+    /// An opaque rectangle about the origin of a frame, across D.
+    Rectangle {
+        /// Where it stands.
+        frame: Frame,
+        /// Along X and Y, metres.
+        size: [f64; 2],
+    },
+    /// An opaque smooth surface.
+    Patch(Patch),
+    /// Opaque triangles.
+    Mesh(Vec<[DVec3; 3]>),
+}
+
+/// Obstacles made ready for many rays.
+#[derive(Debug)]
+pub(crate) struct Obstacles<'a>(Vec<Ready<'a>>);
+
+#[derive(Debug)]
+enum Ready<'a> {
+    Mask(usize, Barrier<'a>),
+    Rectangle(&'a Frame, [f64; 2]),
+    Patch(&'a Patch),
+    Mesh {
+        /// Of a sphere around it.
+        center: DVec3,
+        radius: f64,
+        triangles: &'a [[DVec3; 3]],
+    },
+}
+
+/// Share of a distance that rounding may make.
+const ROUNDING: f64 = 1e-9;
+
+impl<'a> Obstacles<'a> {
+    pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
+        let ready = obstacles.iter().map(|obstacle| match &obstacle.form {
+            ObstacleForm::Mask {
+                from,
+                distance,
+                mask,
+            } => Ready::Mask(*from, Barrier::new(*distance, mask)),
+            ObstacleForm::Rectangle { frame, size } => Ready::Rectangle(frame, *size),
+            ObstacleForm::Patch(patch) => Ready::Patch(patch),
+            ObstacleForm::Mesh(triangles) => around(triangles),
+        });
+        Self(ready.collect())
+    }
+
+    /// The share of a ray of this leg that passes on its first metres.
+    pub(crate) fn passes(&self, leg: usize, ray: &Ray, length: f64) -> f64 {
+        let start = ROUNDING * ray.point.length();
+        let is_between = |t: f64| start < t && t < length;
+        let mut passes = 1.0;
+        for ready in &self.0 {
+            passes *= match ready {
+                Ready::Mask(from, barrier) if leg >= *from => {
+                    let t = (barrier.distance - ray.point.z) / ray.direction.z;
+                    let at = ray.point + t * ray.direction;
+                    if is_between(t) {
+                        barrier.transmittance(at.x, at.y)
+                    } else {
+                        1.0
+                    }
+                }
+                Ready::Mask(..) => 1.0,
+                Ready::Rectangle(frame, size) => {
+                    let t = on_rectangle(frame, *size, ray);
+                    let is_met = t.is_some_and(is_between);
+                    if is_met { 0.0 } else { 1.0 }
+                }
+                Ready::Patch(patch) => {
+                    let is_met = on_patch(patch, ray).into_iter().flatten().any(is_between);
+                    if is_met { 0.0 } else { 1.0 }
+                }
+                Ready::Mesh {
+                    center,
+                    radius,
+                    triangles,
+                } => {
+                    let mut meets = triangles.iter().filter_map(|triangle| on(triangle, ray));
+                    let is_met = is_near(*center, *radius, ray) && meets.any(is_between);
+                    if is_met { 0.0 } else { 1.0 }
+                }
+            };
+            if passes == 0.0 {
+                break;
+            }
+        }
+        passes
+    }
+}
+
+fn around(triangles: &[[DVec3; 3]]) -> Ready<'_> {
+    let corners = || triangles.as_flattened().iter();
+    let low = corners().fold(DVec3::INFINITY, |low, corner| low.min(*corner));
+    let high = corners().fold(DVec3::NEG_INFINITY, |high, corner| high.max(*corner));
+    let center = 0.5 * (low + high);
+    let radius = corners().map(|corner| corner.distance(center));
+    Ready::Mesh {
+        center,
+        radius: radius.fold(0.0, f64::max),
+        triangles,
+    }
+}
+
+fn is_near(center: DVec3, radius: f64, ray: &Ray) -> bool {
+    let beside = (center - ray.point).cross(ray.direction);
+    beside.length_squared() <= radius * radius
+}
+
+fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &Ray) -> Option<f64> {
+    let point = frame.to_local(ray.point);
+    let direction = frame.vector_to_local(ray.direction);
+    let t = -point.z / direction.z;
+    let at = point + t * direction;
+    let is_inside = 2.0 * at.x.abs() <= size[0] && 2.0 * at.y.abs() <= size[1];
+    is_inside.then_some(t)
+}
+
+/// Both points of the quadric that belong to the patch.
+fn on_patch(patch: &Patch, ray: &Ray) -> [Option<f64>; 2] {
+    let point = patch.frame.to_local(ray.point);
+    let direction = patch.frame.vector_to_local(ray.direction);
+    let curved = DVec3::from(patch.curvature) * direction;
+    let (a, b) = (curved.dot(direction), curved.dot(point) + direction.z);
+    let c = patch.value(point);
+    // Nothing cancels: the root that would is the constant over the other.
+    let root = (b * b - a * c).sqrt();
+    let q = -(b + root.copysign(b));
+    [q / a, c / q]
+        .map(|t| Some(t).filter(|t| t.is_finite() && patch.contains(point + *t * direction)))
+}
+
+/// How far along a ray it meets a triangle: where the volumes that it spans with the edges have one
+/// sign (Plücker's coordinates).
+fn on([a, b, c]: &[DVec3; 3], ray: &Ray) -> Option<f64> {
+    let [p, q, r] = [*a, *b, *c].map(|corner| corner - ray.point);
+    let volumes = [p.cross(q), q.cross(r), r.cross(p)].map(|face| face.dot(ray.direction));
+    let one_sign = volumes.iter().all(|v| *v >= 0.0) || volumes.iter().all(|v| *v <= 0.0);
+    let normal = (q - p).cross(r - p);
+    let t = p.dot(normal) / ray.direction.dot(normal);
+    (one_sign && t.is_finite()).then_some(t)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use etendue_field::{Rectangle, Shape};
+
+    const RAY: Ray = Ray {
+        point: DVec3::new(0.1, 0.2, 1.0),
+        direction: DVec3::NEG_Z,
+    };
+
+    fn passes(form: ObstacleForm, leg: usize, length: f64) -> f64 {
+        let name = String::new();
+        Obstacles::new(&[Obstacle { name, form }]).passes(leg, &RAY, length)
+    }
+
+    #[test]
+    fn a_mask_counts_on_later_legs() {
+        let shapes = vec![Shape::Rectangle(Rectangle {
+            center: [0.1, 0.2],
+            size: [0.1, 0.1],
+        })];
+        let mask = Mask::Opaque {
+            shapes,
+            half_planes: vec![],
+        };
+        let form = |from| ObstacleForm::Mask {
+            from,
+            distance: 0.5,
+            mask: mask.clone(),
+        };
+        assert!(passes(form(1), 1, 0.6) == 0.0 && passes(form(1), 0, 0.6) == 1.0);
+        assert!(passes(form(1), 1, 0.4) == 1.0 && passes(form(0), 0, 0.6) == 0.0);
+    }
+
+    /// A square, a bowl that holds it at its vertex, and two triangles in its place.
+    #[test]
+    fn what_is_in_the_way_stops_rays() {
+        let frame = Frame::new(DVec3::new(0.0, 0.0, 0.5), DVec3::Z, DVec3::X).unwrap();
+        let bowl = |curvature| Patch {
+            frame,
+            curvature: [curvature; 3],
+            aperture: 0.3,
+        };
+        let corner = |x, y| DVec3::new(x, y, 0.5);
+        let square = vec![
+            [corner(-0.3, -0.3), corner(0.3, -0.3), corner(0.3, 0.3)],
+            [corner(-0.3, -0.3), corner(0.3, 0.3), corner(-0.3, 0.3)],
+        ];
+        let size = [0.6, 0.6];
+        let forms = [
+            ObstacleForm::Rectangle { frame, size },
+            ObstacleForm::Patch(bowl(0.0)),
+            ObstacleForm::Patch(bowl(-0.1)),
+            ObstacleForm::Mesh(square),
+        ];
+        for form in forms {
+            assert_eq!(passes(form.clone(), 0, 0.6), 0.0, "{form:?}");
+            assert_eq!(passes(form.clone(), 0, 0.4), 1.0, "{form:?}");
+            let name = String::new();
+            let beside = Ray {
+                point: RAY.point + 0.3 * DVec3::X,
+                ..RAY
+            };
+            let obstacle = Obstacle {
+                name,
+                form: form.clone(),
+            };
+            assert_eq!(
+                Obstacles::new(&[obstacle]).passes(0, &beside, 0.6),
+                1.0,
+                "{form:?}"
+            );
+        }
+    }
+}
