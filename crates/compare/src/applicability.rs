@@ -6,7 +6,7 @@ use crate::dark;
 use crate::parallel::obstacles_to_theory;
 use crate::system::{in_the_way, print, scattered, system, too_fine};
 use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
-use etendue_field::{Orientation, VirtualPlane, Window};
+use etendue_field::{Mask, Orientation, VirtualPlane, Window};
 use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{Budget, Chain, Model, Observed, Over, Parameter, Work, rays, scattering};
 
@@ -79,7 +79,7 @@ impl Theory {
             Self::Parallel(_) | Self::None => return,
         };
         // Not twice on the first leg.
-        layers.retain(|(distance, _)| from > 0 || *distance != layer.distance);
+        layers.retain(|known| from > 0 || !is_same(known, layer));
         obstacles.push(in_the_way(layer, from));
     }
 
@@ -90,9 +90,7 @@ impl Theory {
             Self::Scattering(view) => &view.system.layers,
             Self::Parallel(_) | Self::None => return true,
         };
-        layers
-            .iter()
-            .any(|(distance, _)| *distance == layer.distance)
+        layers.iter().any(|known| is_same(known, layer))
     }
 
     /// What the theory takes for granted of a scene, each checked where it applies.
@@ -129,6 +127,10 @@ impl Theory {
             Self::None => Work::none(),
         }
     }
+}
+
+fn is_same((distance, mask): &(f64, Mask), layer: &BlockerLayer) -> bool {
+    distance.total_cmp(&layer.distance).is_eq() && *mask == layer.mask
 }
 
 impl Applicability {

@@ -181,9 +181,12 @@ mod tests {
         direction: DVec3::NEG_Z,
     };
 
-    fn passes(form: ObstacleForm, leg: usize, length: f64) -> f64 {
-        let name = String::new();
-        Obstacles::new(&[Obstacle { name, form }]).passes(leg, &RAY, length)
+    fn stops(form: &ObstacleForm, leg: usize, ray: &Ray, length: f64) -> bool {
+        let obstacle = Obstacle {
+            name: String::new(),
+            form: form.clone(),
+        };
+        Obstacles::new(&[obstacle]).passes(leg, ray, length) < 0.5
     }
 
     #[test]
@@ -196,13 +199,13 @@ mod tests {
             shapes,
             half_planes: vec![],
         };
-        let form = |from| ObstacleForm::Mask {
+        let from = |from| ObstacleForm::Mask {
             from,
             distance: 0.5,
             mask: mask.clone(),
         };
-        assert!(passes(form(1), 1, 0.6) == 0.0 && passes(form(1), 0, 0.6) == 1.0);
-        assert!(passes(form(1), 1, 0.4) == 1.0 && passes(form(0), 0, 0.6) == 0.0);
+        assert!(stops(&from(1), 1, &RAY, 0.6) && !stops(&from(1), 0, &RAY, 0.6));
+        assert!(stops(&from(0), 0, &RAY, 0.6) && !stops(&from(1), 1, &RAY, 0.4));
     }
 
     /// A square, a bowl that holds it at its vertex, and two triangles in its place.
@@ -226,23 +229,14 @@ mod tests {
             ObstacleForm::Patch(bowl(-0.1)),
             ObstacleForm::Mesh(square),
         ];
+        let beside = Ray {
+            point: RAY.point + 0.3 * DVec3::X,
+            ..RAY
+        };
         for form in forms {
-            assert_eq!(passes(form.clone(), 0, 0.6), 0.0, "{form:?}");
-            assert_eq!(passes(form.clone(), 0, 0.4), 1.0, "{form:?}");
-            let name = String::new();
-            let beside = Ray {
-                point: RAY.point + 0.3 * DVec3::X,
-                ..RAY
-            };
-            let obstacle = Obstacle {
-                name,
-                form: form.clone(),
-            };
-            assert_eq!(
-                Obstacles::new(&[obstacle]).passes(0, &beside, 0.6),
-                1.0,
-                "{form:?}"
-            );
+            assert!(stops(&form, 0, &RAY, 0.6), "{form:?}");
+            assert!(!stops(&form, 0, &RAY, 0.4), "{form:?}");
+            assert!(!stops(&form, 0, &beside, 0.6), "{form:?}");
         }
     }
 }

@@ -2,12 +2,7 @@
 
 /// Each assumption, and a phrase of the reasons that are given where it does not hold. A reason
 /// belongs to the first phrase it has.
-const PHRASES: [(&str, &str); 17] = [
-    (
-        "masks are met on the first leg alone",
-        "to light that has left",
-    ),
-    ("masks stand before the first surface", "partly beyond"),
+const PHRASES: [(&str, &str); 15] = [
     ("surfaces are met in their order", "out of turn"),
     (
         "a surface is met once, and not in its own shadow",
@@ -18,8 +13,8 @@ const PHRASES: [(&str, &str); 17] = [
         "its osculating patch",
     ),
     (
-        "the path visits all surfaces",
-        "which the path does not visit",
+        "no fine mesh is beside the path",
+        "triangles beside the path",
     ),
     ("no mesh is in the way", "triangles at"),
     ("no surface is in the way", "visibility of"),

@@ -146,7 +146,7 @@ mod tests {
         }
     }
 
-    /// A rectangle beside a mirror breaks an assumption, and only one that stops light is seen.
+    /// A fine mesh beside a mirror breaks an assumption, and only one that stops light is seen.
     #[test]
     fn photons_accept_theory_where_nothing_comes_of_it() {
         for (x, verdict) in [(3.0, Verdict::Pass), (0.55, Verdict::Fail)] {
@@ -156,7 +156,8 @@ mod tests {
                     surfaces: [
                         Smooth(name: "mirror", center: (0, 0, 1), facing: (0, 0, -1),
                             form: Plane, aperture: 0.5, event: Mirror),
-                        Rectangle(name: "beside", center: ({x}, 0, 0.7), size: (1, 1)),
+                        Mesh(name: "beside", center: ({x}, 0, 0.7),
+                            mesh: Paraboloid(curvatures: (0, 0), half: 0.5, cells: 20)),
                     ],
                     path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["mirror"]),
                     planes: [(name: "plane", at: After("mirror"))],
@@ -169,7 +170,7 @@ mod tests {
             let scene = resolve("scene", file, ".".as_ref(), u64::MAX).unwrap();
             assert_eq!(
                 judged(&scene),
-                [("the path visits all surfaces", verdict)],
+                [("no fine mesh is beside the path", verdict)],
                 "{x}"
             );
         }
