@@ -43,9 +43,11 @@ impl Outcome {
             measured,
             predicted,
             sigma,
+            measured_sigma,
             rho,
             nu,
         } = SliceArrays::of(self.plane(plane)?);
+        let measured_sigma = measured_sigma.unwrap_or_else(|| sigma.clone());
         Ok(Arrays::new(py)
             .add("azimuth", azimuth)?
             .add("rho", rho)?
@@ -53,6 +55,7 @@ impl Outcome {
             .add("measured", measured)?
             .add("predicted", predicted)?
             .add("sigma", sigma)?
+            .add("sigma_measured", measured_sigma)?
             .finish())
     }
 
