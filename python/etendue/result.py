@@ -38,6 +38,8 @@ class Slices:
     predicted: NDArray[np.complex128]
     sigma: Floats
     """Standard deviation of |measured − predicted| if the prediction is true."""
+    sigma_measured: Floats
+    """Standard deviation of |measured| alone; below sigma where the prediction has noise too."""
 
 
 @dataclass(frozen=True, eq=False)

@@ -175,7 +175,7 @@ def test_a_path_is_no_option(tmp_path):
     for call in [
         lambda: etendue.render("--help", out=tmp_path / "out"),
         lambda: etendue.probe("--version", (1, 1), out=tmp_path / "out"),
-        lambda: etendue.sweep("--help", {"blockers.0.pitch": [0.1]}, out=tmp_path / "out"),
+        lambda: etendue.sweep("--help", {"blockers.0.pitch": [0.1, 0.2]}, out=tmp_path / "out"),
     ]:
         with pytest.raises(ValueError, match="--help|--version"):
             call()

@@ -123,6 +123,8 @@ enum Command {
     Assumptions(assumptions::Options),
     /// Small objects in the light of random scenes; exit code 1 if photons reject a prediction.
     Small(wild::SmallOptions),
+    /// Random scenes whose light several surfaces send on; exit code 1 if photons reject a prediction.
+    Several(wild::SmallOptions),
     /// Measured parameters and slopes of random scenes in stated errors, and what predictions cost; exit code 1 if errors are not those made.
     Pulls(pulls::Options),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
@@ -158,6 +160,9 @@ fn main() -> ExitCode {
     }
     if let Command::Small(options) = &command {
         return printed(wild::small(options).map(|section| vec![section]));
+    }
+    if let Command::Several(options) = &command {
+        return printed(wild::several(options).map(|section| vec![section]));
     }
     if let Command::Assumptions(options) = &command {
         return printed(assumptions::assumptions(options).map(|section| vec![section]));
@@ -312,6 +317,7 @@ fn sections(command: &Command) -> Vec<Section> {
         | Command::Kills(_)
         | Command::Wild(_)
         | Command::Small(_)
+        | Command::Several(_)
         | Command::Assumptions(_)
         | Command::Pulls(_) => Vec::new(),
         Command::Noise { most } => noise(most),

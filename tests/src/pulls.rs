@@ -221,6 +221,7 @@ fn kind(theory: &Applicability, prediction: &Prediction) -> &'static str {
         (Theory::Parallel(_), false, false) => "exact, closed form",
         (Theory::Specular(_), true, _) => "specular, nets",
         (Theory::Specular(_), false, _) => "specular, quadrature",
+        (Theory::Reflections(_), ..) => "several surfaces, nets",
         _ => "scattering, nets",
     }
 }

@@ -4,11 +4,13 @@ use crate::chain::chain;
 use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
-use crate::system::{in_the_way, print, scattered, system, too_fine};
+use crate::system::{in_the_way, print, reflected, scattered, system, too_fine};
 use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
 use etendue_field::{Mask, Orientation, VirtualPlane, Window};
 use etendue_scene::{BlockerLayer, Scene};
-use etendue_theory::{Budget, Chain, Model, Observed, Over, Parameter, Work, rays, scattering};
+use etendue_theory::{
+    Budget, Chain, Model, Observed, Over, Parameter, Work, rays, reflections, scattering,
+};
 
 /// What theory says of a plane: which one applies, or why none does.
 #[derive(Clone, Debug)]
@@ -17,6 +19,9 @@ pub struct Applicability {
     pub theory: Theory,
     /// What light meets on its way that no theory describes, in words; empty where one applies.
     pub reasons: Vec<String>,
+    /// What keeps a theory of fewer surfaces from the plane, in words, where that of several surfaces
+    /// takes its place; else empty.
+    pub declined: Vec<String>,
     /// Why no light reaches the plane, in words; `None` where some may.
     pub dark: Option<String>,
     /// How far smooth meshes lead rays beside where their osculating patches do; `None` without one.
@@ -32,6 +37,8 @@ pub enum Theory {
     Specular(Box<Observed<rays::System>>),
     /// Light that one smooth surface reflects by a BRDF.
     Scattering(Box<Observed<scattering::System>>),
+    /// Light that several surfaces send on in turn, or one past its own shadow or its edges.
+    Reflections(Box<Observed<reflections::System>>),
     /// None: another measurement takes its place.
     None,
 }
@@ -62,7 +69,7 @@ impl Theory {
             Self::Specular(view) => unforeseen_by_rays(scene, plane, view, off),
             Self::Scattering(view) => unforeseen_by_scattering(scene, plane, view),
             Self::Parallel(_) => return obstacles_to_theory(scene, plane),
-            Self::None => return Vec::new(),
+            Self::Reflections(_) | Self::None => return Vec::new(),
         };
         for layer in layers {
             self.take(&scene.blockers[layer.index], layer.from);
@@ -76,7 +83,7 @@ impl Theory {
         let (layers, obstacles) = match self {
             Self::Specular(view) => (&mut view.system.layers, &mut view.system.obstacles),
             Self::Scattering(view) => (&mut view.system.layers, &mut view.system.obstacles),
-            Self::Parallel(_) | Self::None => return,
+            Self::Parallel(_) | Self::Reflections(_) | Self::None => return,
         };
         // Not twice on the first leg.
         layers.retain(|known| from > 0 || !is_same(known, layer));
@@ -88,6 +95,7 @@ impl Theory {
         let layers = match self {
             Self::Specular(view) => &view.system.layers,
             Self::Scattering(view) => &view.system.layers,
+            Self::Reflections(_) => return false,
             Self::Parallel(_) | Self::None => return true,
         };
         layers.iter().any(|known| is_same(known, layer))
@@ -104,7 +112,7 @@ impl Theory {
                 "the receiver has no edge in view",
             ],
             Self::Specular(_) | Self::Scattering(_) => FOLLOWED,
-            Self::None => &[],
+            Self::Reflections(_) | Self::None => &[],
         }
     }
 
@@ -114,6 +122,7 @@ impl Theory {
             Self::Parallel(chain) => chain.parameters(),
             Self::Specular(view) => view.parameters(),
             Self::Scattering(view) => view.parameters(),
+            Self::Reflections(view) => view.parameters(),
             Self::None => Vec::new(),
         }
     }
@@ -124,6 +133,7 @@ impl Theory {
             Self::Parallel(chain) => chain.work(over, budget),
             Self::Specular(view) => view.work(over, budget),
             Self::Scattering(view) => view.work(over, budget),
+            Self::Reflections(view) => view.work(over, budget),
             Self::None => Work::none(),
         }
     }
@@ -147,13 +157,22 @@ impl Applicability {
         let mut theory = Theory::of(scene, plane);
         let off_patches = match &theory {
             Theory::Specular(view) => off_patches(scene, plane, view),
-            Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,
+            _ => None,
         };
-        let reasons = theory.obstacles(scene, plane, off_patches);
+        let mut reasons = theory.obstacles(scene, plane, off_patches);
+        let mut declined = Vec::new();
+        let others = || reflected(scene, plane).filter(|_| too_fine(scene).is_empty());
+        if !reasons.is_empty()
+            && let Some(view) = others()
+        {
+            theory = Theory::Reflections(Box::new(view));
+            declined = std::mem::take(&mut reasons);
+        }
         if !reasons.is_empty() {
             return Self {
                 theory: Theory::None,
                 reasons,
+                declined,
                 dark: None,
                 off_patches: None,
             };
@@ -163,6 +182,7 @@ impl Applicability {
         Self {
             theory,
             reasons,
+            declined,
             dark,
             off_patches,
         }
@@ -173,7 +193,9 @@ impl Applicability {
     pub fn class(&self) -> Class {
         match self.theory {
             Theory::Parallel(_) => Class::Exact,
-            Theory::Specular(_) | Theory::Scattering(_) => Class::FirstOrder,
+            Theory::Specular(_) | Theory::Scattering(_) | Theory::Reflections(_) => {
+                Class::FirstOrder
+            }
             Theory::None => Class::Reference,
         }
     }
@@ -184,7 +206,7 @@ impl Applicability {
     pub fn affine_chain(&self, scene: &Scene) -> Option<rays::AffineChain> {
         match &self.theory {
             Theory::Specular(view) => rays::chain(view, print(scene)),
-            Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,
+            _ => None,
         }
     }
 
@@ -198,6 +220,10 @@ impl Applicability {
             Theory::Specular(_) => self.affine_chain(scene).map(|chain| chain.steps),
             Theory::Scattering(view) => {
                 let chain = scattering::chain(view);
+                Some(chain.map(|chain| chain.steps).unwrap_or_default())
+            }
+            Theory::Reflections(view) => {
+                let chain = reflections::chain(view);
                 Some(chain.map(|chain| chain.steps).unwrap_or_default())
             }
             Theory::None => Some(Vec::new()),

@@ -79,6 +79,9 @@ impl TracedPlane {
             Theory::Parallel(chain) => chain.spectral_covariance(),
             Theory::Specular(view) => view.spectral_covariance(),
             Theory::Scattering(view) => view.spectral_covariance(),
+            Theory::Reflections(_) => {
+                return Err("several surfaces have scattered the light".to_owned());
+            }
             Theory::None => return Err("no chain leads to this plane".to_owned()),
         };
         let seen = traced.map_err(|reason| reason.to_string())?;

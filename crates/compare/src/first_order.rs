@@ -9,7 +9,7 @@ use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{Edition, Map, Matrix};
 use etendue_theory::rays::{self, System};
-use etendue_theory::{Observed, Over, Predicted, scattering};
+use etendue_theory::{Observed, Over, Predicted};
 use ndarray::Array3;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -133,14 +133,12 @@ impl FirstOrder {
         })
     }
 
-    /// The chain of a surface with a BRDF. Its noise is that of the exact prediction: the
+    /// The chain past surfaces that scatter light, with its defect and the matrix of its rays by way
+    /// of the mirror directions. Its noise is that of the exact prediction: the
     /// difference of the two has little of its own.
-    pub(crate) fn of_reflection(
-        view: &Observed<scattering::System>,
-        exact: &Predicted,
-    ) -> Option<Self> {
-        let chain = scattering::chain(view).filter(|_| !exact.slices.is_dark())?;
-        let difference = exact.to_first_order.as_ref()?;
+    pub(crate) fn of_reflection(exact: &Predicted, defect: f64, matrix: Matrix<4>) -> Option<Self> {
+        let difference = exact.to_first_order.as_ref();
+        let difference = difference.filter(|_| !exact.slices.is_dark())?;
         let near = |slices: &Slices| Slices {
             half: &slices.half + &difference.half,
             ..*slices
@@ -149,9 +147,9 @@ impl FirstOrder {
         Some(Self {
             chain: FirstOrderChain {
                 error: distance(&slices, &exact.slices),
-                defect: scattering::defect(view, &chain)?,
+                defect,
                 radiance_defect: 0.0,
-                matrix: chain.rays().matrix,
+                matrix,
                 covariance: [exact.covariance, None],
                 foci: Vec::new(),
                 as_printed: false,

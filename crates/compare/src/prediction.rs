@@ -9,7 +9,7 @@ use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};
 use etendue_spectrum::{Measurement, PROJECTION_BINS};
-use etendue_theory::{Budget, Model, Over};
+use etendue_theory::{Budget, Model, Over, reflections, scattering};
 use ndarray::Array2;
 
 /// Everything a measurement of a plane is held against.
@@ -108,7 +108,14 @@ impl Prediction {
                 }
             }
             Theory::Scattering(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
-                FirstOrder::of_reflection(view, exact)
+                let chain = scattering::chain(view)?;
+                let defect = scattering::defect(view, &chain)?;
+                FirstOrder::of_reflection(exact, defect, chain.rays().matrix)
+            }),
+            Theory::Reflections(view) => empty.by(view.as_ref(), over, budget(scene), |exact| {
+                let chain = reflections::chain(view)?;
+                let defect = reflections::defect(view, &chain)?;
+                FirstOrder::of_reflection(exact, defect, chain.rays().matrix)
             }),
         }
     }

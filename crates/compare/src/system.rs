@@ -1,11 +1,11 @@
 //! Smooth surfaces read off the scene, for rays and for reflection by a BRDF.
 
 use crate::chain::stands_before;
-use etendue_field::{Light, Mask, Orientation, Side, Specular, VirtualPlane};
-use etendue_scene::{BlockerLayer, Event, Hit, Object, Scene};
+use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
+use etendue_scene::{BlockerLayer, Event, Hit, Object, PatchObject, Scene, Surface};
 use etendue_theory::geometry::Edition;
 use etendue_theory::rays::{Element, Plane, System};
-use etendue_theory::{Observed, Obstacle, ObstacleForm, scattering};
+use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
 /// where light comes from an environment or a ray file, and where a surface is not specular.
@@ -96,6 +96,89 @@ pub fn scattered(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<scatter
     })
 }
 
+/// The light, all masks and all surfaces of the path, and a plane behind some of them. `None` where
+/// light comes from an environment or a ray file, where it has met a mesh, and where no surface or
+/// too many have scattered it.
+pub(crate) fn reflected(
+    scene: &Scene,
+    plane: &VirtualPlane,
+) -> Option<Observed<reflections::System>> {
+    if matches!(scene.light, Light::Environment { .. } | Light::Rays { .. }) {
+        return None;
+    }
+    let legs = scene.path.legs.iter();
+    let hits: Vec<Hit> = legs.filter_map(|leg| leg.leaves).collect();
+    let visited = plane.leg;
+    let surfaces = hits.iter().map(|hit| visited_surface(scene, hit));
+    // A mesh that ends the last leg, or stands beside the path, is no surface of it.
+    let surfaces: Vec<reflections::Surface> = surfaces.map_while(|surface| surface).collect();
+    let scatterers = surfaces
+        .iter()
+        .take(visited)
+        .filter(|s| s.scatters())
+        .count();
+    let is_in_range = (1..=reflections::MAX_SCATTERERS).contains(&scatterers);
+    if surfaces.len() < visited || !is_in_range {
+        return None;
+    }
+    let mut obstacles = beside_the_path(scene);
+    obstacles.extend(scene.blockers.iter().map(|layer| in_the_way(layer, 0)));
+    let later = hits.iter().skip(surfaces.len());
+    let later =
+        later.filter(|hit| scene.path.ends_at(visited).map(|end| end.object) != Some(hit.object));
+    obstacles.extend(later.map(|hit| as_obstacle(scene, hit.object)));
+    let system = reflections::System {
+        light: scene.light.clone(),
+        obstacles,
+        surfaces,
+        visited,
+    };
+    Some(Observed {
+        system,
+        plane: in_frame(scene, plane),
+    })
+}
+
+/// A surface of the path; `None` for a mesh.
+fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::Surface> {
+    let name = scene.name_of(hit.object).to_owned();
+    let of = |patch, outline, interaction| reflections::Surface {
+        name,
+        patch,
+        outline,
+        hit: hit.point,
+        interaction,
+    };
+    match hit.object {
+        Object::Patch(i) => {
+            let PatchObject { patch, event, .. } = &scene.patches[i];
+            let interaction = match event {
+                Event::Specular(event) => reflections::Interaction::Specular(*event),
+                Event::Reflects(reflectance) => {
+                    reflections::Interaction::Reflects(Box::new(reflectance.clone()))
+                }
+            };
+            Some(of(*patch, None, interaction))
+        }
+        Object::Surface(i) => {
+            let Surface {
+                frame,
+                size,
+                albedo,
+                ..
+            } = &scene.surfaces[i];
+            let patch = Patch {
+                frame: *frame,
+                curvature: [0.0; 3],
+                aperture: 0.5 * libm::hypot(size[0], size[1]),
+            };
+            let interaction = reflections::Interaction::Diffuse { albedo: *albedo };
+            Some(of(patch, Some(*size), interaction))
+        }
+        Object::Mesh(_) => None,
+    }
+}
+
 /// The masks that light meets before a plane, with their distances.
 fn layers_before(scene: &Scene, plane: &VirtualPlane) -> Vec<(f64, Mask)> {
     let layers = scene.blockers.iter();
@@ -156,7 +239,11 @@ fn is_too_fine(scene: &Scene, object: Object) -> bool {
 /// What stands beside the path, for rays to be followed past.
 fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
     let coarse = unvisited(scene).filter(|object| !is_too_fine(scene, *object));
-    let obstacles = coarse.map(|object| Obstacle {
+    coarse.map(|object| as_obstacle(scene, object)).collect()
+}
+
+fn as_obstacle(scene: &Scene, object: Object) -> Obstacle {
+    Obstacle {
         name: scene.name_of(object).to_owned(),
         form: match object {
             Object::Surface(i) => ObstacleForm::Rectangle {
@@ -168,8 +255,7 @@ fn beside_the_path(scene: &Scene) -> Vec<Obstacle> {
                 ObstacleForm::Mesh(scene.meshes[i].triangles.iter().copied().collect())
             }
         },
-    });
-    obstacles.collect()
+    }
 }
 
 /// A layer of blockers that light meets where the central ray does not: from this leg on.

@@ -16,7 +16,7 @@ const JOINT: usize = 2;
 /// Degree, inner coefficients and first direction numbers of each coordinate but the first
 /// (Joe and Kuo 2008, *Constructing Sobol' sequences with better two-dimensional projections*,
 /// table `new-joe-kuo-6`).
-const POLYNOMIALS: [(usize, u32, [u32; 5]); WIDTH * JOINT - 1] = [
+const POLYNOMIALS: [(usize, u32, [u32; 5]); 9] = [
     (1, 0, [1, 0, 0, 0, 0]),
     (2, 1, [1, 3, 0, 0, 0]),
     (3, 1, [1, 3, 1, 0, 0]),
@@ -24,12 +24,14 @@ const POLYNOMIALS: [(usize, u32, [u32; 5]); WIDTH * JOINT - 1] = [
     (4, 1, [1, 1, 3, 3, 0]),
     (4, 4, [1, 3, 5, 13, 0]),
     (5, 2, [1, 1, 5, 5, 17]),
+    (5, 4, [1, 1, 5, 5, 5]),
+    (5, 7, [1, 1, 7, 11, 19]),
 ];
 
 /// What a byte of a point's number adds to its coordinates without carry, [block, byte, value].
 static ADDED: [[[[u32; WIDTH]; 256]; 4]; JOINT] = added();
 
-/// What each bit of a point's number adds to a coordinate of Sobol' points, without carry; of eight
+/// What each bit of a point's number adds to a coordinate of Sobol' points, without carry; of ten
 /// coordinates, from 0 on.
 #[must_use]
 pub const fn sobol_directions(dimension: usize) -> [u32; 32] {

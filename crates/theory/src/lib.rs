@@ -65,6 +65,7 @@ mod predicted;
 pub mod rays;
 #[cfg(test)]
 mod reference;
+pub mod reflections;
 pub mod scattering;
 pub mod shading;
 #[cfg(test)]

@@ -58,7 +58,7 @@ enum Ready<'a> {
 }
 
 /// Share of a distance that rounding may make.
-const ROUNDING: f64 = 1e-9;
+pub(crate) const ROUNDING: f64 = 1e-9;
 
 impl<'a> Obstacles<'a> {
     pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
@@ -147,7 +147,7 @@ fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &Ray) -> Option<f64> {
 }
 
 /// Both points of the quadric that belong to the patch.
-fn on_patch(patch: &Patch, ray: &Ray) -> [Option<f64>; 2] {
+pub(crate) fn on_patch(patch: &Patch, ray: &Ray) -> [Option<f64>; 2] {
     let point = patch.frame.to_local(ray.point);
     let direction = patch.frame.vector_to_local(ray.direction);
     let curved = DVec3::from(patch.curvature) * direction;

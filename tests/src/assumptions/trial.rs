@@ -65,7 +65,8 @@ fn trial(scene: &Scene) -> Option<Trial> {
         Err(says) => return trial([UNKNOWN].into(), Some(Ending::Panicked(says))),
     };
     let name = |reason: &String| assumption(reason).unwrap_or(UNKNOWN);
-    let mut broken: BTreeSet<_> = checked.reasons.iter().map(name).collect();
+    let reasons = checked.reasons.iter().chain(&checked.declined);
+    let mut broken: BTreeSet<_> = reasons.map(name).collect();
     broken.extend(checked.dark.is_some().then_some(DARK));
     let tried = (broken.len() == 1).then(|| {
         let ending = caught(|| unchecked(scene, plane, &checked));
@@ -97,6 +98,7 @@ fn unchecked(scene: &Scene, plane: &VirtualPlane, checked: &Applicability) -> En
     let regardless = [Applicability {
         theory,
         reasons: Vec::new(),
+        declined: Vec::new(),
         dark: None,
         off_patches: None,
     }];
@@ -146,6 +148,7 @@ fn predicted(plane: &VirtualPlane, theory: &Theory) -> Predicted {
         Theory::Parallel(chain) => chain.predict(&[], over, BUDGET),
         Theory::Specular(view) => view.predict(&[], over, BUDGET),
         Theory::Scattering(view) => view.predict(&[], over, BUDGET),
+        Theory::Reflections(view) => view.predict(&[], over, BUDGET),
         Theory::None => unreachable!("a plane has some theory if nothing is checked"),
     }
 }

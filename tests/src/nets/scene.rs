@@ -164,6 +164,7 @@ fn found(theory: &Theory, plane: &VirtualPlane, budget: Budget) -> Option<Found>
         Theory::Parallel(chain) => chain.sampled(&[], over, budget),
         Theory::Specular(view) => view.predict(&[], over, budget),
         Theory::Scattering(view) => view.predict(&[], over, budget),
+        Theory::Reflections(view) => view.predict(&[], over, budget),
         Theory::None => return None,
     };
     Some(Found {

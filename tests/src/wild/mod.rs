@@ -12,6 +12,7 @@ mod planes;
 mod reflects;
 mod run;
 mod scene;
+mod several;
 mod shrink;
 mod small;
 mod straight;
@@ -21,6 +22,7 @@ mod tally;
 pub(crate) use judge::HANDFUL;
 pub(crate) use run::text;
 pub(crate) use scene::scene;
+pub(crate) use several::several;
 pub(crate) use small::{SmallOptions, small};
 
 use crate::hostile::{child, on_threads};

@@ -23,19 +23,19 @@ use std::{fs, io};
 pub(crate) struct SmallOptions {
     /// Random scenes.
     #[arg(long, default_value_t = 2000)]
-    scenes: u64,
+    pub(super) scenes: u64,
     /// Number of the first.
     #[arg(long, default_value_t = 0)]
-    first: u64,
+    pub(super) first: u64,
     /// Another seed gives other scenes.
     #[arg(long, default_value_t = 1)]
-    seed: u64,
+    pub(super) seed: u64,
     /// Photons for each plane.
     #[arg(long, default_value_t = 10_000_000)]
-    photons: u64,
+    pub(super) photons: u64,
     /// Only counts classes, and traces nothing.
     #[arg(long)]
-    classes: bool,
+    pub(super) classes: bool,
     /// Where scenes are kept whose prediction photons reject.
     #[arg(long, default_value = "target/small")]
     out: PathBuf,
@@ -48,6 +48,8 @@ const SEEDS: [u64; 2] = [1, 2];
 /// Tries to place an object.
 const TRIES: usize = 10;
 
+/// Radius of an object as a share of the light's width.
+const SMALL: [f64; 2] = [5e-3, 0.05];
 /// What stands in the light.
 const KINDS: [&str; 3] = ["a mask", "a black mesh", "a surface off the path"];
 
@@ -59,7 +61,7 @@ struct Tried {
 }
 
 #[derive(Clone, Copy, PartialEq)]
-enum Ending {
+pub(super) enum Ending {
     /// Theory does not speak, and names the object.
     Named,
     /// Theory does not speak for another reason.
@@ -99,7 +101,12 @@ pub(crate) fn small(options: &SmallOptions) -> io::Result<Section> {
 }
 
 /// Keeps a scene and the files it names.
-fn keep(options: &SmallOptions, number: u64, scene: &Scene, from: &Path) -> io::Result<()> {
+pub(super) fn keep(
+    options: &SmallOptions,
+    number: u64,
+    scene: &Scene,
+    from: &Path,
+) -> io::Result<()> {
     let folder = options.out.join(format!("{}-{number}", options.seed));
     fs::create_dir_all(&folder)?;
     for name in scene.inputs.keys() {
@@ -122,7 +129,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
             continue;
         };
         let mut with_object = file.clone();
-        let kind = object(&mut draw, &scene, &mut with_object);
+        let kind = object(&mut draw, &scene, &mut with_object, SMALL);
         if let Some(scene) = resolved(&with_object) {
             return Some((scene, kind));
         }
@@ -132,7 +139,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
 
 /// Gives a scene a window with edges and the frequencies of a shadow an eighth as wide, so that a
 /// small object at its border is not dim.
-fn sharpen(file: &mut SceneFile) {
+pub(super) fn sharpen(file: &mut SceneFile) {
     let WindowFile { x, y, u, v } = &mut file.window;
     let halves = [*x, y.unwrap_or(*x), *u, v.unwrap_or(*u)].map(|profile| profile.half_width());
     let [box_x, box_y, box_u, box_v] = halves.map(Profile::Box);
@@ -149,7 +156,7 @@ fn sharpen(file: &mut SceneFile) {
 }
 
 /// A plane across a leg, mostly the last.
-fn plane(draw: &mut Draw, scene: &Scene) -> PlaneFile {
+pub(super) fn plane(draw: &mut Draw, scene: &Scene) -> PlaneFile {
     let legs = &scene.path.legs;
     let last = legs.len() - 1;
     let leg = if draw.one_in(4) {
@@ -192,11 +199,16 @@ fn place(draw: &mut Draw, scene: &Scene, plane: &VirtualPlane) -> (DVec3, f64) {
     (frame.to_world(local), wide)
 }
 
-/// Puts an object into the light; returns its kind.
-fn object(draw: &mut Draw, scene: &Scene, file: &mut SceneFile) -> usize {
+/// Puts an object into the light, its radius a share of the light's width; returns its kind.
+pub(super) fn object(
+    draw: &mut Draw,
+    scene: &Scene,
+    file: &mut SceneFile,
+    share: [f64; 2],
+) -> usize {
     let (at, wide) = place(draw, scene, &scene.planes[0]);
     let center = scene.path.frame.to_world(at).to_array();
-    let radius = wide * draw.value([5e-3, 0.05], [5e-3, 0.05]);
+    let radius = wide * draw.value(share, share);
     let kind = *draw.pick(&[0, 0, 0, 1, 2]);
     let name = "object".to_owned();
     match kind {
@@ -246,7 +258,7 @@ fn towards_light(scene: &Scene) -> DVec3 {
 }
 
 /// What theory says of the plane, and photons of that.
-fn ending(scene: &Scene, classes: bool) -> Ending {
+pub(super) fn ending(scene: &Scene, classes: bool) -> Ending {
     let plane = &scene.planes[0];
     let theory = Applicability::new(scene, plane);
     if theory.class() == Class::Reference {

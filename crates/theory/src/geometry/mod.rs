@@ -64,7 +64,7 @@ mod travel;
 pub use kernel::plane_sphere_kernel;
 pub use map::Map;
 pub use matrix::Matrix;
-pub(crate) use matrix::{diagonal, from_fn, inverse, product, sum, times, transpose};
+pub(crate) use matrix::{congruent, diagonal, from_fn, inverse, product, sum, times, transpose};
 pub use printed::Edition;
 pub use refraction::Media;
 pub use spectrum_map::SpectrumMap;

@@ -68,6 +68,10 @@ impl Node {
 pub(crate) trait Integrand: Sync {
     /// How many there are.
     fn fields(&self) -> usize;
+    /// How many coordinates of a point they depend on, at most [`DIMENSIONS`].
+    fn dimensions(&self) -> usize {
+        6
+    }
     /// Rays that a point stands for in each.
     fn rays(&self) -> usize {
         1
@@ -241,7 +245,7 @@ fn begin(
     replicates: usize,
 ) -> Vec<Running> {
     let running = |replicate| Running {
-        net: Net::new(replicate),
+        net: Net::new(replicate, integrand.dimensions()),
         slices: vec![Slices::zeros(*grid); integrand.fields()],
         projection: Array2::zeros((bins, bins)),
         moments: Moments::default(),
@@ -420,7 +424,7 @@ mod tests {
         };
         let found = sums(&Waves, (&window, &grid), 4, budget);
         let replicate = 5;
-        let mut net = Net::new(replicate);
+        let mut net = Net::new(replicate, DIMENSIONS);
         let mut nodes = [Node::DARK; 2];
         let rays: Vec<Node> = (0..FIRST)
             .map(|_| {

@@ -7,8 +7,8 @@
 use etendue_field::random::unit;
 use etendue_field::sobol_directions;
 
-/// Coordinates of a point.
-pub(crate) const DIMENSIONS: usize = 6;
+/// The most coordinates of a point.
+pub(crate) const DIMENSIONS: usize = 10;
 
 /// What a bit of a point's number adds to its coordinates, bit by bit without carry.
 static DIRECTIONS: [[u32; 32]; DIMENSIONS] = {
@@ -27,25 +27,30 @@ pub(crate) struct Net {
     keys: [u32; DIMENSIONS],
     unscrambled: [u32; DIMENSIONS],
     next: u32,
+    dimensions: usize,
 }
 
 impl Net {
-    /// The net scrambled with key `replicate`.
-    pub(crate) fn new(replicate: u32) -> Self {
+    /// The net scrambled with key `replicate`, with so many coordinates; the rest are 0.
+    pub(crate) fn new(replicate: u32, dimensions: usize) -> Self {
         let key = |dimension: u32| {
             let mixed = replicate.wrapping_mul(0x9E37_79B9) ^ dimension.wrapping_mul(0x85EB_CA6B);
             mixed_bits(mixed.wrapping_add(0x7F4A_7C15))
         };
         Self {
-            keys: [0, 1, 2, 3, 4, 5].map(key),
+            keys: [0, 1, 2, 3, 4, 5, 6, 7, 8, 9].map(key),
             unscrambled: [0; DIMENSIONS],
             next: 0,
+            dimensions,
         }
     }
 
     /// The next point. Any 2ᵐ points from a multiple of 2ᵐ on are a net.
     pub(crate) fn point(&mut self) -> [f64; DIMENSIONS] {
-        let point = std::array::from_fn(|k| unit(scrambled(self.unscrambled[k], self.keys[k])));
+        let mut point = [0.0; DIMENSIONS];
+        for (k, x) in point[..self.dimensions].iter_mut().enumerate() {
+            *x = unit(scrambled(self.unscrambled[k], self.keys[k]));
+        }
         // In the order of Gray codes one bit changes at a time.
         self.next = self.next.wrapping_add(1);
         let bit = self.next.trailing_zeros() as usize & 31;
@@ -88,7 +93,7 @@ mod tests {
     #[test]
     fn pairs_of_first_coordinates_are_nets() {
         for replicate in 0..3 {
-            let mut net = Net::new(replicate);
+            let mut net = Net::new(replicate, DIMENSIONS);
             for _ in 0..4 {
                 let points: Vec<_> = (0..256).map(|_| net.point()).collect();
                 for columns in [1_usize, 4, 16, 256] {
@@ -110,22 +115,22 @@ mod tests {
         }
     }
 
-    /// The error of a smooth mean over six coordinates falls much faster than that of random
+    /// The error of a smooth mean over all coordinates falls much faster than that of random
     /// points.
     #[test]
     fn nets_beat_random_points() {
         let f = |p: &[f64; DIMENSIONS]| p.iter().map(|x| 1.0 + 0.5 * (x - 0.5)).product::<f64>();
         let n = 1 << 12;
         let errors = (0..32).map(|replicate| {
-            let mut net = Net::new(replicate);
+            let mut net = Net::new(replicate, DIMENSIONS);
             let mean = (0..n).map(|_| f(&net.point())).sum::<f64>() / f64::from(n);
             mean - 1.0
         });
         let errors: Vec<f64> = errors.collect();
         let power = errors.iter().map(|e| e * e).sum::<f64>() / 32.0;
-        let variance = (1.0_f64 + 0.25 / 12.0).powi(6) - 1.0;
+        let variance = (1.0_f64 + 0.25 / 12.0).powi(10) - 1.0;
         let random = variance / f64::from(n);
-        assert!(power < 1e-3 * random, "{:e}", power / random); // Sobol' at 2¹² of 6: 10⁻⁴
+        assert!(power < 1e-3 * random, "{:e}", power / random); // Sobol' at 2¹² of 10: 10⁻⁴
         // Unbiased: the mean of 32 independent nets is within four of its own errors.
         let mean = errors.iter().sum::<f64>() / 32.0;
         assert!(mean.abs() < 4.0 * (power / 32.0).sqrt());

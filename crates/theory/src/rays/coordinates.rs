@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 impl Plane {
     /// The coordinates of a ray that is on its last leg, and the quantity in ray space per flux.
     /// `None` if it does not pass.
-    pub(super) fn coordinates(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
+    pub(crate) fn coordinates(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
             Orientation::Tangent => {
@@ -39,7 +39,7 @@ impl Plane {
 
     /// The inverse of [`Self::coordinates`]: a ray, light going along it, from a point of the plane,
     /// or of the surface it is on; and étendue over dx dy du dv there. `None` where there is none.
-    pub(super) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(Ray, f64)> {
+    pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(Ray, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {
             let along = DVec3::new(u, v, 1.0);

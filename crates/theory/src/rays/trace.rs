@@ -2,7 +2,7 @@
 
 use super::{Element, System};
 use crate::obstacle::Obstacles;
-use etendue_field::{Patch, Specular};
+use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
 /// A straight leg of a ray.
@@ -83,38 +83,41 @@ impl Element {
     /// The ray that goes on where one along `direction` hits `point`; `normal` is on the side of
     /// the patch's D.
     pub(super) fn turned(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<Ray> {
-        let direction = self.bend(direction, point, normal)?;
+        let direction = bent(self.event, &self.patch.frame, [direction, point, normal])?;
         Some(Ray { point, direction })
     }
+}
 
-    /// The direction after the event, for light along `direction` that hits `point`; `normal` is on
-    /// the side of the patch's D.
-    fn bend(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<DVec3> {
-        match self.event {
-            Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),
-            Specular::Refraction { front, back } => {
-                let cos = -direction.dot(normal);
-                // Seen from where light comes.
-                let (normal, cos, ratio) = if cos > 0.0 {
-                    (normal, cos, front / back)
-                } else {
-                    (-normal, -cos, back / front)
-                };
-                let tangential = (direction + normal * cos) * ratio;
-                let kept = 1.0 - tangential.length_squared();
-                (kept > 0.0).then(|| tangential - normal * kept.sqrt())
-            }
-            Specular::ThinLens { focal_length } => {
-                let frame = &self.patch.frame;
-                let (at, towards) = (frame.to_local(point), frame.vector_to_local(direction));
-                let slopes = towards / towards.z.abs();
-                let bent = DVec3::new(
-                    slopes.x - at.x / focal_length,
-                    slopes.y - at.y / focal_length,
-                    slopes.z,
-                );
-                Some(frame.vector_to_world(bent.normalize()))
-            }
+/// The direction after an event on a patch with this frame, for light along `direction` that hits
+/// `point`; `normal` is on the side of the patch's D.
+pub(crate) fn bent(
+    event: Specular,
+    frame: &Frame,
+    [direction, point, normal]: [DVec3; 3],
+) -> Option<DVec3> {
+    match event {
+        Specular::Mirror => Some(direction - normal * (2.0 * direction.dot(normal))),
+        Specular::Refraction { front, back } => {
+            let cos = -direction.dot(normal);
+            // Seen from where light comes.
+            let (normal, cos, ratio) = if cos > 0.0 {
+                (normal, cos, front / back)
+            } else {
+                (-normal, -cos, back / front)
+            };
+            let tangential = (direction + normal * cos) * ratio;
+            let kept = 1.0 - tangential.length_squared();
+            (kept > 0.0).then(|| tangential - normal * kept.sqrt())
+        }
+        Specular::ThinLens { focal_length } => {
+            let (at, towards) = (frame.to_local(point), frame.vector_to_local(direction));
+            let slopes = towards / towards.z.abs();
+            let bent = DVec3::new(
+                slopes.x - at.x / focal_length,
+                slopes.y - at.y / focal_length,
+                slopes.z,
+            );
+            Some(frame.vector_to_world(bent.normalize()))
         }
     }
 }

@@ -57,7 +57,7 @@ pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
 }
 
 /// Radians from the mirror direction within which most of a lobe lies; `None` where that is all.
-pub(super) fn angular_width(brdf: &Brdf) -> Option<f64> {
+pub(crate) fn angular_width(brdf: &Brdf) -> Option<f64> {
     match brdf.lobe {
         Lobe::Lambertian => None,
         Lobe::Phong { exponent } => Some((2.0 / (exponent + 1.0)).sqrt()),

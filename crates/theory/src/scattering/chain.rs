@@ -5,7 +5,7 @@ use crate::geometry::{Map, Matrix};
 use crate::model::Observed;
 use crate::rays::{Incidence, Plane, Ray};
 use crate::words::{self, degrees, number};
-use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity};
+use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Reflectance};
 use glam::DVec3;
 
 /// What the central ray does, to first order in the neighbourhood.
@@ -114,7 +114,7 @@ impl ReflectionChain {
 }
 
 /// Coordinates at a point of the surface, of a direction away from it.
-fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
+pub(crate) fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> [f64; 4] {
     let at = frame.to_local(point);
     let away = frame.turned_to(normal).vector_to_local(away);
     [
@@ -157,7 +157,7 @@ fn steps(
     steps.push(format!("map  curvature {curved}"));
     steps.push("multiply  cosine, cos⁺ θ cos² φ".to_owned());
     steps.push("map  mirror: ℓ̂(Ωx, −Ωθ)".to_owned());
-    steps.extend(reflection(system));
+    steps.extend(reflection(&system.reflectance));
     steps.extend(system.obstacles.iter().map(words::obstacle));
     if plane.orientation.is_local() {
         return steps;
@@ -178,9 +178,8 @@ fn steps(
     steps
 }
 
-/// The BRDF in words.
-fn reflection(system: &System) -> Vec<String> {
-    let reflectance = &system.reflectance;
+/// A BRDF in words.
+pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
     let brdf = &reflectance.brdf;
     let lobe = match brdf.lobe {
         Lobe::Lambertian => "Lambertian".to_owned(),

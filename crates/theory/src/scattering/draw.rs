@@ -378,14 +378,14 @@ fn radius(shape: &Shape) -> f64 {
 }
 
 /// A point of the plane with the density of `bell_density`.
-fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
+pub(crate) fn bell(width: f64, [a, b]: [f64; 2]) -> [f64; 2] {
     let r = width * (a / (1.0 - a)).sqrt();
     let (sin, cos) = libm::sincos(TAU * b);
     [r * cos, r * sin]
 }
 
 /// 1/(π w² (1 + r²/w²)²): as wide as a lobe, with tails so long that no lobe leaves them.
-fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
+pub(crate) fn bell_density(width: f64, [p, q]: [f64; 2]) -> f64 {
     let squared = width * width;
     1.0 / (PI * squared * (1.0 + (p * p + q * q) / squared).powi(2))
 }

@@ -80,25 +80,30 @@ impl<'a> Linear<'a> {
         let [s, t, to_theta, to_phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
         let brdf = self.system.reflectance.at(at.x, at.y);
-        let center = away(self.chain.incidence, 0.0);
-        irradiance * self.kernel(&brdf, center, theta, [to_theta + theta, to_phi + phi])
+        irradiance
+            * kernel(
+                &brdf,
+                self.chain.incidence,
+                theta,
+                [to_theta + theta, to_phi + phi],
+            )
     }
+}
 
-    /// The BRDF as it meets the central ray, which comes from `center`, at angles from the mirror
-    /// direction; a factor of the angle of incidence stays one.
-    fn kernel(&self, brdf: &Brdf, center: DVec3, from: f64, [theta, phi]: [f64; 2]) -> f64 {
-        let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from));
-        match brdf.lobe {
-            Lobe::Lambertian => factor() / PI,
-            // Its cosine is that of the angle from the mirror direction, wherever that is.
-            Lobe::Phong { exponent } => {
-                let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
-                factor() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
-            }
-            _ => {
-                let to = away(theta - self.chain.incidence, phi);
-                brdf::value(brdf, DVec3::Z, center, to)
-            }
+/// The BRDF as it meets the central ray, which comes at the angle `incidence`, at angles from the
+/// mirror direction; a factor of the angle of incidence stays one.
+pub(crate) fn kernel(brdf: &Brdf, incidence: f64, from: f64, [theta, phi]: [f64; 2]) -> f64 {
+    let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from));
+    match brdf.lobe {
+        Lobe::Lambertian => factor() / PI,
+        // Its cosine is that of the angle from the mirror direction, wherever that is.
+        Lobe::Phong { exponent } => {
+            let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
+            factor() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
+        }
+        _ => {
+            let to = away(theta - incidence, phi);
+            brdf::value(brdf, DVec3::Z, away(incidence, 0.0), to)
         }
     }
 }

@@ -31,6 +31,10 @@ mod tests;
 pub use chain::{ReflectionChain, chain, defect};
 pub use predict::beside;
 
+pub(crate) use brdf::angular_width;
+pub(crate) use chain::{local, reflection};
+pub(crate) use draw::{bell, bell_density};
+pub(crate) use linear::kernel;
 pub(crate) use predict::predict;
 
 use crate::obstacle::Obstacle;

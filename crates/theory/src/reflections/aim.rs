@@ -1,0 +1,160 @@
+//! What a leg is aimed at: directions away from a point, told apart by two coordinates.
+//!
+//! Where a leg runs straight to the next scattering surface, or to a plane across it, these are a
+//! place there, so that a narrow window is met from anywhere on a wide surface. Elsewhere they are
+//! angles, and where light goes by them is known to first order alone.
+
+use super::chain::{Scatterer, towards};
+use super::guide::Gaussian;
+use super::{Surface, System};
+use crate::geometry::{Map, Matrix, congruent, from_fn, times};
+use crate::model::Observed;
+use crate::rays::Plane;
+use etendue_field::{Frame, Orientation, Patch};
+use glam::DVec3;
+use std::f64::consts::FRAC_PI_2;
+
+/// What directions of a leg are told apart by.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Aim {
+    /// Longitude and latitude at the surface that the leg begins on, less those of the central ray.
+    Angles,
+    /// A place on the next scattering surface, along X and Y of its patch.
+    Patch {
+        patch: Patch,
+        /// Of the central hit there.
+        hit: [f64; 2],
+        /// From the local coordinates there.
+        turn: Matrix<2>,
+    },
+    /// A place on the plane.
+    Plane(Frame),
+}
+
+/// How much farther than a surface is wide a plane must be to be aimed at: none of the surface lies
+/// beyond it.
+const FAR: f64 = 2.0;
+
+impl Aim {
+    /// Of the leg that begins at the light (0) or at a scatterer.
+    pub(super) fn new(view: &Observed<System>, scatterers: &[Scatterer], leg: usize) -> Self {
+        let Observed { system, plane } = view;
+        let from = leg.checked_sub(1).map(|before| &scatterers[before]);
+        let first = from.map_or(0, |from| from.number + 1);
+        let to = scatterers.get(leg);
+        match (from, to) {
+            (None, _) if system.light.is_distant() => Self::Angles,
+            (_, Some(to)) if to.number == first => {
+                let patch = system.surfaces[first].patch;
+                let local = patch.frame.to_local(to.frame.origin);
+                let [t, b] = [to.frame.x, to.frame.y].map(|v| patch.frame.vector_to_local(v));
+                Self::Patch {
+                    patch,
+                    hit: [local.x, local.y],
+                    turn: [[t.x, b.x], [t.y, b.y]],
+                }
+            }
+            (Some(from), None) if first == system.visited => {
+                let surface = &system.surfaces[from.number];
+                Self::at_plane(plane, surface)
+            }
+            _ => Self::Angles,
+        }
+    }
+
+    fn at_plane(plane: &Plane, surface: &Surface) -> Self {
+        let beyond = (plane.frame.origin - surface.hit).dot(plane.frame.d);
+        let is_across = plane.orientation == Orientation::Orthogonal;
+        if is_across && beyond > FAR * surface.patch.aperture {
+            Self::Plane(plane.frame)
+        } else {
+            Self::Angles
+        }
+    }
+
+    /// What a Gaussian of angles becomes at a point of the surface, `map` leading to the end of the
+    /// leg.
+    pub(super) fn seen(&self, angles: &Gaussian<2>, [s, t]: [f64; 2], map: &Map<4>) -> Gaussian<2> {
+        if matches!(self, Self::Angles) {
+            return *angles;
+        }
+        let per_angle: Matrix<2> = from_fn(|i, j| map.matrix[i][2 + j]);
+        let [theta, phi] = angles.mean;
+        let [x, y, ..] = map.apply([s, t, theta, phi]);
+        self.counted(&Gaussian {
+            mean: [x, y],
+            covariance: congruent(&per_angle, &angles.covariance),
+        })
+    }
+
+    /// A Gaussian of the positions at the end of the leg, in the coordinates of this aim.
+    fn counted(&self, positions: &Gaussian<2>) -> Gaussian<2> {
+        match self {
+            Self::Angles | Self::Plane(_) => *positions,
+            Self::Patch { hit, turn, .. } => {
+                let [x, y] = times(turn, &positions.mean);
+                Gaussian {
+                    mean: [hit[0] + x, hit[1] + y],
+                    covariance: congruent(turn, &positions.covariance),
+                }
+            }
+        }
+    }
+
+    /// Where a ray ends, if it does.
+    pub(super) fn end(&self, point: DVec3, direction: DVec3) -> Option<[f64; 2]> {
+        let (frame, t) = match self {
+            Self::Angles => return None,
+            Self::Patch { patch, .. } => {
+                let ray = crate::rays::Ray { point, direction };
+                (&patch.frame, ray.met(patch)?.0)
+            }
+            Self::Plane(frame) => {
+                let t = (frame.origin - point).dot(frame.d) / direction.dot(frame.d);
+                (frame, t)
+            }
+        };
+        let at = frame.to_local(point + t * direction);
+        (t > 0.0 && t.is_finite()).then_some([at.x, at.y])
+    }
+
+    /// The point of the next surface with these coordinates.
+    pub(super) fn target(&self, [a, b]: [f64; 2]) -> Option<DVec3> {
+        match self {
+            Self::Patch { patch, .. } => Some(patch.point(a, b)),
+            Self::Angles | Self::Plane(_) => None,
+        }
+    }
+
+    /// The direction with these coordinates from a point, and steradians per unit of them. Angles
+    /// are about a normal, in the axes of a scatterer.
+    pub(super) fn direction(
+        &self,
+        point: DVec3,
+        [a, b]: [f64; 2],
+        local: Option<(&Scatterer, DVec3)>,
+    ) -> Option<(DVec3, f64)> {
+        let (target, normal, area) = match self {
+            Self::Angles => {
+                let (scatterer, normal) = local?;
+                let [theta, phi] = scatterer.outgoing;
+                let angles = [theta + a, phi + b];
+                let is_in_front = angles.iter().all(|angle| angle.abs() < FRAC_PI_2);
+                // dω = cos φ dθ dφ.
+                let steradians = libm::cos(angles[1]);
+                let towards = || towards(&scatterer.frame, normal, angles);
+                return is_in_front.then(|| (towards(), steradians));
+            }
+            Self::Patch { patch, .. } => {
+                let target = patch.point(a, b);
+                let normal = patch.normal(target);
+                (target, normal, 1.0 / normal.dot(patch.frame.d).abs())
+            }
+            Self::Plane(frame) => (frame.to_world(DVec3::new(a, b, 0.0)), frame.d, 1.0),
+        };
+        let away = target - point;
+        let direction = away.try_normalize()?;
+        let steradians = area * normal.dot(direction).abs() / away.length_squared();
+        (steradians > 0.0 && steradians.is_finite()).then_some((direction, steradians))
+    }
+}

@@ -1,0 +1,225 @@
+//! The first-order chain: affine maps between scattering surfaces, with their lobes between them.
+
+use super::{Interaction, Surface, System};
+use crate::geometry::{Map, Matrix};
+use crate::model::Observed;
+use crate::rays::{Incidence, Ray};
+use crate::scattering::{local, reflection};
+use crate::words::{self, degrees};
+use etendue_field::{Frame, Specular};
+use glam::DVec3;
+
+/// What the central ray does, to first order in the neighbourhood.
+///
+/// Local coordinates at a scattering surface are (s, t, θ, φ): positions along T and B in metres,
+/// and the longitude and latitude of a direction away from the surface about the local normal, T
+/// lying in the plane of incidence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Chain {
+    /// The scattering surfaces, in the order of light.
+    pub scatterers: Vec<Scatterer>,
+    /// One more than there are scatterers. The first leads from (x, y, u, v) at the light to local
+    /// coordinates of where light comes from at the first scatterer. Each other leads from those of
+    /// where light goes at a scatterer, less those of the central ray, to the next scatterer, and the
+    /// last to the coordinates of the plane.
+    pub maps: Vec<Map<4>>,
+    /// The steps in words, in the order of light.
+    pub steps: Vec<String>,
+}
+
+/// A scattering surface where the central ray meets it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Scatterer {
+    /// Its number among the surfaces of the path.
+    pub number: usize,
+    /// (T, B, N) at the central hit, N on the side from which light is scattered.
+    pub frame: Frame,
+    /// Longitude of where the central ray comes from.
+    pub incidence: f64,
+    /// Longitude and latitude of where the central ray goes.
+    pub outgoing: [f64; 2],
+}
+
+/// The chain of a system up to a plane; `None` where the central ray does not get there.
+///
+/// Its maps are the derivatives of where rays go.
+#[must_use]
+pub fn chain(view: &Observed<System>) -> Option<Chain> {
+    let scatterers = scatterers(view)?;
+    let maps = (0..=scatterers.len()).map(|leg| map(view, &scatterers, leg));
+    Some(Chain {
+        maps: maps.collect::<Option<_>>()?,
+        steps: steps(view, &scatterers)?,
+        scatterers,
+    })
+}
+
+/// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
+/// them: zero for that of [`chain`].
+#[must_use]
+pub fn defect(view: &Observed<System>, tried: &Chain) -> Option<f64> {
+    let traced = chain(view)?;
+    let pairs = tried.maps.iter().zip(&traced.maps);
+    Some(pairs.fold(0.0, |most, (a, b)| a.apart(b, &[1.0; 4]).max(most)))
+}
+
+impl Chain {
+    /// A of the rays from the light to the plane by way of the mirror directions, z' = A z.
+    #[must_use]
+    pub fn rays(&self) -> Map<4> {
+        let mut maps = self.maps.iter();
+        let first = maps.next().copied().unwrap_or_else(Map::identity);
+        maps.fold(first, |rays, map| rays.then(&Map::<4>::mirror()).then(map))
+    }
+}
+
+fn scatterers(view: &Observed<System>) -> Option<Vec<Scatterer>> {
+    let Observed { system, plane } = view;
+    let visited = &system.surfaces[..system.visited];
+    let mut from = DVec3::ZERO;
+    let mut found = Vec::new();
+    for (number, surface) in visited.iter().enumerate() {
+        let hit = surface.hit;
+        let arriving = (hit - from).normalize();
+        from = hit;
+        if !surface.scatters() {
+            continue;
+        }
+        let leaving = match visited.get(number + 1) {
+            Some(next) => (next.hit - hit).normalize(),
+            None => plane.ray([0.0; 4])?.0.direction,
+        };
+        let normal = surface.lit_side(hit, arriving)?;
+        let leg = Frame::IDENTITY.turned_to(arriving);
+        let leg = Frame { origin: hit, ..leg };
+        let incidence = Incidence::new(&leg, normal);
+        let frame = Frame {
+            origin: hit,
+            x: incidence.t,
+            y: incidence.b,
+            d: incidence.n,
+        };
+        let [.., longitude, latitude] = local(&frame, hit, normal, leaving);
+        found.push(Scatterer {
+            number,
+            frame,
+            incidence: incidence.theta0,
+            outgoing: [longitude, latitude],
+        });
+    }
+    Some(found)
+}
+
+/// The map from a scatterer, or the light, to the next, or the plane.
+fn map(view: &Observed<System>, scatterers: &[Scatterer], leg: usize) -> Option<Map<4>> {
+    let Observed { system, plane } = view;
+    let from = leg.checked_sub(1).map(|before| &scatterers[before]);
+    let first = from.map_or(0, |from| from.number + 1);
+    let to = scatterers.get(leg);
+    let last = to.map_or(system.visited, |to| to.number);
+    Map::touching(|z| {
+        let start = match from {
+            None => Ray::new(z),
+            Some(from) => from.ray(&system.surfaces[from.number], z)?,
+        };
+        let specular = &system.surfaces[first..last];
+        let ray = specular.iter().try_fold(start, |ray, surface| {
+            surface.turned(&ray, met(surface, &ray)?)
+        })?;
+        match to {
+            None => Some(plane.coordinates(&ray)?.0),
+            Some(to) => {
+                let surface = &system.surfaces[to.number];
+                let point = met(surface, &ray)?;
+                let normal = surface.lit_side(point, ray.direction)?;
+                Some(local(&to.frame, point, normal, -ray.direction))
+            }
+        }
+    })
+}
+
+/// Where a ray meets a surface first.
+fn met(surface: &Surface, ray: &Ray) -> Option<DVec3> {
+    let start = crate::obstacle::ROUNDING * ray.point.length();
+    let t = surface.first(ray, start)?;
+    Some(ray.point + t * ray.direction)
+}
+
+impl Scatterer {
+    /// The ray that leaves a surface at local coordinates, less those of the central ray.
+    fn ray(&self, surface: &Surface, [s, t, theta, phi]: [f64; 4]) -> Option<Ray> {
+        let foot = self.frame.to_world(DVec3::new(s, t, 0.0));
+        let down = Ray::back(&surface.patch, foot, self.frame.d);
+        let (distance, normal) = down.met(&surface.patch)?;
+        let normal = normal * normal.dot(self.frame.d).signum();
+        let [longitude, latitude] = self.outgoing;
+        Some(Ray {
+            point: down.point + distance * down.direction,
+            direction: towards(&self.frame, normal, [longitude + theta, latitude + phi]),
+        })
+    }
+}
+
+/// The direction at a longitude and a latitude about a normal, in the axes of a frame turned to it.
+pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> DVec3 {
+    let [(sin, cos), (up, across)] = [theta, phi].map(libm::sincos);
+    let away = DVec3::new(across * sin, up, across * cos);
+    frame.turned_to(normal).vector_to_world(away)
+}
+
+fn steps(view: &Observed<System>, scatterers: &[Scatterer]) -> Option<Vec<String>> {
+    let Observed { system, plane } = view;
+    let mut steps: Vec<String> = system.obstacles.iter().map(words::obstacle).collect();
+    let (mut at, mut name) = (DVec3::ZERO, "light");
+    let mut scatterers = scatterers.iter().peekable();
+    for (number, surface) in system.surfaces[..system.visited].iter().enumerate() {
+        let arriving = surface.hit - at;
+        steps.push(words::travel(arriving.length(), name, &surface.name));
+        let leg = Frame::IDENTITY.turned_to(arriving.normalize());
+        let incidence = Incidence::new(&leg, surface.normal(surface.hit)?);
+        let (angle, to) = (degrees(incidence.theta0), &surface.name);
+        steps.push(format!("map  incidence {angle} onto {to}"));
+        let shape: Matrix<2> = incidence.shape(&surface.patch, surface.hit);
+        let curved = words::curvature(shape);
+        steps.push(format!("map  curvature {curved}"));
+        steps.extend(in_words(&surface.interaction));
+        if let Some(scatterer) = scatterers.next_if(|scatterer| scatterer.number == number) {
+            steps.push(format!("map  back from local normals, {curved}"));
+            let [theta, phi] = scatterer.outgoing.map(degrees);
+            steps.push(format!("map  outgoing angles {theta} and {phi}"));
+        }
+        (at, name) = (surface.hit, &surface.name);
+    }
+    let beyond = (plane.frame.origin - at).length();
+    if beyond > 1e-9 {
+        steps.push(words::travel(beyond, name, "plane"));
+    }
+    Some(steps)
+}
+
+fn in_words(interaction: &Interaction) -> Vec<String> {
+    const COSINE: &str = "multiply  cosine, cos⁺ θ cos² φ";
+    const MIRROR: &str = "map  mirror: ℓ̂(Ωx, −Ωθ)";
+    let words = |words: &[&str]| words.iter().map(|word| (*word).to_owned()).collect();
+    match interaction {
+        Interaction::Specular(Specular::Mirror) => words(&[MIRROR]),
+        Interaction::Specular(Specular::Refraction { front, back }) => {
+            vec![format!(
+                "map  refraction between indices {front} and {back}"
+            )]
+        }
+        Interaction::Specular(Specular::ThinLens { focal_length }) => {
+            vec![format!("map  thin lens of focal length {focal_length} m")]
+        }
+        Interaction::Diffuse { albedo } => {
+            let mut all: Vec<String> = words(&[COSINE]);
+            all.push(format!("convolve  diffuse reflection, albedo {albedo}"));
+            all
+        }
+        Interaction::Reflects(reflectance) => {
+            let mut all: Vec<String> = words(&[COSINE, MIRROR]);
+            all.extend(reflection(reflectance));
+            all
+        }
+    }
+}

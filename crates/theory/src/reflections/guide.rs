@@ -1,0 +1,207 @@
+//! Gaussians that say where light must go to come into the window, and draws by them.
+//!
+//! The window is taken for a Gaussian of its variances. An affine map takes that back to the leg
+//! before; a lobe blurs its angles there; the edge of a surface narrows its positions. What is left
+//! at a surface tells which directions matter at each of its points, and at the light which rays.
+
+use crate::geometry::{Map, Matrix, congruent, diagonal, from_fn, inverse, sum, times};
+use crate::scattering::{bell, bell_density};
+use etendue_field::{Profile, Window};
+use std::f64::consts::{PI, TAU};
+
+/// A Gaussian of N coordinates.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Gaussian<const N: usize> {
+    pub(super) mean: [f64; N],
+    pub(super) covariance: Matrix<N>,
+}
+
+/// Standard deviation of the angles of diffuse light, radians.
+const DIFFUSE: f64 = 0.6;
+
+impl Gaussian<4> {
+    pub(super) fn of_window(window: &Window) -> Self {
+        let profiles = [window.x, window.y, window.u, window.v];
+        Self {
+            mean: [0.0; 4],
+            covariance: diagonal(profiles.map(|profile| variance(&profile))),
+        }
+    }
+
+    /// Of what a map takes to this one.
+    pub(super) fn before(&self, map: &Map<4>) -> Option<Self> {
+        let back = map.inverse()?;
+        Some(Self {
+            mean: back.apply(self.mean),
+            covariance: congruent(&back.matrix, &self.covariance),
+        })
+    }
+
+    /// Of where light comes from that a lobe sends to this one, whose angles are those less the
+    /// central ray's: blurred about the mirror direction; of diffuse light they are any.
+    pub(super) fn before_lobe(&self, width: Option<f64>, outgoing: [f64; 2]) -> Self {
+        let [s, t, theta, phi] = self.mean;
+        let Some(width) = width else {
+            let keeps = |i: usize, j: usize| i < 2 && j < 2;
+            return Self {
+                mean: [s, t, 0.0, 0.0],
+                covariance: from_fn(|i, j| match (keeps(i, j), i == j) {
+                    (true, _) => self.covariance[i][j],
+                    (false, true) => DIFFUSE * DIFFUSE,
+                    (false, false) => 0.0,
+                }),
+            };
+        };
+        let mirror = Map::<4>::mirror();
+        let blur = diagonal([0.0, 0.0, width * width, width * width]);
+        Self {
+            mean: mirror.apply([s, t, theta + outgoing[0], phi + outgoing[1]]),
+            covariance: sum(&congruent(&mirror.matrix, &self.covariance), &blur),
+        }
+    }
+
+    /// Its product with a Gaussian of its own along each axis, given by means and inverse variances.
+    pub(super) fn narrowed(&self, means: [f64; 4], precisions: [f64; 4]) -> Option<Self> {
+        let own = inverse(&self.covariance)?;
+        let covariance = inverse(&sum(&own, &diagonal(precisions)))?;
+        let pull = times(&own, &self.mean);
+        let pull = std::array::from_fn(|i| pull[i] + precisions[i] * means[i]);
+        Some(Self {
+            mean: times(&covariance, &pull),
+            covariance,
+        })
+    }
+
+    /// Of two coordinates, the other two being known.
+    pub(super) fn given(&self, [a, b]: [usize; 2], known: [f64; 2]) -> Option<Gaussian<2>> {
+        let others = match a {
+            0 => [2, 3],
+            _ => [0, 1],
+        };
+        let block = |rows: [usize; 2], columns: [usize; 2]| -> Matrix<2> {
+            from_fn(|i, j| self.covariance[rows[i]][columns[j]])
+        };
+        let known_inverse = inverse(&block([a, b], [a, b]))?;
+        let across = block(others, [a, b]);
+        let gain = crate::geometry::product(&across, &known_inverse);
+        let off = [known[0] - self.mean[a], known[1] - self.mean[b]];
+        let moved = times(&gain, &off);
+        let taken = congruent(&across, &known_inverse);
+        let own = block(others, others);
+        Some(Gaussian {
+            mean: std::array::from_fn(|i| self.mean[others[i]] + moved[i]),
+            covariance: from_fn(|i, j| own[i][j] - taken[i][j]),
+        })
+    }
+}
+
+impl Gaussian<2> {
+    /// About a mean, with one standard deviation along both axes.
+    pub(super) fn round(mean: [f64; 2], width: Option<f64>) -> Self {
+        let width = width.unwrap_or(DIFFUSE);
+        Self {
+            mean,
+            covariance: diagonal([width * width; 2]),
+        }
+    }
+
+    /// The product of two.
+    pub(super) fn product(&self, other: &Self) -> Option<Self> {
+        let [a, b] = [inverse(&self.covariance)?, inverse(&other.covariance)?];
+        let covariance = inverse(&sum(&a, &b))?;
+        let pulls = [times(&a, &self.mean), times(&b, &other.mean)];
+        let pull = std::array::from_fn(|i| pulls[0][i] + pulls[1][i]);
+        Some(Self {
+            mean: times(&covariance, &pull),
+            covariance,
+        })
+    }
+}
+
+/// A density of two coordinates as wide as a Gaussian, with tails so long that no ray stands for
+/// much more than its share.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Bell {
+    mean: [f64; 2],
+    /// Lower triangle R: points are mean + R q.
+    root: [f64; 3],
+}
+
+/// Width of a bell over the standard deviation of its Gaussian.
+const BROADENED: f64 = 1.8;
+
+impl Bell {
+    pub(super) fn new(gaussian: &Gaussian<2>) -> Option<Self> {
+        let [[a, b], [_, c]] = gaussian.covariance;
+        let first = a.sqrt();
+        let cross = b / first;
+        let second = (c - cross * cross).sqrt();
+        let root = [first, cross, second].map(|entry| BROADENED * entry);
+        let is_sound = root[0] > 0.0 && root[2] > 0.0 && root.iter().all(|r| r.is_finite());
+        is_sound.then_some(Self {
+            mean: gaussian.mean,
+            root,
+        })
+    }
+
+    pub(super) fn draw(&self, at: [f64; 2]) -> [f64; 2] {
+        let [p, q] = bell(1.0, at);
+        let [first, cross, second] = self.root;
+        [
+            self.mean[0] + first * p,
+            self.mean[1] + cross * p + second * q,
+        ]
+    }
+
+    pub(super) fn density(&self, [a, b]: [f64; 2]) -> f64 {
+        let [first, cross, second] = self.root;
+        let p = (a - self.mean[0]) / first;
+        let q = (b - self.mean[1] - cross * p) / second;
+        bell_density(1.0, [p, q]) / (first * second)
+    }
+}
+
+/// Bells of which one is drawn from in turn, each with its share.
+#[derive(Clone, Debug)]
+pub(super) struct Mixture(Vec<(f64, Bell)>);
+
+impl Mixture {
+    /// Of Gaussians with their shares, which add up to 1; those that are no density are left out.
+    pub(super) fn new(parts: impl IntoIterator<Item = (f64, Option<Gaussian<2>>)>) -> Option<Self> {
+        let bells = parts.into_iter();
+        let bells = bells.filter_map(|(share, part)| Some((share, Bell::new(&part?)?)));
+        let mut bells: Vec<(f64, Bell)> = bells.collect();
+        let total: f64 = bells.iter().map(|(share, _)| share).sum();
+        for (share, _) in &mut bells {
+            *share /= total;
+        }
+        (total > 0.0).then_some(Self(bells))
+    }
+
+    pub(super) fn draw(&self, [a, b]: [f64; 2]) -> [f64; 2] {
+        let mut left = a;
+        for (share, bell) in &self.0 {
+            if left < *share {
+                return bell.draw([left / share, b]);
+            }
+            left -= share;
+        }
+        // Rounding has left a little beyond the last.
+        let (_, last) = self.0[self.0.len() - 1];
+        last.draw([0.5, b])
+    }
+
+    pub(super) fn density(&self, point: [f64; 2]) -> f64 {
+        let parts = self.0.iter();
+        parts.map(|(share, bell)| share * bell.density(point)).sum()
+    }
+}
+
+/// The variance of a window's profile.
+fn variance(profile: &Profile) -> f64 {
+    match *profile {
+        Profile::Hann(half) => half * half * (1.0 / 3.0 - 2.0 / (PI * PI)),
+        Profile::Box(half) => half * half / 3.0,
+        Profile::Gaussian { width, .. } => width * width / TAU,
+    }
+}

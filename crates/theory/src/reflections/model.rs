@@ -1,0 +1,140 @@
+//! Surfaces in a row and a plane behind them as a model: its parameters and its prediction.
+
+use super::{Interaction, Surface, System, predict};
+use crate::model::{Model, Moved, Observed, Over};
+use crate::nets::{Budget, work_of_nets};
+use crate::parameter::{New, Parameter, change_curvature, curvatures};
+use crate::predicted::Predicted;
+use crate::work::Work;
+use etendue_field::{Complex, Light};
+
+impl System {
+    fn before_plane(&self) -> &[Surface] {
+        &self.surfaces[..self.visited]
+    }
+
+    /// The last surface that scatters light before the plane.
+    fn last_scatterer(&self) -> Option<usize> {
+        self.before_plane().iter().rposition(Surface::scatters)
+    }
+}
+
+impl Surface {
+    /// The factor of its BRDF, if it scatters; where BRDFs are blended, of the first alone.
+    fn albedo_mut(&mut self) -> Option<&mut f64> {
+        match &mut self.interaction {
+            Interaction::Specular(_) => None,
+            Interaction::Diffuse { albedo } => Some(albedo),
+            Interaction::Reflects(reflectance) => Some(&mut reflectance.brdf.albedo),
+        }
+    }
+
+    /// The exponent or the roughness of its lobe, and what that is called.
+    fn lobe_mut(&mut self) -> Option<(&'static str, &mut f64)> {
+        match &mut self.interaction {
+            Interaction::Reflects(reflectance) => reflectance.brdf.lobe.number_mut(),
+            Interaction::Specular(_) | Interaction::Diffuse { .. } => None,
+        }
+    }
+
+    /// Whether all light that it scatters is in proportion to its albedo.
+    fn is_in_proportion(&self) -> bool {
+        match &self.interaction {
+            Interaction::Reflects(reflectance) => reflectance.blend.is_none(),
+            Interaction::Specular(_) | Interaction::Diffuse { .. } => true,
+        }
+    }
+}
+
+/// The albedo and the lobe are those of the last surface that scatters: of albedos the light tells
+/// the product alone.
+impl Model for Observed<System> {
+    fn light(&self) -> &Light {
+        &self.system.light
+    }
+
+    fn parameters(&self) -> Vec<Parameter> {
+        let mut all = Parameter::of_light(&self.system.light);
+        for (number, surface) in self.system.before_plane().iter().enumerate() {
+            let patch = &surface.patch;
+            let axes = curvatures(patch).into_iter();
+            let curved = axes.filter(|axis| patch.curvature[*axis] != 0.0);
+            all.extend(curved.map(|axis| Parameter::Curvature(number, axis)));
+        }
+        if let Some(last) = self.system.last_scatterer() {
+            all.push(Parameter::Albedo);
+            if self.system.surfaces[last].clone().lobe_mut().is_some() {
+                all.push(Parameter::Lobe);
+            }
+        }
+        all
+    }
+
+    fn name(&self, parameter: Parameter) -> String {
+        let last = self.system.last_scatterer();
+        let last = last.map(|last| &self.system.surfaces[last]);
+        match (parameter, last) {
+            (Parameter::Albedo, Some(surface)) => format!("albedo of {}", surface.name),
+            (Parameter::Lobe, Some(surface)) => {
+                let mut lobe = surface.clone();
+                let number = lobe.lobe_mut().map_or("number", |(number, _)| number);
+                format!("{number} of {}", surface.name)
+            }
+            (Parameter::Curvature(number, axis), _) => {
+                let name = &self.system.surfaces[number].name;
+                format!("curvature {} of {name}", axis + 1)
+            }
+            _ => {
+                let of_light = parameter.name_of_light(self.light(), "light");
+                of_light.unwrap_or_else(|| panic!("these surfaces have no parameter {parameter:?}"))
+            }
+        }
+    }
+
+    fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
+        let last = self.system.last_scatterer();
+        let System {
+            light, surfaces, ..
+        } = &mut self.system;
+        match parameter {
+            Parameter::Albedo => {
+                let albedo = surfaces[last?].albedo_mut()?;
+                *albedo = new(*albedo);
+            }
+            Parameter::Lobe => {
+                let (_, number) = surfaces[last?].lobe_mut()?;
+                *number = new(*number);
+            }
+            Parameter::Curvature(number, axis) => {
+                change_curvature(&mut surfaces[number].patch, axis, new)?;
+            }
+            _ => parameter.change_light(light, new)?,
+        }
+        Some(())
+    }
+
+    /// With the difference to the first-order chain.
+    fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
+        let last = self.system.last_scatterer();
+        let surface = last.map(|last| self.system.surfaces[last].clone());
+        let albedo = surface.filter(Surface::is_in_proportion);
+        let albedo = albedo.and_then(|mut surface| surface.albedo_mut().copied());
+        let albedo = albedo.filter(|albedo| *albedo > 0.0);
+        let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && albedo.is_some();
+        let others = parameters.iter().filter(|parameter| !is_factor(parameter));
+        let moved: Option<Vec<_>> = others.map(|other| Moved::nearby(self, *other)).collect();
+        let moved = moved.expect("parameters of these surfaces");
+        let mut found = predict::predict(self, &moved, over, budget);
+        let factor = parameters.iter().position(is_factor);
+        if let Some((albedo, i)) = albedo.zip(factor) {
+            let mut derivative = found.slices.clone();
+            derivative.half /= Complex::from(albedo);
+            found.derivatives.insert(i, derivative);
+        }
+        found
+    }
+
+    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+        work_of_nets(over.1, budget)
+    }
+}

@@ -1,0 +1,298 @@
+//! One path from the light to the plane, drawn at a point of the unit cube.
+
+use super::aim::Aim;
+use super::chain::{Chain, Scatterer};
+use super::guide::{Gaussian, Mixture};
+use super::{Surface, System};
+use crate::model::Observed;
+use crate::nets::{DIMENSIONS, Node};
+use crate::obstacle::{Obstacles, ROUNDING};
+use crate::rays::{Ray, emitted, point_of};
+use crate::scattering::{angular_width, kernel, local};
+use etendue_field::{Light, TwoPlane, Window};
+use glam::DVec3;
+use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+
+/// Paths of a light field.
+#[derive(Debug)]
+pub(super) struct Paths<'a> {
+    view: &'a Observed<System>,
+    window: &'a Window,
+    obstacles: Obstacles<'a>,
+    chain: Chain,
+    /// At the light, and where light goes at each scatterer.
+    guides: Vec<Gaussian<4>>,
+    /// Of the leg from the light, and from each scatterer.
+    aims: Vec<Aim>,
+}
+
+/// A path as it goes, and as the chain has it.
+pub(super) struct Drawn {
+    pub(super) exact: Node,
+    pub(super) first_order: Node,
+}
+
+/// A path on its way.
+struct Going {
+    ray: Ray,
+    /// Flux over the density of what was drawn.
+    flux: f64,
+    /// The same by the chain: radiance times the volume that the path stands for.
+    radiance: f64,
+    /// Coordinates by the chain.
+    at: [f64; 4],
+    /// The point of the next surface that the leg is aimed at.
+    target: Option<DVec3>,
+}
+
+impl<'a> Paths<'a> {
+    /// `None` where the chain does not tell where light must go.
+    pub(super) fn new(
+        view: &'a Observed<System>,
+        window: &'a Window,
+        chain: Chain,
+    ) -> Option<Self> {
+        let mut guides = Vec::new();
+        let mut guide = Gaussian::of_window(window);
+        for (scatterer, map) in chain.scatterers.iter().zip(&chain.maps[1..]).rev() {
+            guide = guide.before(map)?;
+            guides.push(guide);
+            let surface = &view.system.surfaces[scatterer.number];
+            guide = on_surface(&guide, surface, scatterer)?;
+        }
+        let at_light = guide.before(&chain.maps[0])?;
+        guides.push(of_light(&at_light, &view.system.light)?);
+        guides.reverse();
+        let legs = 0..chain.maps.len();
+        let aims = legs.map(|leg| Aim::new(view, &chain.scatterers, leg));
+        Some(Self {
+            view,
+            window,
+            aims: aims.collect(),
+            obstacles: Obstacles::new(&view.system.obstacles),
+            chain,
+            guides,
+        })
+    }
+
+    /// Coordinates of the unit cube that a path takes.
+    pub(super) fn dimensions(&self) -> usize {
+        4 + 2 * self.chain.scatterers.len()
+    }
+
+    /// The path at a point of the unit cube; `None` if it brings no light.
+    pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<Drawn> {
+        let system = &self.view.system;
+        let mut going = self.begin([at[0], at[1], at[2], at[3]])?;
+        let mut scatterers = 0;
+        for (leg, surface) in system.surfaces[..system.visited].iter().enumerate() {
+            let point = self.arrive(leg, &mut going)?;
+            if surface.scatters() {
+                let r = [at[4 + 2 * scatterers], at[5 + 2 * scatterers]];
+                self.scatter(scatterers, point, r, &mut going)?;
+                scatterers += 1;
+            } else {
+                going.ray = surface.turned(&going.ray, point)?;
+            }
+        }
+        self.end(&going)
+    }
+
+    /// A ray of the light.
+    fn begin(&self, [a, b, c, d]: [f64; 4]) -> Option<Going> {
+        let light = &self.view.system.light;
+        let (outer, per_area) = match light.shape() {
+            Some(shape) => (point_of(shape, [c, d]), shape.area()),
+            None => ([0.0; 2], 1.0),
+        };
+        let map = &self.chain.maps[0];
+        let mut aimed_at = None;
+        let (ray, density) = if light.is_distant() {
+            let rays = Mixture::new([(1.0, self.guides[0].given([2, 3], outer))])?;
+            let [x, y] = rays.draw([a, b]);
+            ([x, y, 0.0, 0.0], rays.density([x, y]))
+        } else {
+            let slopes = self.guides[0].given([0, 1], outer)?;
+            let aim = &self.aims[0];
+            let targets = Mixture::new([(1.0, Some(aim.seen(&slopes, outer, map)))])?;
+            let target = targets.draw([a, b]);
+            let density = targets.density(target);
+            let [x, y] = outer;
+            if matches!(aim, Aim::Angles) {
+                ([x, y, target[0], target[1]], density)
+            } else {
+                let point = DVec3::new(x, y, 0.0);
+                let (direction, steradians) = aim.direction(point, target, None)?;
+                let [u, v] = [direction.x, direction.y].map(|d| d / direction.z);
+                aimed_at = aim.target(target);
+                // du dv = dω / cos³.
+                let per_steradian = density / steradians;
+                ([x, y, u, v], per_steradian * direction.z.powi(3))
+            }
+        };
+        let flux = emitted(light, ray) * per_area / density;
+        let [.., u, v] = ray;
+        (flux > 0.0 && flux.is_finite()).then(|| Going {
+            ray: Ray::new(ray),
+            flux,
+            radiance: flux * (1.0 + u * u + v * v).powi(2) * map.det().abs(),
+            at: map.apply(ray),
+            target: aimed_at,
+        })
+    }
+
+    /// Where light meets the surface at the end of a leg; `None` if it does not.
+    fn arrive(&self, leg: usize, going: &mut Going) -> Option<DVec3> {
+        let Going { ray, .. } = going;
+        let surfaces = &self.view.system.surfaces;
+        let start = ROUNDING * ray.point.length();
+        let end = surfaces[leg].first(ray, start)?;
+        if self.is_hidden(leg, ray, [start, end * (1.0 - ROUNDING)]) {
+            return None;
+        }
+        let passes = self.obstacles.passes(leg, ray, end * (1.0 - ROUNDING));
+        going.flux *= passes;
+        going.radiance *= passes;
+        let point = ray.point + end * ray.direction;
+        // A ray through two points of a surface is drawn by the first alone.
+        let beside = |target: DVec3| target.distance(point) > SAME * end;
+        let is_second = going.target.take().is_some_and(beside);
+        (passes > 0.0 && !is_second).then_some(point)
+    }
+
+    /// Whether a surface of the path stands in the way of a ray of a leg, other than that which ends
+    /// the leg.
+    fn is_hidden(&self, leg: usize, ray: &Ray, [start, end]: [f64; 2]) -> bool {
+        let surfaces = &self.view.system.surfaces;
+        let ends = surfaces.get(leg).map(|surface| surface.patch);
+        let others = surfaces.iter().filter(|other| Some(other.patch) != ends);
+        let mut met = others.flat_map(|other| other.distances(ray, start));
+        met.any(|t| t < end)
+    }
+
+    /// A direction away from a scatterer, and what it carries.
+    fn scatter(&self, number: usize, point: DVec3, r: [f64; 2], going: &mut Going) -> Option<()> {
+        let scatterer = &self.chain.scatterers[number];
+        let surface = &self.view.system.surfaces[scatterer.number];
+        let normal = surface.lit_side(point, going.ray.direction)?;
+        let from = -going.ray.direction;
+        let [s, t, from_theta, from_phi] = local(&scatterer.frame, point, normal, from);
+        let [theta0, phi0] = scatterer.outgoing;
+        let width = angular_width(&surface.brdf(point)?).map(|width| width * FRAC_1_SQRT_2);
+        let center = match width {
+            Some(_) => [-from_theta - theta0, -from_phi - phi0],
+            None => [-theta0, -phi0],
+        };
+        let (aim, map) = (&self.aims[number + 1], &self.chain.maps[number + 1]);
+        let seen = |angles: &Gaussian<2>| aim.seen(angles, [s, t], map);
+        let mut lobe = seen(&Gaussian::round(center, width));
+        if width.is_some() {
+            let mirrored = 2.0 * normal.dot(from) * normal - from;
+            lobe.mean = aim.end(point, mirrored).unwrap_or(lobe.mean);
+        }
+        let guide = self.guides[number + 1].given([0, 1], [s, t]);
+        let guide = guide.map(|guide| seen(&guide));
+        let both = guide.as_ref().and_then(|guide| guide.product(&lobe));
+        let targets = Mixture::new([(0.5, both), (0.25, guide), (0.25, Some(lobe))])?;
+        let target = targets.draw(r);
+        let (to, steradians) = aim.direction(point, target, Some((scatterer, normal)))?;
+        let per_density = steradians / targets.density(target);
+        let [.., longitude, latitude] = local(&scatterer.frame, point, normal, to);
+        let value = surface.value(point, normal, [from, to]);
+        going.flux *= value * normal.dot(to).max(0.0) * per_density;
+        going.ray = Ray {
+            point,
+            direction: to,
+        };
+        going.target = aim.target(target);
+        let [s, t, from_theta, from_phi] = going.at;
+        let cosine = libm::cos(from_theta).max(0.0) * libm::cos(from_phi).powi(2);
+        let foot = scatterer.frame.to_world(DVec3::new(s, t, 0.0));
+        let lobe = kernel(
+            &surface.brdf(foot)?,
+            scatterer.incidence,
+            from_theta,
+            [longitude + from_theta, latitude + from_phi],
+        );
+        // dθ dφ = dω / cos φ.
+        let per_angle = per_density / libm::cos(latitude);
+        going.radiance *= cosine * lobe * per_angle * map.det().abs();
+        going.at = map.apply([s, t, longitude - theta0, latitude - phi0]);
+        (going.flux > 0.0 || going.radiance > 0.0).then_some(())
+    }
+
+    /// The last leg, to the plane.
+    fn end(&self, going: &Going) -> Option<Drawn> {
+        let Going {
+            ray,
+            flux,
+            radiance,
+            at,
+            ..
+        } = going;
+        let Observed { system, plane } = self.view;
+        let start = ROUNDING * ray.point.length();
+        let length = plane.along(ray)?;
+        let leaves = system.visited.checked_sub(1);
+        let again = leaves.is_some_and(|last| system.surfaces[last].first(ray, start).is_some());
+        if again || self.is_hidden(system.visited, ray, [start, length]) {
+            return None;
+        }
+        let passes = self.obstacles.passes(system.visited, ray, length);
+        let exact = plane.coordinates(ray).map(|(z, per_flux)| Node {
+            z,
+            weight: passes * flux * per_flux * self.seen(z),
+        });
+        let first_order = Node {
+            z: *at,
+            weight: passes * radiance * plane.factor(*at) * self.seen(*at),
+        };
+        Some(Drawn {
+            exact: exact.unwrap_or(Node::DARK),
+            first_order,
+        })
+    }
+
+    fn seen(&self, [x, y, u, v]: [f64; 4]) -> f64 {
+        self.window.value(&TwoPlane { x, y, u, v })
+    }
+}
+
+/// Share of a distance within which two points are one.
+const SAME: f64 = 1e-6;
+/// Standard deviation of angles of incidence, radians, where nothing else narrows them.
+const FRONT: f64 = 0.6;
+
+/// Where light must come from at a surface, by where it must go.
+fn on_surface(
+    guide: &Gaussian<4>,
+    surface: &Surface,
+    scatterer: &Scatterer,
+) -> Option<Gaussian<4>> {
+    let width = angular_width(&surface.brdf(surface.hit)?).map(|width| width * FRAC_1_SQRT_2);
+    // The mean square along an axis, of a disc or a rectangle.
+    let variance = match surface.outline {
+        Some([x, y]) => (x * x + y * y) / 24.0,
+        None => 0.25 * surface.patch.aperture * surface.patch.aperture,
+    };
+    let middle = scatterer.frame.to_local(surface.patch.frame.origin);
+    let front = 1.0 / (FRONT * FRONT);
+    let edge = 1.0 / variance;
+    guide
+        .before_lobe(width, scatterer.outgoing)
+        .narrowed([middle.x, middle.y, 0.0, 0.0], [edge, edge, front, front])
+}
+
+/// What of the rays that come into the window the light has.
+fn of_light(guide: &Gaussian<4>, light: &Light) -> Option<Gaussian<4>> {
+    let Some(image) = light.image() else {
+        return Some(*guide);
+    };
+    let [a, b] = image.width.map(|width| TAU / (width * width));
+    let precisions = if light.is_distant() {
+        [a, b, 0.0, 0.0]
+    } else {
+        [0.0, 0.0, a, b]
+    };
+    guide.narrowed([0.0; 4], precisions)
+}

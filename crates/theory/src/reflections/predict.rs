@@ -1,0 +1,117 @@
+//! Slices of light that several surfaces send on, over scrambled nets of paths.
+
+use super::System;
+use super::chain::{Chain, chain};
+use super::path::Paths;
+use crate::model::{Moved, Observed, Over};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::predicted::Predicted;
+
+/// The windowed spectrum, with the derivatives by what was moved. The same bytes on any number of
+/// threads.
+///
+/// What the chain predicts, and the derivatives, are differences over the same paths: good to about
+/// a per cent of what they are.
+pub(crate) fn predict(
+    view: &Observed<System>,
+    moved: &[Moved<Observed<System>>],
+    over: Over<'_>,
+    budget: Budget,
+) -> Predicted {
+    match chain(view) {
+        Some(chain) => by(view, chain, moved, over, budget),
+        None => Predicted::dark(over.1, over.2),
+    }
+}
+
+/// What a chain that may be another than that of [`chain`] predicts: the paths as they are, and
+/// their difference to the chain.
+#[must_use]
+pub fn beside(view: &Observed<System>, chain: &Chain, over: Over<'_>, budget: Budget) -> Predicted {
+    by(view, chain.clone(), &[], over, budget)
+}
+
+fn by(
+    view: &Observed<System>,
+    chain: Chain,
+    moved: &[Moved<Observed<System>>],
+    (window, grid, picture): Over<'_>,
+    budget: Budget,
+) -> Predicted {
+    let Some(paths) = Paths::new(view, window, chain) else {
+        return Predicted::dark(grid, picture);
+    };
+    let of = |view| Paths::new(view, window, self::chain(view)?);
+    let sides = moved.iter();
+    let sides = sides.map(|moved| {
+        let [above, below] = &moved.sides;
+        (moved.apart, [of(above), of(below)])
+    });
+    let around = Around {
+        paths: &paths,
+        moved: sides.collect(),
+    };
+    let mut means = nets::means(&around, window, grid).into_iter();
+    Predicted {
+        to_first_order: means.next(),
+        derivatives: means.collect(),
+        ..nets::sums(&paths, (window, grid), picture.bins, budget)
+    }
+}
+
+impl Integrand for Paths<'_> {
+    fn fields(&self) -> usize {
+        1
+    }
+
+    fn dimensions(&self) -> usize {
+        Paths::dimensions(self)
+    }
+
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+        if let Some(drawn) = self.draw(at) {
+            nodes[0] = drawn.exact;
+        }
+    }
+}
+
+/// The difference of the chain from a light field, and that of light fields with more and with less
+/// of each parameter.
+struct Around<'a> {
+    paths: &'a Paths<'a>,
+    moved: Vec<(f64, [Option<Paths<'a>>; 2])>,
+}
+
+impl Integrand for Around<'_> {
+    fn fields(&self) -> usize {
+        1 + self.moved.len()
+    }
+
+    fn dimensions(&self) -> usize {
+        self.paths.dimensions()
+    }
+
+    fn rays(&self) -> usize {
+        2
+    }
+
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+        let times = |node: Node, factor: f64| Node {
+            weight: factor * node.weight,
+            ..node
+        };
+        let (chain, others) = nodes.split_at_mut(2);
+        if let Some(drawn) = self.paths.draw(at) {
+            chain[0] = drawn.first_order;
+            chain[1] = times(drawn.exact, -1.0);
+        }
+        for ((apart, sides), nodes) in self.moved.iter().zip(others.chunks_mut(2)) {
+            for ((side, sign), node) in sides.iter().zip([1.0, -1.0]).zip(nodes) {
+                let drawn = side.as_ref().and_then(|paths| paths.draw(at));
+                if let Some(drawn) = drawn {
+                    *node = times(drawn.exact, sign / apart);
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,87 @@
+//! One surface of the path: where rays meet it, and how it reflects.
+
+use super::{Interaction, Surface};
+use crate::obstacle::on_patch;
+use crate::rays::{Ray, bent};
+use crate::scattering::brdf;
+use etendue_field::{Brdf, Fresnel, Lobe};
+use glam::DVec3;
+
+impl Surface {
+    /// Whether it draws a new direction for light.
+    #[must_use]
+    pub fn scatters(&self) -> bool {
+        !matches!(self.interaction, Interaction::Specular(_))
+    }
+
+    /// Distances beyond `start` at which a ray meets it.
+    pub(super) fn distances(&self, ray: &Ray, start: f64) -> impl Iterator<Item = f64> {
+        let distances = on_patch(&self.patch, ray).into_iter().flatten();
+        let inside = move |t: &f64| *t > start && self.holds(ray.point + *t * ray.direction);
+        distances.filter(inside)
+    }
+
+    /// The first of these.
+    pub(super) fn first(&self, ray: &Ray, start: f64) -> Option<f64> {
+        self.distances(ray, start).min_by(f64::total_cmp)
+    }
+
+    /// Whether a point of the patch lies in the outline.
+    fn holds(&self, point: DVec3) -> bool {
+        self.outline.is_none_or(|size| {
+            let at = self.patch.frame.to_local(point);
+            2.0 * at.x.abs() <= size[0] && 2.0 * at.y.abs() <= size[1]
+        })
+    }
+
+    /// The unit normal at a point, on the side that the patch faces.
+    pub(super) fn normal(&self, point: DVec3) -> Option<DVec3> {
+        let frame = &self.patch.frame;
+        let gradient = self.patch.gradient(frame.to_local(point)).try_normalize()?;
+        Some(frame.vector_to_world(gradient))
+    }
+
+    /// Where a ray goes on that meets a specular surface at a point; `None` at a scattering one, and
+    /// where all light is reflected that should pass.
+    pub(super) fn turned(&self, ray: &Ray, point: DVec3) -> Option<Ray> {
+        let Interaction::Specular(event) = self.interaction else {
+            return None;
+        };
+        let normal = self.normal(point)?;
+        let direction = bent(event, &self.patch.frame, [ray.direction, point, normal])?;
+        Some(Ray { point, direction })
+    }
+
+    /// The normal on the side from which light is scattered that arrives along a direction; `None`
+    /// on a black side.
+    pub(super) fn lit_side(&self, point: DVec3, direction: DVec3) -> Option<DVec3> {
+        let normal = self.normal(point)?;
+        let faces = normal.dot(direction) < 0.0;
+        match self.interaction {
+            Interaction::Diffuse { .. } => Some(if faces { normal } else { -normal }),
+            _ => faces.then_some(normal),
+        }
+    }
+
+    /// The BRDF at a point of a scattering surface.
+    pub(super) fn brdf(&self, point: DVec3) -> Option<Brdf> {
+        match &self.interaction {
+            Interaction::Specular(_) => None,
+            Interaction::Diffuse { albedo } => Some(Brdf {
+                lobe: Lobe::Lambertian,
+                albedo: *albedo,
+                fresnel: Fresnel::White,
+            }),
+            Interaction::Reflects(reflectance) => {
+                let at = self.patch.frame.to_local(point);
+                Some(reflectance.at(at.x, at.y))
+            }
+        }
+    }
+
+    /// The BRDF of light from `from` to `to`, unit vectors away from the surface; sr⁻¹.
+    pub(super) fn value(&self, point: DVec3, normal: DVec3, [from, to]: [DVec3; 2]) -> f64 {
+        let brdf = self.brdf(point);
+        brdf.map_or(0.0, |brdf| brdf::value(&brdf, normal, from, to))
+    }
+}

@@ -1,0 +1,304 @@
+use super::*;
+use crate::numerics::distance;
+use crate::obstacle::ObstacleForm;
+use crate::rays::Plane;
+use crate::testing::window;
+use crate::{Budget, Model, Observed, Parameter, Predicted, scattering};
+use etendue_field::{
+    Brdf, Frame, FrequencyAxis, Fresnel, HalfPlane, Image, Lobe, Mask, Orientation, Profile,
+    ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
+};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
+
+const BUDGET: Budget = Budget {
+    nodes: 2e6,
+    error: 1e-4,
+};
+
+fn predicted<S>(system: &S, plane: &Plane, window: &Window) -> Predicted
+where
+    S: Clone,
+    Observed<S>: Model,
+{
+    let [x, u] = [window.x, window.u].map(|profile| profile.half_width());
+    let axis = |half: f64| FrequencyAxis {
+        half: 6,
+        spacing: 0.5 / half,
+    };
+    let grid = SliceGrid {
+        azimuths: 3,
+        rho: axis(x),
+        nu: axis(u),
+    };
+    let view = Observed {
+        system: system.clone(),
+        plane: *plane,
+    };
+    let picture = ProjectionGrid::new(window, 8);
+    view.predict(&[], (window, &grid, &picture), BUDGET)
+}
+
+fn lamp(side: f64) -> Light {
+    Light::Area {
+        shape: Shape::Rectangle(Rectangle {
+            center: [0.0; 2],
+            size: [side; 2],
+        }),
+        radiance: 1.0,
+        exponent: 0.0,
+    }
+}
+
+fn reflectance(lobe: Lobe) -> Reflectance {
+    Reflectance {
+        brdf: Brdf {
+            lobe,
+            albedo: 0.7,
+            fresnel: Fresnel::White,
+        },
+        blend: None,
+        texture: None,
+    }
+}
+
+/// A patch around a point, facing along a direction in the plane of X and Z.
+fn patch(at: DVec3, facing: DVec3, curvature: f64) -> Patch {
+    Patch {
+        frame: Frame::new(at, facing.normalize(), DVec3::Y).unwrap(),
+        curvature: [curvature; 3],
+        aperture: 0.6,
+    }
+}
+
+fn surface(patch: Patch, interaction: Interaction) -> Surface {
+    Surface {
+        name: "surface".into(),
+        patch,
+        outline: None,
+        hit: patch.frame.origin,
+        interaction,
+    }
+}
+
+fn system(light: Light, surfaces: Vec<Surface>) -> System {
+    System {
+        light,
+        obstacles: vec![],
+        visited: surfaces.len(),
+        surfaces,
+    }
+}
+
+/// Across a ray through a point.
+fn across(origin: DVec3, d: DVec3, x: DVec3) -> Plane {
+    Plane {
+        frame: Frame::new(origin, d, x).unwrap(),
+        orientation: Orientation::Orthogonal,
+        longitude: 0.0,
+        patch: None,
+        arriving: false,
+        quantity: Quantity::Radiance,
+    }
+}
+
+/// How far two predictions are apart in their errors.
+fn apart(a: &Predicted, b: &Predicted) -> f64 {
+    let error = libm::hypot(a.error.unwrap(), b.error.unwrap());
+    distance(&a.slices, &b.slices) / error
+}
+
+/// Differences of two predictions in their errors: the mean over as many frequencies as there are
+/// here exceeds 1.3 once in a thousand.
+const CLOSE: f64 = 1.3;
+
+/// One surface, against rays drawn from the plane back to the light.
+#[test]
+fn one_surface_is_that_of_scattering() {
+    let normal = DVec3::new(FRAC_1_SQRT_2, 0.0, -FRAC_1_SQRT_2);
+    let plane = across(DVec3::new(0.5, 0.0, 1.0), DVec3::X, DVec3::NEG_Z);
+    let window = window(Profile::Hann(0.1), Profile::Hann(0.15));
+    for (lobe, curvature) in [
+        (Lobe::Lambertian, 0.4),
+        (Lobe::Ggx { roughness: 0.2 }, 0.0),
+        (Lobe::Phong { exponent: 300.0 }, -0.3),
+    ] {
+        let patch = patch(DVec3::Z, normal, curvature);
+        let mask = Mask::Opaque {
+            shapes: vec![],
+            half_planes: vec![HalfPlane {
+                axis: 0,
+                edge: 0.02,
+                above: true,
+            }],
+        };
+        let scattering = scattering::System {
+            light: lamp(0.2),
+            layers: vec![(0.5, mask.clone())],
+            obstacles: vec![],
+            name: String::new(),
+            patch,
+            reflectance: reflectance(lobe),
+        };
+        let interaction = Interaction::Reflects(Box::new(reflectance(lobe)));
+        let mut reflections = system(lamp(0.2), vec![surface(patch, interaction)]);
+        reflections.obstacles.push(Obstacle {
+            name: "edge".into(),
+            form: ObstacleForm::Mask {
+                from: 0,
+                distance: 0.5,
+                mask,
+            },
+        });
+        let [one, other] = [
+            predicted(&scattering, &plane, &window),
+            predicted(&reflections, &plane, &window),
+        ];
+        assert!(other.error.unwrap() < 0.02, "{lobe:?} {:?}", other.error); // 2·10⁶ paths
+        let off = apart(&one, &other);
+        assert!(off < CLOSE, "{lobe:?} {off}");
+        // The chains differ by where they meet the mask alone.
+        let [one, other] = [one, other].map(|found| {
+            let size = found.slices.at_zero();
+            found.to_first_order.unwrap().at_zero() / size
+        });
+        assert!((one - other).abs() < 0.02, "{lobe:?} {one} {other}"); // noise of derivatives' nets
+    }
+}
+
+/// A flat mirror before and a flat mirror behind a surface, against the light and the plane where
+/// they are seen in these.
+#[test]
+fn flat_mirrors_unfold() {
+    let mirror = || Interaction::Specular(Specular::Mirror);
+    let gloss = || Interaction::Reflects(Box::new(reflectance(Lobe::Ggx { roughness: 0.3 })));
+    let (x, z) = (DVec3::X, DVec3::Z);
+    let window = window(Profile::Hann(0.1), Profile::Hann(0.15));
+    // The light goes along Z, X, −Z and, unfolded, along Z, Z, −X.
+    let before = patch(z, x - z, 0.0);
+    let at = z + x;
+    let gloss_after = surface(patch(at, -x - z, 0.0), gloss());
+    let folded = system(lamp(0.2), vec![surface(before, mirror()), gloss_after]);
+    let plane = across(at - 0.5 * z, -z, x);
+    let found = predicted(&folded, &plane, &window);
+    let straight = system(
+        lamp(0.2),
+        vec![surface(patch(2.0 * z, -x - z, 0.0), gloss())],
+    );
+    // Seen in the mirror, Z is X and X is Z.
+    let plane = across(2.0 * z - 0.5 * x, -x, z);
+    let wanted = predicted(&straight, &plane, &window);
+    let off = apart(&found, &wanted);
+    assert!(off < CLOSE, "before: {off}");
+
+    let first = || surface(patch(z, x - z, 0.0), gloss());
+    let folded = system(
+        lamp(0.2),
+        vec![first(), surface(patch(at, -x - z, 0.0), mirror())],
+    );
+    let found = predicted(&folded, &across(at - 0.5 * z, -z, x), &window);
+    let straight = system(lamp(0.2), vec![first()]);
+    let wanted = predicted(&straight, &across(at + 0.5 * x, x, -z), &window);
+    let off = apart(&found, &wanted);
+    assert!(off < CLOSE, "behind: {off}");
+}
+
+/// The radiance of a floor that a diffuse wall lights, and the wall a projector, against a sum over
+/// the wall.
+#[test]
+fn two_diffuse_surfaces_are_a_sum_over_the_first() {
+    let (x, z) = (DVec3::X, DVec3::Z);
+    let image = Image {
+        width: [0.3; 2],
+        grating: None,
+    };
+    let light = Light::Projector {
+        intensity: 1.0,
+        image,
+    };
+    let diffuse = |albedo| Interaction::Diffuse { albedo };
+    let (wall, floor) = (patch(z, x - z, 0.0), patch(z + x, -x, 0.0));
+    let both = vec![surface(wall, diffuse(0.8)), surface(floor, diffuse(0.5))];
+    let system = system(light.clone(), both);
+    let small = 0.002;
+    let tiny = window(Profile::Box(small), Profile::Box(small));
+    let found = predicted(&system, &across(z + 0.9 * x, -x, DVec3::Y), &tiny);
+    let n = 400;
+    let side = 1.2 / f64::from(n);
+    let mut irradiance = 0.0;
+    let floor_at = floor.frame.origin;
+    for (i, j) in (0..n * n).map(|k| (k / n, k % n)) {
+        let [s, t] = [i, j].map(|i| (f64::from(i) + 0.5) * side - 0.6);
+        if libm::hypot(s, t) > 0.6 {
+            continue;
+        }
+        let at = wall.frame.to_world(DVec3::new(s, t, 0.0));
+        let from_light = at.normalize();
+        let intensity = match light {
+            Light::Projector { image, .. } if at.z > 0.0 => image.value(at.x / at.z, at.y / at.z),
+            _ => 0.0,
+        };
+        let lit = intensity * -wall.frame.d.dot(from_light) / at.length_squared();
+        let to_floor = floor_at - at;
+        let cosines =
+            to_floor.normalize().dot(wall.frame.d) * -to_floor.normalize().dot(floor.frame.d);
+        irradiance += 0.8 / PI * lit * cosines / to_floor.length_squared() * side * side;
+    }
+    let wanted = 0.5 / PI * irradiance * (2.0 * small).powi(4);
+    let off = found.slices.at_zero() / wanted - 1.0;
+    // The rule meets the round edge of the wall with squares of 3 mm.
+    assert!(off.abs() < 3e-3, "{off:e} {:?}", found.error);
+}
+
+/// What stands between two surfaces, a surface of the path among it, hides light.
+#[test]
+fn surfaces_and_masks_hide_later_legs() {
+    let (x, z) = (DVec3::X, DVec3::Z);
+    let diffuse = || Interaction::Diffuse { albedo: 0.5 };
+    let (wall, floor) = (patch(z, x - z, 0.0), patch(z + x, -x, 0.0));
+    let mut open = system(
+        lamp(0.2),
+        vec![surface(wall, diffuse()), surface(floor, diffuse())],
+    );
+    let plane = across(z + 0.9 * x, -x, DVec3::Y);
+    let window = window(Profile::Hann(0.1), Profile::Hann(0.15));
+    let whole = predicted(&open, &plane, &window).slices.at_zero();
+    let mut card = patch(z + 0.5 * x, x, 0.0);
+    card.aperture = 0.2;
+    open.surfaces.push(surface(card, diffuse()));
+    let hidden = predicted(&open, &plane, &window).slices.at_zero();
+    open.surfaces.pop();
+    open.obstacles.push(Obstacle {
+        name: "card".into(),
+        form: ObstacleForm::Patch(card),
+    });
+    let stopped = predicted(&open, &plane, &window).slices.at_zero();
+    // The card is 0.4 m wide, half-way from the wall, which is lit for a metre and more.
+    assert!(hidden < 0.9 * whole && (hidden / stopped - 1.0).abs() < 0.02); // errors of both nets
+}
+
+/// A chain with a wrong map is told from that of the surfaces.
+#[test]
+fn a_wrong_map_is_a_defect() {
+    let (x, z) = (DVec3::X, DVec3::Z);
+    let gloss = || Interaction::Reflects(Box::new(reflectance(Lobe::Ggx { roughness: 0.1 })));
+    let first = surface(patch(z, x - z, 0.2), gloss());
+    let second = surface(patch(z + x, -x - z, -0.3), gloss());
+    let view = Observed {
+        system: system(lamp(0.1), vec![first, second]),
+        plane: across(z + x - 0.5 * z, -z, x),
+    };
+    let mut tried = chain(&view).unwrap();
+    assert!(defect(&view, &tried).unwrap() < 1e-9); // differences of fourth order
+    tried.maps[1].matrix[2][0] += 1e-3;
+    assert!(defect(&view, &tried).unwrap() > 1e-4);
+    assert_eq!(
+        view.parameters(),
+        [
+            Parameter::SourceSize,
+            Parameter::Curvature(0, 0),
+            Parameter::Curvature(1, 0),
+            Parameter::Albedo,
+            Parameter::Lobe
+        ]
+    );
+}

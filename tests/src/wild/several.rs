@@ -1,0 +1,170 @@
+//! Random scenes whose light several surfaces send on, with masks on any leg: photons must reject no
+//! prediction.
+
+use super::draw::Draw;
+use super::scene;
+use super::small::{Ending, SmallOptions, ending, keep, object, plane, sharpen};
+use crate::progress::progress;
+use crate::report::{Check, Row, Section};
+use etendue_compare::{Applicability, Class, Theory, Verdict};
+use etendue_scene::{Event, Object, Scene, SceneFile, resolve};
+use rayon::prelude::*;
+use std::io;
+use std::path::Path;
+use std::time::Instant;
+
+/// How many surfaces that scatter are told apart.
+const MAX_SCATTERERS: usize = 3;
+/// An object in the way is this share of the light as wide, at most and at least.
+const WIDE: [f64; 2] = [0.02, 0.4];
+
+/// A plane, with what came of it.
+struct Tried {
+    number: u64,
+    scatterers: usize,
+    /// Whether the theory of light that several surfaces send on predicts it.
+    by_paths: bool,
+    ending: Ending,
+    seconds: f64,
+}
+
+/// Tries all scenes.
+pub(crate) fn several(options: &SmallOptions) -> io::Result<Section> {
+    let bar = progress(options.scenes, "scenes");
+    let numbers = options.first..options.first + options.scenes;
+    let tried: io::Result<Vec<Option<Tried>>> = numbers
+        .into_par_iter()
+        .map(|number| {
+            let folder = tempfile::tempdir()?;
+            let Some(scene) = drawn(options, number, folder.path()) else {
+                bar.one();
+                return Ok(None);
+            };
+            let begun = Instant::now();
+            let ending = ending(&scene, options.classes);
+            if matches!(ending, Ending::Judged(_, Verdict::Fail)) {
+                keep(options, number, &scene, folder.path())?;
+            }
+            bar.one();
+            let theory = Applicability::new(&scene, &scene.planes[0]).theory;
+            Ok(Some(Tried {
+                number,
+                scatterers: scatterers(&scene),
+                by_paths: matches!(theory, Theory::Reflections(_)),
+                ending,
+                seconds: begun.elapsed().as_secs_f64(),
+            }))
+        })
+        .collect();
+    bar.end();
+    Ok(section(options, &tried?))
+}
+
+/// A scene whose central ray visits two surfaces or more, with one plane and, mostly, an object in
+/// its light.
+fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<Scene> {
+    const TRIES: u64 = 40;
+    let resolved = |file: &SceneFile| resolve("several", file.clone(), folder, u64::MAX).ok();
+    for attempt in 0..TRIES {
+        let number = number * TRIES + attempt;
+        let mut draw = Draw::new(options.seed ^ 0x7e7e, number, folder);
+        let Ok(mut file) = scene(options.seed, number, options.photons, folder) else {
+            continue;
+        };
+        if file.path.visits.len() < 2 {
+            continue;
+        }
+        file.run.photons = options.photons;
+        sharpen(&mut file);
+        let Some(whole) = resolved(&file) else {
+            continue;
+        };
+        file.planes = vec![plane(&mut draw, &whole)];
+        let Some(open) = resolved(&file).filter(|open| open.planes[0].leg >= 2) else {
+            continue;
+        };
+        if draw.one_in(4) {
+            return Some(open);
+        }
+        object(&mut draw, &open, &mut file, WIDE);
+        if let Some(scene) = resolved(&file) {
+            return Some(scene);
+        }
+    }
+    None
+}
+
+/// Surfaces that scatter light before the plane.
+fn scatterers(scene: &Scene) -> usize {
+    let legs = scene.path.legs[..=scene.planes[0].leg].iter();
+    let hits = legs.filter_map(|leg| leg.leaves);
+    let scatters = |object: Object| match object {
+        Object::Surface(_) => true,
+        Object::Patch(i) => matches!(scene.patches[i].event, Event::Reflects(_)),
+        Object::Mesh(i) => scene.meshes[i].smooth.is_none(),
+    };
+    hits.filter(|hit| scatters(hit.object)).count()
+}
+
+fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> Section {
+    let tried: Vec<&Tried> = tried.iter().flatten().collect();
+    let row = |scatterers: usize| {
+        let of_kind = || {
+            tried
+                .iter()
+                .filter(move |tried| tried.scatterers == scatterers)
+        };
+        let count = |is: &dyn Fn(&Tried) -> bool| of_kind().filter(|tried| is(tried)).count();
+        let judged = |wanted: Verdict| {
+            count(&|tried| matches!(tried.ending, Ending::Judged(_, verdict) if verdict == wanted))
+        };
+        let rejected: Vec<String> = of_kind()
+            .filter(|tried| matches!(tried.ending, Ending::Judged(_, Verdict::Fail)))
+            .map(|tried| tried.number.to_string())
+            .collect();
+        let mut seconds: Vec<f64> = of_kind().map(|tried| tried.seconds).collect();
+        seconds.sort_by(f64::total_cmp);
+        let median = seconds.get(seconds.len() / 2).copied().unwrap_or(0.0);
+        let first_order =
+            count(&|tried| matches!(tried.ending, Ending::Judged(Class::FirstOrder, _)));
+        let cells = vec![
+            scatterers.to_string(),
+            of_kind().count().to_string(),
+            count(&|tried| matches!(tried.ending, Ending::Judged(Class::Exact, _))).to_string(),
+            first_order.to_string(),
+            count(&|tried| tried.by_paths).to_string(),
+            count(&|tried| matches!(tried.ending, Ending::Named | Ending::Other)).to_string(),
+            count(&|tried| tried.ending == Ending::Skipped).to_string(),
+            judged(Verdict::Pass).to_string(),
+            judged(Verdict::Undecided).to_string(),
+            rejected.join(", "),
+            format!("{median:.1}"),
+        ];
+        Row::new(cells, vec![Check::none("rejected", rejected.len())])
+    };
+    Section {
+        title: format!("Several surfaces in a row, seed {}", options.seed),
+        text: format!(
+            "{} random scenes of two or three surfaces, with masks on any leg and a plane behind two \
+             surfaces or more, {} photons each. Required: photons reject no prediction with two seeds.",
+            tried.len(),
+            options.photons
+        ),
+        header: vec![
+            "scattering surfaces",
+            "planes",
+            "exact",
+            "first-order",
+            "by paths",
+            "reference",
+            "skipped",
+            "pass",
+            "undecided",
+            "rejected, by number",
+            "median seconds",
+            "verdict",
+        ],
+        rows: (0..=MAX_SCATTERERS).map(row).collect(),
+        checks: Vec::new(),
+    }
+}
