@@ -35,6 +35,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("furnace"),
     scene!("diffuse"),
     scene!("two_bounces"),
+    scene!("two_glossy"),
 ];
 
 /// A scene of the suite, with the photons and the seed of its file unless others are given.

@@ -5,7 +5,7 @@ use crate::first_order::distance;
 use crate::system::print;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
-use etendue_theory::{Budget, Model, Observed, Predicted, rays};
+use etendue_theory::{Budget, Model, Observed, Over, Predicted, rays, reflections};
 use serde::Serialize;
 
 /// The error of a plane's first-order chain in smaller and smaller neighbourhoods of the central
@@ -31,24 +31,18 @@ const SHARES: [f64; 5] = [1.0, 0.5, 0.25, 0.125, 0.0625];
 /// Errors below this many times that of the quadrature say nothing of the chain.
 const CLEAR: f64 = 5.0;
 
-/// Shrinks light and window of a plane behind specular surfaces and widens its frequencies alike.
-/// `None` for any other plane. No photons are traced.
+/// Shrinks light and window of a plane behind specular surfaces, and lobes of surfaces that several of
+/// them scatter by, and widens its frequencies alike. `None` for any other plane. No photons are
+/// traced.
 #[must_use]
 pub fn converge(
     scene: &Scene,
     plane: &VirtualPlane,
     applicability: &Applicability,
 ) -> Option<Convergence> {
-    let Theory::Specular(whole) = &applicability.theory else {
-        return None;
-    };
     let mut steps = Vec::new();
     let mut clear = true;
     for e in SHARES {
-        let view = Observed {
-            system: whole.system.shrunk(e),
-            plane: whole.plane,
-        };
         let Window { x, y, u, v } = plane.window;
         let [x, y, u, v] = [x, y, u, v].map(|profile| profile.scaled(e));
         let window = Window { x, y, u, v };
@@ -61,14 +55,14 @@ pub fn converge(
             nu: wider(plane.grid.nu),
             ..plane.grid
         };
-        let chain = rays::chain(&view, print(scene))?;
         let picture = ProjectionGrid::new(&window, 1);
         let over = (&window, &grid, &picture);
-        let exact = view.predict(&[], over, BUDGET);
-        let linear = rays::linear(&view, over, &chain.map, BUDGET);
-        let error = distance(&linear.slices, &exact.slices);
-        let own = |prediction: &Predicted| prediction.error.unwrap_or(0.0);
-        clear &= error > CLEAR * own(&exact).max(own(&linear));
+        let [error, own] = match &applicability.theory {
+            Theory::Specular(view) => by_rays(scene, view, e, over)?,
+            Theory::Reflections(view) => by_paths(view, e, over)?,
+            _ => return None,
+        };
+        clear &= error > CLEAR * own;
         steps.push([e, error]);
     }
     Some(Convergence {
@@ -76,6 +70,41 @@ pub fn converge(
         order: clear.then(|| order(&steps[SHARES.len() - 3..])),
         steps,
     })
+}
+
+/// The error of a first-order chain behind specular surfaces that are e times as large, and that of
+/// the sums over rays that it is read from.
+fn by_rays(
+    scene: &Scene,
+    whole: &Observed<rays::System>,
+    e: f64,
+    over: Over<'_>,
+) -> Option<[f64; 2]> {
+    let view = Observed {
+        system: whole.system.shrunk(e),
+        plane: whole.plane,
+    };
+    let chain = rays::chain(&view, print(scene))?;
+    let exact = view.predict(&[], over, BUDGET);
+    let linear = rays::linear(&view, over, &chain.map, BUDGET);
+    let own = |prediction: &Predicted| prediction.error.unwrap_or(0.0);
+    let error = distance(&linear.slices, &exact.slices);
+    Some([error, own(&exact).max(own(&linear))])
+}
+
+/// The same where several surfaces scatter. Both are summed over the same paths, so that the
+/// difference has a few per cent of its own error.
+fn by_paths(whole: &Observed<reflections::System>, e: f64, over: Over<'_>) -> Option<[f64; 2]> {
+    const SHARE: f64 = 0.05;
+    let view = Observed {
+        system: whole.system.shrunk(e)?,
+        plane: whole.plane,
+    };
+    let exact = view.predict(&[], over, BUDGET);
+    let mut linear = exact.to_first_order?;
+    linear.half += &exact.slices.half;
+    let error = distance(&linear, &exact.slices);
+    Some([error, SHARE * error])
 }
 
 /// The slope of ln error over ln e.

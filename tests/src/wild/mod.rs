@@ -9,6 +9,7 @@ mod judge;
 mod light;
 mod pictures;
 mod planes;
+mod planted;
 mod reflects;
 mod run;
 mod scene;

@@ -36,6 +36,9 @@ pub(crate) struct SmallOptions {
     /// Only counts classes, and traces nothing.
     #[arg(long)]
     pub(super) classes: bool,
+    /// Only plants faults, where scenes have several surfaces.
+    #[arg(long)]
+    pub(super) planted: bool,
     /// Where scenes are kept whose prediction photons reject.
     #[arg(long, default_value = "target/small")]
     out: PathBuf,
@@ -121,7 +124,7 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
     let mut file = scene(options.seed, number, options.photons, folder).ok()?;
     file.blockers.clear();
     file.run.photons = options.photons;
-    sharpen(&mut file);
+    sharpen(&mut file, CYCLES);
     let resolved = |file: &SceneFile| resolve("small", file.clone(), folder, u64::MAX).ok();
     for _ in 0..TRIES {
         file.planes = vec![plane(&mut draw, &resolved(&file)?)];
@@ -137,15 +140,18 @@ fn drawn(options: &SmallOptions, number: u64, folder: &Path) -> Option<(Scene, u
     None
 }
 
-/// Gives a scene a window with edges and the frequencies of a shadow an eighth as wide, so that a
-/// small object at its border is not dim.
-pub(super) fn sharpen(file: &mut SceneFile) {
+/// Cycles across the window at the highest frequencies: of a shadow an eighth as wide.
+const CYCLES: f64 = 8.0;
+
+/// Gives a scene a window with edges, so that a small object at its border is not dim, and
+/// frequencies up to so many cycles across it.
+pub(super) fn sharpen(file: &mut SceneFile, cycles: f64) {
     let WindowFile { x, y, u, v } = &mut file.window;
     let halves = [*x, y.unwrap_or(*x), *u, v.unwrap_or(*u)].map(|profile| profile.half_width());
     let [box_x, box_y, box_u, box_v] = halves.map(Profile::Box);
     (*x, *y, *u, *v) = (box_x, Some(box_y), box_u, Some(box_v));
     let axis = |half: f64| AxisFile {
-        max: 8.0 * 0.5 / half,
+        max: cycles * 0.5 / half,
         spacing: None,
     };
     file.frequencies = FrequenciesFile {

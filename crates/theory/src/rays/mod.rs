@@ -85,6 +85,7 @@ pub use crate::plane::Plane;
 
 pub(crate) use central::Incidence;
 pub(crate) use emission::{emitted, point_of};
+pub(crate) use model::shrunk_light;
 pub(crate) use predict::predict;
 pub(crate) use trace::{Ray, bent};
 

@@ -150,23 +150,10 @@ impl System {
     /// out falls with the factor (docs/theory.md, section 7).
     #[must_use]
     pub fn shrunk(&self, factor: f64) -> Self {
-        let mut system = self.clone();
-        match &mut system.light {
-            Light::Projector { image, .. } | Light::Beam { image, .. } => {
-                image.width = image.width.map(|w| w * factor);
-                if let Some(grating) = &mut image.grating {
-                    grating.frequency /= factor;
-                }
-            }
-            Light::Area { shape, .. } => {
-                resize(std::slice::from_mut(shape), &mut |size| size * factor);
-                let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) =
-                    shape;
-                *center = center.map(|c| c * factor);
-            }
-            _ => {}
+        Self {
+            light: shrunk_light(&self.light, factor),
+            ..self.clone()
         }
-        system
     }
 
     /// Where a leg starts, and along what.
@@ -177,6 +164,27 @@ impl System {
         let hit = *self.hits()?.get(leg - 1)?;
         Some((hit.leaving.origin, hit.leaving.d))
     }
+}
+
+/// A light `factor` times as large, about the central ray.
+pub(crate) fn shrunk_light(light: &Light, factor: f64) -> Light {
+    let mut light = light.clone();
+    match &mut light {
+        Light::Projector { image, .. } | Light::Beam { image, .. } => {
+            image.width = image.width.map(|w| w * factor);
+            if let Some(grating) = &mut image.grating {
+                grating.frequency /= factor;
+            }
+        }
+        Light::Area { shape, .. } => {
+            resize(std::slice::from_mut(shape), &mut |size| size * factor);
+            let (Shape::Rectangle(Rectangle { center, .. }) | Shape::Disc(Disc { center, .. })) =
+                shape;
+            *center = center.map(|c| c * factor);
+        }
+        _ => {}
+    }
+    light
 }
 
 /// A patch's frame turned about B at the central hit until θ₀ has grown by an angle.

@@ -5,7 +5,7 @@
 //! BRDF. In goes a [`Plane`](crate::rays::Plane) beyond some of them. The
 //! [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums paths from the light
 //! over scrambled nets. A path leaves the light, is turned by each specular surface, and leaves each
-//! scattering surface in a direction that is drawn (docs/theory.md, section 11):
+//! scattering surface in a direction that is drawn (docs/theory.md, section 10b):
 //!
 //! L(p, ωo) = ∫ L(p, ωi) f(p, ωi, ωo) cos θi dωi, one after the other.
 //!

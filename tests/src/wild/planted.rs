@@ -1,0 +1,131 @@
+//! Faults planted in predictions of light that two glossy surfaces send on.
+
+use crate::report::Bound::Below;
+use crate::report::{Check, Row, Section};
+use crate::scenes::{named, traced};
+use etendue_compare::{Applicability, Prediction, Test, Theory, compare};
+use etendue_field::{Frame, Lobe, ProjectionGrid};
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use etendue_theory::reflections::{Interaction, System};
+use etendue_theory::{Budget, Model, Observed};
+use glam::DQuat;
+
+/// Photons by which the subtlest fault is seen.
+const PHOTONS: u64 = 1 << 26;
+/// Errors of a fifth of the photons' noise.
+const BUDGET: Budget = Budget {
+    nodes: 2e7,
+    error: 1e-3,
+};
+/// A fault is seen at this p.
+const SEEN: f64 = 0.01;
+/// The scene and its plane.
+const SCENE: &str = "two_glossy";
+const PLANE: &str = "beyond";
+
+type Fault = (&'static str, fn(&mut System));
+
+/// What is wrong, and what of it.
+const FAULTS: [Fault; 6] = [
+    ("square left out", |system| system.obstacles.clear()),
+    ("first lobe 1 % wider", |system| {
+        change_lobe(system, 0, 1.01);
+    }),
+    ("second lobe 1 % wider", |system| {
+        // Its width is in proportion to the root of the exponent.
+        change_lobe(system, 1, 1.01_f64.powi(-2));
+    }),
+    ("curvature of the first left out", |system| {
+        system.surfaces[0].patch.curvature = [0.0; 3];
+    }),
+    ("second surface tilted by 0.3°", |system| {
+        tilt(system, 0.3_f64.to_radians());
+    }),
+    ("albedo of both 1 % larger", |system| {
+        for surface in &mut system.surfaces {
+            if let Interaction::Reflects(reflectance) = &mut surface.interaction {
+                reflectance.brdf.albedo *= 1.01;
+            }
+        }
+    }),
+];
+
+fn change_lobe(system: &mut System, surface: usize, factor: f64) {
+    if let Interaction::Reflects(reflectance) = &mut system.surfaces[surface].interaction {
+        let lobe: &mut Lobe = &mut reflectance.brdf.lobe;
+        if let Some((_, number)) = lobe.number_mut() {
+            *number *= factor;
+        }
+    }
+}
+
+fn tilt(system: &mut System, angle: f64) {
+    let frame = &mut system.surfaces[1].patch.frame;
+    let turn = DQuat::from_axis_angle(frame.y, angle);
+    *frame = Frame {
+        x: turn * frame.x,
+        d: turn * frame.d,
+        ..*frame
+    };
+}
+
+/// The section.
+pub(super) fn planted() -> Section {
+    let scene = named(SCENE, Some(PHOTONS), None);
+    let number = scene.planes.iter().position(|plane| plane.name == PLANE);
+    let scene = scene.seen_at(&[number.unwrap_or_default()]);
+    let measured = traced(&scene);
+    let view = match Applicability::new(&scene, &scene.planes[0]).theory {
+        Theory::Reflections(view) => *view,
+        other => unreachable!("{SCENE} has two surfaces: {other:?}"),
+    };
+    let sound = p_value(&scene, &measured, &view);
+    let mut rows = vec![Row::new(
+        vec!["none".to_owned(), format!("{sound:.5}")],
+        vec![Check::p("p", Some(sound), SEEN)],
+    )];
+    rows.extend(FAULTS.iter().map(|(name, change)| {
+        let mut view = view.clone();
+        change(&mut view.system);
+        let p = p_value(&scene, &measured, &view);
+        let cells = vec![(*name).to_owned(), format!("{p:.5}")];
+        Row::new(
+            cells,
+            vec![Check::new("p", p, Below(SEEN), "the fault is planted")],
+        )
+    }));
+    Section {
+        title: "Faults planted behind two glossy surfaces".to_owned(),
+        text: format!(
+            "Each fault alone, in the prediction of plane `{PLANE}` of `{SCENE}`, at {PHOTONS} photons. \
+             Required: p < {SEEN} for every fault, and not for none; p is not below 0.00005."
+        ),
+        header: vec!["fault", "p", "verdict"],
+        rows,
+        checks: Vec::new(),
+    }
+}
+
+fn p_value(scene: &Scene, measured: &Measurement, view: &Observed<System>) -> f64 {
+    let plane = &scene.planes[0];
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    let found = view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET);
+    let applicability = Applicability::new(scene, plane);
+    let prediction = Prediction {
+        slices: found.slices,
+        replicates: found.replicates,
+        quadrature_error: found.error,
+        first_order: None,
+        ..Prediction::new(&cheap(scene), plane, &applicability)
+    };
+    let compared = compare(measured, 0, &prediction, &Test::of(scene));
+    compared.map_or(1.0, |found| found.report.p_value.unwrap_or(1.0))
+}
+
+/// The scene with few photons, for what stands around a prediction.
+fn cheap(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    scene.run.photons = 1;
+    scene
+}
