@@ -137,7 +137,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "6",
-        about: "all steps of diffuse shading: 2D slice, measured and predicted radial spectrum",
+        about: "all steps of diffuse shading: in flatland, and in 3D measured and predicted",
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
@@ -157,7 +157,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "8",
-        about: "the receiver by slopes and by angles: what taking one for the other costs",
+        about: "the receiver by slopes and by angles: what taking one for the other costs, and bandwidths",
         scenes: &[("fig8", scene!("fig8"))],
         also: &[],
         has_table: false,
