@@ -16,9 +16,9 @@ use ndarray::Array2;
 pub(crate) fn lights(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let seen = [
         Seen::at(&taken.shots[0], "light")?,
-        Seen::at(&taken.shots[0], "receiver")?,
-        Seen::at(&taken.shots[1], "light")?,
         Seen::at(&taken.shots[1], "receiver")?,
+        Seen::at(&taken.shots[2], "light")?,
+        Seen::at(&taken.shots[2], "receiver")?,
     ];
     let heads = ["point", "point, after 2 m", "spot", "spot, after 2 m"];
     taken.plate(&Plate {

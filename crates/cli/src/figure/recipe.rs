@@ -120,6 +120,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "4",
         about: "a point light, and a spot with a bulb and a falloff",
         scenes: &[
+            ("fig4_source", scene!("fig4_source")),
             ("fig4_point", scene!("fig4_point")),
             ("fig4_spot", scene!("fig4_spot")),
         ],
