@@ -1,7 +1,7 @@
 //! Statistical validation of Étendue.
 //!
 //! `short` is a few minutes, for every change; `suite` goes through all scenes without smooth surfaces and writes `docs/suite.md`; `table1` through the
-//! operators of the paper, `shading` through what surfaces do to light, and `main` is the full account of the main scene: each writes its part of
+//! operators of the paper, `shading` through what surfaces do to light, `claims` through what the paper says in words, and `main` is the full account of the main scene: each writes its part of
 //! `docs/validation.md`; `all` writes the whole of it, with every row of the paper's Table 1.
 //! `second` holds what theory and the tracers share against a second implementation.
 //! `hostile` and `kills` attack the program `etendue` from outside; `wild` hunts for scenes on which it is wrong.
@@ -10,6 +10,7 @@
 mod assumptions;
 mod bandwidth;
 mod calibration;
+mod claims;
 mod faults;
 mod hostile;
 mod kills;
@@ -42,6 +43,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- suite        ten minutes; writes docs/suite.md
   cargo run --release -p etendue-validation -- table1       writes docs/validation.md
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
+  cargo run --release -p etendue-validation -- claims       two minutes; writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
   cargo run --release -p etendue-validation -- nets         three minutes; writes docs/nets.md
   cargo run --release -p etendue-validation -- second       seconds; shared functions, written twice
@@ -103,6 +105,12 @@ enum Command {
         #[arg(long)]
         photons: Option<u64>,
     },
+    /// What the paper says in words, with photons; into docs/validation.md.
+    Claims {
+        /// Photons for each scene, instead of a million and more.
+        #[arg(long)]
+        photons: Option<u64>,
+    },
     /// The sampling criteria against photons, into docs/bandwidth.md with its picture.
     Bandwidth {
         /// Photons for each point; then nothing is written.
@@ -129,7 +137,7 @@ enum Command {
     Pulls(pulls::Options),
     /// The main scene: every plane, noise floors, calibration and planted faults; into docs/validation.md.
     Main,
-    /// The whole of docs/validation.md: `main`, `table1` and `shading`, and every row of the paper's Table 1.
+    /// The whole of docs/validation.md: `main`, `table1`, `shading` and `claims`, and every row of the paper's Table 1.
     All,
 }
 
@@ -178,6 +186,7 @@ fn main() -> ExitCode {
             Command::Main,
             Command::Table1 { photons: None },
             Command::Shading { photons: None },
+            Command::Claims { photons: None },
         ][..],
         ref other => std::slice::from_ref(other),
     };
@@ -259,6 +268,12 @@ fn page(command: &Command) -> Option<[&'static str; 4]> {
             "shading",
             "In 2D and without photons where no scene is named",
         ],
+        Command::Claims { photons: None } => [
+            "docs/validation.md",
+            "Words",
+            "claims",
+            "Scenes: made for each statement",
+        ],
         Command::All => [
             "docs/validation.md",
             "Every row of Table 1",
@@ -309,6 +324,7 @@ fn sections(command: &Command) -> Vec<Section> {
         }
         Command::Table1 { photons } => table1::table1(photons),
         Command::Shading { photons } => shading::shading(photons),
+        Command::Claims { photons } => vec![claims::claims(photons)],
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
         // These have reports of their own.
         Command::Nets

@@ -21,6 +21,7 @@ pub(crate) const SUITE: &[(&str, &str)] = &[
     scene!("fig9a"),
     scene!("fig9b"),
     scene!("fig9c"),
+    scene!("fig4_source"),
     scene!("fig4_point"),
     scene!("fig4_spot"),
     scene!("fig7_one"),

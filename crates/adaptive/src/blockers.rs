@@ -11,13 +11,14 @@ use rayon::prelude::*;
 /// Pixels from one point to the next: an 800 × 500 picture has 20,000, as many as Durand et al. 2005 took.
 const STEP: usize = 4;
 
-/// Rays of each point to what is reflected, and as many to lights. Their hundred would be most of the work.
-const RAYS: u32 = 16;
+/// Rays of a point unless others are asked for: a sixth of the hundred of Durand et al. 2005, with which they would be most of the work.
+pub const BLOCKER_RAYS: u32 = 16;
 
-/// The nearness of what each pixel shows.
+/// The nearness of what each pixel shows, by `rays` of each point to what is reflected, and as many to lights.
 pub(crate) fn nearness(
     visible: &Visible,
     (paths, camera, cutoffs, seed): (&Paths, &Camera, &Cutoffs, u64),
+    rays: u32,
     progress: &(dyn Fn(u64) + Sync),
 ) -> Vec<Nearness> {
     let [w, h] = visible.size.map(|n| n.div_ceil(STEP));
@@ -30,7 +31,7 @@ pub(crate) fn nearness(
             // Nothing shows what is nearer than a pixel is wide.
             let nearest = seen.distance() * pixel_angle(camera);
             let Nearness { reflected, shadow } =
-                paths.nearness(&seen, RAYS, nearest, seed, i as u64);
+                paths.nearness(&seen, rays, nearest, seed, i as u64);
             Some(Sample {
                 at,
                 metric: Metric::even((STEP as f64).powi(-2)),

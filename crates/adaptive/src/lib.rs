@@ -15,5 +15,6 @@ mod reconstruct;
 mod shading;
 mod visible;
 
+pub use blockers::BLOCKER_RAYS;
 pub use method::{Layers, Method, Plan, Rendered, Stage, render};
 pub use metric::Metric;

@@ -36,6 +36,8 @@ pub struct Plan {
     pub samples: usize,
     /// Paths of each.
     pub each: u32,
+    /// Rays by which the distance of blockers is found at each point; Durand et al. 2005 take a hundred.
+    pub blocker_rays: u32,
     /// Samples are as dense along all directions, as in the paper, or along each as it needs.
     pub is_even: bool,
     /// Of all random numbers.
@@ -257,7 +259,12 @@ impl Work<'_> {
             ..
         } = self.shader;
         (self.stage)(Stage::Blockers, w.div_ceil(4) * h.div_ceil(4));
-        let near = nearness(self.visible, (paths, camera, cutoffs, seed), self.progress);
+        let near = nearness(
+            self.visible,
+            (paths, camera, cutoffs, seed),
+            self.plan.blocker_rays,
+            self.progress,
+        );
         (self.stage)(Stage::Criterion, 1);
         let eye = camera.to_world.translation;
         let squared = self.visible.pixels(|[column, row]| {

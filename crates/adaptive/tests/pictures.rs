@@ -51,6 +51,7 @@ fn picture(world: &World, method: Method, samples: usize, seed: u64) -> Rendered
         method,
         samples,
         each: 128,
+        blocker_rays: 16,
         is_even: false,
         seed,
     };

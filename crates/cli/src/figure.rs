@@ -2,6 +2,7 @@
 
 mod creatures;
 mod criteria;
+mod flat;
 mod kernels;
 mod own;
 mod plates;

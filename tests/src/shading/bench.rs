@@ -52,10 +52,7 @@ impl Bench {
     ) -> Measurement {
         let mut scene = self.scene.clone();
         change(&mut scene);
-        let source = Tampered {
-            tracer: Tracer::new(&scene),
-            crossing: |c| crossing(&self.scene, c),
-        };
+        let source = Tampered::new(&scene, |c| crossing(&self.scene, c));
         measure(&source, &scene.planes, 0..scene.run.batches, &|_| ())
     }
 
@@ -120,9 +117,18 @@ pub(super) fn on_flat(scene: &Scene, crossing: &Crossing) -> [DVec3; 2] {
 }
 
 /// A tracer whose crossings are tampered with before they are recorded.
-struct Tampered<F> {
+pub(crate) struct Tampered<F> {
     tracer: Tracer,
     crossing: F,
+}
+
+impl<F: Fn(Crossing) -> Crossing> Tampered<F> {
+    pub(crate) fn new(scene: &Scene, crossing: F) -> Self {
+        Self {
+            tracer: Tracer::new(scene),
+            crossing,
+        }
+    }
 }
 
 impl<F: Fn(Crossing) -> Crossing + Sync> PhotonSource for Tampered<F> {

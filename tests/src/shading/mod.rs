@@ -23,6 +23,7 @@ mod traced;
 mod visibility;
 mod words;
 
+pub(crate) use bench::Tampered;
 pub(crate) use glossy::glossy;
 
 use crate::report::Section;

@@ -2,6 +2,7 @@
 
 use super::{ForceArgs, ThreadArgs, assignment, whole_number};
 use clap::{Args, ValueEnum};
+use etendue_adaptive::BLOCKER_RAYS;
 use etendue_import::{Color, Options};
 use glam::DVec3;
 use std::path::PathBuf;
@@ -172,6 +173,10 @@ pub(crate) struct RenderArgs {
     /// Paths of each shading sample
     #[arg(long, value_name = "N", default_value = "128", value_parser = clap::value_parser!(u32).range(2..=1_000_000))]
     pub(crate) paths: u32,
+
+    /// Rays of each point by which the distance of blockers is found, as many again to lights; the paper has 100
+    #[arg(long, value_name = "N", default_value_t = BLOCKER_RAYS, value_parser = clap::value_parser!(u32).range(1..=100_000))]
+    pub(crate) blocker_rays: u32,
 
     /// Samples as dense along all directions, as in the paper; without it denser along the direction in which light changes faster
     #[arg(long)]

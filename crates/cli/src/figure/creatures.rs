@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use crate::figure::Quality;
 use crate::figure::recipe::Taken;
 use crate::progress;
-use etendue_adaptive::{Method, Plan, Rendered, render};
+use etendue_adaptive::{BLOCKER_RAYS, Method, Plan, Rendered, render};
 use etendue_figures::{
     Axis, Figure, Palette, Picture, Plate, PlateRow, Quantity, Scale, Style, plate, stacked,
 };
@@ -85,6 +85,7 @@ impl Scene {
             method,
             samples: self.samples,
             each: EACH,
+            blocker_rays: BLOCKER_RAYS,
             is_even,
             seed: 1,
         };

@@ -2,12 +2,19 @@
 
 use crate::failure::Failure;
 use crate::figure::recipe::Taken;
-use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity};
-use etendue_theory::shading::{Fresnel, cosine_hat, g_hat, g_hat_3d};
+use etendue_field::gauss_legendre;
+use etendue_figures::{
+    Axis, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow, Quantity, Scale,
+    stacked,
+};
+use etendue_theory::shading::{Fresnel, cosine_hat, energy_below, g_hat, g_hat_3d};
+use ndarray::Array2;
 use std::f64::consts::FRAC_PI_2;
 
 /// Points of a curve.
 const POINTS: u32 = 400;
+/// Cells of a picture along each axis.
+const CELLS: usize = 121;
 
 /// A function on an interval.
 fn curve(kind: CurveKind, name: &str, [from, to]: [f64; 2], f: &dyn Fn(f64) -> f64) -> Curve {
@@ -43,7 +50,7 @@ pub(crate) fn slopes(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let g = |v: f64| libm::pow(1.0 + v * v, -1.5);
     let g_3d = |v: f64| libm::pow(1.0 + v * v, -2.0);
     let (flat, solid) = ("2D: *g*", "3D: *G*, along one axis");
-    taken.curves(&values(
+    let curves = taken.curves(&values(
         "The cosine over slopes, and its transforms",
         "*g* = (1 + *v*^{2})^{−3/2}, *G* = (1 + *u*^{2} + *v*^{2})^{−2}; transforms 4π|*Ω*| *K*_{1}(2π|*Ω*|) and half π times that.",
         vec![
@@ -64,47 +71,131 @@ pub(crate) fn slopes(taken: &Taken<'_>) -> Result<Figure, Failure> {
                 ],
             ),
         ],
-    ))
+    ))?;
+    Ok(stacked(&[curves, solid_slopes(taken)?]))
 }
 
-/// cos₊ and cos₊ times the Fresnel factors of a dielectric and a conductor (Fig. 12).
+/// G(u, v) and its transform over both slopes and both frequencies (Fig. 5c).
+fn solid_slopes(taken: &Taken<'_>) -> Result<Figure, Failure> {
+    let at = |i: usize, end: f64| end * (2.0 * i as f64 / (CELLS - 1) as f64 - 1.0);
+    let map = |end: f64, f: &dyn Fn(f64, f64) -> f64| {
+        Array2::from_shape_fn((CELLS, CELLS), |(i, j)| f(at(i, end), at(j, end)))
+    };
+    let [slopes, frequencies] = [3.0, 1.5];
+    let value = map(slopes, &|u, v| libm::pow(1.0 + u * u + v * v, -2.0));
+    let transform = map(frequencies, &g_hat_3d);
+    let axes = |names: [&str; 2], unit: &str, end: f64| {
+        names.map(|name| Axis::edges(name, unit, [-end, end]))
+    };
+    let picture = |[x, y]: [Axis; 2], values| Picture { x, y, values };
+    let pictures = vec![
+        picture(axes(["*u*", "*v*"], "slope", slopes), value.view()),
+        picture(
+            axes(["*Ω*_{u}", "*Ω*_{v}"], "cycles/slope", frequencies),
+            transform.view(),
+        ),
+    ];
+    taken.plate(&Plate {
+        title: "In 3D",
+        note: "",
+        heads: vec!["*G*(*u*, *v*)".to_owned(), "its transform".to_owned()],
+        rows: vec![PlateRow {
+            name: "theory",
+            quantity: Quantity::new("value", ""),
+            scale: Scale::Linear,
+            shared: false,
+            pictures,
+        }],
+        feet: Vec::new(),
+        bars: None,
+    })
+}
+
+/// Shares of energy that the table of Fig. 12 has.
+const SHARES: [f64; 3] = [0.8, 0.95, 0.99];
+/// The frequency up to which they are looked for, cycles per radian.
+const LARGEST: f64 = 6.0;
+
+/// The cosine, or the cosine times a Fresnel factor.
+struct Material {
+    name: &'static str,
+    fresnel: Option<Fresnel>,
+}
+
+impl Material {
+    fn value(&self, theta: f64) -> f64 {
+        let factor = self.fresnel.map_or(1.0, |f| f.reflectance(theta));
+        factor * libm::cos(theta)
+    }
+
+    fn transform(&self, omega: f64) -> f64 {
+        self.fresnel
+            .map_or_else(|| cosine_hat(omega), |f| f.cosine_hat(omega))
+    }
+
+    /// Frequencies below which it has [`SHARES`] of its energy, cycles per radian.
+    fn energy_below(&self) -> [Option<f64>; 3] {
+        let nodes = gauss_legendre(200).into_iter();
+        let squares = nodes.map(|(t, w)| w * self.value(FRAC_PI_2 * t).powi(2));
+        let energy = FRAC_PI_2 * squares.sum::<f64>();
+        energy_below(|omega| self.transform(omega), energy, SHARES, LARGEST)
+    }
+}
+
+/// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the frequencies below which their energy lies.
 pub(crate) fn fresnel(taken: &Taken<'_>) -> Result<Figure, Failure> {
-    let glass = Fresnel::Dielectric { index: 1.5 };
+    let material = |name, fresnel| Material { name, fresnel };
+    let dielectric = |index| Some(Fresnel::Dielectric { index });
     // Aluminium at 650 nm, as in the figures of microfacet papers.
     let metal = Fresnel::Conductor {
         index: 1.488,
         extinction: 7.821,
     };
+    let materials = [
+        material("cos_{+}", None),
+        material("× glass", dielectric(1.5)),
+        material("× diamond", dielectric(2.417)),
+        material("× aluminium", Some(metal)),
+    ];
     let angles = || Quantity::new("*θ*", "radians");
     let frequency = || Quantity::new("*Ω*", "cycles/rad");
     let range = [-FRAC_PI_2, FRAC_PI_2];
-    let cosine = |theta: f64| libm::cos(theta);
-    let both = |of: Fresnel| move |theta: f64| of.reflectance(theta) * libm::cos(theta);
-    let pair = |title: &str, value: &dyn Fn(f64) -> f64, transform: &dyn Fn(f64) -> f64| {
-        [
-            panel(
-                &format!("{title}, over angle"),
-                angles(),
-                vec![curve(CurveKind::Theory, "theory", range, value)],
-            ),
-            panel(
-                &format!("{title}, transform"),
-                frequency(),
-                vec![curve(CurveKind::Theory, "theory", [-2.0, 2.0], transform)],
-            ),
-        ]
-    };
-    let pairs = [
-        pair("cos_{+}", &cosine, &cosine_hat),
-        pair("× glass", &both(glass), &|o| glass.cosine_hat(o)),
-        pair("× aluminium", &both(metal), &|o| metal.cosine_hat(o)),
-    ];
-    let [functions, transforms]: [Vec<CurvePanel>; 2] =
-        [0, 1].map(|i| pairs.iter().map(|pair| pair[i].clone()).collect());
-    let panels = [functions, transforms].concat();
-    taken.curves(&values(
+    let functions = materials.iter().map(|of| {
+        let theory = curve(CurveKind::Theory, "theory", range, &|t| of.value(t));
+        panel(&format!("{}, over angle", of.name), angles(), vec![theory])
+    });
+    let transforms = materials.iter().map(|of| {
+        let theory = curve(CurveKind::Theory, "theory", [-2.0, 2.0], &|o| {
+            of.transform(o)
+        });
+        panel(
+            &format!("{}, transform", of.name),
+            frequency(),
+            vec![theory],
+        )
+    });
+    let shares = materials.each_ref().map(|of| {
+        let below = of.energy_below();
+        below.map(|frequency| frequency.map_or("–".to_owned(), |f| format!("{f:.3}")))
+    });
+    let told = materials.iter().zip(&shares);
+    let told = told.map(|(of, below)| format!("{} {}", of.name, below.join(", ")));
+    let note = format!(
+        "Glass: *n* = 1.5. Diamond: 2.417. Aluminium: 1.488 + 7.821 i, at 650 nm. 80, 95 and 99 % of the energy lie below (cycles/rad): {}.",
+        told.collect::<Vec<_>>().join("; ")
+    );
+    let mut figure = taken.curves(&values(
         "The clamped cosine, alone and with Fresnel factors",
-        "Glass: *n* = 1.5. Aluminium: 1.488 + 7.821 i, at 650 nm.",
-        panels,
-    ))
+        &note,
+        functions.chain(transforms).collect(),
+    ))?;
+    figure
+        .csv
+        .push_str("\nfactor,80 % of the energy below [cycles/rad],95 %,99 %\n");
+    for (of, below) in materials.iter().zip(&shares) {
+        figure
+            .csv
+            .push_str(&format!("{},{}\n", of.name, below.join(",")));
+    }
+    Ok(figure)
 }

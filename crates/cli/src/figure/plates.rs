@@ -1,30 +1,29 @@
 //! Figures of several scenes, or several kinds of spectra, side by side.
 
 use crate::failure::Failure;
+use crate::figure::flat::Flat;
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
+use crate::figure::shot::Shot;
 use crate::pictures::light_field_quantity;
-use etendue_field::percent;
+use etendue_compare::{Bandwidth, Theory};
+use etendue_field::{Orientation, VirtualPlane, percent, uncertain};
 use etendue_figures::{Bars, Figure, Plate, Quantity, Scale};
+use etendue_theory::Operator;
 use ndarray::Array2;
 
-/// Fig. 4: light of a point after a short way, a line in ray space, and of a spot where it begins.
+/// Fig. 4: light of a point and of a spot, where it begins and after travel.
 pub(crate) fn lights(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let seen = [
-        Seen::at(&taken.shots[0], "near")?,
-        Seen::at(&taken.shots[0], "receiver")?,
-        Seen::at(&taken.shots[1], "light")?,
+        Seen::at(&taken.shots[0], "light")?,
         Seen::at(&taken.shots[1], "receiver")?,
+        Seen::at(&taken.shots[2], "light")?,
+        Seen::at(&taken.shots[2], "receiver")?,
     ];
-    let heads = [
-        "point, after 0.5 m",
-        "point, after 2 m",
-        "spot",
-        "spot, after 2 m",
-    ];
+    let heads = ["point", "point, after 2 m", "spot", "spot, after 2 m"];
     taken.plate(&Plate {
         title: "Light sources",
-        note: "A point is a Dirac in space and even in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
+        note: "A point is a Dirac in space and even in angle; its spectrum is even in space and, but for the window, a Dirac in angle. After travel its light is a line *x*\u{a0}=\u{a0}*d\u{a0}u*, and its spectrum *ν*\u{a0}=\u{a0}−*d\u{a0}ρ*.",
         heads: heads.map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet: feet(&seen),
@@ -52,23 +51,20 @@ pub(crate) fn steps(taken: &Taken<'_>) -> Result<Figure, Failure> {
         "5 cosine",
         "6 reflection",
     ];
-    let slices: Vec<Array2<f64>> = seen
+    let flat = Flat::of(&taken.shots[0].scene)?;
+    let spectra: Vec<Array2<f64>> = seen
         .iter()
-        .map(|seen| power(&seen.found.predicted))
+        .zip(Flat::STEPS)
+        .map(|(seen, step)| flat.power(step, seen.plane))
         .collect();
-    let slices = seen
-        .iter()
-        .zip(&slices)
-        .map(|(seen, slice)| seen.spectrum(slice.view()));
-    let quantity = Quantity::new("|*S*_{0}|^{2}", "");
+    let both = seen.iter().zip(&spectra);
+    let pictures = both.map(|(seen, power)| seen.spectrum(power.view()));
+    let quantity = Quantity::new("|*S*_{2D}|^{2}", "");
     let mut rows = compared(&seen, false);
-    rows.insert(
-        1,
-        row("2D slice", quantity, DECIBEL, false, slices.collect()),
-    );
+    rows.insert(1, row("2D", quantity, DECIBEL, false, pictures.collect()));
     taken.plate(&Plate {
         title: "The steps of diffuse shading",
-        note: "2D: the slice at azimuth 0, predicted. Below it radial spectra, means over azimuths.",
+        note: "2D: light, a row of blockers without jitter and a receiver in flatland, computed. Below it the scene in 3D, its blockers jittered: radial spectra, means over azimuths.",
         heads: heads.map(str::to_owned).to_vec(),
         rows,
         feet: feet(&seen),
@@ -138,14 +134,45 @@ pub(crate) fn parameterisations(taken: &Taken<'_>) -> Result<Figure, Failure> {
         );
         feet[1].push(format!("*u* for *θ*: off by {found}, computed {error}"));
     }
+    for (foot, seen) in feet.iter_mut().zip(&seen) {
+        let Bandwidth { rho, nu } = &seen.found.report.bandwidth_95;
+        let angular = ["slope", "rad"][usize::from(seen.plane.orientation == Orientation::Tangent)];
+        for (axis, unit, pair) in [("ρ", "m", rho), ("ν", angular, nu)] {
+            let (Some(measured), Some(error)) = (pair.measured, pair.error) else {
+                continue;
+            };
+            let predicted = pair.predicted.map_or("–".to_owned(), |p| format!("{p:.3}"));
+            foot.push(format!(
+                "*B*_{{{axis}}} {} /{unit}, predicted {predicted}",
+                uncertain(measured, error)
+            ));
+        }
+    }
     taken.plate(&Plate {
         title: "Two parameterisations",
-        note: "Angles are counted along T, which is against X here: the shear has the other sign.",
+        note: "Angles are counted along T, which is against X here: the shear has the other sign. *B*: 95 % bandwidths in the azimuth where they are largest; slopes and angles hardly differ.",
         heads: ["by slopes", "by angles"].map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet,
         bars: None,
     })
+}
+
+/// ∫ L W of a plane if no blockers were there; `None` where light does not go from plane to plane.
+fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
+    let index = shot
+        .scene
+        .planes
+        .iter()
+        .position(|p| p.name == plane.name)?;
+    let Theory::Parallel(chain) = &shot.theories.get(index)?.theory else {
+        return None;
+    };
+    let mut chain = chain.clone();
+    chain
+        .operators
+        .retain(|operator| !matches!(operator, Operator::Visibility { .. }));
+    Some(etendue_theory::at(&chain, &plane.window, [0.0; 4]).re)
 }
 
 /// Fig. 9: blockers of three sizes.
@@ -154,6 +181,12 @@ pub(crate) fn blockers(taken: &Taken<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = seen.collect::<Result<_, _>>()?;
     let leaving = taken.shots.iter().map(|shot| Seen::at(shot, "leaving"));
     let leaving: Vec<Seen<'_>> = leaving.collect::<Result<_, _>>()?;
+    let mut feet = feet(&seen);
+    for ((foot, seen), shot) in feet.iter_mut().zip(&seen).zip(taken.shots) {
+        let open = unblocked(shot, seen.plane);
+        let blocked = open.map(|open| 1.0 - seen.found.measured.at_zero() / open);
+        foot.extend(blocked.map(|share| format!("blocked: {}", percent(share, 2))));
+    }
     let shares: Vec<_> = leaving
         .iter()
         .filter_map(|seen| seen.found.report.high_frequency_share.first())
@@ -167,12 +200,12 @@ pub(crate) fn blockers(taken: &Taken<'_>) -> Result<Figure, Failure> {
     };
     taken.plate(&Plate {
         title: "Blockers of three sizes, seen from the receiver",
-        note: "The receiver sees most high frequencies behind blockers of middle size: replicas of the smallest are sheared out of its reach.",
-        heads: ["pitch 2 m", "pitch 0.2 m", "pitch 0.04 m"]
+        note: "Blockers take the share *blocked* of the light in the window. The receiver sees most high frequencies behind blockers of middle size: replicas of the smallest are sheared out of its reach.",
+        heads: ["pitch 1 m", "pitch 0.2 m", "pitch 0.04 m"]
             .map(str::to_owned)
             .to_vec(),
         rows: compared(&seen, true),
-        feet: feet(&seen),
+        feet,
         bars: Some(Bars {
             quantity: Quantity::new("*H*", "%"),
             about: format!(

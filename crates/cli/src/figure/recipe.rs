@@ -120,6 +120,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         name: "4",
         about: "a point light, and a spot with a bulb and a falloff",
         scenes: &[
+            ("fig4_source", scene!("fig4_source")),
             ("fig4_point", scene!("fig4_point")),
             ("fig4_spot", scene!("fig4_spot")),
         ],
@@ -137,7 +138,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "6",
-        about: "all steps of diffuse shading: 2D slice, measured and predicted radial spectrum",
+        about: "all steps of diffuse shading: in flatland, and in 3D measured and predicted",
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
@@ -157,7 +158,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
     },
     Recipe {
         name: "8",
-        about: "the receiver by slopes and by angles: what taking one for the other costs",
+        about: "the receiver by slopes and by angles: what taking one for the other costs, and bandwidths",
         scenes: &[("fig8", scene!("fig8"))],
         also: &[],
         has_table: false,

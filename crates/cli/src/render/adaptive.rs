@@ -41,6 +41,7 @@ pub(super) fn render(
         method,
         samples,
         each: args.paths,
+        blocker_rays: args.blocker_rays,
         is_even: args.isotropic,
         seed: args.seed,
     };
@@ -57,6 +58,7 @@ pub(super) fn render(
     made_from["shading_samples"] = tree_of!(samples);
     made_from["shading_samples_added"] = tree_of!(rendered.added);
     made_from["paths"] = tree_of!(args.paths);
+    made_from["blocker_rays"] = tree_of!(args.blocker_rays);
     made_from["isotropic"] = tree_of!(args.isotropic);
     write(results, &rendered, made_from)?;
     let total: f64 = seconds.values().sum();

@@ -17,6 +17,7 @@
 //! | an environment map on a curved surface | [`environment`] | section 6.1, Fig. 14 |
 //! | how many samples a glossy reflection asks for | [`Criterion`] | Eq. 20, 21 |
 //! | diffuse receivers, in slopes | [`g_hat`], [`g_hat_3d`] | Eq. 7 and section 5.1 |
+//! | all six steps of diffuse shading, in slopes | [`Flatland`] | section 3, Fig. 6 |
 //!
 //! ```
 //! use etendue_field::Complex;
@@ -39,7 +40,9 @@
 mod bandwidth;
 mod cosine;
 mod diffuse;
+mod energy;
 pub mod environment;
+mod flatland;
 mod fresnel;
 mod gamma;
 mod lobe;
@@ -50,6 +53,8 @@ mod reflection;
 pub use bandwidth::{COSINE_CUTOFF, Criterion};
 pub use cosine::{cosine_hat, cosine_power_hat, cosine_series, cosine_squared_hat};
 pub use diffuse::{g_hat, g_hat_3d};
+pub use energy::energy_below;
+pub use flatland::{DiffuseStep, Flatland};
 pub use fresnel::Fresnel;
 pub use lobe::Lobe;
 pub use product::{Lattice, TextureWave, angular_product, semi_convolution, texture};

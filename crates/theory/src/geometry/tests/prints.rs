@@ -86,7 +86,7 @@ fn no_misprint_follows_the_rays() {
 }
 
 #[test]
-fn eq_19_has_no_cosine() {
+fn a_shear_by_the_bilinear_form_alone_does_not_follow_the_rays() {
     for print in [Edition::Equations, Edition::Table] {
         let right = Edition::Corrected;
         let chain = right

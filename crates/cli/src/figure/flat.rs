@@ -1,0 +1,63 @@
+//! The scene of Fig. 6 in flatland, read off the scene in 3D.
+
+use crate::failure::Failure;
+use etendue_field::{Light, Shape, VirtualPlane};
+use etendue_scene::{BlockersFile, Scene};
+use etendue_theory::shading::{DiffuseStep, Flatland};
+use ndarray::Array2;
+
+/// A light, a row of blockers without jitter and a receiver.
+pub(super) struct Flat(Flatland);
+
+impl Flat {
+    /// The steps of Fig. 6.
+    pub(super) const STEPS: [DiffuseStep; 6] = [
+        DiffuseStep::Emission,
+        DiffuseStep::Travel,
+        DiffuseStep::Visibility,
+        DiffuseStep::SecondTravel,
+        DiffuseStep::Cosine,
+        DiffuseStep::Reflection,
+    ];
+
+    /// Widths along X, and distances along the central ray, of a scene with a rectangular light, one array of squares and a floor.
+    pub(super) fn of(scene: &Scene) -> Result<Self, Failure> {
+        let missing = || Failure::cannot_run(format!("{} has no flatland", scene.name));
+        let Light::Area {
+            shape: Shape::Rectangle(light),
+            ..
+        } = &scene.light
+        else {
+            return Err(missing());
+        };
+        let array = scene.file.blockers.first();
+        let Some(BlockersFile::JitteredSquares {
+            count, pitch, fill, ..
+        }) = array
+        else {
+            return Err(missing());
+        };
+        let layer = scene.blockers.first().ok_or_else(missing)?;
+        let floor = scene.path.legs.first().ok_or_else(missing)?;
+        let middle = 0.5 * (f64::from(count[0]) - 1.0);
+        let strips = (0..count[0]).map(|i| {
+            let center = (f64::from(i) - middle) * pitch;
+            [center - 0.5 * fill * pitch, center + 0.5 * fill * pitch]
+        });
+        Ok(Self(Flatland {
+            half_light: 0.5 * light.size[0],
+            to_strips: layer.distance,
+            strips: strips.collect(),
+            to_receiver: floor.length,
+        }))
+    }
+
+    /// |S|² of a step in the window and at the frequencies of a plane, [ρ, ν].
+    pub(super) fn power(&self, step: DiffuseStep, plane: &VirtualPlane) -> Array2<f64> {
+        let window = [&plane.window.x, &plane.window.u];
+        let spectrum = self
+            .0
+            .spectrum(step, window, [&plane.grid.rho, &plane.grid.nu]);
+        spectrum.mapv(|s| s.norm_sqr())
+    }
+}

@@ -1,0 +1,420 @@
+//! Statements about blockers: finite arrays, replicas, jitter, averages, combinations, soft shadows.
+
+use super::number::{Number, at, line, power};
+use super::scene::{Bench, LIGHT, Seen, number, plane, squares};
+use super::{CHANCE, Claim, PULL, decreasing};
+use crate::report::Bound::{AtLeast, AtMost, Below};
+use crate::report::Check;
+use crate::table1::slope;
+use etendue_field::{Complex, Slices};
+use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
+
+pub(super) fn claims(photons: u64) -> Vec<Claim> {
+    vec![
+        finite(photons),
+        replicas(photons),
+        jitter(photons),
+        average(photons),
+        before_average(photons),
+        combined(photons),
+        soft_shadows(photons),
+    ]
+}
+
+/// Light right behind blockers, in a wide window.
+fn behind(blockers: &str, half: f64, [rho, spacing]: [f64; 2], photons: u64) -> Seen {
+    let window = format!("x: Hann({half}), u: Box(2)");
+    let frequencies = format!("rho: (max: {rho}, spacing: {spacing}), nu: (max: 1)");
+    let bench = Bench {
+        light: LIGHT,
+        blockers,
+        floor: 2.0,
+        planes: &plane("After(\"blockers\")", &window, &frequencies),
+    };
+    bench.seen(photons)
+}
+
+fn finite(photons: u64) -> Claim {
+    let pitch = 0.2;
+    let counts = [4, 8, 16];
+    let widths = counts.map(|count| {
+        let blockers = squares([count, 60], pitch, "fill: 0.5");
+        let seen = behind(&blockers, 3.0, [8.0, 0.05], photons);
+        seen.number(0, |slices| {
+            let replica = |rho: f64| (rho - 5.0).abs() < 2.5;
+            let along = line(slices, 0).into_iter();
+            let inside = along.filter(|(rho, _)| replica(*rho));
+            let highest = inside.map(|(_, s)| s.norm_sqr()).fold(0.0, f64::max);
+            power(slices, replica) * slices.grid.rho.spacing / highest
+        })
+    });
+    let of_comb = |i: usize| widths[i].value * f64::from(counts[i]) * pitch;
+    Claim {
+        said: "a finite number of blockers blurs the comb of their spectrum (3.4)",
+        shown: format!(
+            "equivalent width of the replica at 5 /m [1/m] behind {counts:?} columns of squares, 0.2 m apart"
+        ),
+        numbers: widths.to_vec(),
+        checks: vec![
+            decreasing(&widths),
+            Check::new(
+                "4 columns: width × N p",
+                of_comb(0),
+                AtLeast(0.95),
+                "∫|D_N|²/N² = 1/(N p); the squares' own transform tilts it",
+            ),
+            Check::new(
+                "the same",
+                of_comb(0),
+                AtMost(1.1),
+                "the window, 6 m wide, widens it",
+            ),
+        ],
+        holds: "holds: the width is 1/(N p), until the window is narrower than the array",
+    }
+}
+
+fn replicas(photons: u64) -> Claim {
+    let pitches = [0.4, 0.2, 0.1];
+    let places = [(0.4, 20), (0.2, 40), (0.1, 80)].map(|(pitch, count)| {
+        let blockers = squares([count; 2], pitch, "fill: 0.5");
+        let seen = behind(&blockers, 1.5, [14.0, 0.05], photons);
+        // The vertex of a parabola through the highest values, times the pitch.
+        seen.number(0, |slices| {
+            let along = line(slices, 0);
+            let step = slices.grid.rho.spacing;
+            let around = |rho: f64| (rho * pitch - 1.0).abs() < 0.3;
+            let inside = (0..along.len()).filter(|m| around(along[*m].0));
+            let size = |m: usize| along[m].1.norm_sqr();
+            let top = inside.fold(0, |top, m| {
+                if size(m) > size(top) || top == 0 {
+                    m
+                } else {
+                    top
+                }
+            });
+            let [a, b, c] = [size(top - 1), size(top), size(top + 1)];
+            (along[top].0 + 0.5 * step * (a - c) / (a - 2.0 * b + c)) * pitch
+        })
+    });
+    let off = places.iter().map(|p| (p.value - 1.0).abs());
+    Claim {
+        said: "the smaller the pattern, the farther the replicas (3.4)",
+        shown: format!(
+            "place of the first replica times the pitch, of squares {pitches:?} m apart"
+        ),
+        numbers: places.to_vec(),
+        checks: vec![Check::new(
+            "off 1",
+            off.fold(0.0, f64::max),
+            Below(2e-3),
+            "the window's slope over the replica",
+        )],
+        holds: "holds: at 1/pitch",
+    }
+}
+
+fn jitter(photons: u64) -> Claim {
+    let share = |[jitter, seed]: [f64; 2]| {
+        let rest = format!("fill: 0.6, jitter: {jitter}, seed: {seed}");
+        let window = "x: Hann(1.5), y: Hann(0.1), u: Box(2), v: Box(2)";
+        let bench = Bench {
+            light: LIGHT,
+            blockers: &squares([40, 40], 0.2, &rest),
+            floor: 2.0,
+            planes: &plane(
+                "After(\"blockers\")",
+                window,
+                "rho: (max: 18, spacing: 0.1), nu: (max: 1)",
+            ),
+        };
+        bench.seen(photons).number(0, |slices| {
+            let band = |rho: f64| (7.5..17.5).contains(&rho);
+            let off = |rho: f64| (rho / 5.0 - (rho / 5.0).round()).abs();
+            power(slices, |rho| band(rho) && off(rho) < 0.14) / power(slices, band)
+        })
+    };
+    let shares = [[0.0, 1.0], [0.3, 1.0], [0.3, 2.0], [0.3, 3.0]].map(share);
+    let most = shares[1..].iter().map(|s| s.value).fold(0.0, f64::max);
+    Claim {
+        said: "jittered blockers give a smoother spectrum (3.4)",
+        shown: "share of the power from 7.5 to 17.5 /m within 0.7 /m of the replicas at 10 and 15 /m: without jitter, and of three arrays with jitter 0.3 pitches".to_owned(),
+        checks: vec![
+            Check::new("jitter 0", shares[0].value, AtLeast(0.95), "a comb has nothing between"),
+            Check::new("jitter 0.3", most, AtMost(0.8), "N (1 − sinc²(jΩ)) between the lines"),
+        ],
+        numbers: shares.to_vec(),
+        holds: "holds",
+    }
+}
+
+/// Half-covering squares at pitches for which an odd number of halves cover the light's image, where ripples are largest; and how many there are along each axis.
+const PITCHES: [(f64, u32); 3] = [(0.2, 14), (0.2 / 3.0, 38), (0.04, 62)];
+
+fn ripples(at: &str, frequencies: &str, photons: u64) -> [Number; 3] {
+    let planes = plane(at, "x: Hann(0.5), u: Hann(0.5)", frequencies);
+    let seen = |blockers: &str| {
+        let bench = Bench {
+            light: LIGHT,
+            blockers,
+            floor: 2.0,
+            planes: &planes,
+        };
+        bench.seen(photons)
+    };
+    let average = seen(
+        "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 1, modulation: 0)",
+    );
+    PITCHES.map(|(pitch, count)| {
+        let blockers = squares([count; 2], pitch, &format!("fill: {FRAC_1_SQRT_2}"));
+        let squares = seen(&blockers);
+        number(&[(&squares, 0), (&average, 0)], &|slices| {
+            let pairs = slices[0].half.iter().zip(&slices[1].half);
+            let apart: f64 = pairs.map(|(a, b)| (a - b).norm_sqr()).sum();
+            let all: f64 = slices[1].half.iter().map(|s| s.norm_sqr()).sum();
+            apart / all
+        })
+    })
+}
+
+fn exponent(numbers: &[Number; 3]) -> f64 {
+    let pairs = PITCHES.iter().zip(numbers);
+    let logs: Vec<[f64; 2]> = pairs
+        .map(|((pitch, _), n)| [pitch.ln(), n.value.ln()])
+        .collect();
+    slope(&logs)
+}
+
+fn average(photons: u64) -> Claim {
+    let numbers = ripples(
+        "After(\"floor\")",
+        "rho: (max: 16), nu: (max: 4)",
+        4 * photons,
+    );
+    let exponent = exponent(&numbers);
+    Claim {
+        said: "small occluders act as their average on soft shadows (3.4)",
+        shown: format!(
+            "energy of what leaves a diffuse floor behind squares 0.2, 0.067 and 0.04 m apart minus that behind their average, over the latter; it falls with the pitch to the {exponent:.2}"
+        ),
+        numbers: numbers.to_vec(),
+        checks: vec![
+            Check::new(
+                "exponent",
+                exponent,
+                AtLeast(1.7),
+                "amplitude falls with the pitch: 2",
+            ),
+            Check::new(
+                "the same",
+                exponent,
+                AtMost(2.6),
+                "2, and windows that hold few periods",
+            ),
+        ],
+        holds: "holds, in amplitude to first order in the pitch",
+    }
+}
+
+fn before_average(photons: u64) -> Claim {
+    let numbers = ripples(
+        "Before(\"floor\")",
+        "rho: (max: 36), nu: (max: 36)",
+        photons,
+    );
+    Claim {
+        said: "the same, of the light that arrives",
+        shown: "the same before the floor: replicas are pushed into angle, and stay".to_owned(),
+        numbers: numbers.to_vec(),
+        checks: vec![Check::new(
+            "smallest",
+            numbers
+                .iter()
+                .map(|n| n.value)
+                .fold(f64::INFINITY, f64::min),
+            AtLeast(0.1),
+            "the first replicas alone, at 1/pitch in ρ",
+        )],
+        holds: "not before diffuse reflection: it is integration over angle that averages",
+    }
+}
+
+/// Strips that let light through, [from, to], m.
+type Strips = Vec<[f64; 2]>;
+
+/// Strips of a pair of masks, the same every time (additive recurrences, Weyl).
+fn strips(pair: u32, offset: f64) -> Strips {
+    let cut =
+        |i: u32| (0.618_034 * f64::from(6 * pair + i) + offset * f64::from(i + 1)).fract() - 0.5;
+    let mut cuts: Vec<f64> = (0..6).map(cut).collect();
+    cuts.sort_by(f64::total_cmp);
+    cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
+}
+
+/// What lets no light through between, as opaque rectangles over ± 1 m.
+fn opaque(open: &Strips) -> String {
+    let mut edges = vec![-1.0];
+    edges.extend(open.iter().flatten());
+    edges.push(1.0);
+    let each = edges.chunks(2).map(|e| {
+        let (center, size) = (0.5 * (e[0] + e[1]), e[1] - e[0]);
+        format!("Rectangle(center: ({center}, 0), size: ({size}, 8)),")
+    });
+    let shapes: String = each.collect();
+    format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
+}
+
+/// Fourier coefficients −[`SUMMED`] … [`SUMMED`] of what is open within the window's period of 1 m.
+fn coefficients(open: &Strips) -> Vec<Complex> {
+    let wave = |cycles: f64| Complex::from_polar(1.0, -TAU * cycles);
+    (0..=2 * SUMMED)
+        .map(|i| {
+            let n = i as f64 - SUMMED as f64;
+            let each = open.iter().map(|[a, b]| {
+                if n.abs() < 0.5 {
+                    Complex::from(b - a)
+                } else {
+                    (wave(n * b) - wave(n * a)) * Complex::new(0.0, 1.0 / (TAU * n))
+                }
+            });
+            each.sum()
+        })
+        .collect()
+}
+
+/// Frequencies up to which bounds are held against spectra, and up to which they are summed, /m.
+const HELD: usize = 12;
+const SUMMED: usize = 40;
+
+/// The 90 % bandwidth of |S(ρ, 0)|, and of Σ|V̂(m)||S(ρ − m, 0)| of one mask alone; and the largest ratio of the two.
+fn bounded(slices: &[Slices], other: &[Complex]) -> [f64; 3] {
+    let [one, both] = [0, 1].map(|i| line(&slices[i], 0));
+    let size = |n: usize| one.get(n).map_or(0.0, |(_, s)| s.norm());
+    let bound = |n: usize| -> f64 {
+        let terms = other.iter().enumerate();
+        terms
+            .map(|(i, v)| v.norm() * size((n + SUMMED).abs_diff(i)))
+            .sum()
+    };
+    let bound: Vec<f64> = (0..=HELD).map(bound).collect();
+    let real: Vec<f64> = both[..=HELD].iter().map(|(_, s)| s.norm()).collect();
+    let bandwidth = |sizes: &[f64]| {
+        let energy = |n: usize| sizes[n] * sizes[n] * if n == 0 { 1.0 } else { 2.0 };
+        let total: f64 = (0..=HELD).map(energy).sum();
+        let mut inside = 0.0;
+        for n in 0..=HELD {
+            let next = inside + energy(n);
+            if next >= 0.9 * total {
+                return n as f64 + (0.9 * total - inside) / energy(n);
+            }
+            inside = next;
+        }
+        HELD as f64
+    };
+    let ratio = real.iter().zip(&bound).map(|(r, b)| r / b);
+    [
+        bandwidth(&real),
+        bandwidth(&bound),
+        ratio.fold(0.0, f64::max),
+    ]
+}
+
+fn combined(photons: u64) -> Claim {
+    let planes = plane(
+        "After(\"blockers\")",
+        "x: Hann(0.5), u: Box(2)",
+        "rho: (max: 40), nu: (max: 1)",
+    );
+    let (mut excess, mut ratios, mut under) = (Vec::new(), Vec::new(), 0);
+    for pair in [0, 1, 2, 4, 5, 6, 7, 8] {
+        let (first, second) = (strips(pair, 0.137), strips(pair, 0.414));
+        let both: Strips = first
+            .iter()
+            .flat_map(|p| second.iter().map(|q| [p[0].max(q[0]), p[1].min(q[1])]))
+            .filter(|[low, high]| high > low)
+            .collect();
+        if both.is_empty() {
+            continue;
+        }
+        let [one, two] = [&first, &both].map(|open| {
+            let bench = Bench {
+                light: LIGHT,
+                blockers: &opaque(open),
+                floor: 2.0,
+                planes: &planes,
+            };
+            bench.seen(photons)
+        });
+        let other = coefficients(&second);
+        let pair = [(&one, 0), (&two, 0)];
+        let over = number(&pair, &|slices| {
+            let [real, bound, _] = bounded(slices, &other);
+            bound / real
+        });
+        under += usize::from(over.value < 1.0);
+        excess.push(over);
+        ratios.push(number(&pair, &|slices| bounded(slices, &other)[2]));
+    }
+    let ratio = ratios.iter().map(|r| r.value).fold(0.0, f64::max);
+    Claim {
+        said: "without phase, bandwidths of combined blockers are over-estimated, not under-estimated (3.4)",
+        shown: format!(
+            "90 % bandwidth of |Ŝ₁| ⊗ |V̂₂| over that of Ŝ₁₂, of {} pairs of three random slits in one plane, Ŝ measured; the largest |Ŝ₁₂| over the bound is {ratio:.3}",
+            excess.len()
+        ),
+        checks: vec![
+            Check::none("pairs under-estimated", under),
+            Check::new(
+                "largest ratio",
+                ratio,
+                AtMost(1.0),
+                "a sum is at most the sum of sizes",
+            ),
+        ],
+        numbers: excess,
+        holds: "holds for all pairs",
+    }
+}
+
+fn soft_shadows(photons: u64) -> Claim {
+    let (light, frequency) = (0.2, 6.0);
+    let mut off = 0.0_f64;
+    let numbers = [0.2, 0.5, 1.0, 2.0].map(|after| {
+        let floor = 1.0 + after;
+        // The grating's image on the floor.
+        let rho = frequency / floor;
+        let seen = |phase: f64| {
+            let blockers = format!(
+                "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: {frequency}, modulation: 1, phase: {phase})"
+            );
+            let frequencies = format!("rho: (max: {rho}, spacing: {}), nu: (max: 1)", rho / 5.0);
+            let bench = Bench {
+                light: LIGHT,
+                blockers: &blockers,
+                floor,
+                planes: &plane("Before(\"floor\")", "x: Hann(0.5), u: Box(1)", &frequencies),
+            };
+            bench.seen(photons)
+        };
+        let [plus, minus] = [0.0, PI].map(seen);
+        // Gratings half a period apart: their difference is the shadow, their sum the light without it.
+        let contrast = number(&[(&plus, 0), (&minus, 0)], &|slices| {
+            let [a, b] = [0, 1].map(|i| at(&slices[i], 0, [rho, 0.0]));
+            let all = slices[0].at_zero() + slices[1].at_zero();
+            2.0 * (a - b).re / all
+        });
+        let blur = PI * light * frequency * after / floor;
+        off = off.max((contrast.value - blur.sin() / blur).abs() / contrast.error);
+        contrast
+    });
+    Claim {
+        said: "soft shadows are a convolution of light and blockers over space, the softer the farther (6.1)",
+        shown: "contrast of the shadow of a grating (6 /m, 1 m from the light) on floors 0.2, 0.5, 1, 2 m behind it; sinc(w f d₂/D) of a box of w d₂/D".to_owned(),
+        numbers: numbers.to_vec(),
+        checks: vec![
+            decreasing(&numbers),
+            Check::new("off the convolution, in errors", off, AtMost(PULL), CHANCE),
+        ],
+        holds: "holds for a diffuse light and planar blockers parallel to the floor",
+    }
+}

@@ -1,0 +1,201 @@
+//! Statements about locality and discontinuities: windows narrowed, the central ray moved, tails of spectra.
+
+use super::number::{at, line, power};
+use super::scene::{Bench, LIGHT, Seen, number, plane, squares};
+use super::{Claim, decreasing};
+use crate::report::Bound::{Above, AtMost, Below};
+use crate::report::Check;
+use crate::table1::slope;
+
+pub(super) fn claims(photons: u64) -> Vec<Claim> {
+    let mut all = vec![tails(8 * photons), moved(photons), homogeneous(photons)];
+    all.extend(narrowed(photons));
+    all
+}
+
+/// Light past a small square and without it, in a window that holds the whole shadow.
+fn shadow(light: &str, floor: f64, at: &str, half: f64, most: [f64; 2], photons: u64) -> [Seen; 2] {
+    let [most, spacing] = most;
+    let planes = format!(
+        "(name: \"plane\", at: {at}, window: (x: Box({half}), u: Box(1)),
+        frequencies: (azimuths: 4, rho: (max: {most}, spacing: {spacing}), nu: (max: 1))),"
+    );
+    [0.1, 1e-6].map(|side| {
+        let blockers = format!(
+            "Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [Rectangle(center: (0, 0), size: ({side}, {side}))])"
+        );
+        let bench = Bench {
+            light,
+            blockers: &blockers,
+            floor,
+            planes: &planes,
+        };
+        bench.seen(photons)
+    })
+}
+
+/// Exponents of the tails of shadows whose profiles have a jump in their n-th derivative.
+fn tails(photons: u64) -> Claim {
+    // √2: of a square seen along its diagonal.
+    let diagonal = std::f64::consts::FRAC_1_SQRT_2;
+    let bar = "Rectangle(center: (0, 0, 0), size: (0.2, 0.002))";
+    // Light, plane, half-width of the window, azimuth, and the width of the boxes whose convolution the shadow is.
+    let cases = [
+        (LIGHT, "After(\"blockers\")", 0.08, 0, 0.1, 4),
+        (LIGHT, "After(\"blockers\")", 0.08, 1, 0.1 * diagonal, 4),
+        (bar, "Before(\"floor\")", 0.25, 1, 0.2 * diagonal, 3),
+    ];
+    let numbers = cases.map(|(light, place, half, k, width, count)| {
+        let most = [f64::from(count) / width, 0.0625 / width];
+        let seen = shadow(light, 2.0, place, half, most, photons);
+        number(&[(&seen[0], 0), (&seen[1], 0)], &|slices| {
+            // |sin π w Ω| is one half-way between zeros.
+            let points: Vec<[f64; 2]> = (0..count)
+                .map(|m| {
+                    let rho = (f64::from(m) + 0.5) / width;
+                    let [with, without] = [0, 1].map(|i| at(&slices[i], k, [rho, 0.0]));
+                    [rho.ln(), (without - with).norm().ln()]
+                })
+                .collect();
+            -slope(&points)
+        })
+    });
+    let off = numbers.iter().zip([1.0, 2.0, 3.0]);
+    let off = off.map(|(n, e)| (n.value - e).abs()).fold(0.0, f64::max);
+    Claim {
+        said: "a discontinuity of the n-th derivative has a spectrum that falls off as 1/Ωⁿ⁺¹ (footnote 1)",
+        shown: "exponent of the shadow of a square: at it (n = 0), along its diagonal (n = 1), and along the diagonal under a bar of light, 1 m on (n = 2)".to_owned(),
+        checks: vec![Check::new("off n + 1", off, Below(0.2), "noise at the highest frequency; exponents are whole numbers")],
+        numbers: numbers.to_vec(),
+        holds: "holds",
+    }
+}
+
+/// Half-widths of windows that narrow, metres.
+const HALVES: [f64; 4] = [0.8, 0.4, 0.2, 0.1];
+
+/// Light behind a grating of 5 /m in windows that narrow.
+fn through(modulation: f64, photons: u64) -> [Seen; 4] {
+    let grating = format!(
+        "Grating(name: \"blockers\", center: (0, 0, 1), axis: X, frequency: 5, modulation: {modulation})"
+    );
+    HALVES.map(|half| {
+        let bench = Bench {
+            light: LIGHT,
+            blockers: &grating,
+            floor: 2.0,
+            planes: &plane(
+                "After(\"blockers\")",
+                &format!("x: Hann({half}), u: Box(2)"),
+                "rho: (max: 20, spacing: 0.125), nu: (max: 1)",
+            ),
+        };
+        bench.seen(photons)
+    })
+}
+
+fn narrowed(photons: u64) -> [Claim; 2] {
+    let mut valleys = through(1.0, photons).map(|seen| {
+        seen.number(0, |slices| {
+            let around = |middle: f64| power(slices, |rho| (rho - middle).abs() < 0.6);
+            around(2.5) / around(5.0)
+        })
+    });
+    let widths = through(0.0, photons).map(|seen| {
+        seen.number(0, |slices| {
+            let along = line(slices, 0);
+            let half = along[0].1.norm_sqr() / 2.0;
+            let after = along.iter().position(|(_, s)| s.norm_sqr() < half);
+            let n = after.unwrap_or(along.len() - 1).max(1);
+            let [a, b] = [along[n - 1].1.norm_sqr(), along[n].1.norm_sqr()];
+            (n as f64 - 1.0 + (a - half) / (a - b)) * slices.grid.rho.spacing
+        })
+    });
+    valleys.reverse();
+    [
+        Claim {
+            said: "localisation is not possible in space and frequency at once (6)",
+            shown: "power of the valley at 2.5 /m over that of the replica of a grating, 5 /m, windows of ± 0.1, 0.2, 0.4 and 0.8 m".to_owned(),
+            checks: vec![
+                decreasing(&valleys[1..]),
+                Check::new("± 0.1 m", valleys[0].value, Above(1.0), "there is no valley"),
+                Check::new("± 0.2 m", valleys[1].value, Above(1.0), "there is none either"),
+                Check::new("± 0.8 m", valleys[3].value, Below(0.01), "it is resolved"),
+            ],
+            numbers: valleys.to_vec(),
+            holds: "holds: it is resolved where the window holds four periods and more",
+        },
+        Claim {
+            said: "low frequencies cannot be measured on small windows (6)",
+            shown: "half-width of the peak at zero, of half its power [/m], of the light without the grating, windows of ± 0.8, 0.4, 0.2 and 0.1 m".to_owned(),
+            checks: vec![Check::fact(
+                "growing",
+                widths.windows(2).all(|pair| pair[1].value > 1.8 * pair[0].value),
+                "as 1/window, but for the light's own profile",
+            )],
+            numbers: widths.to_vec(),
+            holds: "holds: below this nothing is told apart from zero",
+        },
+    ]
+}
+
+/// The share of the power between 15 and 25 /m of an array that ends at ± 2 m, its centre beside the central ray.
+fn share(offset: f64, half: f64, photons: u64) -> super::number::Number {
+    let blockers = squares([80, 80], 0.05, "fill: 0.5")
+        .replace("center: (0, 0, 1)", &format!("center: ({offset}, 0, 1)"));
+    let bench = Bench {
+        light: LIGHT,
+        blockers: &blockers,
+        floor: 2.0,
+        planes: &plane(
+            "After(\"blockers\")",
+            &format!("x: Hann({half}), u: Box(2)"),
+            "rho: (max: 25), nu: (max: 1)",
+        ),
+    };
+    bench.seen(photons).number(0, |slices| {
+        power(slices, |rho| rho > 15.0) / power(slices, |_| true)
+    })
+}
+
+fn moved(photons: u64) -> Claim {
+    let offsets = [0.0, 1.9, 2.2, 2.6];
+    let shares = offsets.map(|offset| share(offset, 0.5, photons));
+    Claim {
+        said: "scenes are not stationary: what blocks the light varies in space (6)",
+        shown: format!(
+            "share of the power above 15 /m behind an array of 20 /m that ends at ± 2 m, central rays {offsets:?} m from its middle"
+        ),
+        checks: vec![
+            decreasing(&shares),
+            Check::new(
+                "beside it",
+                shares[3].value / shares[0].value,
+                Below(0.01),
+                "the window does not reach it",
+            ),
+        ],
+        numbers: shares.to_vec(),
+        holds: "holds",
+    }
+}
+
+fn homogeneous(photons: u64) -> Claim {
+    let halves = [1.2, 0.6, 0.3];
+    let shares = halves.map(|half| share(2.4, half, photons));
+    Claim {
+        said: "smaller neighbourhoods have more homogeneous properties (6)",
+        shown: format!("the same, 0.4 m beside the array, windows of ± {halves:?} m"),
+        checks: vec![
+            decreasing(&shares),
+            Check::new(
+                "± 0.3 m",
+                shares[2].value,
+                AtMost(1e-4),
+                "what light is seen is free",
+            ),
+        ],
+        numbers: shares.to_vec(),
+        holds: "holds: the narrowest sees free light alone",
+    }
+}

@@ -1,0 +1,117 @@
+//! Small scenes of the statements, traced and predicted.
+
+use super::number::{Batches, Number, jackknife};
+use crate::scenes::{predicted, traced};
+use etendue_compare::Prediction;
+use etendue_field::Slices;
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::Measurement;
+
+/// Light, blockers and a floor, all across the central ray.
+pub(super) struct Bench<'a> {
+    pub(super) light: &'a str,
+    /// As in a scene file; they stand 1 m from the light.
+    pub(super) blockers: &'a str,
+    /// Distance from the light to the floor, metres.
+    pub(super) floor: f64,
+    pub(super) planes: &'a str,
+}
+
+/// A square light of 0.2 m.
+pub(super) const LIGHT: &str = "Rectangle(center: (0, 0, 0), size: (0.2, 0.2))";
+
+impl Bench<'_> {
+    pub(super) fn seen(&self, photons: u64) -> Seen {
+        let Self {
+            light,
+            blockers,
+            floor,
+            planes,
+        } = self;
+        Seen::of(scene(
+            &format!(
+                "light: {light}, blockers: [{blockers}],
+                surfaces: [Rectangle(name: \"floor\", center: (0, 0, {floor}), size: (20, 20), albedo: 1)],
+                path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"floor\"]), planes: [{planes}]"
+            ),
+            photons,
+        ))
+    }
+}
+
+/// Squares without jitter unless `rest` states one, 1 m from the light.
+pub(super) fn squares(count: [u32; 2], pitch: f64, rest: &str) -> String {
+    let [x, y] = count;
+    format!(
+        "JitteredSquares(name: \"blockers\", center: (0, 0, 1), count: ({x}, {y}), pitch: {pitch}, {rest})"
+    )
+}
+
+/// A plane with a window and frequencies of its own.
+pub(super) fn plane(at: &str, window: &str, frequencies: &str) -> String {
+    format!(
+        "(name: \"plane\", at: {at}, window: ({window}), frequencies: (azimuths: 1, {frequencies})),"
+    )
+}
+
+/// A scene of a text without window and run.
+///
+/// # Panics
+/// When it is not sound.
+pub(super) fn scene(text: &str, photons: u64) -> Scene {
+    let text = format!(
+        "({text}, window: (x: Hann(0.5), u: Hann(0.5)), frequencies: (azimuths: 1, rho: (max: 16), nu: (max: 4)),
+        run: (photons: {photons}, seed: 1, batches: 64))"
+    );
+    let file = SceneFile::parse(&text).expect("a scene file");
+    resolve("claim", file, ".".as_ref(), u64::MAX).expect("a sound scene")
+}
+
+/// A scene, measured and predicted.
+pub(super) struct Seen {
+    pub(super) measurement: Measurement,
+    pub(super) predictions: Vec<Prediction>,
+}
+
+impl Seen {
+    /// # Panics
+    /// When no theory applies to a plane.
+    pub(super) fn of(scene: Scene) -> Self {
+        Self {
+            measurement: traced(&scene),
+            predictions: predicted(&scene, None),
+        }
+    }
+
+    /// A number of one plane.
+    pub(super) fn number(&self, plane: usize, of: impl Fn(&Slices) -> f64) -> Number {
+        number(&[(self, plane)], &|slices| of(&slices[0]))
+    }
+
+    fn batches(&self, plane: usize) -> Vec<Slices> {
+        let batches = self.measurement.at_plane(plane);
+        batches.map(|batch| batch.slices.clone()).collect()
+    }
+}
+
+/// A number of several planes, also of different scenes: batch by batch of each.
+pub(super) fn number(planes: &[(&Seen, usize)], of: &dyn Fn(&[Slices]) -> f64) -> Number {
+    let each = planes.iter();
+    let batches: Batches = each.clone().map(|(seen, i)| seen.batches(*i)).collect();
+    let [value, noise] = jackknife(&batches, of);
+    let said = each.map(|(seen, i)| &seen.predictions[*i]);
+    let replicates: Batches = said.clone().map(|p| p.replicates.clone()).collect();
+    let count = replicates[0].len();
+    // Closed forms have no replicates.
+    let [predicted, error] = if count > 0 && replicates.iter().all(|r| r.len() == count) {
+        jackknife(&replicates, of)
+    } else {
+        let slices: Vec<Slices> = said.map(|p| p.slices.clone()).collect();
+        [of(&slices), 0.0]
+    };
+    Number {
+        value,
+        error: noise.hypot(error),
+        predicted,
+    }
+}

@@ -1,0 +1,465 @@
+//! Statements about surfaces: reciprocity, mirror spheres, curvature, the cosine, lobes, environments, criteria.
+
+use super::number::{Number, at};
+use super::scene::{Seen, number, scene};
+use super::{CHANCE, Claim, PULL, decreasing};
+use crate::report::Bound::{Above, AtLeast, AtMost, Below};
+use crate::report::Check;
+use crate::scenes::measured;
+use crate::shading::Tampered;
+use etendue_field::{Crossing, PhotonSource, Slices, VirtualPlane};
+use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
+use etendue_theory::shading::{Criterion, Lobe};
+use etendue_trace::Tracer;
+use glam::DVec3;
+use std::f64::consts::PI;
+
+pub(super) fn claims(photons: u64) -> Vec<Claim> {
+    let mut all = vec![
+        reciprocity(photons),
+        fresnel(photons),
+        mirror_sphere(photons),
+    ];
+    all.extend(curvature(photons));
+    all.extend([cosine(photons), lobe(photons)]);
+    all.extend(environment(photons));
+    all.push(criteria(photons));
+    all
+}
+
+/// A surface at the origin that is met at `incidence`, radians, and left at `outgoing` on the other side of its normal.
+fn surface(light: &str, [incidence, outgoing]: [f64; 2], form: &str, brdf: &str) -> String {
+    let (sine, cosine) = incidence.sin_cos();
+    let leaves = PI - incidence - outgoing;
+    let leaves = if brdf == "Mirror" {
+        String::new()
+    } else {
+        format!(", leaves: ({}, 0, {})", leaves.sin(), leaves.cos())
+    };
+    format!(
+        "light: {light},
+        surfaces: [Smooth(name: \"surface\", center: (0, 0, 0), facing: ({sine}, 0, {}), {form}, event: {brdf})],
+        path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"surface\"]{leaves})",
+        -cosine
+    )
+}
+
+fn planes(at: &str, orientation: &str, window: &str, frequencies: &str) -> String {
+    format!(
+        "planes: [(name: \"plane\", at: {at}, orientation: {orientation}, window: ({window}), frequencies: ({frequencies}))]"
+    )
+}
+
+/// Light at a glossy plane at one angle, seen at another, over the irradiance; both ways, and their ratio.
+fn both_ways(brdf: &str, photons: u64) -> Number {
+    let angles = [20.0_f64, 50.0].map(f64::to_radians);
+    let [there, back] = [angles, [angles[1], angles[0]]].map(|angles| {
+        let light = "Rectangle(center: (0, 0, -1), size: (0.02, 0.02))";
+        let text = surface(light, angles, "form: Plane, aperture: 0.5", brdf);
+        let planes = planes(
+            "After(\"surface\")",
+            "Orthogonal",
+            "x: Hann(0.02), u: Hann(0.02)",
+            "azimuths: 1, rho: (max: 50), nu: (max: 50)",
+        );
+        let seen = Seen::of(scene(&format!("{text}, {planes}"), photons));
+        let radiance = seen.number(0, Slices::at_zero);
+        let cosine = angles[0].cos();
+        Number {
+            value: radiance.value / cosine,
+            error: radiance.error / cosine,
+            predicted: radiance.predicted / cosine,
+        }
+    });
+    there.over(&back)
+}
+
+fn reciprocity(photons: u64) -> Claim {
+    let ratio = both_ways("Reflects(brdf: (lobe: Phong(20)))", photons);
+    Claim {
+        said: "a BRDF of the angle to the mirror direction is not reciprocal (4.1)",
+        shown: "BRDF of a Phong lobe from 20° to 50° over that from 50° to 20°".to_owned(),
+        checks: vec![Check::new(
+            "off 1",
+            (ratio.value - 1.0).abs(),
+            Below(0.01),
+            "windows of 0.02 m and 0.02 rad: second order, and noise",
+        )],
+        numbers: vec![ratio],
+        holds: "not: it is reciprocal",
+    }
+}
+
+fn fresnel(photons: u64) -> Claim {
+    let brdf = "Reflects(brdf: (lobe: Phong(20), fresnel: Dielectric(1.5)))";
+    let ratio = both_ways(brdf, photons);
+    Claim {
+        said: "the same, with a factor f(θ_i') (4.3)",
+        shown: "the same with the Fresnel factor of glass at the angle of incidence".to_owned(),
+        checks: vec![Check::new(
+            "ratio",
+            ratio.value,
+            Below(0.8),
+            "F(20°)/F(50°) = 0.70",
+        )],
+        numbers: vec![ratio],
+        holds: "holds of such a BRDF",
+    }
+}
+
+/// A sphere of 0.5 m in a beam that is wider than it, looked at from three sides.
+fn mirror_sphere(photons: u64) -> Claim {
+    let found = [0.0, 0.7, 1.4].map(|incidence| {
+        let text = surface(
+            "Beam(center: (0, 0, -2), image: (width: (2, 2)))",
+            [incidence; 2],
+            "form: Sphere(2), aperture: 0.4999",
+            "Mirror",
+        );
+        let planes = planes(
+            "After(\"surface\")",
+            "LocalNormals",
+            "x: Box(0.4999), u: Box(1.57)",
+            "azimuths: 1, rho: (max: 4), nu: (max: 4)",
+        );
+        let scene = scene(&format!("{text}, {planes}"), photons);
+        let (mut off, mut widest) = (0.0_f64, 0.0_f64);
+        let mut look = |_: usize, crossings: &[Crossing]| {
+            for crossing in crossings {
+                let [normal, leaves] = angles(&scene.planes[0], crossing);
+                off = off.max((leaves - 2.0 * normal).abs());
+                widest = widest.max(leaves);
+            }
+        };
+        let tracer = Tracer::new(&scene);
+        for batch in 0..scene.run.batches {
+            tracer.emit(batch, &mut look, &|_| ());
+        }
+        [off, widest.to_degrees()]
+    });
+    let [off, widest] = [0, 1].map(|i| found.iter().map(|f| f[i]).fold(0.0, f64::max));
+    Claim {
+        said: "a mirror sphere maps the full 360° to the 180° of its normals (4.1)",
+        shown: format!(
+            "photons of a beam leave in directions up to {widest:.2}° from where it comes from, at twice the angle of the normal; largest deviation from twice {off:.0e} rad"
+        ),
+        numbers: Vec::new(),
+        checks: vec![
+            Check::new(
+                "off twice",
+                off,
+                Below(1e-6),
+                "rounding at the rim, where the root of 1 − k² r² is small",
+            ),
+            Check::new(
+                "widest",
+                widest,
+                AtLeast(176.0),
+                "normals to 88°: at the rim few photons land",
+            ),
+        ],
+        holds: "holds, to the rim",
+    }
+}
+
+/// The angles from where the beam comes from of the normal where a photon leaves a sphere of 0.5 m, and of its direction.
+fn angles(plane: &VirtualPlane, crossing: &Crossing) -> [f64; 2] {
+    let ray = crossing.ray;
+    let (s, t) = (2.0 * ray.x, 2.0 * ray.y);
+    let normal = DVec3::new(s, t, (1.0 - s * s - t * t).max(0.0).sqrt());
+    let normal = plane.frame.vector_to_world(normal);
+    let ((sin, cos), (up, across)) = ((ray.u + plane.longitude).sin_cos(), ray.v.sin_cos());
+    let local = plane.frame.turned_to(normal);
+    let leaves = local.vector_to_world(DVec3::new(across * sin, up, across * cos));
+    // The arccosine is blunt at its ends.
+    [normal, leaves].map(|d| d.x.hypot(d.y).atan2(-d.z))
+}
+
+fn curvature(photons: u64) -> [Claim; 2] {
+    let curvatures = [-0.5, 0.0, 0.8, 1.6];
+    let seen = curvatures.map(|k| {
+        let text = surface(
+            "Rectangle(center: (0, 0, -1), size: (0.1, 0.1))",
+            [0.65; 2],
+            &format!("form: {}, aperture: 0.25", form(k)),
+            "Reflects(brdf: (lobe: Phong(400)))",
+        );
+        let planes = planes(
+            "After(\"surface\")",
+            "Tangent",
+            "x: Hann(0.1), u: Hann(0.6)",
+            "azimuths: 1, rho: (max: 60), nu: (max: 12)",
+        );
+        Seen::of(scene(&format!("{text}, {planes}"), photons))
+    });
+    let each = |of: fn(&Slices) -> f64| seen.each_ref().map(|seen| seen.number(0, of)).to_vec();
+    let angular = each(|slices| bandwidth(slices, bandwidth_nu));
+    let spatial = each(|slices| bandwidth(slices, bandwidth_rho));
+    let spread = |of: &[Number]| {
+        let values = of.iter().map(|n| n.value);
+        values.clone().fold(0.0, f64::max) / values.fold(f64::INFINITY, f64::min) - 1.0
+    };
+    [
+        Claim {
+            said: "curvature has no effect on the directional bandwidth of the outgoing light field (4.2)",
+            shown: format!(
+                "95 % bandwidth over ν [/rad] of what leaves a glossy surface, k = {curvatures:?} /m"
+            ),
+            checks: vec![Check::new(
+                "spread",
+                spread(&angular),
+                Below(0.03),
+                "the lobe is cut by a window of 0.6 rad, off its middle where the surface turns",
+            )],
+            numbers: angular,
+            holds: "holds on the surface, for the light field as a whole",
+        },
+        Claim {
+            said: "it has a strong one on spatial frequencies (4.2)",
+            shown: "the same over ρ [/m]".to_owned(),
+            checks: vec![Check::new(
+                "spread",
+                spread(&spatial),
+                Above(0.5),
+                "twice k shears ν into ρ",
+            )],
+            numbers: spatial,
+            holds: "holds",
+        },
+    ]
+}
+
+fn form(k: f64) -> String {
+    if k.abs() > 0.0 {
+        format!("Sphere({k})")
+    } else {
+        "Plane".to_owned()
+    }
+}
+
+fn bandwidth(slices: &Slices, of: etendue_spectrum::bandwidth::SliceBandwidth) -> f64 {
+    let power = slices.radial_power();
+    of(power.view(), &slices.grid, 0.95).unwrap_or(f64::NAN)
+}
+
+fn cosine(photons: u64) -> Claim {
+    let halves = [0.5_f64, 0.25, 0.125];
+    let apart = halves.map(|half| {
+        let text = surface(
+            "Rectangle(center: (0, 0, -1), size: (1.6, 1.6))",
+            [0.65; 2],
+            "form: Plane, aperture: 1",
+            "Reflects(brdf: (lobe: Phong(400)))",
+        );
+        let planes = format!(
+            "planes: [(name: \"plane\", at: Before(\"surface\"), orientation: LocalNormals, quantity: DifferentialIrradiance,
+            window: (x: Hann(0.1), u: Hann({half})), frequencies: (azimuths: 4, rho: (max: 20), nu: (max: 12)))]"
+        );
+        let scene = scene(&format!("{text}, {planes}"), photons);
+        let whole = Seen::of(scene.clone());
+        // cos θ for cos θ cos φ.
+        let tampered = |mut crossing: Crossing| {
+            crossing.weight /= crossing.ray.v.cos();
+            crossing
+        };
+        let source = Tampered::new(&scene, tampered);
+        let flat = Seen {
+            measurement: measured(&scene, &source),
+            predictions: whole.predictions.clone(),
+        };
+        number(&[(&flat, 0), (&whole, 0)], &|slices| {
+            let pairs = slices[0].half.iter().zip(&slices[1].half);
+            let apart: f64 = pairs.map(|(a, b)| (a - b).norm_sqr()).sum();
+            let all: f64 = slices[1].half.iter().map(|s| s.norm_sqr()).sum();
+            (apart / all).sqrt()
+        })
+    });
+    // Photons of one scene, weighted twice: there is no prediction of the difference.
+    let numbers: Vec<Number> = apart
+        .iter()
+        .map(|n| Number {
+            predicted: n.value,
+            ..*n
+        })
+        .collect();
+    let logs = [0, 1, 2].map(|i| [halves[i].ln(), apart[i].value.ln()]);
+    let exponent = crate::table1::slope(&logs);
+    Claim {
+        said: "with the equator in the plane of incidence the cosine depends on θ alone, to first order (5.2)",
+        shown: format!(
+            "spectrum of light times cos θ apart from that times cos θ cos φ, windows over φ of {halves:?} rad; it falls with the window to the {exponent:.2}"
+        ),
+        checks: vec![
+            Check::new("exponent", exponent, AtLeast(1.9), "second order in φ"),
+            Check::new("the same", exponent, AtMost(2.1), "second order in φ"),
+        ],
+        numbers,
+        holds: "holds: the error is of second order in φ",
+    }
+}
+
+fn lobe(photons: u64) -> Claim {
+    let aside = [0.0, 0.1, 0.2];
+    let half = 0.1;
+    let ratios = aside.map(|aside| {
+        let text = surface(
+            "Beam(center: (0, 0, -1), image: (width: (0.5, 0.5)))",
+            [0.6, 0.6 + aside],
+            "form: Plane, aperture: 0.5",
+            "Reflects(brdf: (lobe: Phong(200)))",
+        );
+        let nu = 0.5 / half;
+        let planes = planes(
+            "After(\"surface\")",
+            "Orthogonal",
+            &format!("x: Hann(0.02), u: Hann({half})"),
+            &format!("azimuths: 2, rho: (max: 50), nu: (max: {nu}, spacing: {nu})"),
+        );
+        let seen = Seen::of(scene(&format!("{text}, {planes}"), 4 * photons));
+        seen.number(0, |slices| {
+            // A Hann window alone has half its value at the first frequency.
+            let [theta, phi] =
+                [0, 1].map(|k| (at(slices, k, [0.0, nu]) / slices.at_zero() - 0.5).norm());
+            theta / phi
+        })
+    });
+    Claim {
+        said: "off the peak a lobe is influenced more by θ than by φ (5.3)",
+        shown: format!(
+            "change of the reflected light over θ over that over φ, within ± {half}, {aside:?} rad off the mirror direction"
+        ),
+        checks: vec![
+            Check::new(
+                "at the peak",
+                (ratios[0].value - 1.0).abs(),
+                Below(0.1),
+                "the distance to it alone counts",
+            ),
+            Check::new(
+                "off it",
+                ratios[1].value.min(ratios[2].value),
+                AtLeast(4.0),
+                "first order against second",
+            ),
+        ],
+        numbers: ratios.to_vec(),
+        holds: "holds",
+    }
+}
+
+/// A diffuse sphere of curvature k, with a window and frequencies that go with it.
+fn diffuse(light: &str, (k, seed): (f64, u64), photons: u64) -> Seen {
+    let text = surface(
+        light,
+        [0.0; 2],
+        &format!("form: Sphere({k}), aperture: {}", 0.45 / k),
+        "Reflects(brdf: (lobe: Lambertian, albedo: 0.7))",
+    );
+    let planes = planes(
+        "After(\"surface\")",
+        "LocalNormals",
+        &format!("x: Hann({}), u: Hann(0.5)", 0.4 / k),
+        &format!("azimuths: 4, rho: (max: {}), nu: (max: 4)", 8.0 * k),
+    );
+    let mut scene = scene(&format!("{text}, {planes}"), photons);
+    // Photons of spheres of two sizes are else the same but for their scale.
+    scene.run.seed = seed;
+    Seen::of(scene)
+}
+
+fn environment(photons: u64) -> [Claim; 2] {
+    let far = "Environment(center: (0, 0, -1), map: Lobes([(from: (0.6, 0.2, -1), width: 0.3, radiance: 3), (from: (-1, 0, -0.6), width: 0.3, radiance: 2)]))";
+    let near = "Rectangle(center: (0, 0, -0.5), size: (0.5, 0.5))";
+    let apart = |light: &str| {
+        let [one, other] = [(1.0, 1), (3.0, 2)].map(|sphere| diffuse(light, sphere, photons));
+        number(&[(&one, 0), (&other, 0)], &|slices| {
+            let [one, other] = [0, 1].map(|i| slices[i].half.mapv(|s| s / slices[i].at_zero()));
+            let apart: f64 = (&one - &other).iter().map(|s| s.norm_sqr()).sum();
+            let all: f64 = one.iter().map(|s| s.norm_sqr()).sum();
+            apart / all
+        })
+    };
+    let [far, near] = [far, near].map(apart);
+    [
+        Claim {
+            said: "the cosine is a convolution over normals for light that varies in angle alone: a spectrum at Ωx/k (6.1)",
+            shown: "energy of the spectrum of a diffuse sphere of k = 1 /m minus that of k = 3 /m at Ωx/k, over the former".to_owned(),
+            checks: vec![Check::new(
+                "apart",
+                far.value / far.error,
+                AtMost(PULL),
+                CHANCE,
+            )],
+            numbers: vec![far],
+            holds: "holds: it is a function of Ωx/k",
+        },
+        Claim {
+            said: "the same, under a light that varies in space",
+            shown: "the same, a square of 0.5 m, 0.5 m away".to_owned(),
+            checks: vec![Check::new("apart", near.value, AtLeast(0.002), "far beyond noise")],
+            numbers: vec![near],
+            holds: "not: its spectrum is no line",
+        },
+    ]
+}
+
+/// Lights of growing size: the criterion takes them to have all frequencies.
+fn criteria(photons: u64) -> Claim {
+    let lobe = 1000.0;
+    let criterion = Criterion {
+        curvature: 0.5,
+        incidence: 0.5,
+        outgoing: -0.5,
+        distance: 0.5,
+        blocker_distance: Some(0.6),
+        lobe_cutoff: Lobe::Phong { exponent: lobe }.cutoff(0.95),
+        environment_cutoff: f64::INFINITY,
+    };
+    let sizes = [0.003, 0.02, 0.05, 0.1];
+    let shares = sizes.map(|size| {
+        let text = surface(
+            &format!("Rectangle(center: (0, 0, -0.6), size: ({size}, {size}))"),
+            [0.5; 2],
+            "form: Sphere(0.5), aperture: 0.6",
+            &format!("Reflects(brdf: (lobe: Phong({lobe})))"),
+        );
+        let planes = planes(
+            "Distance(1.1)",
+            "Orthogonal",
+            "x: Hann(0.05), u: Hann(0.25)",
+            "azimuths: 1, rho: (max: 40), nu: (max: 30)",
+        );
+        let seen = Seen::of(scene(&format!("{text}, {planes}"), 4 * photons));
+        let found = seen.number(0, |slices| bandwidth(slices, bandwidth_nu));
+        let of = criterion.blocker();
+        Number {
+            value: found.value / of,
+            error: found.error / of,
+            predicted: found.predicted / of,
+        }
+    });
+    let most = shares.iter().map(|share| share.value).fold(0.0, f64::max);
+    Claim {
+        said: "criteria that take the light to have all frequencies over-estimate bandwidth, and never under-estimate it (6.2)",
+        shown: format!(
+            "95 % bandwidth over ν at the eye over B', lights of {sizes:?} m, 0.6 m from a glossy sphere"
+        ),
+        checks: vec![
+            Check::new(
+                "largest",
+                most,
+                AtMost(1.05),
+                "the criterion is good to 5 %",
+            ),
+            Check::new(
+                "widest light",
+                shares[3].value,
+                AtMost(0.7),
+                "it has few frequencies",
+            ),
+            decreasing(&shares[1..]),
+        ],
+        numbers: shares.to_vec(),
+        holds: "holds: close to the criterion for a small light, below it for others",
+    }
+}
