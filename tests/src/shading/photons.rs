@@ -167,13 +167,13 @@ fn reflection(scene: &Scene) -> (String, Vec<Line>) {
     let Event::Reflects(reflectance) = &scene.patches[i].event else {
         return ("–".to_owned(), Vec::new());
     };
-    let lobe = match reflectance.brdf.lobe {
+    let lobe = match reflectance.first().lobe {
         Lobe::Lambertian => "Lambertian",
         Lobe::Phong { .. } => "Phong",
         Lobe::Beckmann { .. } => "Beckmann",
         Lobe::Ggx { .. } => "GGX",
     };
-    match (reflectance.texture.is_some(), reflectance.blend.is_some()) {
+    match (reflectance.texture.is_some(), reflectance.only().is_none()) {
         (false, false) if lobe == "Lambertian" => (lobe.to_owned(), Vec::new()),
         (false, false) => (lobe.to_owned(), vec![Line::Brdf]),
         (true, false) => (format!("{lobe}, texture"), vec![Line::Texture]),

@@ -140,7 +140,7 @@ fn stands() -> Vec<Stand> {
                 (
                     "index + 2 %",
                     Plant::System(|s| {
-                        s.reflectance.brdf.fresnel = Fresnel::Dielectric { index: 1.53 };
+                        s.reflectance.first_mut().fresnel = Fresnel::Dielectric { index: 1.53 };
                     }),
                 ),
             ],
@@ -162,7 +162,7 @@ fn stands() -> Vec<Stand> {
                 ),
                 (
                     "albedo forgotten",
-                    Plant::System(|s| s.reflectance.brdf.albedo = 1.0),
+                    Plant::System(|s| s.reflectance.first_mut().albedo = 1.0),
                 ),
             ],
         },
@@ -192,7 +192,7 @@ fn stands() -> Vec<Stand> {
                 "α² for α",
                 Plant::Photons(
                     |s| {
-                        if let Lobe::Ggx { roughness } = &mut reflectance(s).brdf.lobe {
+                        if let Lobe::Ggx { roughness } = &mut reflectance(s).first_mut().lobe {
                             *roughness *= *roughness;
                         }
                     },
@@ -213,7 +213,7 @@ fn stands() -> Vec<Stand> {
 fn lobe(system: &mut System, factor: f64) {
     if let Lobe::Phong { exponent: number }
     | Lobe::Beckmann { roughness: number }
-    | Lobe::Ggx { roughness: number } = &mut system.reflectance.brdf.lobe
+    | Lobe::Ggx { roughness: number } = &mut system.reflectance.first_mut().lobe
     {
         *number *= factor;
     }

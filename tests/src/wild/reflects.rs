@@ -48,6 +48,8 @@ fn brdf(draw: &mut Draw) -> BrdfFile {
         lobe,
         albedo,
         fresnel,
+        incoming: None,
+        outgoing: None,
     }
 }
 

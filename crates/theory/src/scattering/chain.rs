@@ -5,7 +5,9 @@ use crate::geometry::{Map, Matrix};
 use crate::model::Observed;
 use crate::rays::{Incidence, Plane, Ray};
 use crate::words::{self, degrees, number};
-use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity};
+use etendue_field::{
+    AngleTable, Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Term, Weight,
+};
 use glam::DVec3;
 
 /// What the central ray does, to first order in the neighbourhood.
@@ -178,49 +180,56 @@ fn steps(
     steps
 }
 
-/// The BRDF in words.
+/// The BRDFs in words.
 fn reflection(system: &System) -> Vec<String> {
-    let reflectance = &system.reflectance;
-    let brdf = &reflectance.brdf;
+    let mut words: Vec<String> = system.reflectance.terms.iter().flat_map(term).collect();
+    if let Some(texture) = &system.reflectance.texture {
+        words.push(format!("multiply  texture {}", varies(texture)));
+    }
+    words
+}
+
+/// A BRDF of a sum, with the factors of angles before and after it.
+fn term(term: &Term) -> Vec<String> {
+    let brdf = &term.brdf;
     let lobe = match brdf.lobe {
         Lobe::Lambertian => "Lambertian".to_owned(),
         Lobe::Phong { exponent } => format!("Phong, exponent {}", number(exponent)),
         Lobe::Beckmann { roughness } => format!("Beckmann, roughness {}", number(roughness)),
         Lobe::Ggx { roughness } => format!("GGX, roughness {}", number(roughness)),
     };
-    let mut words = Vec::new();
-    match brdf.fresnel {
-        Fresnel::White => {}
-        Fresnel::Dielectric { index } => {
-            words.push(format!(
-                "multiply  Fresnel factor of index {}",
-                number(index)
-            ));
-        }
-        Fresnel::Conductor { n, k } => words.push(format!(
-            "multiply  Fresnel factor of index {} + {} i",
-            number(n),
-            number(k)
-        )),
-    }
-    let varies = |pattern: &Pattern| match pattern {
+    let fresnel = match brdf.fresnel {
+        Fresnel::White => None,
+        Fresnel::Dielectric { index } => Some(number(index)),
+        Fresnel::Conductor { n, k } => Some(format!("{} + {} i", number(n), number(k))),
+    };
+    let weight = match &term.weight {
+        Weight::One => String::new(),
+        Weight::Pattern(pattern) => format!(", weighted by {}", varies(pattern)),
+        Weight::Rest(pattern) => format!(", weighted by 1 − {}", varies(pattern)),
+    };
+    let table = |angle: &str, table: &AngleTable| {
+        let values = table.values.len();
+        format!("multiply  factor of {angle}, {values} values")
+    };
+    let fresnel = fresnel.map(|index| format!("multiply  Fresnel factor of index {index}"));
+    let incoming = brdf.incoming.as_ref().map(|f| table("θi", f));
+    let convolve = format!(
+        "convolve  BRDF {lobe}, albedo {}{weight}",
+        number(brdf.albedo)
+    );
+    let outgoing = brdf.outgoing.as_ref().map(|h| table("θo", h));
+    let steps = [fresnel, incoming, Some(convolve), outgoing];
+    steps.into_iter().flatten().collect()
+}
+
+fn varies(pattern: &Pattern) -> String {
+    match pattern {
         Pattern::Cosine(grating) => words::formula(grating, ["s", "t"]),
         Pattern::Picture(picture) => {
             let [w, h] = picture.size;
             format!("picture of {} x {} m", number(w), number(h))
         }
         Pattern::Checkerboard { period } => format!("checkerboard of period {} m", number(*period)),
-    };
-    let over = match &reflectance.blend {
-        Some((_, pattern)) => format!(", blended with another over {}", varies(pattern)),
-        None => String::new(),
-    };
-    words.push(format!(
-        "convolve  BRDF {lobe}, albedo {}{over}",
-        number(brdf.albedo)
-    ));
-    if let Some(texture) = &reflectance.texture {
-        words.push(format!("multiply  texture {}", varies(texture)));
     }
-    words
 }

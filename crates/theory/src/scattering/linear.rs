@@ -79,13 +79,19 @@ impl<'a> Linear<'a> {
         let irradiance = weight * per_angle * (a * d - b * c).abs() * cosine;
         let [s, t, to_theta, to_phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
-        let brdf = self.system.reflectance.at(at.x, at.y);
+        let mixture = self.system.reflectance.at(at.x, at.y);
         let center = away(self.chain.incidence, 0.0);
-        irradiance * self.kernel(&brdf, center, theta, [to_theta + theta, to_phi + phi])
+        let [cos_from, cos_to] =
+            [[theta, phi], [to_theta, to_phi]].map(|[theta, phi]| away(theta, phi).z);
+        let sum = mixture.weighted().map(|(weight, brdf)| {
+            let factors = weight * brdf::factors(brdf, cos_from, cos_to);
+            factors * self.kernel(brdf, center, theta, [to_theta + theta, to_phi + phi])
+        });
+        irradiance * sum.sum::<f64>()
     }
 
-    /// The BRDF as it meets the central ray, which comes from `center`, at angles from the mirror
-    /// direction; a factor of the angle of incidence stays one.
+    /// A lobe as it meets the central ray, which comes from `center`, at angles from the mirror
+    /// direction; a Fresnel factor of the angle of incidence stays one.
     fn kernel(&self, brdf: &Brdf, center: DVec3, from: f64, [theta, phi]: [f64; 2]) -> f64 {
         let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from));
         match brdf.lobe {
@@ -97,7 +103,7 @@ impl<'a> Linear<'a> {
             }
             _ => {
                 let to = away(theta - self.chain.incidence, phi);
-                brdf::value(brdf, DVec3::Z, center, to)
+                brdf::lobe(brdf, DVec3::Z, center, to)
             }
         }
     }

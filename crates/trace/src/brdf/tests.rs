@@ -15,12 +15,7 @@ const FINE: u32 = 32;
 const ANGLES: [f64; 4] = [0.0, 0.6, 1.2, 1.5];
 
 fn brdf(lobe: Lobe) -> Brdf {
-    let (albedo, fresnel) = (1.0, Fresnel::White);
-    Brdf {
-        lobe,
-        albedo,
-        fresnel,
-    }
+    Brdf::new(lobe, 1.0, Fresnel::White)
 }
 
 fn phong(exponent: f64) -> Brdf {
@@ -297,7 +292,10 @@ fn reciprocity_where_there_is_one() {
     for of in lobes() {
         let is_micro = matches!(of.lobe, Lobe::Beckmann { .. } | Lobe::Ggx { .. });
         for fresnel in [Fresnel::White, glass] {
-            let of = Brdf { fresnel, ..of };
+            let of = Brdf {
+                fresnel,
+                ..of.clone()
+            };
             let (a, b) = (at(1.3), DVec3::new(-0.6, -0.3, 0.5).normalize());
             let [there, back] = [value(&of, a, b), value(&of, b, a)];
             let same = (there - back).abs() <= 1e-9 * there; // rounding, in the exponent of a narrow lobe

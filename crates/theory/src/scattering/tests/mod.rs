@@ -88,15 +88,7 @@ fn square(side: f64) -> Shape {
 }
 
 fn white(lobe: Lobe) -> Reflectance {
-    Reflectance {
-        brdf: Brdf {
-            lobe,
-            albedo: 0.7,
-            fresnel: Fresnel::White,
-        },
-        blend: None,
-        texture: None,
-    }
+    Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
 /// A surface a metre from the light, met at θ₀ in the plane of X.
