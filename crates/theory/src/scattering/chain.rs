@@ -180,17 +180,30 @@ fn steps(
     steps
 }
 
-/// The BRDFs in words.
+/// The BRDFs in words: a line for each step of one alone, or for each term of a sum.
 fn reflection(system: &System) -> Vec<String> {
-    let mut words: Vec<String> = system.reflectance.terms.iter().flat_map(term).collect();
+    let terms = &system.reflectance.terms;
+    let sum = terms.iter().enumerate().map(|(i, term)| {
+        let steps = term_in_words(term)
+            .map(|[_, what]| what)
+            .collect::<Vec<_>>();
+        let (i, count) = (i + 1, terms.len());
+        format!("convolve  term {i} of {count}: {}", steps.join(", "))
+    });
+    let mut words: Vec<String> = match &terms[..] {
+        [one] => term_in_words(one)
+            .map(|[verb, what]| format!("{verb}  {what}"))
+            .collect(),
+        _ => sum.collect(),
+    };
     if let Some(texture) = &system.reflectance.texture {
         words.push(format!("multiply  texture {}", varies(texture)));
     }
     words
 }
 
-/// A BRDF of a sum, with the factors of angles before and after it.
-fn term(term: &Term) -> Vec<String> {
+/// The factors of angles before and after a lobe, with the lobe between them; verbs first.
+fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
     let brdf = &term.brdf;
     let lobe = match brdf.lobe {
         Lobe::Lambertian => "Lambertian".to_owned(),
@@ -206,21 +219,28 @@ fn term(term: &Term) -> Vec<String> {
     let weight = match &term.weight {
         Weight::One => String::new(),
         Weight::Pattern(pattern) => format!(", weighted by {}", varies(pattern)),
-        Weight::Rest(pattern) => format!(", weighted by 1 − {}", varies(pattern)),
+        Weight::Rest(pattern) => format!(", weighted by 1 − ({})", varies(pattern)),
     };
     let table = |angle: &str, table: &AngleTable| {
         let values = table.values.len();
-        format!("multiply  factor of {angle}, {values} values")
+        [
+            "multiply".to_owned(),
+            format!("factor of {angle}, {values} values"),
+        ]
     };
-    let fresnel = fresnel.map(|index| format!("multiply  Fresnel factor of index {index}"));
+    let fresnel = fresnel.map(|index| {
+        [
+            "multiply".to_owned(),
+            format!("Fresnel factor of index {index}"),
+        ]
+    });
     let incoming = brdf.incoming.as_ref().map(|f| table("θi", f));
-    let convolve = format!(
-        "convolve  BRDF {lobe}, albedo {}{weight}",
-        number(brdf.albedo)
-    );
+    let lobe = format!("BRDF {lobe}, albedo {}{weight}", number(brdf.albedo));
     let outgoing = brdf.outgoing.as_ref().map(|h| table("θo", h));
-    let steps = [fresnel, incoming, Some(convolve), outgoing];
-    steps.into_iter().flatten().collect()
+    let convolved = Some(["convolve".to_owned(), lobe]);
+    [fresnel, incoming, convolved, outgoing]
+        .into_iter()
+        .flatten()
 }
 
 fn varies(pattern: &Pattern) -> String {

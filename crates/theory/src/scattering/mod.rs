@@ -23,12 +23,14 @@ mod exact;
 mod incoming;
 mod linear;
 mod model;
+mod operator;
 mod predict;
 mod sky;
 #[cfg(test)]
 mod tests;
 
 pub use chain::{ReflectionChain, chain, defect};
+pub use operator::semi_convolution;
 pub use predict::beside;
 
 pub(crate) use predict::predict;
