@@ -38,7 +38,7 @@ fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
     };
     let pairs = values.windows(2).enumerate();
     let spans = pairs.map(|(i, pair)| (i as f64 * step, pair));
-    let held = spans.filter(|(start, _)| *start <= degrees).last();
+    let held = spans.rev().find(|(start, _)| *start <= degrees);
     held.map_or(f64::NAN, |(start, pair)| {
         pair[0] + (degrees - start) / step * (pair[1] - pair[0])
     })

@@ -207,7 +207,6 @@ mod tests {
     #[test]
     fn the_operator_holds_and_faults_are_seen() {
         let section = semi(Some(1 << 20));
-        println!("{}", section.markdown());
         assert!(section.passes(), "{}", section.markdown());
     }
 }

@@ -141,7 +141,7 @@ pub enum EventFile {
         brdf: BrdfFile,
         /// Another BRDF that is added to it, weighted by 1 − `blend`.
         #[serde(default)]
-        other: Option<BrdfFile>,
+        other: Option<Box<BrdfFile>>,
         /// What weights the BRDF where there is another.
         #[serde(default)]
         blend: Option<PatternFile>,

@@ -25,7 +25,7 @@ impl Resolver<'_> {
                 blend,
                 texture,
             } => {
-                let blended = self.blended(of, brdf, other.as_ref(), blend.as_ref());
+                let blended = self.blended(of, brdf, other.as_deref(), blend.as_ref());
                 (blended, texture)
             }
             EventFile::Sum { terms, texture } => (self.sum(of, terms)?, texture),
