@@ -101,8 +101,12 @@ class Brdf(TypedDict):
     """Factor on it, 0 to 1. 0 to 1"""
     fresnel: NotRequired["Fresnel"]
     """Its Fresnel factor"""
+    incoming: NotRequired[Union[Sequence[float], None]]
+    """A factor of the angle at which light comes: values at equal steps from the normal to 90 degrees, linear in between; 1 unless stated"""
     lobe: "Lobe"
     """Its lobe"""
+    outgoing: NotRequired[Union[Sequence[float], None]]
+    """The same of the angle at which light leaves"""
 
 
 class BulbDisc(TypedDict):
@@ -139,11 +143,11 @@ class EventReflects(TypedDict):
 
 class EventReflectsFields(TypedDict):
     blend: NotRequired[Union["Pattern", None]]
-    """How the two are blended"""
+    """What weights the BRDF where there is another"""
     brdf: "Brdf"
     """The BRDF"""
     other: NotRequired[Union["Brdf", None]]
-    """Another BRDF that takes its place where the pattern of the blend is 0"""
+    """Another BRDF that is added to it, weighted by 1 − `blend`"""
     texture: NotRequired[Union["Pattern", None]]
     """What multiplies the BRDF"""
 
@@ -159,6 +163,19 @@ class EventRefractionFields(TypedDict):
     """Index on the other side. 0.1 to 10"""
     front: float
     """Index of refraction on the side it faces. 0.1 to 10"""
+
+
+class EventSum(TypedDict):
+    """Reflects by a weighted sum of BRDFs, on the side it faces; black on the other."""
+
+    Sum: "EventSumFields"
+
+
+class EventSumFields(TypedDict):
+    terms: Sequence["Term"]
+    """The BRDFs with their weights, 1 to 8 of them. The first says where the central ray goes on, as far as the path does not"""
+    texture: NotRequired[Union["Pattern", None]]
+    """What multiplies their sum"""
 
 
 class EventThinLens(TypedDict):
@@ -695,6 +712,15 @@ orthogonal to the normal is used"""
     """Name"""
 
 
+class Term(TypedDict):
+    """A BRDF of a sum."""
+
+    brdf: "Brdf"
+    """The BRDF"""
+    weight: NotRequired[Union["Pattern", None]]
+    """How much of it there is at each place: 1 unless stated"""
+
+
 class Window(TypedDict):
     """The window: a profile for each coordinate; y and v are as x and u unless stated."""
 
@@ -722,7 +748,7 @@ Emission = Union[Literal["Aimed"], Literal["Plain"]]
 Environment = Union["EnvironmentLobes", "EnvironmentFile"]
 """Radiance by the direction light comes from; in coordinates whose second axis is `up` and whose third is `front`."""
 
-Event = Union[Literal["Mirror"], "EventRefraction", "EventThinLens", "EventReflects"]
+Event = Union[Literal["Mirror"], "EventRefraction", "EventThinLens", "EventReflects", "EventSum"]
 """What a smooth surface does to light."""
 
 Form = Union[Literal["Plane"], "FormSphere", "FormCylinder", "FormParaboloid"]

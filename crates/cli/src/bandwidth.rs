@@ -7,7 +7,7 @@ use crate::threads::on_threads;
 use crate::values::{Point, points, said_at, shown};
 use crate::{deliver, limits, load, method, progress, say};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
-use etendue_field::VirtualPlane;
+use etendue_field::{Term, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_theory::shading::Criterion;
 use std::path::PathBuf;
@@ -191,15 +191,16 @@ fn beyond_criteria(plane: &VirtualPlane, applicability: &Applicability) -> Vec<S
     };
     let (name, reflectance) = (&view.system.name, &view.system.reflectance);
     let mut warnings = Vec::new();
-    if reflectance.blend.is_some() || reflectance.texture.is_some() {
+    if !reflectance.is_uniform() {
         warnings.push(format!(
-            "{}: the BRDF of {name} varies over it; criteria know `brdf` alone",
+            "{}: the BRDF of {name} varies over it; criteria know its sharpest lobe alone",
             plane.name
         ));
     }
-    if !reflectance.brdf.lobe.is_about_mirror() {
+    let is_about_normal = |term: &Term| !term.brdf.lobe.is_about_mirror();
+    if reflectance.terms.iter().any(is_about_normal) {
         warnings.push(format!(
-            "{}: the lobe of {name} is about its normal; criteria are of those about the mirror direction",
+            "{}: a lobe of {name} is about its normal; criteria are of those about the mirror direction",
             plane.name
         ));
     }

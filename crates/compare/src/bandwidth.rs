@@ -3,7 +3,7 @@
 
 use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
-use etendue_field::{Lobe, Orientation, ProjectionGrid, VirtualPlane};
+use etendue_field::{Lobe, Orientation, ProjectionGrid, Reflectance, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu};
 use etendue_spectrum::estimate::TooFewBatches;
@@ -42,10 +42,15 @@ pub fn criterion(
         outgoing: chain.outgoing[0],
         distance: scene.path.along(plane),
         blocker_distance: edge.map(|distance| chain.distance - distance),
-        // A lobe about the normal has none.
-        lobe_cutoff: lobe_cutoff(system.reflectance.brdf.lobe).unwrap_or(0.0),
+        lobe_cutoff: sharpest_cutoff(&system.reflectance),
         environment_cutoff: f64::INFINITY,
     })
+}
+
+/// Of a sum, the largest of its lobes; 0 if all are about the normal.
+fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
+    let lobes = reflectance.terms.iter().map(|term| term.brdf.lobe);
+    lobes.filter_map(lobe_cutoff).fold(0.0, f64::max)
 }
 
 /// Ω_ρ, the frequency below which a lobe has [`BANDWIDTH_FRACTION`] of its energy, cycles per radian. `None` of a lobe about

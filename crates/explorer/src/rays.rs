@@ -86,15 +86,8 @@ fn patch(setup: &Setup) -> Patch {
 
 fn reflectance(setup: &Setup) -> Reflectance {
     let exponent = setup.get(Key::Exponent);
-    Reflectance {
-        brdf: Brdf {
-            lobe: Lobe::Phong { exponent },
-            albedo: setup.get(Key::Albedo),
-            fresnel: Fresnel::White,
-        },
-        blend: None,
-        texture: None,
-    }
+    let lobe = Lobe::Phong { exponent };
+    Brdf::new(lobe, setup.get(Key::Albedo), Fresnel::White).into()
 }
 
 /// A plane where the central ray meets the receiver; straight back X is turned round.

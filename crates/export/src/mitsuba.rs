@@ -57,12 +57,20 @@ pub enum NotInMitsuba {
         /// Its name.
         name: String,
     },
-    /// A pattern of parameters other than the albedo.
+    /// A sum of BRDFs that is no blend.
     #[error(
-        "Mitsuba mixes the light of two lobes, and has no lobe between both: {name:?} cannot be exported; \
-         a Checkerboard of two lobes can, and any pattern of two albedos of one lobe"
+        "Mitsuba adds two BRDFs by weights w and 1 − w alone: {name:?} cannot be exported; \
+         Reflects with `other` and `blend` can"
     )]
-    Blend {
+    Sum {
+        /// Name of its surface.
+        name: String,
+    },
+    /// A factor of the angle to the normal.
+    #[error(
+        "Mitsuba has no factors of the angle at which light comes or leaves: {name:?} cannot be exported"
+    )]
+    AngleTable {
         /// Name of its surface.
         name: String,
     },

@@ -10,6 +10,7 @@
 //! Fourier transform, everywhere: F(Ω) = ∫ f(z) e^(−2πi Ω·z) dz, frequencies in cycles per unit
 //! (`docs/conventions.md`).
 
+mod brdf;
 mod crossing;
 mod environment;
 pub mod fft;
@@ -21,6 +22,7 @@ mod light;
 mod net;
 mod number;
 mod patch;
+mod pattern;
 mod plane;
 mod portable;
 mod projection;
@@ -35,6 +37,7 @@ mod slices;
 pub mod transform;
 mod window;
 
+pub use brdf::{AngleTable, Brdf, Fresnel, Lobe};
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
 pub use environment::{Environment, EnvironmentMap, LatLong, SphericalGaussian};
 pub use field_grid::{Assignment, FieldGrid};
@@ -45,6 +48,7 @@ pub use light::Light;
 pub use net::{Net, sobol_directions};
 pub use number::{decimals, fixed, percent, tidy, uncertain, whole};
 pub use patch::{Patch, Specular};
+pub use pattern::{Pattern, Picture};
 pub use plane::{Orientation, Quantity, Side, VirtualPlane};
 pub use portable::{Complex, cis, modulus, power, square_root};
 pub use projection::{Projection, ProjectionGrid};
@@ -52,7 +56,7 @@ pub use quadrature::gauss_legendre;
 pub use raster::Raster;
 pub use ray_light::{FluxRay, RayLight};
 pub use rectangle::Rectangle;
-pub use reflectance::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance};
+pub use reflectance::{MOST_TERMS, Mixture, Reflectance, Term, Weight};
 pub use shape::{Disc, Grating, HalfPlane, Mask, Shape, interpolated_normal, triangle_distance};
 pub use slices::Slices;
 pub use window::{CosineTerm, Profile, Window};

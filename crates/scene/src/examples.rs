@@ -55,6 +55,13 @@ other | a BRDF | (lobe: Phong(100))
 lobe | a lobe | Phong(100)
 fresnel | a Fresnel factor | Dielectric(1.5)
 blend | a pattern | Checkerboard(0.1)
+terms | a list of BRDFs with weights | [(brdf: (lobe: Phong(100)), weight: Checkerboard(0.1))]
+terms[] | a BRDF with its weight | (brdf: (lobe: Phong(100)), weight: Checkerboard(0.1))
+weight | a pattern | Checkerboard(0.1)
+incoming | factors from 0 to 1, from the normal to 90 degrees | [1, 0.7, 0]
+outgoing | factors from 0 to 1, from the normal to 90 degrees | [1, 0.7, 0]
+incoming[] | a factor from 0 to 1 | 0.7
+outgoing[] | a factor from 0 to 1 | 0.7
 texture | a pattern | Checkerboard(0.1)
 file | a file in quotes | "picture.exr"
 path | the central ray | (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: ["floor"])

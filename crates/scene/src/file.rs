@@ -6,6 +6,7 @@ pub use light::{
 };
 pub use surface::{
     BrdfFile, EventFile, FormFile, FresnelFile, LobeFile, MeshSource, PatternFile, SurfaceFile,
+    TermFile,
 };
 
 use crate::overrides::whole;

@@ -43,7 +43,7 @@ pub use file::{
     AxisFile, AxisName, BlockersFile, BrdfFile, BulbFile, Emission, EnvironmentFile, EventFile,
     FormFile, FrequenciesFile, FresnelFile, GratingFile, HalfName, ImageFile, LightFile, LobeFile,
     MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
-    SphericalGaussianFile, SurfaceFile, WindowFile,
+    SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
 };
 pub use hierarchy::Hierarchy;
 pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};

@@ -196,17 +196,17 @@ pub struct PatchObject {
 pub enum Event {
     /// Sends each ray on in one direction.
     Specular(Specular),
-    /// Reflects it by a BRDF, on the side it faces; on the other it is black.
+    /// Reflects it by a sum of BRDFs, on the side it faces; on the other it is black.
     Reflects(Reflectance),
 }
 
 impl Event {
-    /// Whether light leaves it in the direction of a mirror, or more or less so; Lambertian light does not.
+    /// Whether light leaves it in the direction of a mirror, or more or less so; Lambertian light does not. Of a sum the first BRDF says so.
     #[must_use]
     pub fn mirrors(&self) -> bool {
         match self {
             Self::Specular(event) => *event == Specular::Mirror,
-            Self::Reflects(reflectance) => reflectance.brdf.lobe.is_about_mirror(),
+            Self::Reflects(reflectance) => reflectance.first().lobe.is_about_mirror(),
         }
     }
 }

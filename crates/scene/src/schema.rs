@@ -29,6 +29,8 @@ form.Paraboloid | curvatures of -1e6 to 1e6
 event.Refraction.front | 0.1 to 10
 event.Refraction.back | 0.1 to 10
 event.ThinLens | a focal length in metres, negative if the lens spreads light, not 0
+incoming | 0 to 1
+outgoing | 0 to 1
 lobe.Phong | 0 to 10000
 lobe.Beckmann | 0.001 to 1
 lobe.Ggx | 0.001 to 1
@@ -100,7 +102,7 @@ impl Types {
                 self.annotate(below, path);
             }
         }
-        let is_vector = node.get("maxItems").is_some();
+        let is_vector = node.get("maxItems").is_some() || node.get("items").is_some_and(is_number);
         if let Some(items) = node.get_mut("items").filter(|items| items.is_object()) {
             let element = if is_vector { "" } else { "[0]" };
             self.annotate(items, &format!("{path}{element}"));

@@ -171,6 +171,31 @@ const BAD: &[(&str, &str, &str)] = &[
     ),
     (
         "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian, incoming: [1, 1.5])))",
+        "surfaces[0].event.brdf.incoming[1]",
+    ),
+    (
+        "event: Mirror)",
+        "event: Reflects(brdf: (lobe: Lambertian, outgoing: [1])))",
+        "surfaces[0].event.brdf.outgoing",
+    ),
+    (
+        "event: Mirror)",
+        "event: Sum(terms: []))",
+        "surfaces[0].event.terms",
+    ),
+    (
+        "event: Mirror)",
+        "event: Sum(terms: [(brdf: (lobe: Lambertian)), (brdf: (lobe: Phong(-1)))]))",
+        "surfaces[0].event.terms[1].brdf.lobe",
+    ),
+    (
+        "event: Mirror)",
+        "event: Sum(terms: [(brdf: (lobe: Lambertian), weight: Checkerboard(0))]))",
+        "surfaces[0].event.terms[0].weight",
+    ),
+    (
+        "event: Mirror)",
         "event: Reflects(brdf: (lobe: Lambertian), blend: Checkerboard(0.1)))",
         "surfaces[0].event.blend",
     ),

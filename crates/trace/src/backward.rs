@@ -259,8 +259,12 @@ impl Backward {
                 }
                 let frame = Frame::IDENTITY.turned_to(this.frame.vector_to_world(facing));
                 let to = frame.vector_to_local(this.frame.vector_to_world(along));
+                let brdf = at(patch, reflectance, point);
+                if brdf.albedo() <= 0.0 {
+                    return 0.0;
+                }
                 let reflection = Reflection {
-                    brdf: at(patch, reflectance, point),
+                    brdf,
                     point: this.frame.to_world(point),
                     frame,
                     to: to.normalize(),

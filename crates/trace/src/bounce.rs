@@ -2,7 +2,7 @@ use crate::emit::LAMBERTIAN;
 use crate::obstacles::ray_through;
 use crate::scatter::{Scatterer, Spread};
 use crate::tracer::{Arrival, cosines};
-use etendue_field::{Brdf, Frame, Patch, Reflectance, Specular, TwoPlane};
+use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular, TwoPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
@@ -75,7 +75,7 @@ impl Bounce {
                     ..
                 } = *arrival;
                 let brdf = at(patch, reflectance, point);
-                if brdf.albedo <= 0.0 || !arrival.is_on_front() {
+                if brdf.albedo() <= 0.0 || !arrival.is_on_front() {
                     return None;
                 }
                 let frame = Frame::IDENTITY.turned_to(facing);
@@ -96,9 +96,9 @@ impl Bounce {
     }
 }
 
-/// The BRDF at a point of a patch.
+/// The BRDFs at a point of a patch.
 #[inline]
-pub(crate) fn at(patch: &Patch, reflectance: &Reflectance, point: DVec3) -> Brdf {
+pub(crate) fn at<'a>(patch: &Patch, reflectance: &'a Reflectance, point: DVec3) -> Mixture<'a> {
     let at = patch.frame.to_local(point);
     reflectance.at(at.x, at.y)
 }

@@ -4,7 +4,7 @@ use crate::obstacles::direction;
 use crate::proposal::{Aim, Follower};
 use crate::reach::{looks_at_surface, outline, reach, reflects};
 use crate::station::{Station, View};
-use etendue_field::{Brdf, Frame, Profile, TwoPlane, random};
+use etendue_field::{Frame, Mixture, Profile, TwoPlane, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -37,17 +37,21 @@ struct Angles {
 
 /// How a surface sends light on from one of its points.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Spread {
+pub(crate) enum Spread<'a> {
     /// By the cosine of the angle to its normal.
     Cosine,
-    /// By a BRDF, in a frame with D along the normal; light has come from a direction in that frame.
-    Lobe { brdf: Brdf, frame: Frame, wi: DVec3 },
+    /// By a sum of BRDFs, in a frame with D along the normal; light has come from a direction in that frame.
+    Lobe {
+        brdf: Mixture<'a>,
+        frame: Frame,
+        wi: DVec3,
+    },
 }
 
 /// Slopes towards a surface are bounded by its size alone.
 const ANY_SLOPE: f64 = 1e6;
 
-impl Spread {
+impl Spread<'_> {
     /// A direction in which light leaves, in any length, where the surface has this normal.
     #[inline]
     fn sample(&self, normal: DVec3, [a, b]: [f64; 2]) -> DVec3 {
@@ -59,7 +63,7 @@ impl Spread {
                 Frame::IDENTITY.turned_to(normal).vector_to_world(local)
             }
             Self::Lobe { brdf, frame, wi } => {
-                frame.vector_to_world(brdf::sample(brdf, *wi, [a, b]))
+                frame.vector_to_world(brdf::towards(brdf, *wi, [a, b]))
             }
         }
     }
@@ -72,7 +76,7 @@ impl Spread {
             Self::Cosine => 1.0 / (LAMBERTIAN * secant_squared * secant_squared),
             Self::Lobe { brdf, frame, wi } => {
                 let wo = frame.vector_to_local(direction(ray)).normalize();
-                brdf::density(brdf, *wi, wo) * per_slope(secant_squared, cosine)
+                brdf::densities(brdf, *wi, wo) * per_slope(secant_squared, cosine)
             }
         }
     }
@@ -84,7 +88,7 @@ impl Spread {
             Self::Cosine => 1.0 / LAMBERTIAN,
             Self::Lobe { brdf, frame, wi } => {
                 let wo = frame.vector_to_local(direction(ray)).normalize();
-                brdf::value(brdf, *wi, wo)
+                brdf::sum(brdf, *wi, wo)
             }
         }
     }
@@ -174,7 +178,7 @@ impl Scatterer {
         &self,
         point: DVec3,
         normal: DVec3,
-        spread: &Spread,
+        spread: &Spread<'_>,
         words: [u32; 4],
     ) -> Option<(TwoPlane, f64)> {
         let r = words.map(random::unit);

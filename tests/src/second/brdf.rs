@@ -2,7 +2,7 @@
 //! and Smith's masking as an integral.
 
 use super::vector::{Vector, angle, dot, plus, turned, unit};
-use etendue_field::{Brdf, Complex, Fresnel, Lobe};
+use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe};
 use std::f64::consts::PI;
 
 const NORMAL: Vector = [0.0, 0.0, 1.0];
@@ -14,6 +14,38 @@ pub(super) fn value(brdf: &Brdf, from: Vector, to: Vector, fault: &str) -> f64 {
         return 0.0;
     }
     let incidence = angle(NORMAL, from);
+    let [f, h] = match fault {
+        "h for f" => [&brdf.outgoing, &brdf.incoming],
+        "h left out" => [&brdf.incoming, &None],
+        _ => [&brdf.incoming, &brdf.outgoing],
+    };
+    let factor = |table: &Option<AngleTable>, at: f64| {
+        table
+            .as_ref()
+            .map_or(1.0, |table| by_angle(&table.values, at, fault))
+    };
+    let factors = factor(f, incidence) * factor(h, angle(NORMAL, to));
+    factors * lobe(brdf, incidence, [from, to], fault)
+}
+
+/// The straight line between two values of a list over 0 to 90°, at an angle.
+fn by_angle(values: &[f64], angle: f64, fault: &str) -> f64 {
+    let step = 90.0 / (values.len() - 1) as f64;
+    let degrees = match fault {
+        "from the surface" => 90.0 - angle.to_degrees(),
+        "over the cosine" => 90.0 * (1.0 - angle.cos()),
+        _ => angle.to_degrees(),
+    };
+    let pairs = values.windows(2).enumerate();
+    let spans = pairs.map(|(i, pair)| (i as f64 * step, pair));
+    let held = spans.rev().find(|(start, _)| *start <= degrees);
+    held.map_or(f64::NAN, |(start, pair)| {
+        pair[0] + (degrees - start) / step * (pair[1] - pair[0])
+    })
+}
+
+/// A BRDF without the factors of its lists.
+fn lobe(brdf: &Brdf, incidence: f64, [from, to]: [Vector; 2], fault: &str) -> f64 {
     let reflected = |angle: f64| brdf.albedo * reflected(&brdf.fresnel, angle, fault);
     match brdf.lobe {
         Lobe::Lambertian => reflected(incidence) / PI,

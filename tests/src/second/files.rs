@@ -50,14 +50,13 @@ fn pictured(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f6
     let mut world = World::new(dice);
     let (smooth, words) = Smooth::new(dice, &world, 0.7);
     let size = [between(dice, 0.3, 0.8), between(dice, 0.3, 0.8)];
-    let mut brdf = || Brdf {
-        lobe: Lobe::Ggx {
+    let mut brdf = || {
+        let lobe = Lobe::Ggx {
             roughness: scale(dice, 1e-2, 1.0),
-        },
-        albedo: dice.unit(),
-        fresnel: Fresnel::Dielectric {
-            index: scale(dice, 1.1, 3.0),
-        },
+        };
+        let albedo = dice.unit();
+        let index = scale(dice, 1.1, 3.0);
+        Brdf::new(lobe, albedo, Fresnel::Dielectric { index })
     };
     let (one, two) = (brdf(), brdf());
     let grating = Grating {
@@ -92,7 +91,7 @@ fn pictured(dice: &mut Dice, fault: &str, folder: &Path, picture: &Levels) -> f6
         let point = smooth.point(at[0], at[1]);
         let [s, t, _] = smooth.wrong(fault).axes.coordinates(point);
         let place = object.patch.frame.to_local(world.resolved(point).into());
-        apart(&reflectance.at(place.x, place.y), &varied.at([s, t], fault))
+        apart(&reflectance.at(place.x, place.y), varied.at([s, t], fault))
     });
     each.fold(0.0, worse)
 }

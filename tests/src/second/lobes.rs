@@ -2,9 +2,11 @@
 
 use super::brdf::{self, mirrored};
 use super::check::{Check, relative};
+use super::pattern::cosine;
+use super::textures::grating;
 use super::vector::{Vector, aside, between, direction, scale};
 use crate::hostile::dice::Dice;
-use etendue_field::{Brdf, Fresnel, Lobe};
+use etendue_field::{AngleTable, Brdf, Fresnel, Lobe, Mixture, Pattern, Reflectance, Term, Weight};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -19,6 +21,24 @@ fn predicted(brdf: &Brdf, from: Vector, to: Vector) -> f64 {
     etendue_theory::scattering::brdf::value(brdf, DVec3::Z, from.into(), to.into())
 }
 
+/// The same of a sum of BRDFs.
+type FastSum = fn(&Mixture<'_>, Vector, Vector) -> f64;
+
+fn traced_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
+    etendue_trace::brdf::sum(mixture, from.into(), to.into())
+}
+
+fn predicted_sum(mixture: &Mixture<'_>, from: Vector, to: Vector) -> f64 {
+    etendue_theory::scattering::brdf::sum(mixture, DVec3::Z, from.into(), to.into())
+}
+
+const SEPARABLE: &[&str] = &[
+    "h for f",
+    "h left out",
+    "from the surface",
+    "over the cosine",
+];
+const SUM: &[&str] = &["weights swapped", "a term left out", "phase subtracted"];
 const FRESNEL: &[&str] = &["s alone", "p alone", "media swapped", "k left out"];
 const PHONG: &[&str] = &["about the half-way vector", "(n + 2)/2π in front"];
 const BECKMANN: &[&str] = &[
@@ -70,20 +90,91 @@ pub(super) fn checks() -> Vec<Check> {
         "theory: GGX",
     ];
     let both = [of(traced, tracers), of(predicted, theory)];
-    both.into_iter().flatten().collect()
+    let more = [
+        between_lists("tracers: separable", traced),
+        between_lists("theory: separable", predicted),
+        of_sum("tracers: sum of BRDFs", traced_sum),
+        of_sum("theory: sum of BRDFs", predicted_sum),
+    ];
+    both.into_iter().flatten().chain(more).collect()
+}
+
+fn between_lists(name: &'static str, fast: Fast) -> Check {
+    Check {
+        name,
+        rounds: [4000, 1],
+        tolerance: (1e-9, "an angle near 0 from its cosine, off by 10⁻⁸ at most"),
+        faults: SEPARABLE,
+        difference: Box::new(move |dice, fault| separable(fast, dice, fault)),
+    }
+}
+
+fn of_sum(name: &'static str, fast: FastSum) -> Check {
+    Check {
+        name,
+        rounds: [4000, 1],
+        tolerance: (1e-10, "rounding of cos α, n = 200 times, and of 2π f t"),
+        faults: SUM,
+        difference: Box::new(move |dice, fault| summed(fast, dice, fault)),
+    }
 }
 
 /// As a share of the value.
 fn difference(fast: Fast, lobe: fn(&mut Dice) -> Lobe, dice: &mut Dice, fault: &str) -> f64 {
-    let brdf = Brdf {
-        lobe: lobe(dice),
-        albedo: dice.unit(),
-        fresnel: fresnel(dice),
+    let brdf = Brdf::new(lobe(dice), dice.unit(), fresnel(dice));
+    compared(fast, &brdf, dice, fault)
+}
+
+/// The same of a Phong lobe between lists of factors of both angles.
+fn separable(fast: Fast, dice: &mut Dice, fault: &str) -> f64 {
+    let exponent = scale(dice, 0.1, 1e3);
+    let mut list = || {
+        let values: Vec<f64> = (0..2 + dice.below(9)).map(|_| dice.unit()).collect();
+        Some(AngleTable {
+            values: values.into(),
+        })
     };
+    let (incoming, outgoing) = (list(), list());
+    let brdf = Brdf {
+        incoming,
+        outgoing,
+        ..Brdf::new(Lobe::Phong { exponent }, 1.0, Fresnel::White)
+    };
+    compared(fast, &brdf, dice, fault)
+}
+
+/// The value of a sum of BRDFs with weights of its own.
+fn summed(fast: FastSum, dice: &mut Dice, fault: &str) -> f64 {
+    let mut term = |exponent: f64| Term {
+        brdf: Brdf::new(Lobe::Phong { exponent }, dice.unit(), fresnel(dice)),
+        weight: Weight::Pattern(Pattern::Cosine(grating(dice))),
+    };
+    let terms = [2.0, 20.0, 200.0].map(&mut term).to_vec();
+    let at = [between(dice, -0.7, 0.7), between(dice, -0.7, 0.7)];
+    let tilt = between(dice, 0.0, 1.2);
+    let from = aside(dice, [0.0, 0.0, 1.0], tilt);
+    let to = to(dice, Lobe::Phong { exponent: 20.0 }, from);
+    let weighted = |i: usize| {
+        let Weight::Pattern(Pattern::Cosine(grating)) = &terms[i].weight else {
+            return f64::NAN;
+        };
+        let of = if fault == "weights swapped" { 2 - i } else { i };
+        cosine(grating, at, fault) * brdf::value(&terms[of].brdf, from, to, fault)
+    };
+    let count = if fault == "a term left out" { 2 } else { 3 };
+    let expected: f64 = (0..count).map(weighted).sum();
+    let reflectance = Reflectance {
+        terms: terms.clone(),
+        texture: None,
+    };
+    relative(fast(&reflectance.at(at[0], at[1]), from, to), expected)
+}
+
+fn compared(fast: Fast, brdf: &Brdf, dice: &mut Dice, fault: &str) -> f64 {
     let tilt = between(dice, 0.0, 1.55);
     let from = aside(dice, [0.0, 0.0, 1.0], tilt);
     let to = to(dice, brdf.lobe, from);
-    relative(fast(&brdf, from, to), brdf::value(&brdf, from, to, fault))
+    relative(fast(brdf, from, to), brdf::value(brdf, from, to, fault))
 }
 
 pub(super) fn fresnel(dice: &mut Dice) -> Fresnel {

@@ -8,9 +8,7 @@ use super::vector::{Axes, Vector, dot, plus, turned_along, unit};
 use super::views::{Looking, PLANES, View};
 use super::world::World;
 use crate::hostile::dice::Dice;
-use etendue_field::{
-    Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Reflectance, Specular,
-};
+use etendue_field::{Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Specular};
 use etendue_theory::geometry::{Edition, Map};
 use etendue_theory::rays::{self, Element, Plane};
 use etendue_theory::{Observed, scattering};
@@ -111,22 +109,14 @@ impl Met {
 
     /// The system of reflection off its surface.
     fn scattering(&self, plane: Plane) -> Observed<scattering::System> {
-        let brdf = Brdf {
-            lobe: Lobe::Lambertian,
-            albedo: 1.0,
-            fresnel: Fresnel::White,
-        };
+        let brdf = Brdf::new(Lobe::Lambertian, 1.0, Fresnel::White);
         let system = scattering::System {
             light: Light::Point { intensity: 1.0 },
             layers: Vec::new(),
             obstacles: vec![],
             name: "it".to_owned(),
             patch: self.patch,
-            reflectance: Reflectance {
-                brdf,
-                blend: None,
-                texture: None,
-            },
+            reflectance: brdf.into(),
         };
         Observed { system, plane }
     }

@@ -1,7 +1,7 @@
-//! Patterns, pictures and blends from their definitions (docs of `etendue_field::Pattern`,
+//! Patterns, pictures and sums of BRDFs from their definitions (docs of `etendue_field::Pattern`,
 //! docs/scenes.md).
 
-use etendue_field::{Brdf, Fresnel, Grating, Lobe};
+use etendue_field::{Brdf, Grating};
 use std::f64::consts::TAU;
 
 /// The levels of a picture, row by row from the top, each row from the left.
@@ -117,7 +117,7 @@ fn between(centres: &[f64], at: f64, fault: &str) -> (usize, f64) {
     }
 }
 
-/// A BRDF that varies over a surface.
+/// BRDFs that add up over a surface.
 #[derive(Clone, Debug)]
 pub(super) struct Varied {
     pub(super) brdf: Brdf,
@@ -127,63 +127,22 @@ pub(super) struct Varied {
 }
 
 impl Varied {
-    /// The BRDF at a place: `brdf` where the blend is 1, `other` where it is 0. Numbers in between
-    /// are interpolated; of lobes or Fresnel factors of different kinds the nearer is taken. The
-    /// texture multiplies.
-    pub(super) fn at(&self, at: [f64; 2], fault: &str) -> Brdf {
+    /// How much of each there is at a place: of `brdf` as much as the blend says, of `other` the
+    /// rest. The texture multiplies.
+    pub(super) fn at(&self, at: [f64; 2], fault: &str) -> [(f64, &Brdf); 2] {
         let share = self.blend.value(at, fault);
         let share = match fault {
             "blend order swapped" => 1.0 - share,
             "the nearer for what is between" => share.round(),
             _ => share,
         };
-        let mixed = |a: f64, b: f64| share * a + (1.0 - share) * b;
-        let nearer = if share >= 0.5 {
-            &self.brdf
-        } else {
-            &self.other
+        let texture = match fault {
+            "texture left out" => 1.0,
+            _ => self.texture.value(at, fault),
         };
-        let albedo = mixed(self.brdf.albedo, self.other.albedo);
-        Brdf {
-            lobe: lobe(self.brdf.lobe, self.other.lobe, mixed).unwrap_or(nearer.lobe),
-            albedo: match fault {
-                "texture left out" => albedo,
-                _ => albedo * self.texture.value(at, fault),
-            },
-            fresnel: fresnel(self.brdf.fresnel, self.other.fresnel, mixed)
-                .unwrap_or(nearer.fresnel),
-        }
-    }
-}
-
-fn lobe(a: Lobe, b: Lobe, mixed: impl Fn(f64, f64) -> f64) -> Option<Lobe> {
-    match (a, b) {
-        (Lobe::Phong { exponent: a }, Lobe::Phong { exponent: b }) => Some(Lobe::Phong {
-            exponent: mixed(a, b),
-        }),
-        (Lobe::Beckmann { roughness: a }, Lobe::Beckmann { roughness: b }) => {
-            Some(Lobe::Beckmann {
-                roughness: mixed(a, b),
-            })
-        }
-        (Lobe::Ggx { roughness: a }, Lobe::Ggx { roughness: b }) => Some(Lobe::Ggx {
-            roughness: mixed(a, b),
-        }),
-        _ => None,
-    }
-}
-
-fn fresnel(a: Fresnel, b: Fresnel, mixed: impl Fn(f64, f64) -> f64) -> Option<Fresnel> {
-    match (a, b) {
-        (Fresnel::Dielectric { index: a }, Fresnel::Dielectric { index: b }) => {
-            Some(Fresnel::Dielectric { index: mixed(a, b) })
-        }
-        (Fresnel::Conductor { n, k }, Fresnel::Conductor { n: m, k: l }) => {
-            Some(Fresnel::Conductor {
-                n: mixed(n, m),
-                k: mixed(k, l),
-            })
-        }
-        _ => None,
+        [
+            (texture * share, &self.brdf),
+            (texture * (1.0 - share), &self.other),
+        ]
     }
 }

@@ -1,11 +1,11 @@
 //! Patterns, pictures and blends against the second ones.
 
-use super::check::{Check, relative, worse};
+use super::check::{Check, worse};
 use super::lobes;
 use super::pattern::{Levels, Pattern, Varied};
 use super::vector::{between, scale};
 use crate::hostile::dice::Dice;
-use etendue_field::{self as field, Brdf, Fresnel, Grating, Lobe, Raster, Reflectance};
+use etendue_field::{self as field, Brdf, Grating, Lobe, Mixture, Raster, Reflectance};
 use std::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -48,7 +48,7 @@ pub(super) fn checks() -> Vec<Check> {
         Check {
             name: "blend and texture",
             rounds: [4000, 1],
-            tolerance: (1e-11, "rounding of patterns and numbers between"),
+            tolerance: (1e-11, "rounding of patterns"),
             faults: BLEND,
             difference: Box::new(blended),
         },
@@ -58,32 +58,23 @@ pub(super) fn checks() -> Vec<Check> {
 fn blended(dice: &mut Dice, fault: &str) -> f64 {
     let varied = varied(dice);
     let at = place(dice);
-    let reflectance = Reflectance {
-        brdf: varied.brdf,
-        blend: Some((varied.other, fast(&varied.blend))),
-        texture: Some(fast(&varied.texture)),
-    };
-    apart(&reflectance.at(at[0], at[1]), &varied.at(at, fault))
+    let mut reflectance = Reflectance::blend(
+        varied.brdf.clone(),
+        varied.other.clone(),
+        fast(&varied.blend),
+    );
+    reflectance.texture = Some(fast(&varied.texture));
+    apart(&reflectance.at(at[0], at[1]), varied.at(at, fault))
 }
 
-/// How far two BRDFs are apart; 1 if they are of different kinds.
-pub(super) fn apart(a: &Brdf, b: &Brdf) -> f64 {
-    let lobes = match (a.lobe, b.lobe) {
-        (Lobe::Lambertian, Lobe::Lambertian) => 0.0,
-        (Lobe::Phong { exponent: a }, Lobe::Phong { exponent: b })
-        | (Lobe::Beckmann { roughness: a }, Lobe::Beckmann { roughness: b })
-        | (Lobe::Ggx { roughness: a }, Lobe::Ggx { roughness: b }) => relative(a, b),
-        _ => 1.0,
+/// How far the weights of two sums are apart; of a BRDF that is in one alone, by all of its weight.
+pub(super) fn apart(mixture: &Mixture<'_>, varied: [(f64, &Brdf); 2]) -> f64 {
+    let weight = |brdf: &Brdf| {
+        let weights = mixture.weighted().filter(|(_, of)| *of == brdf);
+        weights.map(|(weight, _)| weight).sum::<f64>()
     };
-    let fresnels = match (a.fresnel, b.fresnel) {
-        (Fresnel::White, Fresnel::White) => 0.0,
-        (Fresnel::Dielectric { index: a }, Fresnel::Dielectric { index: b }) => relative(a, b),
-        (Fresnel::Conductor { n, k }, Fresnel::Conductor { n: m, k: l }) => {
-            relative(n, m).max((k - l).abs())
-        }
-        _ => 1.0,
-    };
-    worse(worse(lobes, fresnels), (a.albedo - b.albedo).abs())
+    let each = varied.map(|(expected, brdf)| (weight(brdf) - expected).abs());
+    worse(each[0], each[1])
 }
 
 fn place(dice: &mut Dice) -> [f64; 2] {
@@ -150,11 +141,7 @@ fn brdf(dice: &mut Dice) -> Brdf {
             roughness: scale(dice, 1e-3, 1.0),
         },
     };
-    Brdf {
-        lobe,
-        albedo: dice.unit(),
-        fresnel: lobes::fresnel(dice),
-    }
+    Brdf::new(lobe, dice.unit(), lobes::fresnel(dice))
 }
 
 fn varied(dice: &mut Dice) -> Varied {

@@ -4,7 +4,7 @@ use super::light::{Surface, frequencies, light, light_hat};
 use super::operators::Comparison;
 use crate::rows::Line;
 use crate::table1::apart;
-use etendue_field::Complex;
+use etendue_field::{AngleTable, Complex};
 use etendue_theory::geometry::Map;
 use etendue_theory::shading::{
     Factor, Fresnel, Lattice, Lobe, Reflection, Step, Term, TextureWave, cosine_hat,
@@ -44,6 +44,7 @@ pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> Surface<
         before: &f64::cos,
         lobe,
         after: None,
+        kinks: &[],
         texture: &|_| 1.0,
     }
 }
@@ -66,6 +67,7 @@ pub(super) const fn term(before: Factor<'_>, lobe: Option<Lobe>) -> Term<'_> {
         before,
         lobe,
         after: Factor::One,
+        weight: None,
     }
 }
 
@@ -83,7 +85,9 @@ pub(super) fn lopsided_hat(q: f64) -> Complex {
 /// Rows with a surface.
 pub(super) fn all() -> Vec<Comparison> {
     let mut rows = separable();
+    rows.extend(listed());
     rows.push(sum());
+    rows.push(weighted());
     rows.push(textured());
     rows.push(varying());
     rows
@@ -187,6 +191,97 @@ fn separable() -> Vec<Comparison> {
             })),
         ),
     ]
+}
+
+/// f and h by lists of values over |θ|, with kinks.
+fn listed() -> [Comparison; 2] {
+    let table = AngleTable {
+        values: [1.0, 0.9, 0.2, 0.3, 0.8].into(),
+    };
+    // The list once more, by the nearest two of its angles.
+    let value = |t: f64| {
+        let at = t.abs() / FRAC_PI_2 * 4.0;
+        let hats = [1.0, 0.9, 0.2, 0.3, 0.8].iter().zip(0_u32..);
+        hats.map(|(v, i)| v * (1.0 - (at - f64::from(i)).abs()).max(0.0))
+            .sum::<f64>()
+    };
+    let gaussian = |_: f64, d: f64| GLOSS.value(d);
+    let with_cosine = |t: f64| value(t) * t.cos();
+    let f = Term {
+        before: Factor::TableCosine(&table),
+        ..term(Factor::Cosine, Some(GLOSS))
+    };
+    let h = Term {
+        after: Factor::Table(&table),
+        ..term(Factor::Cosine, Some(GLOSS))
+    };
+    let kinks = [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(|i| FRAC_PI_2 * i / 4.0);
+    let off = |term: Term<'_>, surface: &Surface<'_>| {
+        apart(&chain(&reflection(vec![term])), &primal(surface))
+    };
+    let [by_f, by_h] = [
+        Surface {
+            before: &with_cosine,
+            kinks: &kinks,
+            ..surface(Some(&gaussian))
+        },
+        Surface {
+            after: Some(&value),
+            kinks: &kinks,
+            ..surface(Some(&gaussian))
+        },
+    ];
+    let row = |operator, off, fault| Comparison {
+        operator,
+        line: Some(Line::Separable),
+        compared: "reflection, step 7".to_owned(),
+        off,
+        fault,
+    };
+    [
+        row(
+            "separable, f(θ_i') by a list",
+            off(f, &by_f),
+            ("h for f", off(h, &by_f)),
+        ),
+        row(
+            "separable, h(θ_o') by a list",
+            off(h, &by_h),
+            ("f for h", off(f, &by_h)),
+        ),
+    ]
+}
+
+/// Two lobes with weights ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and what is left of them.
+fn weighted() -> Comparison {
+    let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
+    let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);
+    let traced = primal(&surface(Some(&both)));
+    let waves = |sign: f64| {
+        let side = Complex::from_polar(sign * 0.225, 0.4);
+        [(0.0, Complex::from(0.5)), (1.5, side), (-1.5, side.conj())].map(
+            |(frequency, amplitude)| TextureWave {
+                frequency,
+                amplitude,
+            },
+        )
+    };
+    let [one, rest] = [1.0, -1.0].map(waves);
+    let by = |one: &[TextureWave], rest: &[TextureWave]| {
+        let of = |lobe, weight| Term {
+            weight: Some(weight),
+            ..term(Factor::Cosine, Some(lobe))
+        };
+        let terms = vec![of(GLOSS, one), of(PHONG, rest)];
+        apart(&chain(&reflection(terms)), &traced)
+    };
+    Comparison {
+        operator: "weighted sum of two lobes",
+        line: Some(Line::SpaceVarying),
+        compared: "reflection, step 7".to_owned(),
+        off: by(&one, &rest),
+        fault: ("weights swapped", by(&rest, &one)),
+    }
 }
 
 fn sum() -> Comparison {

@@ -82,17 +82,28 @@ pub(super) struct Surface<'a> {
     pub(super) lobe: Option<&'a dyn Fn(f64, f64) -> f64>,
     /// h(θ_o'), on the half-circle; `None` is 1 all around.
     pub(super) after: Option<&'a dyn Fn(f64) -> f64>,
+    /// Angles at which f or h has a corner, ascending.
+    pub(super) kinks: &'a [f64],
     /// T(s).
     pub(super) texture: &'a dyn Fn(f64) -> f64,
 }
 
 impl Surface<'_> {
+    /// Nodes up to an angle on both sides, with so many on each side of the middle of each piece between corners.
+    fn pieces(&self, end: f64, count: i32) -> Vec<(f64, f64)> {
+        let ends = [&[-end], self.kinks, &[end]].concat();
+        let pieces = ends
+            .windows(2)
+            .map(|ends| between([ends[0], ends[1]], count));
+        pieces.flatten().collect()
+    }
+
     /// The transform of the reflected light field in the light frame after, all angles and positions being linear in those before:
     /// x = −c₀ s, θ = θ_i' + k s − θ₀, θ_r' = −θ_i', x'' = c₁ s, θ'' = θ_o' + k s − θ₁.
     pub(super) fn transform(&self, light: &dyn Fn([f64; 2]) -> f64, omega: [f64; 2]) -> Complex {
         let (c0, c1) = (self.theta0.cos(), self.theta1.cos());
-        let incident = between([-self.horizon, self.horizon], 120);
-        let outgoing = between([-FRAC_PI_2, FRAC_PI_2], 160);
+        let incident = self.pieces(self.horizon, 120);
+        let outgoing = self.pieces(FRAC_PI_2, 160);
         // ρ over δ, with its phase; where ρ does not vary it is summed once.
         let spread = |s: f64, mirror: f64| -> Complex {
             let Some(lobe) = self.lobe else {

@@ -17,6 +17,7 @@ mod photons;
 mod planted;
 mod primal;
 mod scenes;
+mod semi;
 mod spreading;
 mod tamper;
 mod traced;
@@ -46,6 +47,7 @@ fn with_photons(photons: Option<u64>) -> Vec<Section> {
     vec![
         photons::photons(photons),
         planted::planted(photons),
+        semi::semi(photons),
         chains::chains(photons),
         misprints::misprints(photons),
     ]

@@ -119,7 +119,8 @@ fn row(outcome: &Outcome, index: usize, level: f64) -> Row {
     let percent = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{:.3} %", 100.0 * x));
     let number = |x: Option<f64>| x.map_or("–".to_owned(), |x| format!("{x:.5}"));
     let (word, mut lines) = operator(scene, place);
-    lines.extend((scene.name == "fresnel_grazing").then_some(Line::Separable));
+    let is_separable = scene.name.starts_with("fresnel") || scene.name.starts_with("factor");
+    lines.extend(is_separable.then_some(Line::Separable));
     lines.extend((scene.name == "environment").then_some(Line::Environment));
     lines.extend((place.name == "1_incidence").then_some(Line::Visibility));
     let cells = vec![
@@ -167,13 +168,13 @@ fn reflection(scene: &Scene) -> (String, Vec<Line>) {
     let Event::Reflects(reflectance) = &scene.patches[i].event else {
         return ("–".to_owned(), Vec::new());
     };
-    let lobe = match reflectance.brdf.lobe {
+    let lobe = match reflectance.first().lobe {
         Lobe::Lambertian => "Lambertian",
         Lobe::Phong { .. } => "Phong",
         Lobe::Beckmann { .. } => "Beckmann",
         Lobe::Ggx { .. } => "GGX",
     };
-    match (reflectance.texture.is_some(), reflectance.blend.is_some()) {
+    match (reflectance.texture.is_some(), reflectance.only().is_none()) {
         (false, false) if lobe == "Lambertian" => (lobe.to_owned(), Vec::new()),
         (false, false) => (lobe.to_owned(), vec![Line::Brdf]),
         (true, false) => (format!("{lobe}, texture"), vec![Line::Texture]),

@@ -8,7 +8,7 @@ use super::tamper::{around_the_normal, cosine, polarised, scaled, textured_here}
 use crate::report::Bound::Below;
 use crate::report::{Check, Row, Section};
 use etendue_compare::sidak;
-use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Slices};
+use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Reflectance, Slices, Term, Weight};
 use etendue_scene::Scene;
 use etendue_theory::scattering::System;
 use glam::DQuat;
@@ -140,7 +140,7 @@ fn stands() -> Vec<Stand> {
                 (
                     "index + 2 %",
                     Plant::System(|s| {
-                        s.reflectance.brdf.fresnel = Fresnel::Dielectric { index: 1.53 };
+                        s.reflectance.first_mut().fresnel = Fresnel::Dielectric { index: 1.53 };
                     }),
                 ),
             ],
@@ -162,7 +162,7 @@ fn stands() -> Vec<Stand> {
                 ),
                 (
                     "albedo forgotten",
-                    Plant::System(|s| s.reflectance.brdf.albedo = 1.0),
+                    Plant::System(|s| s.reflectance.first_mut().albedo = 1.0),
                 ),
             ],
         },
@@ -173,6 +173,74 @@ fn stands() -> Vec<Stand> {
             faults: vec![(
                 "texture multiplied in at this plane",
                 Plant::Photons(|s| reflectance(s).texture = None, textured_here),
+            )],
+        },
+        Stand {
+            scene: "weighted",
+            plane: "reflection",
+            texts: &[],
+            faults: vec![
+                (
+                    "weights swapped",
+                    Plant::System(|s| swapped(&mut s.reflectance)),
+                ),
+                (
+                    "width of a lobe + 1 %",
+                    Plant::System(|s| lobe(s, 1.01_f64.powi(-2))),
+                ),
+                (
+                    "width of a lobe − 1 %",
+                    Plant::System(|s| lobe(s, 0.99_f64.powi(-2))),
+                ),
+                (
+                    "modulation of the weights 1 for 0.9",
+                    Plant::System(|s| full(&mut s.reflectance)),
+                ),
+            ],
+        },
+        Stand {
+            scene: "sum",
+            plane: "reflection",
+            texts: &[],
+            faults: vec![
+                (
+                    "a term left out",
+                    Plant::System(|s| {
+                        s.reflectance.terms.remove(1);
+                    }),
+                ),
+                (
+                    "weights swapped",
+                    Plant::System(|s| swapped(&mut s.reflectance)),
+                ),
+                (
+                    "h for f",
+                    Plant::System(|s| turned_round(&mut s.reflectance)),
+                ),
+            ],
+        },
+        Stand {
+            scene: "factor_incoming",
+            plane: "reflection",
+            texts: &[],
+            faults: vec![
+                (
+                    "h for f",
+                    Plant::System(|s| turned_round(&mut s.reflectance)),
+                ),
+                (
+                    "f left out",
+                    Plant::System(|s| s.reflectance.first_mut().incoming = None),
+                ),
+            ],
+        },
+        Stand {
+            scene: "factor_outgoing",
+            plane: "reflection",
+            texts: &[],
+            faults: vec![(
+                "f for h",
+                Plant::System(|s| turned_round(&mut s.reflectance)),
             )],
         },
         Stand {
@@ -192,7 +260,7 @@ fn stands() -> Vec<Stand> {
                 "α² for α",
                 Plant::Photons(
                     |s| {
-                        if let Lobe::Ggx { roughness } = &mut reflectance(s).brdf.lobe {
+                        if let Lobe::Ggx { roughness } = &mut reflectance(s).first_mut().lobe {
                             *roughness *= *roughness;
                         }
                     },
@@ -213,9 +281,34 @@ fn stands() -> Vec<Stand> {
 fn lobe(system: &mut System, factor: f64) {
     if let Lobe::Phong { exponent: number }
     | Lobe::Beckmann { roughness: number }
-    | Lobe::Ggx { roughness: number } = &mut system.reflectance.brdf.lobe
+    | Lobe::Ggx { roughness: number } = &mut system.reflectance.first_mut().lobe
     {
         *number *= factor;
+    }
+}
+
+/// f for h and h for f.
+fn turned_round(reflectance: &mut Reflectance) {
+    for Term { brdf, .. } in &mut reflectance.terms {
+        std::mem::swap(&mut brdf.incoming, &mut brdf.outgoing);
+    }
+}
+
+/// The weights of the first two BRDFs swapped.
+pub(super) fn swapped(reflectance: &mut Reflectance) {
+    if let [one, two, ..] = &mut reflectance.terms[..] {
+        std::mem::swap(&mut one.weight, &mut two.weight);
+    }
+}
+
+/// Weights that go down to 0.
+fn full(reflectance: &mut Reflectance) {
+    for Term { weight, .. } in &mut reflectance.terms {
+        if let Weight::Pattern(Pattern::Cosine(grating)) | Weight::Rest(Pattern::Cosine(grating)) =
+            weight
+        {
+            grating.modulation = 1.0;
+        }
     }
 }
 

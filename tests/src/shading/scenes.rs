@@ -20,12 +20,19 @@ const SCENES: &[(&str, &str)] = &[
     scene!("environment", "table1/environment"),
     scene!("twisted_glossy", "table1/twisted_glossy"),
     scene!("ggx_sphere", "table1/ggx_sphere"),
+    scene!("weighted", "table1/weighted"),
+    scene!("sum", "table1/sum"),
+    scene!("factor_incoming", "table1/factor_incoming"),
+    scene!("factor_outgoing", "table1/factor_outgoing"),
+    scene!("fresnel_aluminium", "table1/fresnel_aluminium"),
+    scene!("fresnel_diamond", "table1/fresnel_diamond"),
+    scene!("semi_convolution", "table1/semi_convolution"),
     // For a misprint about mirrors; it has its place in Table 1.
     scene!("concave_oblique", "table1/concave_oblique"),
 ];
 
 /// How many of them scatter light: all but the last.
-const SHADED: usize = 7;
+const SHADED: usize = 14;
 
 /// Every scene that scatters, with the photons of its file unless others are given.
 pub(super) fn all(photons: Option<u64>) -> Vec<Scene> {

@@ -52,6 +52,7 @@ fn reflection(curvature: f64, before: Factor<'static>) -> Reflection<'static> {
             before,
             lobe: Some(Lobe::Gaussian { deviation: 0.12 }),
             after: Factor::One,
+            weight: None,
         }],
         lattice: Lattice::circle(12.0),
     }

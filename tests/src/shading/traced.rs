@@ -174,6 +174,7 @@ impl Circle {
                 before: Factor::Cosine,
                 lobe: lobe.map(|deviation| Lobe::Gaussian { deviation }),
                 after: Factor::One,
+                weight: None,
             }],
             // A deviation of the light's content is 0.18/e; the shears tilt it.
             lattice: Lattice::circle(2.5 / size),

@@ -45,7 +45,7 @@ const FAULTS: [Fault; 6] = [
     ("albedo of both 1 % larger", |system| {
         for surface in &mut system.surfaces {
             if let Interaction::Reflects(reflectance) = &mut surface.interaction {
-                reflectance.brdf.albedo *= 1.01;
+                reflectance.first_mut().albedo *= 1.01;
             }
         }
     }),
@@ -53,7 +53,7 @@ const FAULTS: [Fault; 6] = [
 
 fn change_lobe(system: &mut System, surface: usize, factor: f64) {
     if let Interaction::Reflects(reflectance) = &mut system.surfaces[surface].interaction {
-        let lobe: &mut Lobe = &mut reflectance.brdf.lobe;
+        let lobe: &mut Lobe = &mut reflectance.first_mut().lobe;
         if let Some((_, number)) = lobe.number_mut() {
             *number *= factor;
         }

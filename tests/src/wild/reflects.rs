@@ -10,7 +10,7 @@ use std::io;
 pub(super) fn reflects(draw: &mut Draw) -> io::Result<EventFile> {
     let (mut other, mut blend, mut varied) = (None, None, None);
     if draw.one_in(4) {
-        other = Some(brdf(draw));
+        other = Some(Box::new(brdf(draw)));
         blend = Some(pattern(draw)?);
     }
     if draw.one_in(3) {
@@ -48,6 +48,8 @@ fn brdf(draw: &mut Draw) -> BrdfFile {
         lobe,
         albedo,
         fresnel,
+        incoming: None,
+        outgoing: None,
     }
 }
 

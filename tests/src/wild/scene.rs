@@ -148,7 +148,7 @@ fn is_specular(surface: &SurfaceFile) -> bool {
         SurfaceFile::Mesh { event, .. } => event.as_ref(),
         SurfaceFile::Smooth { event, .. } => Some(event),
     };
-    event.is_some_and(|event| !matches!(event, EventFile::Reflects { .. }))
+    event.is_some_and(|event| !matches!(event, EventFile::Reflects { .. } | EventFile::Sum { .. }))
 }
 
 /// The central ray of a scene that is legal.

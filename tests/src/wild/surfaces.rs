@@ -137,7 +137,7 @@ fn smooth(
         }
         _ => (reflects(draw)?, false),
     };
-    let black_behind = matches!(event, EventFile::Reflects { .. });
+    let black_behind = matches!(event, EventFile::Reflects { .. } | EventFile::Sum { .. });
     let form = if flat { FormFile::Plane } else { form(draw) };
     let mut aperture = draw.length([0.2, 1.0], [1e-4, 100.0]);
     if let FormFile::Sphere(k) | FormFile::Cylinder(k) = form {

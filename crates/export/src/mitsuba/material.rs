@@ -3,7 +3,7 @@
 use super::texture::Varied;
 use super::xml::{black, spectrum};
 use super::{NotInMitsuba, Writer};
-use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular};
+use etendue_field::{Brdf, Fresnel, Lobe, Pattern, Picture, Reflectance, Specular, Term, Weight};
 
 impl Writer {
     /// A mirror, an interface.
@@ -31,59 +31,55 @@ impl Writer {
         aperture: f64,
         name: &str,
     ) -> Result<String, NotInMitsuba> {
-        let Reflectance {
-            brdf,
-            blend,
-            texture,
-        } = reflectance;
+        let name = || name.to_owned();
+        let has_table = |term: &Term| term.brdf.incoming.is_some() || term.brdf.outgoing.is_some();
+        if reflectance.terms.iter().any(has_table) {
+            return Err(NotInMitsuba::AngleTable { name: name() });
+        }
+        let texture = reflectance.texture.as_ref();
         let textured = |brdf: &Brdf| Varied {
-            pattern: texture.as_ref(),
+            pattern: texture,
             range: [0.0, brdf.albedo],
         };
-        let (inside, pattern, outside) = match blend {
-            None => (self.brdf(brdf, textured(brdf)), texture.as_ref(), black()),
-            // One or the other, each with the texture.
-            Some((other, tiles @ Pattern::Checkerboard { .. })) => {
-                let weight = Varied {
-                    pattern: Some(tiles),
-                    range: [0.0, 1.0],
-                };
-                let weight = self.varied("weight", &weight);
-                let [other, brdf] = [other, brdf].map(|brdf| self.brdf(brdf, textured(brdf)));
-                let both = blended(&weight, &other, &brdf);
-                (both, texture.as_ref(), black())
-            }
-            // Albedos alone differ: a mixture of both is one between.
-            Some((other, pattern))
-                if other.lobe == brdf.lobe
-                    && other.fresnel == brdf.fresnel
-                    && texture.is_none() =>
-            {
-                let varied = |pattern| Varied {
-                    pattern,
-                    range: [other.albedo, brdf.albedo],
-                };
-                let constant = Varied {
-                    pattern: None,
-                    range: [other.albedo; 2],
-                };
-                let outside = self.brdf(brdf, constant);
-                let inside = self.brdf(brdf, varied(Some(pattern)));
-                (inside, Some(pattern), outside)
-            }
-            Some(_) => {
-                let name = name.to_owned();
-                return Err(NotInMitsuba::Blend { name });
-            }
+        let looks = match &reflectance.terms[..] {
+            [one] if one.weight == Weight::One => self.brdf(&one.brdf, textured(&one.brdf)),
+            [one, zero] => match (&one.weight, &zero.weight) {
+                (Weight::Pattern(pattern), Weight::Rest(rest)) if pattern == rest => {
+                    let weight = Varied {
+                        pattern: Some(pattern),
+                        range: [0.0, 1.0],
+                    };
+                    let weight = self.varied("weight", &weight);
+                    let [zero, one] =
+                        [zero, one].map(|term| self.brdf(&term.brdf, textured(&term.brdf)));
+                    let both = blended(&weight, &zero, &one);
+                    self.inside(pattern, aperture, &zero, both)
+                }
+                _ => return Err(NotInMitsuba::Sum { name: name() }),
+            },
+            _ => return Err(NotInMitsuba::Sum { name: name() }),
         };
-        // Mitsuba has nothing beyond the edge of a picture but more of it.
-        Ok(match pattern {
-            Some(Pattern::Picture(picture)) if !covers(picture, aperture) => {
+        Ok(match texture {
+            Some(texture) => self.inside(texture, aperture, &black(), looks),
+            None => looks,
+        })
+    }
+
+    /// What follows a pattern, and what is there beyond the edge of a picture: Mitsuba has nothing beyond it but more of it.
+    fn inside(
+        &mut self,
+        pattern: &Pattern,
+        aperture: f64,
+        outside: &str,
+        inside: String,
+    ) -> String {
+        match pattern {
+            Pattern::Picture(picture) if !covers(picture, aperture) => {
                 let weight = self.within("weight", picture);
-                blended(&weight, &outside, &inside)
+                blended(&weight, outside, &inside)
             }
             _ => inside,
-        })
+        }
     }
 
     fn brdf(&mut self, brdf: &Brdf, albedo: Varied<'_>) -> String {

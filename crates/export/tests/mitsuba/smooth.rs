@@ -173,7 +173,7 @@ fn patterns_become_pictures() {
 }
 
 #[test]
-fn blends_are_of_two_lobes_or_of_two_albedos() {
+fn blends_are_of_two_lobes() {
     let tiles = reflects(
         "Plane",
         "brdf: (lobe: Phong(400)), other: (lobe: Phong(60), albedo: 0.6), blend: Checkerboard(0.1)",
@@ -195,23 +195,31 @@ fn blends_are_of_two_lobes_or_of_two_albedos() {
         picture(&tiles, "smooth_0_weight.pfm").1,
         [0.0, 1.0, 1.0, 0.0]
     );
-    let albedos = reflects(
+    let smooth_blend = reflects(
         "Plane",
-        "brdf: (lobe: Lambertian, albedo: 0.8), other: (lobe: Lambertian, albedo: 0.2), blend: Cosine(axis: X, frequency: 3)",
+        "brdf: (lobe: Phong(400)), other: (lobe: Ggx(0.2)), blend: Cosine(axis: X, frequency: 3)",
     );
-    let (_, values) = picture(&albedos, "smooth_0_reflectance.pfm");
+    let xml = Document::parse(text(&smooth_blend, "scene.xml")).unwrap();
+    assert_eq!(of_type(&xml, "blendbsdf").len(), 1);
+    let (_, values) = picture(&smooth_blend, "smooth_0_weight.pfm");
     let (low, high) = values
         .iter()
         .fold((1.0_f32, 0.0_f32), |(l, h), v| (l.min(*v), h.max(*v)));
-    assert!((low - 0.2).abs() < 1e-4 && (high - 0.8).abs() < 1e-4); // half a pixel beside both ends
-    let between = "Reflects(brdf: (lobe: Phong(400)), other: (lobe: Phong(60)), blend: Cosine(axis: X, frequency: 3))";
-    let error = smooth(PROJECTOR, "Plane", between).unwrap_err();
-    assert_eq!(
-        error,
-        NotInMitsuba::Blend {
-            name: "s".to_owned()
-        }
-    );
+    assert!(low < 1e-4 && high > 1.0 - 1e-4); // half a pixel beside both ends
+}
+
+#[test]
+fn what_mitsuba_cannot_add_is_refused() {
+    let refused = |event: &str| smooth(PROJECTOR, "Plane", event).unwrap_err();
+    let name = || "s".to_owned();
+    let sum = "Sum(terms: [(brdf: (lobe: Phong(400), albedo: 0.5)), (brdf: (lobe: Lambertian, albedo: 0.5))])";
+    assert_eq!(refused(sum), NotInMitsuba::Sum { name: name() });
+    let alone = "Sum(terms: [(brdf: (lobe: Phong(400)), weight: Checkerboard(0.1))])";
+    assert_eq!(refused(alone), NotInMitsuba::Sum { name: name() });
+    for table in ["incoming", "outgoing"] {
+        let event = format!("Reflects(brdf: (lobe: Phong(400), {table}: [1, 0.5]))");
+        assert_eq!(refused(&event), NotInMitsuba::AngleTable { name: name() });
+    }
 }
 
 #[test]

@@ -139,20 +139,39 @@ pub enum EventFile {
     Reflects {
         /// The BRDF.
         brdf: BrdfFile,
-        /// Another BRDF that takes its place where the pattern of the blend is 0.
+        /// Another BRDF that is added to it, weighted by 1 − `blend`.
         #[serde(default)]
-        other: Option<BrdfFile>,
-        /// How the two are blended.
+        other: Option<Box<BrdfFile>>,
+        /// What weights the BRDF where there is another.
         #[serde(default)]
         blend: Option<PatternFile>,
         /// What multiplies the BRDF.
         #[serde(default)]
         texture: Option<PatternFile>,
     },
+    /// Reflects by a weighted sum of BRDFs, on the side it faces; black on the other.
+    Sum {
+        /// The BRDFs with their weights, 1 to 8 of them. The first says where the central ray goes on, as far as the path does not.
+        terms: Vec<TermFile>,
+        /// What multiplies their sum.
+        #[serde(default)]
+        texture: Option<PatternFile>,
+    },
+}
+
+/// A BRDF of a sum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename = "Term", deny_unknown_fields)]
+pub struct TermFile {
+    /// The BRDF.
+    pub brdf: BrdfFile,
+    /// How much of it there is at each place: 1 unless stated.
+    #[serde(default)]
+    pub weight: Option<PatternFile>,
 }
 
 /// A BRDF.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename = "Brdf", deny_unknown_fields)]
 pub struct BrdfFile {
     /// Its lobe.
@@ -163,6 +182,12 @@ pub struct BrdfFile {
     /// Its Fresnel factor.
     #[serde(default)]
     pub fresnel: FresnelFile,
+    /// A factor of the angle at which light comes: values at equal steps from the normal to 90 degrees, linear in between; 1 unless stated.
+    #[serde(default)]
+    pub incoming: Option<Vec<f64>>,
+    /// The same of the angle at which light leaves.
+    #[serde(default)]
+    pub outgoing: Option<Vec<f64>>,
 }
 
 /// The lobe of a BRDF.

@@ -126,7 +126,7 @@ impl Resolver<'_> {
         frame: &Frame,
     ) -> Option<SmoothMesh> {
         let of = format!("{}.event", at.of);
-        if let EventFile::ThinLens(_) | EventFile::Reflects { .. } = event {
+        if let EventFile::ThinLens(_) | EventFile::Reflects { .. } | EventFile::Sum { .. } = event {
             self.faults.add(of, show(event), "Mirror or Refraction(…)");
             return None;
         }

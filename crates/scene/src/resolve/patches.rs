@@ -61,18 +61,9 @@ impl Resolver<'_> {
         }
         let of_event = format!("{of}.event");
         let event = match event {
-            EventFile::Reflects {
-                brdf,
-                other,
-                blend,
-                texture,
-            } => Event::Reflects(self.reflectance(
-                &of_event,
-                brdf,
-                other.as_ref(),
-                blend.as_ref(),
-                texture.as_ref(),
-            )),
+            EventFile::Reflects { .. } | EventFile::Sum { .. } => {
+                Event::Reflects(self.reflectance(&of_event, event)?)
+            }
             _ => Event::Specular(self.specular(&of_event, event, *form)?),
         };
         let origin = light.to_local(DVec3::from(*center));
@@ -114,7 +105,7 @@ impl Resolver<'_> {
         form: FormFile,
     ) -> Option<Specular> {
         Some(match *event {
-            EventFile::Reflects { .. } => return None,
+            EventFile::Reflects { .. } | EventFile::Sum { .. } => return None,
             EventFile::Mirror => Specular::Mirror,
             EventFile::Refraction { front, back } => {
                 for (side, index) in [("front", front), ("back", back)] {

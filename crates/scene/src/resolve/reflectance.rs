@@ -1,8 +1,10 @@
 //! BRDFs and what varies them over a surface.
 
 use super::Resolver;
-use crate::file::{BrdfFile, FresnelFile, GratingFile, LobeFile, PatternFile};
-use etendue_field::{Brdf, Fresnel, Grating, Lobe, Pattern, Reflectance};
+use crate::file::{BrdfFile, EventFile, FresnelFile, GratingFile, LobeFile, PatternFile, TermFile};
+use etendue_field::{
+    AngleTable, Brdf, Fresnel, Grating, Lobe, MOST_TERMS, Pattern, Reflectance, Term, Weight,
+};
 
 /// Highest exponent of a Phong lobe: it is 0.01 rad wide.
 const SHARPEST: f64 = 1e4;
@@ -10,16 +12,36 @@ const SHARPEST: f64 = 1e4;
 const SMOOTHEST: f64 = 1e-3;
 /// Highest index of refraction or absorption.
 const DENSEST: f64 = 20.0;
+/// Most values of a factor of an angle: one for each tenth of a degree.
+const FINEST: usize = 901;
 
 impl Resolver<'_> {
-    /// How a surface reflects.
-    pub(super) fn reflectance(
+    /// How a surface reflects; `None` of one that sends each ray on in one direction.
+    pub(super) fn reflectance(&mut self, of: &str, event: &EventFile) -> Option<Reflectance> {
+        let (mut resolved, texture) = match event {
+            EventFile::Reflects {
+                brdf,
+                other,
+                blend,
+                texture,
+            } => {
+                let blended = self.blended(of, brdf, other.as_deref(), blend.as_ref());
+                (blended, texture)
+            }
+            EventFile::Sum { terms, texture } => (self.sum(of, terms)?, texture),
+            _ => return None,
+        };
+        let texture = texture.as_ref();
+        resolved.texture = texture.map(|t| self.pattern(&format!("{of}.texture"), t));
+        Some(resolved)
+    }
+
+    fn blended(
         &mut self,
         of: &str,
         brdf: &BrdfFile,
         other: Option<&BrdfFile>,
         blend: Option<&PatternFile>,
-        texture: Option<&PatternFile>,
     ) -> Reflectance {
         if other.is_some() != blend.is_some() {
             let (stated, missing) = if blend.is_some() {
@@ -33,11 +55,37 @@ impl Resolver<'_> {
         let resolved = self.brdf(&format!("{of}.brdf"), brdf);
         let other = other.map(|other| self.brdf(&format!("{of}.other"), other));
         let blend = blend.map(|blend| self.pattern(&format!("{of}.blend"), blend));
-        Reflectance {
-            brdf: resolved,
-            blend: other.zip(blend),
-            texture: texture.map(|t| self.pattern(&format!("{of}.texture"), t)),
+        match other.zip(blend) {
+            Some((other, blend)) => Reflectance::blend(resolved, other, blend),
+            None => resolved.into(),
         }
+    }
+
+    /// `None` where there is nothing to add up, or too much.
+    fn sum(&mut self, of: &str, terms: &[TermFile]) -> Option<Reflectance> {
+        let count = terms.len();
+        if !(1..=MOST_TERMS).contains(&count) {
+            let (found, allowed) = (
+                format!("{count} terms"),
+                format!("1 to {MOST_TERMS} of them"),
+            );
+            self.faults.add(format!("{of}.terms"), found, allowed);
+            return None;
+        }
+        let terms = terms.iter().enumerate().map(|(i, term)| {
+            let of = format!("{of}.terms[{i}]");
+            let weight = term.weight.as_ref();
+            Term {
+                brdf: self.brdf(&format!("{of}.brdf"), &term.brdf),
+                weight: weight.map_or(Weight::One, |weight| {
+                    Weight::Pattern(self.pattern(&format!("{of}.weight"), weight))
+                }),
+            }
+        });
+        Some(Reflectance {
+            terms: terms.collect(),
+            texture: None,
+        })
     }
 
     fn brdf(&mut self, of: &str, file: &BrdfFile) -> Brdf {
@@ -75,11 +123,31 @@ impl Resolver<'_> {
                 Fresnel::Conductor { n, k }
             }
         };
+        let mut table =
+            |field: &str, values: &Option<Vec<f64>>| self.table(&format!("{of}.{field}"), values);
+        let incoming = table("incoming", &file.incoming);
+        let outgoing = table("outgoing", &file.outgoing);
         Brdf {
             lobe: resolved,
             albedo: file.albedo,
             fresnel,
+            incoming,
+            outgoing,
         }
+    }
+
+    fn table(&mut self, of: &str, values: &Option<Vec<f64>>) -> Option<AngleTable> {
+        let values = values.as_ref()?;
+        let count = values.len();
+        if !(2..=FINEST).contains(&count) {
+            let (found, allowed) = (format!("{count} values"), format!("2 to {FINEST} values"));
+            self.faults.add(of, found, allowed);
+        }
+        for (i, value) in values.iter().enumerate() {
+            self.faults.within(format!("{of}[{i}]"), *value, 0.0..=1.0);
+        }
+        let values = values.as_slice().into();
+        Some(AngleTable { values })
     }
 
     fn pattern(&mut self, of: &str, file: &PatternFile) -> Pattern {

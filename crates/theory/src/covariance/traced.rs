@@ -85,7 +85,8 @@ impl Traced for Observed<scattering::System> {
         let Self { system, plane } = self;
         let chain = scattering::chain(self).ok_or(Untraced::Lost)?;
         let reflectance = &system.reflectance;
-        if reflectance.blend.is_some() {
+        let brdf = reflectance.only().ok_or(Untraced::Reflectance)?;
+        if brdf.incoming.is_some() || brdf.outgoing.is_some() {
             return Err(Untraced::Reflectance);
         }
         if !system.obstacles.is_empty() {
@@ -95,7 +96,7 @@ impl Traced for Observed<scattering::System> {
         let onto = Map::travel(-travelled).then(&chain.onto);
         let arriving = moved(&light, &onto)?.multiplied(&factors::cosine());
         let turned = moved(&arriving, &Map::mirror())?;
-        let mut leaving = match factors::lobe(&reflectance.brdf.lobe, chain.incidence) {
+        let mut leaving = match factors::lobe(&brdf.lobe, chain.incidence) {
             Some(lobe) => turned.convolved(&lobe),
             None => turned.diffused(),
         };

@@ -123,13 +123,5 @@ fn seen(window: &Window, distance: f64) -> f64 {
 }
 
 fn diffuse(albedo: f64) -> Reflectance {
-    Reflectance {
-        brdf: Brdf {
-            lobe: Lobe::Lambertian,
-            albedo,
-            fresnel: Fresnel::White,
-        },
-        blend: None,
-        texture: None,
-    }
+    Brdf::new(Lobe::Lambertian, albedo, Fresnel::White).into()
 }

@@ -159,6 +159,7 @@ fn reflection<'a>(parameters: &Value, before: Factor<'a>, lobe: Option<Lobe>) ->
             before,
             lobe,
             after: Factor::One,
+            weight: None,
         }],
         // Content of angles 0.04 wide reaches ± 30, moved by what positions and angles have in
         // common.

@@ -41,19 +41,19 @@ impl System {
 }
 
 impl Surface {
-    /// The factor of its BRDF, if it scatters; where BRDFs are blended, of the first alone.
+    /// The factor of its BRDF, if it scatters; where BRDFs add up, of the first alone.
     fn albedo_mut(&mut self) -> Option<&mut f64> {
         match &mut self.interaction {
             Interaction::Specular(_) => None,
             Interaction::Diffuse { albedo } => Some(albedo),
-            Interaction::Reflects(reflectance) => Some(&mut reflectance.brdf.albedo),
+            Interaction::Reflects(reflectance) => Some(&mut reflectance.first_mut().albedo),
         }
     }
 
     /// The exponent or the roughness of its lobe, and what that is called.
     fn lobe_mut(&mut self) -> Option<(&'static str, &mut f64)> {
         match &mut self.interaction {
-            Interaction::Reflects(reflectance) => reflectance.brdf.lobe.number_mut(),
+            Interaction::Reflects(reflectance) => reflectance.first_mut().lobe.number_mut(),
             Interaction::Specular(_) | Interaction::Diffuse { .. } => None,
         }
     }
@@ -61,7 +61,7 @@ impl Surface {
     /// Whether all light that it scatters is in proportion to its albedo.
     fn is_in_proportion(&self) -> bool {
         match &self.interaction {
-            Interaction::Reflects(reflectance) => reflectance.blend.is_none(),
+            Interaction::Reflects(reflectance) => reflectance.only().is_some(),
             Interaction::Specular(_) | Interaction::Diffuse { .. } => true,
         }
     }

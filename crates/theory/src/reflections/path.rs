@@ -8,10 +8,10 @@ use crate::model::Observed;
 use crate::nets::{DIMENSIONS, Node};
 use crate::obstacle::{Obstacles, ROUNDING};
 use crate::rays::{Ray, emitted, point_of};
-use crate::scattering::{angular_width, kernel, local};
+use crate::scattering::local;
 use etendue_field::{Light, TwoPlane, Window};
 use glam::DVec3;
-use std::f64::consts::{FRAC_1_SQRT_2, TAU};
+use std::f64::consts::TAU;
 
 /// Paths of a light field.
 #[derive(Debug)]
@@ -178,7 +178,7 @@ impl<'a> Paths<'a> {
         let from = -going.ray.direction;
         let [s, t, from_theta, from_phi] = local(&scatterer.frame, point, normal, from);
         let [theta0, phi0] = scatterer.outgoing;
-        let width = angular_width(&surface.brdf(point)?).map(|width| width * FRAC_1_SQRT_2);
+        let width = surface.width(point);
         let center = match width {
             Some(_) => [-from_theta - theta0, -from_phi - phi0],
             None => [-theta0, -phi0],
@@ -208,11 +208,10 @@ impl<'a> Paths<'a> {
         let [s, t, from_theta, from_phi] = going.at;
         let cosine = libm::cos(from_theta).max(0.0) * libm::cos(from_phi).powi(2);
         let foot = scatterer.frame.to_world(DVec3::new(s, t, 0.0));
-        let lobe = kernel(
-            &surface.brdf(foot)?,
+        let lobe = surface.kernel(
+            foot,
             scatterer.incidence,
-            from_theta,
-            [longitude + from_theta, latitude + from_phi],
+            [[from_theta, from_phi], [longitude, latitude]],
         );
         // dθ dφ = dω / cos φ.
         let per_angle = per_density / libm::cos(latitude);
@@ -269,7 +268,7 @@ fn on_surface(
     surface: &Surface,
     scatterer: &Scatterer,
 ) -> Option<Gaussian<4>> {
-    let width = angular_width(&surface.brdf(surface.hit)?).map(|width| width * FRAC_1_SQRT_2);
+    let width = surface.width(surface.hit);
     // The mean square along an axis, of a disc or a rectangle.
     let variance = match surface.outline {
         Some([x, y]) => (x * x + y * y) / 24.0,

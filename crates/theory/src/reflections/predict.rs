@@ -6,6 +6,7 @@ use super::path::Paths;
 use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
 use crate::predicted::Predicted;
+use etendue_field::Slices;
 
 /// The windowed spectrum, with the derivatives by what was moved. The same bytes on any number of
 /// threads.
@@ -20,7 +21,15 @@ pub(crate) fn predict(
 ) -> Predicted {
     match chain(view) {
         Some(chain) => by(view, chain, moved, over, budget),
-        None => Predicted::dark(over.1, over.2),
+        None => dark(moved, over),
+    }
+}
+
+/// Of light that the chain does not lead to the plane.
+fn dark(moved: &[Moved<Observed<System>>], (_, grid, picture): Over<'_>) -> Predicted {
+    Predicted {
+        derivatives: vec![Slices::zeros(*grid); moved.len()],
+        ..Predicted::dark(grid, picture)
     }
 }
 
@@ -39,7 +48,7 @@ fn by(
     budget: Budget,
 ) -> Predicted {
     let Some(paths) = Paths::new(view, window, chain) else {
-        return Predicted::dark(grid, picture);
+        return dark(moved, (window, grid, picture));
     };
     let of = |view| Paths::new(view, window, self::chain(view)?);
     let sides = moved.iter();

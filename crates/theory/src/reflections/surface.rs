@@ -3,9 +3,10 @@
 use super::{Interaction, Surface};
 use crate::obstacle::on_patch;
 use crate::rays::{Ray, bent};
-use crate::scattering::brdf;
+use crate::scattering::{brdf, kernel, narrowest};
 use etendue_field::{Brdf, Fresnel, Lobe};
 use glam::DVec3;
+use std::f64::consts::FRAC_1_SQRT_2;
 
 impl Surface {
     /// Whether it draws a new direction for light.
@@ -63,25 +64,43 @@ impl Surface {
         }
     }
 
-    /// The BRDF at a point of a scattering surface.
-    pub(super) fn brdf(&self, point: DVec3) -> Option<Brdf> {
+    /// A sum over the BRDFs at a point of a scattering surface, with their weights.
+    fn sum(&self, point: DVec3, of: impl Fn(&Brdf) -> f64) -> f64 {
         match &self.interaction {
-            Interaction::Specular(_) => None,
-            Interaction::Diffuse { albedo } => Some(Brdf {
-                lobe: Lobe::Lambertian,
-                albedo: *albedo,
-                fresnel: Fresnel::White,
-            }),
+            Interaction::Specular(_) => 0.0,
+            Interaction::Diffuse { albedo } => of(&diffuse(*albedo)),
             Interaction::Reflects(reflectance) => {
                 let at = self.patch.frame.to_local(point);
-                Some(reflectance.at(at.x, at.y))
+                let mixture = reflectance.at(at.x, at.y);
+                let terms = mixture.weighted();
+                terms.map(|(weight, brdf)| weight * of(brdf)).sum()
             }
         }
     }
 
     /// The BRDF of light from `from` to `to`, unit vectors away from the surface; sr⁻¹.
     pub(super) fn value(&self, point: DVec3, normal: DVec3, [from, to]: [DVec3; 2]) -> f64 {
-        let brdf = self.brdf(point);
-        brdf.map_or(0.0, |brdf| brdf::value(&brdf, normal, from, to))
+        self.sum(point, |brdf| brdf::value(brdf, normal, from, to))
     }
+
+    /// The same by the chain, for light from and to a longitude and a latitude.
+    pub(super) fn kernel(&self, point: DVec3, incidence: f64, angles: [[f64; 2]; 2]) -> f64 {
+        let [from, to] = angles;
+        self.sum(point, |brdf| kernel(brdf, incidence, from, to))
+    }
+
+    /// Standard deviation of the narrowest lobe at a point, radians; `None` of diffuse light.
+    pub(super) fn width(&self, point: DVec3) -> Option<f64> {
+        let Interaction::Reflects(reflectance) = &self.interaction else {
+            return None;
+        };
+        let at = self.patch.frame.to_local(point);
+        let mixture = reflectance.at(at.x, at.y);
+        let width = narrowest(mixture.weighted().map(|(_, brdf)| brdf));
+        width.map(|width| width * FRAC_1_SQRT_2)
+    }
+}
+
+fn diffuse(albedo: f64) -> Brdf {
+    Brdf::new(Lobe::Lambertian, albedo, Fresnel::White)
 }

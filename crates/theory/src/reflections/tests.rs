@@ -50,15 +50,7 @@ fn lamp(side: f64) -> Light {
 }
 
 fn reflectance(lobe: Lobe) -> Reflectance {
-    Reflectance {
-        brdf: Brdf {
-            lobe,
-            albedo: 0.7,
-            fresnel: Fresnel::White,
-        },
-        blend: None,
-        texture: None,
-    }
+    Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
 /// A patch around a point, facing along a direction in the plane of X and Z.

@@ -1,13 +1,44 @@
 //! The BRDFs of `etendue_field::Brdf`, by formulas of theory's own.
 
-use etendue_field::{Brdf, Complex, Fresnel, Lobe, square_root};
+use etendue_field::{AngleTable, Brdf, Complex, Fresnel, Lobe, Mixture, square_root};
 use glam::DVec3;
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-/// The BRDF for light that comes from `from` and leaves along `to`, unit vectors away from the
-/// surface with this unit normal; sr⁻¹.
+/// The sum of BRDFs for light that comes from `from` and leaves along `to`, unit vectors away from
+/// the surface with this unit normal; sr⁻¹.
+#[must_use]
+pub fn sum(mixture: &Mixture<'_>, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
+    let each = mixture.weighted();
+    each.map(|(weight, brdf)| weight * value(brdf, normal, from, to))
+        .sum()
+}
+
+/// One BRDF, as [`sum`] has it.
 #[must_use]
 pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
+    factors(brdf, normal.dot(from), normal.dot(to)) * lobe(brdf, normal, from, to)
+}
+
+/// f(θi) h(θo), by the cosines of both angles.
+pub(super) fn factors(brdf: &Brdf, cos_from: f64, cos_to: f64) -> f64 {
+    let factor = |table: &Option<AngleTable>, cos: f64| {
+        table.as_ref().map_or(1.0, |table| between(table, cos))
+    };
+    factor(&brdf.incoming, cos_from) * factor(&brdf.outgoing, cos_to)
+}
+
+/// The value of a table at an angle with this cosine, as a sum of hats about its nodes.
+fn between(table: &AngleTable, cos: f64) -> f64 {
+    let steps = (table.values.len() - 1) as f64;
+    let at = libm::acos(cos.clamp(0.0, 1.0)) * steps / FRAC_PI_2;
+    let nodes = table.values.iter().zip(0_u32..);
+    nodes
+        .map(|(value, node)| value * (1.0 - (at - f64::from(node)).abs()).max(0.0))
+        .sum()
+}
+
+/// A BRDF without its factors f and h.
+pub(super) fn lobe(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     let (cos_from, cos_to) = (normal.dot(from), normal.dot(to));
     if cos_from <= 0.0 || cos_to <= 0.0 {
         return 0.0;
@@ -56,8 +87,13 @@ pub fn value(brdf: &Brdf, normal: DVec3, from: DVec3, to: DVec3) -> f64 {
     brdf.albedo * lobe
 }
 
+/// The smallest [`angular_width`] of several lobes that has one.
+pub(crate) fn narrowest<'a>(brdfs: impl Iterator<Item = &'a Brdf>) -> Option<f64> {
+    brdfs.filter_map(angular_width).min_by(f64::total_cmp)
+}
+
 /// Radians from the mirror direction within which most of a lobe lies; `None` where that is all.
-pub(crate) fn angular_width(brdf: &Brdf) -> Option<f64> {
+fn angular_width(brdf: &Brdf) -> Option<f64> {
     match brdf.lobe {
         Lobe::Lambertian => None,
         Lobe::Phong { exponent } => Some((2.0 / (exponent + 1.0)).sqrt()),
@@ -142,11 +178,7 @@ mod tests {
     fn lobes_hold_what_they_say() {
         let normal = DVec3::Z;
         let total = |lobe: Lobe, cosine: bool| {
-            let brdf = Brdf {
-                lobe,
-                albedo: 1.0,
-                fresnel: Fresnel::White,
-            };
+            let brdf = Brdf::new(lobe, 1.0, Fresnel::White);
             crate::numerics::quadrature::integrate(400, [0.0, PI / 2.0], |theta| {
                 let (sin, cos) = libm::sincos(theta);
                 let to = DVec3::new(sin, 0.0, cos);

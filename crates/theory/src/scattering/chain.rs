@@ -5,7 +5,9 @@ use crate::geometry::{Map, Matrix};
 use crate::model::Observed;
 use crate::rays::{Incidence, Plane, Ray};
 use crate::words::{self, degrees, number};
-use etendue_field::{Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Reflectance};
+use etendue_field::{
+    AngleTable, Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Reflectance, Term, Weight,
+};
 use glam::DVec3;
 
 /// What the central ray does, to first order in the neighbourhood.
@@ -178,48 +180,76 @@ fn steps(
     steps
 }
 
-/// A BRDF in words.
+/// The BRDFs in words: a line for each step of one alone, or for each term of a sum.
 pub(crate) fn reflection(reflectance: &Reflectance) -> Vec<String> {
-    let brdf = &reflectance.brdf;
+    let terms = &reflectance.terms;
+    let sum = terms.iter().enumerate().map(|(i, term)| {
+        let steps = term_in_words(term)
+            .map(|[_, what]| what)
+            .collect::<Vec<_>>();
+        let (i, count) = (i + 1, terms.len());
+        format!("convolve  term {i} of {count}: {}", steps.join(", "))
+    });
+    let mut words: Vec<String> = match &terms[..] {
+        [one] => term_in_words(one)
+            .map(|[verb, what]| format!("{verb}  {what}"))
+            .collect(),
+        _ => sum.collect(),
+    };
+    if let Some(texture) = &reflectance.texture {
+        words.push(format!("multiply  texture {}", varies(texture)));
+    }
+    words
+}
+
+/// The factors of angles before and after a lobe, with the lobe between them; verbs first.
+fn term_in_words(term: &Term) -> impl Iterator<Item = [String; 2]> {
+    let brdf = &term.brdf;
     let lobe = match brdf.lobe {
         Lobe::Lambertian => "Lambertian".to_owned(),
         Lobe::Phong { exponent } => format!("Phong, exponent {}", number(exponent)),
         Lobe::Beckmann { roughness } => format!("Beckmann, roughness {}", number(roughness)),
         Lobe::Ggx { roughness } => format!("GGX, roughness {}", number(roughness)),
     };
-    let mut words = Vec::new();
-    match brdf.fresnel {
-        Fresnel::White => {}
-        Fresnel::Dielectric { index } => {
-            words.push(format!(
-                "multiply  Fresnel factor of index {}",
-                number(index)
-            ));
-        }
-        Fresnel::Conductor { n, k } => words.push(format!(
-            "multiply  Fresnel factor of index {} + {} i",
-            number(n),
-            number(k)
-        )),
-    }
-    let varies = |pattern: &Pattern| match pattern {
+    let fresnel = match brdf.fresnel {
+        Fresnel::White => None,
+        Fresnel::Dielectric { index } => Some(number(index)),
+        Fresnel::Conductor { n, k } => Some(format!("{} + {} i", number(n), number(k))),
+    };
+    let weight = match &term.weight {
+        Weight::One => String::new(),
+        Weight::Pattern(pattern) => format!(", weighted by {}", varies(pattern)),
+        Weight::Rest(pattern) => format!(", weighted by 1 − ({})", varies(pattern)),
+    };
+    let table = |angle: &str, table: &AngleTable| {
+        let values = table.values.len();
+        [
+            "multiply".to_owned(),
+            format!("factor of {angle}, {values} values"),
+        ]
+    };
+    let fresnel = fresnel.map(|index| {
+        [
+            "multiply".to_owned(),
+            format!("Fresnel factor of index {index}"),
+        ]
+    });
+    let incoming = brdf.incoming.as_ref().map(|f| table("θi", f));
+    let lobe = format!("BRDF {lobe}, albedo {}{weight}", number(brdf.albedo));
+    let outgoing = brdf.outgoing.as_ref().map(|h| table("θo", h));
+    let convolved = Some(["convolve".to_owned(), lobe]);
+    [fresnel, incoming, convolved, outgoing]
+        .into_iter()
+        .flatten()
+}
+
+fn varies(pattern: &Pattern) -> String {
+    match pattern {
         Pattern::Cosine(grating) => words::formula(grating, ["s", "t"]),
         Pattern::Picture(picture) => {
             let [w, h] = picture.size;
             format!("picture of {} x {} m", number(w), number(h))
         }
         Pattern::Checkerboard { period } => format!("checkerboard of period {} m", number(*period)),
-    };
-    let over = match &reflectance.blend {
-        Some((_, pattern)) => format!(", blended with another over {}", varies(pattern)),
-        None => String::new(),
-    };
-    words.push(format!(
-        "convolve  BRDF {lobe}, albedo {}{over}",
-        number(brdf.albedo)
-    ));
-    if let Some(texture) = &reflectance.texture {
-        words.push(format!("multiply  texture {}", varies(texture)));
     }
-    words
 }

@@ -4,7 +4,7 @@
 //! window, the lobe of the BRDF and the light, and where two of them compete, half of the rays are
 //! drawn by each and all are weighed by the mixture (the balance heuristic, Veach and Guibas 1995).
 
-use super::brdf::angular_width;
+use super::brdf::narrowest;
 use super::exact::Leaving;
 use super::incoming::{Part, secant};
 use super::sky::Sky;
@@ -49,7 +49,7 @@ impl LightStrategy {
     /// This one without what makes no difference to a system.
     pub(super) fn in_effect(self, system: &System) -> Self {
         let has_extent = system.light.has_extent();
-        let has_lobe = angular_width(&system.reflectance.brdf).is_some();
+        let has_lobe = narrowest_of(system).is_some();
         let has_center = !matches!(system.light, Light::Environment { .. });
         Self {
             mirrored: self.mirrored && has_lobe && has_center,
@@ -164,7 +164,7 @@ impl Mirrored {
             by: by(2),
             inverse,
             determinant: determinant.abs(),
-            width: libm::hypot(BROADENED * angular_width(&system.reflectance.brdf)?, light),
+            width: libm::hypot(BROADENED * narrowest_of(system)?, light),
         })
     }
 
@@ -337,12 +337,12 @@ struct LobeDensity {
 impl LobeDensity {
     fn new(system: &System, leaving: &Leaving) -> Self {
         let at = system.patch.frame.to_local(leaving.point);
-        let brdf = system.reflectance.at(at.x, at.y);
+        let brdfs = system.reflectance.at(at.x, at.y).weighted();
         let local = Frame::IDENTITY.turned_to(leaving.normal);
         Self {
             wo: local.vector_to_local(leaving.direction),
             local,
-            width: 0.5 * angular_width(&brdf).unwrap_or(1.0),
+            width: 0.5 * narrowest(brdfs.map(|(_, brdf)| brdf)).unwrap_or(1.0),
         }
     }
 
@@ -366,6 +366,12 @@ impl LobeDensity {
         let per_normal = bell_density(self.width, slopes) / half.z.powi(3);
         per_normal / (4.0 * half.dot(self.wo).abs())
     }
+}
+
+/// The width of the narrowest lobe of a surface. What wider ones send on beyond it is drawn by the
+/// window or the light.
+fn narrowest_of(system: &System) -> Option<f64> {
+    narrowest(system.reflectance.terms.iter().map(|term| &term.brdf))
 }
 
 /// Distance of a shape's farthest point from the axis.

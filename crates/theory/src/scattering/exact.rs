@@ -69,6 +69,6 @@ impl System {
         let at = self.patch.frame.to_local(point);
         let brdf = self.reflectance.at(at.x, at.y);
         // dω = du dv cos³.
-        weight * cosine / secant.powi(3) * brdf::value(&brdf, normal, wi, direction)
+        weight * cosine / secant.powi(3) * brdf::sum(&brdf, normal, wi, direction)
     }
 }

@@ -79,33 +79,41 @@ impl<'a> Linear<'a> {
         let irradiance = weight * per_angle * (a * d - b * c).abs() * cosine;
         let [s, t, to_theta, to_phi] = local;
         let at = self.frame.to_world(DVec3::new(s, t, 0.0));
-        let brdf = self.system.reflectance.at(at.x, at.y);
-        irradiance
-            * kernel(
-                &brdf,
-                self.chain.incidence,
-                theta,
-                [to_theta + theta, to_phi + phi],
-            )
+        let mixture = self.system.reflectance.at(at.x, at.y);
+        let incidence = self.chain.incidence;
+        let sum = mixture.weighted().map(|(weight, brdf)| {
+            weight * kernel(brdf, incidence, [theta, phi], [to_theta, to_phi])
+        });
+        irradiance * sum.sum::<f64>()
     }
 }
 
-/// The BRDF as it meets the central ray, which comes at the angle `incidence`, at angles from the
-/// mirror direction; a factor of the angle of incidence stays one.
-pub(crate) fn kernel(brdf: &Brdf, incidence: f64, from: f64, [theta, phi]: [f64; 2]) -> f64 {
-    let factor = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from));
-    match brdf.lobe {
-        Lobe::Lambertian => factor() / PI,
+/// A BRDF as it meets the central ray, which comes at the angle `incidence`, for light from and to a
+/// longitude and a latitude: of their angles from the mirror direction, but for factors of the angles
+/// of incidence and departure, which stay those.
+pub(crate) fn kernel(
+    brdf: &Brdf,
+    incidence: f64,
+    [from_theta, from_phi]: [f64; 2],
+    [to_theta, to_phi]: [f64; 2],
+) -> f64 {
+    let cos_from = away(from_theta, from_phi).z;
+    let factors = brdf::factors(brdf, cos_from, away(to_theta, to_phi).z);
+    let [theta, phi] = [to_theta + from_theta, to_phi + from_phi];
+    let reflected = || brdf.albedo * brdf::reflectance(brdf.fresnel, libm::cos(from_theta));
+    let lobe = match brdf.lobe {
+        Lobe::Lambertian => reflected() / PI,
         // Its cosine is that of the angle from the mirror direction, wherever that is.
         Lobe::Phong { exponent } => {
             let cos = (libm::cos(theta) * libm::cos(phi)).max(0.0);
-            factor() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
+            reflected() * (exponent + 1.0) / TAU * libm::pow(cos, exponent)
         }
         _ => {
             let to = away(theta - incidence, phi);
-            brdf::value(brdf, DVec3::Z, away(incidence, 0.0), to)
+            brdf::lobe(brdf, DVec3::Z, away(incidence, 0.0), to)
         }
-    }
+    };
+    factors * lobe
 }
 
 /// The direction at a longitude and a latitude, from the normal.

@@ -23,15 +23,17 @@ mod exact;
 mod incoming;
 mod linear;
 mod model;
+mod operator;
 mod predict;
 mod sky;
 #[cfg(test)]
 mod tests;
 
 pub use chain::{ReflectionChain, chain, defect};
+pub use operator::semi_convolution;
 pub use predict::beside;
 
-pub(crate) use brdf::angular_width;
+pub(crate) use brdf::narrowest;
 pub(crate) use chain::{local, reflection};
 pub(crate) use draw::{bell, bell_density};
 pub(crate) use linear::kernel;

@@ -6,7 +6,7 @@ use crate::nets::{Budget, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
 use crate::work::Work;
-use etendue_field::{Complex, Light, Lobe, Reflectance};
+use etendue_field::{Complex, Light, Lobe};
 
 impl Model for Observed<System> {
     fn light(&self) -> &Light {
@@ -25,7 +25,7 @@ impl Model for Observed<System> {
         let curved = axes.filter(|axis| patch.curvature[*axis] != 0.0);
         all.extend(curved.map(|axis| Parameter::Curvature(0, axis)));
         all.push(Parameter::Albedo);
-        if reflectance.brdf.lobe != Lobe::Lambertian {
+        if reflectance.first().lobe != Lobe::Lambertian {
             all.push(Parameter::Lobe);
         }
         all
@@ -36,7 +36,7 @@ impl Model for Observed<System> {
         match parameter {
             Parameter::Albedo => format!("albedo of {name}"),
             Parameter::Lobe => {
-                let mut lobe = self.system.reflectance.brdf.lobe;
+                let mut lobe = self.system.reflectance.first().lobe;
                 let number = lobe.number_mut().map_or("number", |(number, _)| number);
                 format!("{number} of {name}")
             }
@@ -48,7 +48,7 @@ impl Model for Observed<System> {
         }
     }
 
-    /// Where BRDFs are blended, of the first alone.
+    /// Where BRDFs add up, of the first alone.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let System {
             light,
@@ -57,9 +57,12 @@ impl Model for Observed<System> {
             ..
         } = &mut self.system;
         match parameter {
-            Parameter::Albedo => reflectance.brdf.albedo = new(reflectance.brdf.albedo),
+            Parameter::Albedo => {
+                let first = reflectance.first_mut();
+                first.albedo = new(first.albedo);
+            }
             Parameter::Lobe => {
-                let (_, number) = reflectance.brdf.lobe.number_mut()?;
+                let (_, number) = reflectance.first_mut().lobe.number_mut()?;
                 *number = new(*number);
             }
             Parameter::Curvature(0, axis) => change_curvature(patch, axis, new)?,
@@ -69,19 +72,18 @@ impl Model for Observed<System> {
     }
 
     /// With the difference to the first-order chain. All light is in proportion to an albedo where
-    /// no other BRDF is blended with it.
+    /// no other BRDF is added to it.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
-        let Reflectance { brdf, blend, .. } = &self.system.reflectance;
-        let is_factor = |parameter: &Parameter| {
-            *parameter == Parameter::Albedo && blend.is_none() && brdf.albedo > 0.0
-        };
+        let only = self.system.reflectance.only().map(|brdf| brdf.albedo);
+        let factor = only.filter(|albedo| *albedo > 0.0);
+        let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && factor.is_some();
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
         let moved: Option<Vec<_>> = others.map(|other| Moved::nearby(self, *other)).collect();
         let moved = moved.expect("parameters of the surface");
         let mut found = predict(self, chain(self).as_ref(), &moved, over, budget);
-        if let Some(i) = parameters.iter().position(is_factor) {
+        if let (Some(i), Some(albedo)) = (parameters.iter().position(is_factor), factor) {
             let mut derivative = found.slices.clone();
-            derivative.half /= Complex::from(brdf.albedo);
+            derivative.half /= Complex::from(albedo);
             found.derivatives.insert(i, derivative);
         }
         found

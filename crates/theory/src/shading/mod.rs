@@ -10,8 +10,9 @@
 //! |---|---|---|
 //! | cosine | [`cosine_hat`] | Eq. 12, 13 |
 //! | Fresnel factor | [`Fresnel`] | section 4.3 |
+//! | factor by a list of values | [`table_hat`] | section 4.3 |
 //! | BRDF lobe about the mirror direction | [`Lobe`] | Eq. 15, 16 |
-//! | separable BRDFs and their sums | [`Term`] | Eq. 17 |
+//! | separable BRDFs and their weighted sums | [`Term`] | Eq. 17, section 4.5 |
 //! | texture, BRDF that varies in space | [`texture`], [`semi_convolution`] | Eq. 18, section 4.5 |
 //! | all seven steps of a reflection | [`Reflection`] | section 4.1 |
 //! | an environment map on a curved surface | [`environment`] | section 6.1, Fig. 14 |
@@ -24,7 +25,7 @@
 //! use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term};
 //!
 //! // A glossy cylinder, R = 2 m, in light that is a Gaussian of 0.1 m and 0.1 rad.
-//! let gloss = Term { before: Factor::Cosine, lobe: Some(Lobe::Phong { exponent: 50.0 }), after: Factor::One };
+//! let gloss = Term { before: Factor::Cosine, lobe: Some(Lobe::Phong { exponent: 50.0 }), after: Factor::One, weight: None };
 //! let reflection = Reflection {
 //!     incidence: 0.4,
 //!     outgoing: -0.4,
@@ -49,6 +50,7 @@ mod lobe;
 mod panels;
 mod product;
 mod reflection;
+mod table;
 
 pub use bandwidth::{COSINE_CUTOFF, Criterion};
 pub use cosine::{cosine_hat, cosine_power_hat, cosine_series, cosine_squared_hat};
@@ -59,3 +61,4 @@ pub use fresnel::Fresnel;
 pub use lobe::Lobe;
 pub use product::{Lattice, TextureWave, angular_product, semi_convolution, texture};
 pub use reflection::{Factor, Reflection, Step, Term};
+pub use table::table_hat;

@@ -1,9 +1,9 @@
 //! The seven steps of a reflection.
 
-use super::product::{Lattice, angular_product};
-use super::{Fresnel, Lobe, cosine_hat};
+use super::product::{Lattice, TextureWave, angular_product, texture};
+use super::{Fresnel, Lobe, cosine_hat, table_hat};
 use crate::geometry::Map;
-use etendue_field::Complex;
+use etendue_field::{AngleTable, Complex};
 use std::fmt;
 
 /// The spectrum of a light field, L(Ωx, Ωθ).
@@ -51,6 +51,10 @@ pub enum Factor<'a> {
     Cosine,
     /// Fresnel reflectance times cos⁺.
     Fresnel(Fresnel),
+    /// The values of a table over |θ|.
+    Table(&'a AngleTable),
+    /// The values of a table times cos⁺.
+    TableCosine(&'a AngleTable),
     /// Any other, the cosine included where one is due: f̂(Ω), in cycles per radian. Asymmetric
     /// ones are complex.
     Other(&'a dyn Fn(f64) -> Complex),
@@ -62,6 +66,8 @@ impl fmt::Debug for Factor<'_> {
             Self::One => write!(f, "One"),
             Self::Cosine => write!(f, "Cosine"),
             Self::Fresnel(fresnel) => f.debug_tuple("Fresnel").field(fresnel).finish(),
+            Self::Table(table) => f.debug_tuple("Table").field(table).finish(),
+            Self::TableCosine(table) => f.debug_tuple("TableCosine").field(table).finish(),
             Self::Other(_) => write!(f, "Other"),
         }
     }
@@ -74,6 +80,14 @@ impl Factor<'_> {
             Self::One => before(omega),
             Self::Cosine => product(lattice, omega, &|q| cosine_hat(q).into(), before),
             Self::Fresnel(f) => product(lattice, omega, &|q| f.cosine_hat(q).into(), before),
+            Self::Table(table) => {
+                let hat = |q| table_hat(table, |_| 1.0, q).into();
+                product(lattice, omega, &hat, before)
+            }
+            Self::TableCosine(table) => {
+                let hat = |q| table_hat(table, libm::cos, q).into();
+                product(lattice, omega, &hat, before)
+            }
             Self::Other(hat) => product(lattice, omega, *hat, before),
         }
     }
@@ -81,7 +95,7 @@ impl Factor<'_> {
 
 use angular_product as product;
 
-/// One separable term of a BRDF, f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
+/// One separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
 #[derive(Clone, Copy, Debug)]
 pub struct Term<'a> {
     /// f(θ_i') with the cosine.
@@ -90,6 +104,8 @@ pub struct Term<'a> {
     pub lobe: Option<Lobe>,
     /// h(θ_o').
     pub after: Factor<'a>,
+    /// w, how much of it there is at each place, as a sum of waves; `None` is 1.
+    pub weight: Option<&'a [TextureWave]>,
 }
 
 /// Reflection in 2D, from the light frame before to the light frame after.
@@ -143,14 +159,19 @@ impl Reflection<'_> {
         term.before.times(&self.lattice, omega, &local)
     }
 
-    /// Steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005.
+    /// Steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005, the
+    /// weights of a sum are textures (section 4.5).
     fn reflected(&self, term: &Term<'_>, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
         let mirrored = |w| Map::mirror().spectrum(w, &|w| self.lit(term, w, before));
         let blurred = |w: [f64; 2]| match &term.lobe {
             Some(lobe) => mirrored(w) * lobe.spectrum(w[1]),
             None => mirrored(w),
         };
-        term.after.times(&self.lattice, omega, &blurred)
+        let left = |w| term.after.times(&self.lattice, w, &blurred);
+        match term.weight {
+            Some(waves) => texture(waves, omega, &left),
+            None => left(omega),
+        }
     }
 }
 
@@ -186,6 +207,7 @@ mod tests {
             before,
             lobe,
             after,
+            weight: None,
         }
     }
 

@@ -4,13 +4,13 @@ use super::{Backward, Source, connection};
 use crate::brdf;
 use crate::emit::point;
 use crate::obstacles::{direction, ray_through};
-use etendue_field::{Brdf, Frame};
+use etendue_field::{Frame, Mixture};
 use glam::DVec3;
 
 /// A point at which light is reflected, in the frame at the light.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Reflection {
-    pub(super) brdf: Brdf,
+pub(super) struct Reflection<'a> {
+    pub(super) brdf: Mixture<'a>,
     pub(super) point: DVec3,
     /// D along the normal.
     pub(super) frame: Frame,
@@ -24,7 +24,7 @@ impl Backward {
     pub(super) fn reflected(
         &self,
         leg: usize,
-        at: &Reflection,
+        at: &Reflection<'_>,
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
@@ -37,7 +37,7 @@ impl Backward {
         if let (Source::Narrow(light), true) = (&self.light, sees_light) {
             return connection(light, at.point).map_or(0.0, |(ray, irradiance)| {
                 let from = frame.vector_to_local(-direction(&ray).normalize());
-                let carried = brdf::value(brdf, from, *to) * from.z.max(0.0);
+                let carried = brdf::sum(brdf, from, *to) * from.z.max(0.0);
                 let found = self.arriving(leg, &ray, at.point.z, block + 1, words);
                 carried * irradiance * found
             });
@@ -53,16 +53,16 @@ impl Backward {
             };
             frame.vector_to_local(towards).normalize()
         } else {
-            brdf::sample(brdf, *to, [r[0], r[1]])
+            brdf::towards(brdf, *to, [r[0], r[1]])
         };
-        let carried = brdf::value(brdf, from, *to) * from.z;
+        let carried = brdf::sum(brdf, from, *to) * from.z;
         let towards = frame.vector_to_world(from);
         let end = this.frame.to_local(at.point);
         let came = this.frame.vector_to_local(-towards);
         let Some(ray) = ray_through(end, came).filter(|_| carried > 0.0) else {
             return 0.0;
         };
-        let by_lobe = brdf::density(brdf, *to, from);
+        let by_lobe = brdf::densities(brdf, *to, from);
         let density = if sees_light {
             0.5 * (by_lobe + self.light.density_towards(at.point, towards))
         } else {

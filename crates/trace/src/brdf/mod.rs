@@ -6,15 +6,18 @@
 mod fresnel;
 mod lambertian;
 mod microfacet;
+mod mixture;
 mod phong;
 
 #[cfg(test)]
 mod tests;
 
-use etendue_field::{Brdf, Lobe};
+use etendue_field::{AngleTable, Brdf, Lobe};
 pub use fresnel::reflected_share;
 use glam::DVec3;
 use microfacet::{Distribution, Microfacets};
+pub use mixture::sum;
+pub(crate) use mixture::{densities, towards};
 
 /// The BRDF, sr⁻¹.
 #[inline]
@@ -32,12 +35,22 @@ pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
             (microfacets(brdf).map_or(0.0, |m| m.value(wi, wo)), cosine)
         }
     };
-    brdf.albedo * lobe * reflected_share(&brdf.fresnel, cosine)
+    brdf.albedo
+        * lobe
+        * reflected_share(&brdf.fresnel, cosine)
+        * factor(brdf.incoming.as_ref(), wi)
+        * factor(brdf.outgoing.as_ref(), wo)
+}
+
+/// What a table says of a direction; 1 where there is none.
+#[inline]
+fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
+    table.map_or(1.0, |table| table.value(direction.z))
 }
 
 /// A direction wo for wi in front of the surface, from two numbers in (0, 1). It may lie below the surface: then it carries nothing.
 ///
-/// Backward rays draw wi for wo by the same lobes, which are symmetric. Fresnel factor and albedo are left to the weight.
+/// Backward rays draw wi for wo by the same lobes, which are symmetric. Albedo and factors of angles are left to the weight.
 #[inline]
 pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     match brdf.lobe {

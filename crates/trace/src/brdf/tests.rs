@@ -1,6 +1,6 @@
-use super::{density, sample, value};
+use super::{densities, density, sample, towards, value};
 use etendue_field::random::{self, Stream};
-use etendue_field::{Brdf, Frame, Fresnel, Lobe};
+use etendue_field::{Brdf, Frame, Fresnel, Lobe, Mixture, Reflectance, Term, Weight};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
@@ -15,12 +15,7 @@ const FINE: u32 = 32;
 const ANGLES: [f64; 4] = [0.0, 0.6, 1.2, 1.5];
 
 fn brdf(lobe: Lobe) -> Brdf {
-    let (albedo, fresnel) = (1.0, Fresnel::White);
-    Brdf {
-        lobe,
-        albedo,
-        fresnel,
-    }
+    Brdf::new(lobe, 1.0, Fresnel::White)
 }
 
 fn phong(exponent: f64) -> Brdf {
@@ -187,6 +182,43 @@ fn samples_follow_their_density_and_it_integrates_to_one() {
     }
 }
 
+/// Three lobes of unequal albedos: the ring edges are those of the widest about the mirror direction.
+#[test]
+fn samples_of_a_sum_follow_its_density() {
+    let term = |brdf: Brdf, albedo: f64| Term {
+        brdf: Brdf { albedo, ..brdf },
+        weight: Weight::One,
+    };
+    let sum = |albedos: [f64; 3]| Reflectance {
+        terms: vec![
+            term(phong(30.0), albedos[0]),
+            term(brdf(Lobe::Lambertian), albedos[1]),
+            term(ggx(0.3), albedos[2]),
+        ],
+        texture: None,
+    };
+    let reflectance = sum([0.5, 0.3, 0.1]);
+    let of = reflectance.at(0.0, 0.0);
+    let swapped = sum([0.3, 0.5, 0.1]);
+    for angle in ANGLES {
+        let given = at(angle);
+        let edges = edges(&ggx(0.3), given);
+        let against = |mixture: &Mixture<'_>| {
+            let density = |d| densities(mixture, given, d);
+            chi2(&edges, given, |r| towards(&of, given, r), density)
+        };
+        let [found, cells, total] = against(&of);
+        assert!(found < bound(cells), "{angle}: χ² {found} in {cells} cells");
+        // Midpoint rule, as above; the horizon cuts cells in which the cosine has a corner.
+        assert!((total - 1.0).abs() < 3e-3, "{angle}: integral {total}");
+        let [fault, cells, _] = against(&swapped.at(0.0, 0.0));
+        assert!(
+            fault > 1.5 * bound(cells),
+            "{angle}: shares swapped: χ² {fault}"
+        );
+    }
+}
+
 /// The test above sees each of these.
 #[test]
 fn planted_faults_are_seen() {
@@ -297,7 +329,10 @@ fn reciprocity_where_there_is_one() {
     for of in lobes() {
         let is_micro = matches!(of.lobe, Lobe::Beckmann { .. } | Lobe::Ggx { .. });
         for fresnel in [Fresnel::White, glass] {
-            let of = Brdf { fresnel, ..of };
+            let of = Brdf {
+                fresnel,
+                ..of.clone()
+            };
             let (a, b) = (at(1.3), DVec3::new(-0.6, -0.3, 0.5).normalize());
             let [there, back] = [value(&of, a, b), value(&of, b, a)];
             let same = (there - back).abs() <= 1e-9 * there; // rounding, in the exponent of a narrow lobe

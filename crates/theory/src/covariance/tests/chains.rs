@@ -163,13 +163,8 @@ fn behind_a_textured_lobe() {
             name: "sphere".into(),
             patch: patch(),
             reflectance: Reflectance {
-                brdf: Brdf {
-                    lobe: Lobe::Phong { exponent: 100.0 },
-                    albedo: 1.0,
-                    fresnel: Fresnel::White,
-                },
-                blend: None,
                 texture,
+                ..Brdf::new(Lobe::Phong { exponent: 100.0 }, 1.0, Fresnel::White).into()
             },
         },
         plane: beyond(),

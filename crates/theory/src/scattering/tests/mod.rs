@@ -6,8 +6,8 @@ use crate::rays::Plane;
 use crate::testing::{chain_of, opaque, window};
 use crate::{Model, Observed, Operator, Parameter, Predicted, slices};
 use etendue_field::{
-    Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Image, LatLong, Lobe, Orientation,
-    Profile, ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
+    AngleTable, Brdf, EnvironmentMap, Frame, FrequencyAxis, Fresnel, Grating, Image, LatLong, Lobe,
+    Orientation, Pattern, Profile, ProjectionGrid, Quantity, Rectangle, Shape, SliceGrid, Window,
 };
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -88,15 +88,7 @@ fn square(side: f64) -> Shape {
 }
 
 fn white(lobe: Lobe) -> Reflectance {
-    Reflectance {
-        brdf: Brdf {
-            lobe,
-            albedo: 0.7,
-            fresnel: Fresnel::White,
-        },
-        blend: None,
-        texture: None,
-    }
+    Brdf::new(lobe, 0.7, Fresnel::White).into()
 }
 
 /// A surface a metre from the light, met at θ₀ in the plane of X.
@@ -248,10 +240,15 @@ fn chain_is_the_product_of_operators() {
 }
 
 /// ‖first order − exact‖/‖exact‖ in neighbourhoods e times as wide.
-fn errors(theta0: f64, k: f64, lobe: impl Fn(f64) -> Lobe, orientation: Orientation) -> Vec<f64> {
+fn errors(
+    theta0: f64,
+    k: f64,
+    reflectance: impl Fn(f64) -> Reflectance,
+    orientation: Orientation,
+) -> Vec<f64> {
     [0.2, 0.1, 0.05]
         .map(|e| {
-            let system = system(projector(e), theta0, [k; 3], white(lobe(e)));
+            let system = system(projector(e), theta0, [k; 3], reflectance(e));
             let plane = match orientation {
                 Orientation::Orthogonal => across(theta0, 0.4),
                 _ => on(&system, theta0, orientation),
@@ -285,13 +282,48 @@ fn first_order_is_of_its_order() {
         (0.6, -0.4, Orientation::Orthogonal),
         (0.0, 0.5, Orientation::Orthogonal),
     ] {
-        let errors = errors(theta0, k, phong, orientation);
+        let errors = errors(theta0, k, |e| white(phong(e)), orientation);
         let order = libm::log2(errors[1] / errors[2]);
         let due = if theta0 == 0.0 { 2.0 } else { 1.0 };
         // Three sizes; what is beyond the first order left out is a quarter of it and less.
         assert!(
             (order - due).abs() < 0.25,
             "{theta0} {orientation:?}: {order} {errors:?}"
+        );
+        assert!(errors[2] < 0.06, "{errors:?}");
+    }
+}
+
+/// Two lobes with factors of both angles, and weights whose wave is as long as the neighbourhood.
+#[test]
+fn weighted_and_separable_brdfs_are_of_first_order() {
+    let table = |values: [f64; 2]| {
+        Some(AngleTable {
+            values: values.into(),
+        })
+    };
+    let sum = |e: f64| {
+        let one = Brdf {
+            incoming: table([1.0, 0.1]),
+            outgoing: table([0.2, 1.0]),
+            ..Brdf::new(phong(e), 1.0, Fresnel::White)
+        };
+        let zero = Brdf::new(phong(2.0 * e), 0.8, Fresnel::Dielectric { index: 1.5 });
+        let grating = Grating {
+            axis: 0,
+            frequency: 0.5 / e,
+            modulation: 0.9,
+            phase: 0.4,
+        };
+        Reflectance::blend(one, zero, Pattern::Cosine(grating))
+    };
+    for orientation in [Orientation::LocalNormals, Orientation::Orthogonal] {
+        let errors = errors(0.6, 0.5, sum, orientation);
+        let order = libm::log2(errors[1] / errors[2]);
+        // As above.
+        assert!(
+            (order - 1.0).abs() < 0.25,
+            "{orientation:?}: {order} {errors:?}"
         );
         assert!(errors[2] < 0.06, "{errors:?}");
     }
