@@ -144,7 +144,18 @@ impl Applicability {
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let mut theory = Theory::of(scene, plane);
+        let found = Self::of(scene, plane, Theory::of(scene, plane));
+        // Rays of the first leg are followed past what does not lie across it.
+        let past = (plane.leg == 0 && !found.reasons.is_empty())
+            .then(|| system(scene, plane))
+            .flatten();
+        match past {
+            Some(view) => Self::of(scene, plane, Theory::Specular(Box::new(view))),
+            None => found,
+        }
+    }
+
+    fn of(scene: &Scene, plane: &VirtualPlane, mut theory: Theory) -> Self {
         let off_patches = match &theory {
             Theory::Specular(view) => off_patches(scene, plane, view),
             Theory::Parallel(_) | Theory::Scattering(_) | Theory::None => None,

@@ -7,7 +7,7 @@ use crate::figure::Quality;
 use crate::method::Method;
 use crate::results::npz::Npz;
 use crate::{limits, machine};
-use etendue_compare::{Applicability, PlaneComparison};
+use etendue_compare::{Applicability, PlaneComparison, Test};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
 use etendue_scene::{Scene, SceneFile};
 use ndarray::{Axis, arr1};
@@ -39,7 +39,7 @@ impl Shot {
         let theories = Applicability::of_planes(&scene);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
         let case = Case::of(scene, theories, Method::Photons, quiet)?;
-        let planes = judged(&case)?;
+        let planes = judged(&case, &Test::of(&case.scene))?;
         Ok(Self {
             photons: case.measurement.emitted(),
             scene: case.scene,

@@ -31,7 +31,7 @@ mod tests;
 pub use chain::{ReflectionChain, chain, defect};
 pub use predict::beside;
 
-pub(crate) use predict::predict;
+pub(crate) use predict::{predict, with_rays};
 
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Reflectance};
