@@ -129,7 +129,7 @@ impl Judged {
         let tests = if fields.is_some() { field::TESTS } else { 1 };
         let mut planes = judged(case, &Test::each(&case.scene, tests))?;
         if let Some(results) = fields {
-            stage.suspend(|| field::save(results, case, &mut planes, quiet))?;
+            stage.suspend(|| field::compare(Some(results), case, &mut planes, quiet))?;
         }
         let inquiries = stage.suspend(|| inquire(case, &planes, quiet))?;
         stage.finish_and_clear();

@@ -11,7 +11,7 @@ use crate::results::sealed::json;
 use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField, Test, Theory};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
-use etendue_spectrum::field::{FieldMeasurement, FieldOptions, RadialBins, measure_field};
+use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
 use ndarray::{Array1, Array4};
 use ndarray_npy::WriteNpyExt;
 use serde::Serialize;
@@ -67,15 +67,15 @@ pub(crate) fn check_memory(scene: &Scene) -> Result<(), Failure> {
 
 /// The light field of a plane, and its full radial spectrum held against its prediction.
 #[derive(Debug)]
-pub(crate) struct Field {
-    pub(crate) measured: FieldMeasurement,
+struct Field {
+    measured: FieldMeasurement,
     /// `None` where nothing is predicted, or there is no memory to hold all groups against it.
-    pub(crate) compared: Option<FullRadialComparison>,
+    compared: Option<FullRadialComparison>,
 }
 
 impl Field {
     /// Puts the photons of plane `index` on a grid: traces them again.
-    pub(crate) fn of(case: &Case, index: usize, quiet: bool) -> Result<Self, Failure> {
+    fn new(case: &Case, index: usize, quiet: bool) -> Result<Self, Failure> {
         let plane = &case.scene.planes[index];
         let grid = FieldGrid::new(&plane.window, &plane.grid);
         let options = FieldOptions {
@@ -93,7 +93,6 @@ impl Field {
             return Ok(Self { measured, compared });
         }
         let mut measured = on_grid((case, case.method), index, &options, quiet)?;
-        let groups = std::mem::take(&mut measured.groups);
         let theory = &case.theories[index];
         let predicted = if matches!(theory.theory, Theory::None) {
             let judge = case.method.judge(&case.scene, plane);
@@ -101,12 +100,11 @@ impl Field {
             Some(PredictedField::reference(reference.groups))
         } else {
             let over = (grid, options.assignment);
-            PredictedField::new(&case.scene, plane, theory, over, groups.len())
+            PredictedField::new(&case.scene, plane, theory, over, groups)
         };
         let seed = case.scene.run.seed;
-        let bins = RadialBins::new(&grid);
-        let compared =
-            predicted.map(|predicted| FullRadialComparison::new(&bins, &groups, &predicted, seed));
+        let compared = predicted.map(|field| FullRadialComparison::new(&measured, &field, seed));
+        measured.groups.clear();
         Ok(Self { measured, compared })
     }
 }
@@ -136,21 +134,22 @@ fn on_grid(
     measured.map_err(Failure::cannot_run)
 }
 
-/// Measures, judges and writes the light field of each plane.
-pub(crate) fn save(
-    results: &mut Results,
+/// Measures and judges the light field of each plane, and writes it if there is a result to write it to.
+pub(crate) fn compare(
+    mut results: Option<&mut Results>,
     case: &Case,
     planes: &mut [PlaneComparison],
     quiet: bool,
 ) -> Result<(), Failure> {
     let test = Test::each(&case.scene, TESTS);
-    for (index, plane) in case.scene.planes.iter().enumerate() {
-        let field = Field::of(case, index, quiet)?;
-        let slices = &planes[index].measured;
-        write(results, plane, &field, slices)?;
+    let each = case.scene.planes.iter().zip(planes).enumerate();
+    for (index, (plane, comparison)) in each {
+        let field = Field::new(case, index, quiet)?;
+        if let Some(results) = &mut results {
+            write(results, plane, &field, &comparison.measured)?;
+        }
         if let Some(compared) = field.compared {
-            let report = &mut planes[index].report;
-            report.add_full_radial(compared.report, &case.predictions[index], &test);
+            comparison.add_full_radial(compared, &case.predictions[index], &test);
         }
     }
     Ok(())
@@ -196,13 +195,13 @@ fn write(
     };
     results.write(&format!("{name}/field.json"), &json(&index))?;
     let mut npz = Npz::new().add("power", &full_radial.power)?;
-    let mut sigma = &full_radial.sigma;
     if let Some(compared) = compared {
-        npz = npz.add("predicted_power", &compared.predicted)?;
-        sigma = &compared.sigma;
+        npz = npz
+            .add("predicted_power", &compared.predicted)?
+            .add("sigma_predicted", &compared.sigma)?;
     }
     let bytes = npz
-        .add("sigma", sigma)?
+        .add("sigma", &full_radial.sigma)?
         .add("shot_noise", &full_radial.shot_noise)?
         .add("counts", &full_radial.counts)?
         .add("rho_edges", &Array1::from(full_radial.rho_edges.clone()))?

@@ -28,7 +28,9 @@ pub(crate) fn depth(scene: &Scene, plane: &VirtualPlane) -> Option<[f64; 2]> {
         let is_met = passes(scene, plane, &points, false);
         is_met.then(|| extent(&points, plane.distance))
     });
-    let all = layers.chain(others).reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
+    let all = layers
+        .chain(others)
+        .reduce(|a, b| [a[0].min(b[0]), a[1].max(b[1])])?;
     Some([plane.distance - all[1], plane.distance - all[0]])
 }
 

@@ -2,12 +2,14 @@
 
 use crate::agreement::UNSEEN;
 use crate::field::PredictedField;
+use crate::plane::PlaneComparison;
 use crate::prediction::Prediction;
-use crate::report::PlaneReport;
 use crate::residuals::{ROUNDS, signs};
 use crate::verdict::{Test, Verdict};
-use etendue_spectrum::field::{FieldGroup, FieldSpectrum, RadialBins};
-use ndarray::{Array2, ArrayView2, Axis};
+use etendue_spectrum::field::{
+    FieldGroup, FieldMeasurement, FieldSpectrum, FullRadial, RadialBins,
+};
+use ndarray::{Array2, ArrayView2};
 use rayon::prelude::*;
 use serde::Serialize;
 
@@ -33,6 +35,8 @@ pub struct FullRadialReport {
 pub struct FullRadialComparison {
     /// Every number.
     pub report: FullRadialReport,
+    /// The measured one, with its bins.
+    pub measured: FullRadial,
     /// The predicted power, aliasing included, without the noise of its rays.
     pub predicted: Array2<f64>,
     /// Standard deviation of measured minus predicted, if the prediction is true.
@@ -123,70 +127,80 @@ fn crossed(products: ArrayView2<'_, f64>, first: usize) -> f64 {
 }
 
 impl FullRadialComparison {
-    /// Compares the groups of a measurement with a prediction on the same grid. `seed` keys the signs of p.
+    /// Compares a measurement that has its groups with a prediction on the same grid. `seed` keys the signs of p.
     ///
     /// # Panics
     /// When the prediction comes in other groups.
     #[must_use]
-    pub fn new(
-        bins: &RadialBins,
-        measured: &[FieldGroup],
-        predicted: &PredictedField,
-        seed: u64,
-    ) -> Self {
-        let shares: Vec<f64> = measured.iter().map(|group| group.share).collect();
-        let spectra: Vec<&FieldSpectrum> = measured
-            .iter()
-            .map(|group| &group.spectrum)
-            .chain(predicted.spectra())
-            .collect();
-        let n = shares.len();
-        assert!(
-            [n + 1, 2 * n].contains(&spectra.len()),
-            "groups of measurement and prediction"
-        );
-        let products = bins.products(&spectra);
-        let shape = bins.counts.raw_dim();
-        let each = || (0..bins.counts.len()).map(|bin| products.index_axis(Axis(0), bin));
-        let differences: Vec<Difference> = each().map(|of| Difference::new(of, &shares)).collect();
-        let power = each().map(|of| match predicted {
-            PredictedField::Exact { .. } => of[[n, n]],
-            PredictedField::Sampled(_) => crossed(of, n),
-        });
-        let power = Array2::from_shape_vec(shape, power.collect()).expect("a power for each bin");
-        let sigma = differences.iter().map(|bin| bin.variance().sqrt());
-        let sigma = Array2::from_shape_vec(shape, sigma.collect()).expect("a σ for each bin");
-        let aliasing = match predicted {
-            PredictedField::Exact { alias_free, .. } => alias_free.as_ref(),
-            PredictedField::Sampled(_) => None,
-        };
+    pub fn new(measured: &FieldMeasurement, predicted: &PredictedField, seed: u64) -> Self {
+        let bins = RadialBins::new(&measured.grid);
+        let (report, predicted, sigma) = compared(&bins, &measured.groups, predicted, seed);
         Self {
-            report: report(&differences, (&power, &sigma), aliasing, seed),
-            predicted: power,
+            report,
+            measured: measured.full_radial.clone(),
+            predicted,
             sigma,
         }
     }
 }
 
-impl PlaneReport {
+/// The report, the predicted power and σ of the difference, for the groups of a measurement.
+pub(crate) fn compared(
+    bins: &RadialBins,
+    groups: &[FieldGroup],
+    predicted: &PredictedField,
+    seed: u64,
+) -> (FullRadialReport, Array2<f64>, Array2<f64>) {
+    let shares: Vec<f64> = groups.iter().map(|group| group.share).collect();
+    let spectra = groups.iter().map(|group| &group.spectrum);
+    let spectra: Vec<&FieldSpectrum> = spectra.chain(predicted.spectra()).collect();
+    let n = shares.len();
+    assert!(
+        [n + 1, 2 * n].contains(&spectra.len()),
+        "groups of measurement and prediction"
+    );
+    let products = bins.products(&spectra);
+    let each = || products.outer_iter();
+    let differences: Vec<Difference> = each().map(|of| Difference::new(of, &shares)).collect();
+    let power = each().map(|of| match predicted {
+        PredictedField::Exact { .. } => of[[n, n]],
+        PredictedField::Sampled(_) => crossed(of, n),
+    });
+    let shape = bins.counts.raw_dim();
+    let of_bins = |values: Vec<f64>| Array2::from_shape_vec(shape, values).expect("of each bin");
+    let power = of_bins(power.collect());
+    let sigma = differences.iter().map(|bin| bin.variance().sqrt());
+    let sigma = of_bins(sigma.collect());
+    let aliasing = match predicted {
+        PredictedField::Exact { alias_free, .. } => alias_free.as_ref(),
+        PredictedField::Sampled(_) => None,
+    };
+    let report = report(&differences, (&power, &sigma), aliasing, seed);
+    (report, power, sigma)
+}
+
+impl PlaneComparison {
     /// Adds the full radial spectrum. A plane that would pass fails where p is below the level of the test, unless the
     /// stated error of the prediction, which no replicates show, may be seen in the noise.
     pub fn add_full_radial(
         &mut self,
-        full_radial: FullRadialReport,
+        full_radial: FullRadialComparison,
         prediction: &Prediction,
         test: &Test,
     ) {
-        let disagrees = full_radial.p_value.is_some_and(|p| p < test.level);
-        let error = prediction.systematic_error().zip(self.noise_limit);
+        let report = &mut self.report;
+        let numbers = full_radial.report;
+        let disagrees = numbers.p_value.is_some_and(|p| p < test.level);
+        let error = prediction.systematic_error().zip(report.noise_limit);
         let is_excused = error.is_some_and(|(error, noise)| error > UNSEEN * noise);
-        self.full_radial = Some(full_radial);
-        if disagrees && !is_excused && self.exact_verdict() == Verdict::Pass {
-            self.verdict = Verdict::Fail;
-            if let Some(chain) = &mut self.first_order {
+        report.full_radial = Some(numbers);
+        if disagrees && !is_excused && report.exact_verdict() == Verdict::Pass {
+            report.verdict = Verdict::Fail;
+            if let Some(chain) = &mut report.first_order {
                 chain.exact = Verdict::Fail;
             }
         }
+        self.full_radial = Some(full_radial);
     }
 }
 

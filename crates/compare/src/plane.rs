@@ -3,10 +3,12 @@
 use crate::agreement::{Agreement, UNSEEN};
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
+use crate::full_radial::FullRadialComparison;
 use crate::noise::noise_dof;
 use crate::prediction::Prediction;
 use crate::report::{
-    Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport, WedgeShare,
+    Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
+    WedgeShare,
 };
 use crate::residuals::{Residuals, largest};
 use crate::score::{ParameterReport, score};
@@ -45,6 +47,8 @@ pub struct PlaneComparison {
     pub off_chain: Option<Array2<f64>>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
+    /// The full radial spectrum, where the light field was put on a 4D grid and has a prediction.
+    pub full_radial: Option<FullRadialComparison>,
 }
 
 /// A field with less than this share of the light without blockers is predicted to be dark. A
@@ -112,6 +116,7 @@ pub fn compare(
         predicted_radial,
         predicted,
         projection: estimate::projection(measurement, index)?,
+        full_radial: None,
     })
 }
 
