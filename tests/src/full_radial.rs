@@ -162,7 +162,7 @@ fn against_rays(case: &Case, seeds: u64, photons: u64) -> (String, Vec<FullRadia
 
 fn each_seed(seeds: u64, of: impl Fn(u64) -> FullRadialReport + Sync) -> Vec<FullRadialReport> {
     let bar = progress(seeds, "seeds");
-    let found = (1..=seeds).into_par_iter().map(of).inspect(|_| bar.one());
+    let found = (1..=seeds).into_par_iter().map(&of).inspect(|_| bar.one());
     let found = found.collect();
     bar.end();
     found

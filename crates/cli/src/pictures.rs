@@ -399,6 +399,8 @@ pub(crate) fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     };
     let chi2 = report.chi2_per_dof;
     lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
+    let full_radial = report.full_radial.and_then(|full| full.p_value);
+    lines.extend(full_radial.map(|p| format!("full radial *p* = {p:.3}")));
     // What photons disagree with is that error: it is why the plane passes.
     let is_excused = report.exact_verdict() == Verdict::Pass && report.p_value < Some(0.001);
     let error = report.quadrature_error.filter(|_| is_excused);
