@@ -107,6 +107,12 @@ impl Harmonics {
         Some(Self { expansion, tables })
     }
 
+    /// Products that are summed for each frequency.
+    #[must_use]
+    pub fn terms(&self) -> usize {
+        self.expansion.terms.len() * self.tables.len()
+    }
+
     /// ℓ̂ at the harmonics (i, j, k, l) of the spacings; the same as [`at`](crate::at) there.
     /// Unit: W m⁻² sr⁻¹ · m².
     ///
