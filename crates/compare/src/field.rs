@@ -16,7 +16,7 @@ pub enum PredictedField {
     /// The expectation of the measurement, aliasing included.
     Exact {
         /// The spectrum.
-        spectrum: FieldSpectrum,
+        spectrum: Box<FieldSpectrum>,
         /// The power without aliasing, [|Ωxy|, |Ωuv|]; `None` where the rays of a file are put on the grid.
         alias_free: Option<Array2<f64>>,
     },
@@ -38,7 +38,7 @@ impl PredictedField {
         if applicability.dark.is_some() {
             let spectrum = FieldTransform::new(grid, assignment);
             return Some(Self::Exact {
-                spectrum: spectrum.spectrum(spectrum.cells()),
+                spectrum: Box::new(spectrum.spectrum(spectrum.cells())),
                 alias_free: None,
             });
         }
@@ -82,7 +82,7 @@ impl PredictedField {
     /// Its spectra: one of an exact prediction, or one of each group.
     pub(crate) fn spectra(&self) -> &[FieldSpectrum] {
         match self {
-            Self::Exact { spectrum, .. } => std::slice::from_ref(spectrum),
+            Self::Exact { spectrum, .. } => std::slice::from_ref(spectrum.as_ref()),
             Self::Sampled(spectra) => spectra,
         }
     }
@@ -108,7 +108,7 @@ fn closed_form(
     }
     let alias_free = alias_free(chain, plane, (grid, assignment))?;
     Some(PredictedField::Exact {
-        spectrum: spectrum(&on_grid, (grid, assignment)),
+        spectrum: Box::new(spectrum(&on_grid, (grid, assignment))),
         alias_free: Some(RadialBins::new(&grid).power(&alias_free)),
     })
 }
@@ -162,7 +162,7 @@ fn on_grid(rays: &dyn RayNets, transform: &FieldTransform, groups: usize) -> Pre
         return PredictedField::Sampled(spectra);
     }
     PredictedField::Exact {
-        spectrum: spectra.swap_remove(0),
+        spectrum: Box::new(spectra.swap_remove(0)),
         alias_free: None,
     }
 }
@@ -221,7 +221,7 @@ mod tests {
         assert!(p(&closed) > 0.01); // one test, of fixed nets
         // The fault: what is there, instead of what a grid has of it.
         let fault = PredictedField::Exact {
-            spectrum: alias_free(&chain, plane, over).unwrap(),
+            spectrum: Box::new(alias_free(&chain, plane, over).unwrap()),
             alias_free: None,
         };
         assert!(p(&fault) < 1e-3);

@@ -123,6 +123,7 @@ fn prediction(width: f64) -> Prediction {
         mesh_error: None,
         first_order: None,
         replicates: Vec::new(),
+        depth: None,
         cuts: Vec::new(),
         projection: Projection {
             grid,

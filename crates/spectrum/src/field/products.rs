@@ -11,6 +11,9 @@ impl RadialBins {
     ///
     /// All pairs at once, so that each spectrum is read once. Each ring of (Ωx, Ωy) is summed by itself, in order: the
     /// same bits on any number of threads.
+    ///
+    /// # Panics
+    /// When a spectrum is on another grid.
     #[must_use]
     pub fn products(&self, spectra: &[&FieldSpectrum]) -> Array3<f64> {
         let (rings, columns) = self.counts.dim();
