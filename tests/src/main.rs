@@ -12,6 +12,7 @@ mod bandwidth;
 mod calibration;
 mod claims;
 mod faults;
+mod full_radial;
 mod hostile;
 mod kills;
 mod nets;
@@ -45,6 +46,7 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- shading      writes docs/validation.md
   cargo run --release -p etendue-validation -- claims       two minutes; writes docs/validation.md
   cargo run --release -p etendue-validation -- bandwidth    writes docs/bandwidth.md, .svg and .csv
+  cargo run --release -p etendue-validation -- full-radial  minutes; writes docs/validation.md
   cargo run --release -p etendue-validation -- nets         three minutes; writes docs/nets.md
   cargo run --release -p etendue-validation -- second       seconds; shared functions, written twice
   cargo run --release -p etendue-validation -- hostile      20,000 mutated inputs, for etendue beside it
@@ -116,6 +118,15 @@ enum Command {
         /// Photons for each point; then nothing is written.
         #[arg(long)]
         photons: Option<u64>,
+    },
+    /// p of the full radial spectrum uniform over many seeds, and faults planted in its predictions.
+    FullRadial {
+        /// How many seeds.
+        #[arg(long, default_value_t = 200)]
+        seeds: u64,
+        /// Photons for each.
+        #[arg(long, default_value_t = 1 << 16)]
+        photons: u64,
     },
     /// Errors that predictions by nets of rays state, against the truth; into docs/nets.md.
     Nets,
@@ -274,6 +285,15 @@ fn page(command: &Command) -> Option<[&'static str; 4]> {
             "claims",
             "Scenes: made for each statement",
         ],
+        Command::FullRadial {
+            seeds: 200,
+            photons: 65_536,
+        } => [
+            "docs/validation.md",
+            "Full radial spectra",
+            "full-radial",
+            "Scenes with fewer frequencies than in their files",
+        ],
         Command::All => [
             "docs/validation.md",
             "Every row of Table 1",
@@ -325,6 +345,7 @@ fn sections(command: &Command) -> Vec<Section> {
         Command::Table1 { photons } => table1::table1(photons),
         Command::Shading { photons } => shading::shading(photons),
         Command::Claims { photons } => vec![claims::claims(photons)],
+        Command::FullRadial { seeds, photons } => full_radial::full_radial(seeds, photons),
         Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
         // These have reports of their own.
         Command::Nets

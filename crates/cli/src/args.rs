@@ -618,8 +618,8 @@ pub(crate) enum Save {
     Mcpl,
     /// The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each
     Tm25,
-    /// The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz; takes two more passes
-    /// over the photons for each plane
+    /// The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz, which is
+    /// predicted and compared too; takes another pass over the photons for each plane, or two where memory is short
     Field,
 }
 

@@ -81,10 +81,11 @@ pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bo
 pub(crate) fn conclude(
     case: &Case,
     ending: &Ending<'_>,
-    results: Results,
+    mut results: Results,
     mut watch: Stopwatch,
 ) -> Result<u8, Failure> {
-    let judged = Judged::of(case, ending.quiet)?;
+    let fields = ending.save.contains(&Save::Field);
+    let judged = Judged::of(case, fields.then_some(&mut results), ending.quiet)?;
     watch.lap("compare");
     let stage = progress::stage("writing results", ending.quiet);
     let seconds = watch.seconds("trace");
@@ -117,10 +118,19 @@ pub(crate) struct Judged {
 }
 
 impl Judged {
-    /// Compares all planes, and looks into those that fail.
-    pub(crate) fn of(case: &Case, quiet: bool) -> Result<Self, Failure> {
+    /// Compares all planes, and looks into those that fail. The light fields of the planes are compared too where they
+    /// are saved to a result.
+    pub(crate) fn of(
+        case: &Case,
+        fields: Option<&mut Results>,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
         let stage = progress::stage("comparing", quiet);
-        let planes = judged(case)?;
+        let tests = if fields.is_some() { field::TESTS } else { 1 };
+        let mut planes = judged(case, &Test::each(&case.scene, tests))?;
+        if let Some(results) = fields {
+            stage.suspend(|| field::compare(Some(results), case, &mut planes, quiet))?;
+        }
         let inquiries = stage.suspend(|| inquire(case, &planes, quiet))?;
         stage.finish_and_clear();
         let summary = Summary::new(case, &planes, inquiries);
@@ -158,11 +168,10 @@ pub(crate) fn code_of(verdict: Verdict) -> u8 {
 }
 
 /// Each plane compared, with its verdict.
-pub(crate) fn judged(case: &Case) -> Result<Vec<PlaneComparison>, Failure> {
-    let test = Test::of(&case.scene);
+pub(crate) fn judged(case: &Case, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
     let each = case.predictions.iter().enumerate();
     let compared = each.map(|(i, prediction)| {
-        compare(&case.measurement, i, prediction, &test).map_err(Failure::cannot_run)
+        compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
     });
     let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
     aimed::leave_open(case, &mut planes);
@@ -203,9 +212,6 @@ pub(crate) fn written(
     }
     for save in ending.save {
         photons::save(&mut results, case, *save)?;
-    }
-    if ending.save.contains(&Save::Field) {
-        field::save(&mut results, case, ending.quiet)?;
     }
     watch.lap("write");
     results.write_unlisted(TIMING, &watch.json(summary.photons))?;

@@ -3,17 +3,16 @@
 use crate::case::Case;
 use crate::failure::Failure;
 use crate::machine;
-use crate::method::source;
+use crate::method::{Method, source};
 use crate::progress;
 use crate::results::Results;
 use crate::results::npz::Npz;
 use crate::results::sealed::json;
-use etendue_compare::{Applicability, Theory};
+use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField, Test, Theory};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
-use etendue_spectrum::field::{FieldMeasurement, FieldOptions, full_radial_of, measure_field};
-use etendue_theory::Harmonics;
-use ndarray::{Array1, Array2, Array4};
+use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
+use ndarray::{Array1, Array4};
 use ndarray_npy::WriteNpyExt;
 use serde::Serialize;
 use std::io;
@@ -66,54 +65,98 @@ pub(crate) fn check_memory(scene: &Scene) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Traces the photons again, one plane after the other.
-pub(crate) fn save(results: &mut Results, case: &Case, quiet: bool) -> Result<(), Failure> {
-    let source = source(&case.scene, case.method)?;
-    for (index, plane) in case.scene.planes.iter().enumerate() {
-        // Once for the sum, once for the groups its errors come from.
-        let bar = progress::photons(2 * case.measurement.emitted(), quiet);
-        let batches = 0..case.scene.run.batches;
-        let options = FieldOptions::default();
-        let measured = measure_field(&*source, index, plane, batches, &options, &|photons| {
-            bar.inc(photons);
-        });
-        bar.finish_and_clear();
-        let measured = measured.map_err(Failure::cannot_run)?;
-        let slices = etendue_spectrum::estimate::slices(&case.measurement, index);
-        let slices = slices.map_err(Failure::cannot_run)?.mean;
-        let predicted = predicted(&case.theories[index], plane, &measured.grid);
-        write(results, plane, &measured, &slices, predicted)?;
+/// The light field of a plane, and its full radial spectrum held against its prediction.
+#[derive(Debug)]
+struct Field {
+    measured: FieldMeasurement,
+    /// `None` where nothing is predicted, or there is no memory to hold all groups against it.
+    compared: Option<FullRadialComparison>,
+}
+
+impl Field {
+    /// Puts the photons of plane `index` on a grid: traces them again.
+    fn new(case: &Case, index: usize, quiet: bool) -> Result<Self, Failure> {
+        let plane = &case.scene.planes[index];
+        let grid = FieldGrid::new(&plane.window, &plane.grid);
+        let options = FieldOptions {
+            keep: true,
+            spectra: true,
+            ..FieldOptions::default()
+        };
+        // The prediction has as many groups.
+        let groups = options.groups.min(case.measurement.batches().len());
+        let needed = grid.bytes().saturating_mul(groups as u64);
+        let needed = needed.saturating_add(options.bytes(&grid, rayon::current_num_threads()));
+        if needed > machine::available_memory() {
+            let measured = on_grid((case, case.method), index, &FieldOptions::default(), quiet)?;
+            let compared = None;
+            return Ok(Self { measured, compared });
+        }
+        let mut measured = on_grid((case, case.method), index, &options, quiet)?;
+        let theory = &case.theories[index];
+        let predicted = if matches!(theory.theory, Theory::None) {
+            let judge = case.method.judge(&case.scene, plane);
+            let reference = on_grid((case, judge), index, &options, quiet)?;
+            Some(PredictedField::reference(reference.groups))
+        } else {
+            let over = (grid, options.assignment);
+            PredictedField::new(&case.scene, plane, theory, over, groups)
+        };
+        let seed = case.scene.run.seed;
+        let compared = predicted.map(|field| FullRadialComparison::new(&measured, &field, seed));
+        measured.groups.clear();
+        Ok(Self { measured, compared })
+    }
+}
+
+/// Traces a plane by a method, once if the groups are kept: else once for the sum and once for them.
+fn on_grid(
+    (case, method): (&Case, Method),
+    index: usize,
+    options: &FieldOptions,
+    quiet: bool,
+) -> Result<FieldMeasurement, Failure> {
+    let scene = case.scene.seen_at(&[index]);
+    // Photons are aimed at all planes of a scene, and those that are judged must be the same ones.
+    let (source, at) = if method == case.method {
+        (source(&case.scene, method)?, index)
+    } else {
+        (source(&scene, method)?, 0)
+    };
+    let passes = if options.keep { 1 } else { 2 };
+    let bar = progress::photons(passes * case.measurement.emitted(), quiet);
+    let batches = 0..case.scene.run.batches;
+    let plane = &case.scene.planes[index];
+    let measured = measure_field(&*source, at, plane, batches, options, &|photons| {
+        bar.inc(photons);
+    });
+    bar.finish_and_clear();
+    measured.map_err(Failure::cannot_run)
+}
+
+/// Measures and judges the light field of each plane, and writes it if there is a result to write it to.
+pub(crate) fn compare(
+    mut results: Option<&mut Results>,
+    case: &Case,
+    planes: &mut [PlaneComparison],
+    quiet: bool,
+) -> Result<(), Failure> {
+    let test = Test::each(&case.scene, TESTS);
+    let each = case.scene.planes.iter().zip(planes).enumerate();
+    for (index, (plane, comparison)) in each {
+        let field = Field::new(case, index, quiet)?;
+        if let Some(results) = &mut results {
+            write(results, plane, &field, &comparison.measured)?;
+        }
+        if let Some(compared) = field.compared {
+            comparison.add_full_radial(compared, &case.predictions[index], &test);
+        }
     }
     Ok(())
 }
 
-/// The full radial spectrum that theory predicts, where it can tell all four dimensions at once: on the way to
-/// the receiver, and not behind a mesh.
-fn predicted(
-    applicability: &Applicability,
-    plane: &VirtualPlane,
-    grid: &FieldGrid,
-) -> Option<Array2<f64>> {
-    let Theory::Parallel(chain) = &applicability.theory else {
-        return None;
-    };
-    if matches!(chain.source.light, etendue_field::Light::Rays { .. }) {
-        return None;
-    }
-    let axes = [0, 1, 2, 3];
-    let spacing = axes.map(|axis| grid.spacing(axis));
-    let half = axes.map(|axis| grid.cells[axis] / 2);
-    let harmonics = Harmonics::new(chain, &plane.window, spacing, half)?;
-    #[expect(
-        clippy::cast_possible_truncation,
-        reason = "a multiple below the number of cells"
-    )]
-    let multiples =
-        |frequency: [f64; 4]| axes.map(|axis| (frequency[axis] / spacing[axis]).round() as isize);
-    Some(full_radial_of(grid, |frequency| {
-        harmonics.at(multiples(frequency))
-    }))
-}
+/// Tests of each plane whose light field is saved: of its slices, and of its full radial spectrum.
+pub(crate) const TESTS: usize = 2;
 
 /// The share of Nyquist up to which the grid is held against the slices.
 const COMPARED: f64 = 0.5;
@@ -121,9 +164,8 @@ const COMPARED: f64 = 0.5;
 fn write(
     results: &mut Results,
     plane: &VirtualPlane,
-    measured: &FieldMeasurement,
+    Field { measured, compared }: &Field,
     slices: &Slices,
-    predicted: Option<Array2<f64>>,
 ) -> Result<(), Failure> {
     let name = &plane.name;
     let FieldMeasurement {
@@ -153,8 +195,10 @@ fn write(
     };
     results.write(&format!("{name}/field.json"), &json(&index))?;
     let mut npz = Npz::new().add("power", &full_radial.power)?;
-    if let Some(predicted) = predicted {
-        npz = npz.add("predicted_power", &predicted)?;
+    if let Some(compared) = compared {
+        npz = npz
+            .add("predicted_power", &compared.predicted)?
+            .add("sigma_predicted", &compared.sigma)?;
     }
     let bytes = npz
         .add("sigma", &full_radial.sigma)?

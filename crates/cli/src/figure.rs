@@ -24,7 +24,7 @@ use crate::threads::on_threads;
 use crate::values::shell_word;
 use crate::{progress, say};
 use clap::ValueEnum;
-use etendue_compare::{HighFrequencyShare, Verdict};
+use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
 use etendue_figures::{Figure, Style};
 use etendue_scene::{Scene, SceneFile};
 use recipe::{RECIPES, Recipe, Taken, Text};
@@ -91,6 +91,8 @@ pub(crate) struct Subject {
     inputs: Vec<PathBuf>,
     /// Whether it shows curves or bars, which are kept as a table.
     has_table: bool,
+    /// Whether it shows full radial spectra.
+    full_radial: bool,
     /// Other scene files, from which curves are computed or measured.
     also: &'static [Text],
     /// The plane of each scene that is shown, where not all are.
@@ -184,6 +186,9 @@ struct Judged<'a> {
     p_value: Option<f64>,
     chi2_per_dof: Option<f64>,
     high_frequency_share: &'a [HighFrequencyShare],
+    /// Where the figure shows full radial spectra.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    full_radial: Option<FullRadialReport>,
 }
 
 /// Makes a figure; returns the verdict on all planes of its scenes.
@@ -202,7 +207,11 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: &Subject) -> Result<Ve
         .map(|scene| (scene.name.clone(), scene.file.clone()))
         .collect();
     let shots = subject.scenes.iter();
-    let shots = shots.map(|scene| Shot::take(scene.clone(), args.quality, args.quiet));
+    let take = |scene: &Scene| {
+        let full_radial = subject.full_radial;
+        Shot::take(scene.clone(), args.quality, full_radial, args.quiet)
+    };
+    let shots = shots.map(take);
     let shots: Vec<Shot> = shots.collect::<Result<_, _>>()?;
     let taken = Taken {
         shots: &shots,
@@ -235,6 +244,7 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: &Subject) -> Result<Ve
             p_value: report.p_value,
             chi2_per_dof: report.chi2_per_dof,
             high_frequency_share: &report.high_frequency_share,
+            full_radial: report.full_radial,
         });
         json(&Index {
             figure: &subject.name,

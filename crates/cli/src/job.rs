@@ -219,7 +219,7 @@ impl Job {
             measurement,
             predictions,
         };
-        let judged = Judged::of(&case, true)?;
+        let judged = Judged::of(&case, None, true)?;
         Ok(Outcome {
             case,
             judged,

@@ -5,7 +5,8 @@ mod words;
 
 pub(crate) use across::across;
 pub(crate) use words::{
-    across_axes, light_field_axes, light_field_quantity, spectrum_axes, spectrum_quantity,
+    across_axes, full_radial_axes, full_radial_quantity, light_field_axes, light_field_quantity,
+    spectrum_axes, spectrum_quantity,
 };
 
 use crate::case::Case;
@@ -17,7 +18,8 @@ use crate::results::summary::Summary;
 use crate::table::{self, grouped, spaced, word};
 use across::differs_across;
 use etendue_compare::{
-    Applicability, Class, PlaneComparison, PlaneReport, Prediction, Theory, Verdict, stands_before,
+    Applicability, Class, FullRadialComparison, PlaneComparison, PlaneReport, Prediction, Theory,
+    Verdict, stands_before,
 };
 use etendue_field::{Side, VirtualPlane, percent};
 use etendue_figures::{
@@ -201,6 +203,7 @@ pub(crate) fn strip_of(
         columns,
         light_field: light_field_quantity(),
         spectrum: spectrum_quantity(),
+        full_radial: full_radial_quantity(),
         floor: FLOOR,
     };
     strip(&drawn, &style.copied().unwrap_or_default()).map_err(Failure::cannot_run)
@@ -240,6 +243,19 @@ fn off_chain(compared: &PlaneComparison) -> Array2<f64> {
     }
 }
 
+/// The full radial spectrum of a plane, measured and predicted.
+pub(crate) fn full_radial<'a>(
+    plane: &VirtualPlane,
+    compared: &'a FullRadialComparison,
+) -> [Picture<'a>; 2] {
+    let [x, y] = full_radial_axes(plane, &compared.measured);
+    [&compared.measured.power, &compared.predicted].map(|power| Picture {
+        x: x.clone(),
+        y: y.clone(),
+        values: power.view(),
+    })
+}
+
 /// What is shown under a plane.
 fn column<'a>(
     scene: &Scene,
@@ -264,6 +280,10 @@ fn column<'a>(
         },
         across: None,
         predicted: None,
+        full_radial: compared
+            .full_radial
+            .as_ref()
+            .map(|full| full_radial(plane, full)),
         off_chain: None,
         verdict: verdict_lines(compared),
         guides: match (&applicability.theory, &compared.report.first_order) {
@@ -379,6 +399,8 @@ pub(crate) fn verdict_lines(plane: &PlaneComparison) -> Vec<String> {
     };
     let chi2 = report.chi2_per_dof;
     lines.extend(chi2.map(|t| format!("*χ*^{{2}}/dof = {t:.3}")));
+    let full_radial = report.full_radial.and_then(|full| full.p_value);
+    lines.extend(full_radial.map(|p| format!("full radial *p* = {p:.3}")));
     // What photons disagree with is that error: it is why the plane passes.
     let is_excused = report.exact_verdict() == Verdict::Pass && report.p_value < Some(0.001);
     let error = report.quadrature_error.filter(|_| is_excused);

@@ -20,7 +20,7 @@ use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::values::{Point, Setting, Sweep, points, shown};
 use crate::{interrupt, limits, load, method, progress, say, warnings};
-use etendue_compare::Applicability;
+use etendue_compare::{Applicability, Test};
 use etendue_field::{decimals, fixed, uncertain};
 use etendue_scene::{Scene, SceneFile, read_file};
 use serde::Serialize;
@@ -116,7 +116,7 @@ impl Points {
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
         let theories = Applicability::of_planes(scene);
         let case = Case::of(scene.clone(), theories, self.method, true)?;
-        let summary = Summary::new(&case, &judged(&case)?, Vec::new());
+        let summary = Summary::new(&case, &judged(&case, &Test::of(&case.scene))?, Vec::new());
         Ok(summary.json(&BTreeMap::new()))
     }
 }

@@ -2,7 +2,9 @@
 
 use crate::results::summary::Summary;
 use crate::say;
-use etendue_compare::{FirstOrderReport, ParameterReport, PlaneReport, Verdict, sidak};
+use etendue_compare::{
+    FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, Verdict, sidak,
+};
 use etendue_field::{decimals, fixed, tidy, uncertain};
 use std::path::Path;
 
@@ -30,6 +32,14 @@ pub(crate) fn text(summary: &Summary) -> String {
     lines.push(String::new());
     lines.extend(aligned(parameters(summary)));
     lines.push(String::new());
+    if summary
+        .planes
+        .iter()
+        .any(|plane| plane.full_radial.is_some())
+    {
+        lines.extend(aligned(full_radials(summary)));
+        lines.push(String::new());
+    }
     for plane in &summary.planes {
         lines.extend(
             plane
@@ -145,6 +155,34 @@ pub(crate) fn parameters(summary: &Summary) -> Vec<Vec<String>> {
     rows
 }
 
+/// How far measured and predicted full radial spectra are apart, plane by plane.
+fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
+    let header = [
+        "plane",
+        "bins of the full radial spectrum",
+        "χ²/bin",
+        "p",
+        "rel. error",
+        "noise alone",
+        "aliasing [σ]",
+    ];
+    let planes = summary.planes.iter();
+    let planes = planes.filter_map(|plane| Some((&plane.name, plane.full_radial?)));
+    let row = |(name, found): (&String, FullRadialReport)| {
+        vec![
+            name.clone(),
+            found.bins.to_string(),
+            number(found.chi2_per_bin, 3),
+            number(found.p_value, 5),
+            percent(found.relative_error),
+            percent(found.noise_limit),
+            number(found.aliasing, 2),
+        ]
+    };
+    let header = header.map(str::to_owned).to_vec();
+    std::iter::once(header).chain(planes.map(row)).collect()
+}
+
 pub(crate) fn with_unit(name: &str, unit: &str) -> String {
     if unit.is_empty() {
         name.to_owned()
@@ -214,7 +252,8 @@ pub(crate) fn verdict_text(summary: &Summary) -> String {
     let alpha = 100.0 * summary.alpha;
     match summary.verdict {
         Verdict::Pass => {
-            let level = sidak(summary.alpha, summary.planes.len());
+            let fields = summary.planes.iter().filter(|p| p.full_radial.is_some());
+            let level = sidak(summary.alpha, summary.planes.len() + fields.count());
             format!(
                 "pass: no plane disagrees with its prediction (α = {alpha} % over all planes: p ≥ {level:.4} at each)"
             )

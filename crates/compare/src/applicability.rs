@@ -6,7 +6,7 @@ use crate::dark;
 use crate::parallel::obstacles_to_theory;
 use crate::system::{in_the_way, print, reflected, scattered, system, too_fine};
 use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
-use etendue_field::{Mask, Orientation, VirtualPlane, Window};
+use etendue_field::{Mask, Orientation, Side, VirtualPlane, Window};
 use etendue_scene::{BlockerLayer, Scene};
 use etendue_theory::{
     Budget, Chain, Model, Observed, Over, Parameter, Work, rays, reflections, scattering,
@@ -143,6 +143,9 @@ fn is_same((distance, mask): &(f64, Mask), layer: &BlockerLayer) -> bool {
     distance.total_cmp(&layer.distance).is_eq() && *mask == layer.mask
 }
 
+/// Share of its distance by which a plane stands off what is right at it: more than rounding, and far below what phases show.
+const AT_PLANE: f64 = 1e-12;
+
 impl Applicability {
     /// Decides for all planes of a scene.
     #[must_use]
@@ -154,7 +157,26 @@ impl Applicability {
     /// Decides which theory applies to a plane of a scene.
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
-        let mut theory = Theory::of(scene, plane);
+        let found = Self::of(scene, plane, Theory::of(scene, plane));
+        if plane.leg > 0 || found.reasons.is_empty() {
+            return found;
+        }
+        // Rays of the first leg are followed past what does not lie across it.
+        let Some(mut view) = system(scene, plane) else {
+            return found;
+        };
+        if plane.orientation == Orientation::Orthogonal {
+            // A plane right after something is at the same distance.
+            let off = match plane.side {
+                Side::Before => -AT_PLANE,
+                Side::After => AT_PLANE,
+            };
+            view.plane.frame = view.plane.frame.travelled(off * plane.distance);
+        }
+        Self::of(scene, plane, Theory::Specular(Box::new(view)))
+    }
+
+    fn of(scene: &Scene, plane: &VirtualPlane, mut theory: Theory) -> Self {
         let off_patches = match &theory {
             Theory::Specular(view) => off_patches(scene, plane, view),
             _ => None,

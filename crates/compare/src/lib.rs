@@ -18,7 +18,10 @@ mod class;
 mod converge;
 mod covariance;
 mod dark;
+mod depth;
+mod field;
 mod first_order;
+mod full_radial;
 mod memory;
 mod noise;
 mod parallel;
@@ -41,13 +44,16 @@ pub use chain::{chain, stands_before};
 pub use class::Class;
 pub use converge::{Convergence, converge};
 pub use covariance::{AXES, CovarianceReport, SliceMoment, TracedPlane};
+pub use field::PredictedField;
 pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
+pub use full_radial::{FullRadialComparison, FullRadialReport};
 pub use memory::Memory;
 pub use noise::noise_dof;
 pub use plane::{EACH, PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction};
 pub use report::{
     Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
+    WedgeShare,
 };
 pub use residuals::Residuals;
 pub use score::ParameterReport;

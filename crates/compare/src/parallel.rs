@@ -133,7 +133,12 @@ fn tube(scene: &Scene, plane: &VirtualPlane) -> [[f64; 2]; 2] {
 }
 
 /// Whether light for a plane may pass through a box around points, given in the frame at the light.
-fn passes(scene: &Scene, plane: &VirtualPlane, points: &[DVec3], on_way_back: bool) -> bool {
+pub(crate) fn passes(
+    scene: &Scene,
+    plane: &VirtualPlane,
+    points: &[DVec3],
+    on_way_back: bool,
+) -> bool {
     let legs = &scene.path.legs;
     let window = [&plane.window.x, &plane.window.y].map(Profile::half_width);
     let [light, seen] = tube(scene, plane);

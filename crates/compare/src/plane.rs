@@ -3,19 +3,21 @@
 use crate::agreement::{Agreement, UNSEEN};
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
+use crate::full_radial::FullRadialComparison;
 use crate::noise::noise_dof;
 use crate::prediction::Prediction;
 use crate::report::{
     Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,
+    WedgeShare,
 };
 use crate::residuals::{Residuals, largest};
 use crate::score::{ParameterReport, score};
 use crate::uneven::too_few;
 use crate::verdict::{Test, Verdict};
-use etendue_field::{SliceGrid, Slices, percent, tidy};
+use etendue_field::{SliceGrid, Slices, VirtualPlane, percent, tidy};
 use etendue_spectrum::bandwidth::{SliceBandwidth, Widest, bandwidth_nu, bandwidth_rho, widest};
 use etendue_spectrum::estimate::{self, ProjectionEstimate, TooFewBatches};
-use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope};
+use etendue_spectrum::moments::{high_frequency_share, second_moment, shear_slope, wedge_share};
 use etendue_spectrum::{CrossPower, Measurement, RadialPower, Uncertain};
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 
@@ -45,6 +47,8 @@ pub struct PlaneComparison {
     pub off_chain: Option<Array2<f64>>,
     /// The measured light field in (x, u).
     pub projection: ProjectionEstimate,
+    /// The full radial spectrum, where the light field was put on a 4D grid and has a prediction.
+    pub full_radial: Option<FullRadialComparison>,
 }
 
 /// A field with less than this share of the light without blockers is predicted to be dark. A
@@ -112,6 +116,7 @@ pub fn compare(
         predicted_radial,
         predicted,
         projection: estimate::projection(measurement, index)?,
+        full_radial: None,
     })
 }
 
@@ -345,6 +350,8 @@ impl Compared<'_> {
                 nu: self.bandwidth(bandwidth_nu),
             },
             covariance: covariance(self.measurement, self.index, prediction)?,
+            full_radial: None,
+            wedge_share: self.wedge_shares(plane),
             high_frequency_share: self.high_frequency_shares(grid),
             photons_needed: judged.photons_needed,
             undecided: judged.open.clone(),
@@ -402,6 +409,18 @@ impl Compared<'_> {
             share: self.pair(|p| high_frequency_share(p, grid, cut)),
         });
         shares.collect()
+    }
+
+    fn wedge_shares(&self, plane: &VirtualPlane) -> Vec<WedgeShare> {
+        let Some([nearest, farthest]) = self.prediction.depth else {
+            return Vec::new();
+        };
+        let share = |farthest: f64| WedgeShare {
+            nearest,
+            farthest,
+            share: self.pair(|p| wedge_share(p, &plane.grid, &plane.window, [nearest, farthest])),
+        };
+        vec![share(farthest), share(plane.distance)]
     }
 
     /// The bandwidth of both powers, each in the azimuth where it is largest.

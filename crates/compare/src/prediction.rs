@@ -3,6 +3,7 @@
 use crate::applicability::{Applicability, Theory};
 use crate::budget::budget;
 use crate::class::Class;
+use crate::depth::depth;
 use crate::first_order::FirstOrder;
 use crate::ways::OffPatches;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
@@ -41,6 +42,9 @@ pub struct Prediction {
     pub projection: Projection,
     /// For each parameter of the chain: name, value and derivative of the slices.
     pub parameters: Vec<PredictedParameter>,
+    /// Shortest and longest distance from the plane back to what stands in the way of its light, metres; `None` where
+    /// nothing does, or a reflection comes between.
+    pub depth: Option<[f64; 2]>,
     /// Where energy begins to count as high, cycles per metre, on a plane that light leaves
     /// diffusely.
     pub cuts: Vec<f64>,
@@ -168,6 +172,7 @@ impl Prediction {
             unblocked: 0.0,
             projection: Projection { grid, values },
             parameters: Vec::new(),
+            depth: depth(scene, plane),
             cuts: match class {
                 // What a mirror or a lobe leaves has no such border.
                 Class::FirstOrder => Vec::new(),
@@ -191,6 +196,7 @@ impl Prediction {
         Ok(Self {
             steps: applicability.steps(scene, plane),
             mesh_error: scene.mesh_mismatch(plane),
+            depth: depth(scene, plane),
             cuts: cuts(scene, plane),
             ..Self::measured(measurement, at)?
         })
@@ -213,6 +219,7 @@ impl Prediction {
             unblocked: 0.0,
             projection: estimate::projection(measurement, plane)?.mean,
             parameters: Vec::new(),
+            depth: None,
             cuts: Vec::new(),
         })
     }

@@ -2,6 +2,7 @@
 
 use crate::class::Class;
 use crate::first_order::FirstOrderReport;
+use crate::full_radial::FullRadialReport;
 use crate::score::ParameterReport;
 use crate::verdict::Verdict;
 use etendue_field::Frame;
@@ -79,6 +80,17 @@ pub struct HighFrequencyShare {
     pub share: Pair,
 }
 
+/// The share of power in the wedge of blockers between two distances.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct WedgeShare {
+    /// Shortest distance from the plane, metres.
+    pub nearest: f64,
+    /// Longest distance, metres.
+    pub farthest: f64,
+    /// The share of the power of the radial spectrum, the main lobe of the window about zero left out.
+    pub share: Pair,
+}
+
 /// Everything one plane comes to, as in `summary.json`.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct PlaneReport {
@@ -132,6 +144,12 @@ pub struct PlaneReport {
     pub covariance: Option<Covariance>,
     /// H at two cuts, on a plane that light leaves diffusely. It is empty for any other plane.
     pub high_frequency_share: Vec<HighFrequencyShare>,
+    /// Of blockers on the way to a plane of the first leg: the wedge between the nearest and the farthest, and the one
+    /// that reaches back to the light, whose edges have frequencies too. It is empty for any other plane.
+    pub wedge_share: Vec<WedgeShare>,
+    /// The full radial spectrum, where the light field was put on a 4D grid (`--save field`).
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub full_radial: Option<FullRadialReport>,
     /// The photons compared with the first-order chain, on a plane of that class. All numbers above
     /// compare them with the exact ray-space prediction.
     pub first_order: Option<FirstOrderReport>,

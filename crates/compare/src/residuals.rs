@@ -19,7 +19,7 @@ pub struct Residuals {
 }
 
 /// Rounds of random signs: the p-value is known to a part in 20,000.
-const ROUNDS: u64 = 19_999;
+pub(crate) const ROUNDS: u64 = 19_999;
 /// Error of the fast transform of photons, as a share of the largest value
 /// (`etendue_field::transform`).
 const TRANSFORM: f64 = 2e-7;
@@ -332,7 +332,7 @@ fn signed_sum(products: &Array2<f64>, signs: &[f64]) -> f64 {
 }
 
 /// Random signs for the batches of one round.
-fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
+pub(crate) fn signs(seed: u64, round: u64, count: usize) -> Vec<f64> {
     let mut signs = Vec::with_capacity(count + 128);
     for block in 0.. {
         if signs.len() >= count {

@@ -224,7 +224,7 @@ fn surface<'a>(scene: &'a Scene, plane: &VirtualPlane) -> Option<&'a Hit> {
 const MAX_TRIANGLES: usize = 500;
 
 /// The objects that the path does not visit: they stop light.
-fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
+pub(crate) fn unvisited(scene: &Scene) -> impl Iterator<Item = Object> + '_ {
     let surfaces = (0..scene.surfaces.len()).map(Object::Surface);
     let patches = (0..scene.patches.len()).map(Object::Patch);
     let meshes = (0..scene.meshes.len()).map(Object::Mesh);

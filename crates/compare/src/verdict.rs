@@ -18,9 +18,15 @@ impl Test {
     /// That of a scene: α over all its planes.
     #[must_use]
     pub fn of(scene: &Scene) -> Self {
+        Self::each(scene, 1)
+    }
+
+    /// That of a scene each of whose planes is tested so many times: α over all tests.
+    #[must_use]
+    pub fn each(scene: &Scene, times: usize) -> Self {
         let run = &scene.run;
         Self {
-            level: sidak(run.alpha, scene.planes.len()),
+            level: sidak(run.alpha, times * scene.planes.len()),
             resolution: run.resolution,
             seed: run.seed,
         }

@@ -22,6 +22,8 @@ pub struct Column<'a> {
     pub spectrum: Picture<'a>,
     /// The predicted one. There is a row of them if each column has one.
     pub predicted: Option<Picture<'a>>,
+    /// The full radial spectrum over (|Ωxy|, |Ωuv|), measured and predicted. There are rows of them if each column has them.
+    pub full_radial: Option<[Picture<'a>; 2]>,
     /// How far the measured spectrum is from a first-order chain, in percent of its largest modulus.
     /// There is a row of them if each column has one.
     pub off_chain: Option<Picture<'a>>,
@@ -46,6 +48,8 @@ pub struct Strip<'a> {
     pub light_field: Quantity,
     /// What the spectra hold; shown in decibels below each one's own largest value.
     pub spectrum: Quantity,
+    /// What the full radial spectra hold, shown likewise.
+    pub full_radial: Quantity,
     /// Lower end of the decibels, below 0.
     pub floor: f64,
 }
@@ -57,6 +61,8 @@ enum Row {
     Across,
     Spectrum,
     Predicted,
+    FullRadial,
+    FullPredicted,
     OffChain,
 }
 
@@ -72,6 +78,11 @@ impl Row {
         rows.extend(across.then_some(Self::Across));
         rows.push(Self::Spectrum);
         rows.extend(predicted.then_some(Self::Predicted));
+        let full_radial = |column: &Column<'_>| column.full_radial.is_some();
+        if strip.columns.iter().all(full_radial) {
+            rows.push(Self::FullRadial);
+            rows.extend(predicted.then_some(Self::FullPredicted));
+        }
         let off_chain = |column: &Column<'_>| column.off_chain.is_some();
         rows.extend(
             strip
@@ -89,21 +100,26 @@ impl Row {
             Self::Across => "across",
             Self::Spectrum => "spectrum",
             Self::Predicted => "predicted",
+            Self::FullRadial => "full radial",
+            Self::FullPredicted => "its prediction",
             Self::OffChain => "off the chain",
         }
     }
 
     /// Its picture in a column.
     fn picture<'a, 'b>(self, column: &'b Column<'a>) -> &'b Picture<'a> {
+        let full_radial = column.full_radial.as_ref();
         let other = match self {
-            Self::Across => &column.across,
-            Self::Predicted => &column.predicted,
-            Self::OffChain => &column.off_chain,
-            Self::LightField | Self::Spectrum => &None,
+            Self::Across => column.across.as_ref(),
+            Self::Predicted => column.predicted.as_ref(),
+            Self::FullRadial => full_radial.map(|[measured, _]| measured),
+            Self::FullPredicted => full_radial.map(|[_, predicted]| predicted),
+            Self::OffChain => column.off_chain.as_ref(),
+            Self::LightField | Self::Spectrum => None,
         };
-        other.as_ref().unwrap_or(match self {
+        other.unwrap_or(match self {
             Self::LightField | Self::Across => &column.light_field,
-            Self::Spectrum | Self::Predicted | Self::OffChain => &column.spectrum,
+            _ => &column.spectrum,
         })
     }
 
@@ -112,6 +128,7 @@ impl Row {
         match self {
             Self::LightField | Self::Across => strip.light_field.clone(),
             Self::Spectrum | Self::Predicted => strip.spectrum.clone(),
+            Self::FullRadial | Self::FullPredicted => strip.full_radial.clone(),
             Self::OffChain => Quantity::new("off the chain", "% of the peak"),
         }
     }
@@ -174,8 +191,8 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> Grid<'b, 'a> {
     let row = |row: Row| {
         let cell = |column: &'b Column<'a>| {
             let guides = match row {
-                Row::LightField | Row::Across | Row::OffChain => &[],
                 Row::Spectrum | Row::Predicted => &column.guides[..],
+                _ => &[],
             };
             (row.picture(column), guides)
         };
@@ -188,7 +205,7 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> Grid<'b, 'a> {
             },
             scale: match row {
                 Row::LightField | Row::Across | Row::OffChain => Scale::Linear,
-                Row::Spectrum | Row::Predicted => Scale::Decibel { floor: strip.floor },
+                _ => Scale::Decibel { floor: strip.floor },
             },
             shared: row == Row::OffChain,
             cells: strip.columns.iter().map(cell).collect(),

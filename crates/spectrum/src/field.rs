@@ -11,6 +11,7 @@ mod covariance;
 mod cross;
 mod fft;
 mod measure;
+mod products;
 mod spectrum;
 mod spline;
 
@@ -20,5 +21,5 @@ pub use cells::{FieldCells, FieldTransform};
 pub use covariance::{FieldCovariance, MatrixEstimate, Moments, PowerMoments};
 pub use cross::FullRadial;
 pub use fft::{RealFft4, real, real_mut};
-pub use measure::{FieldMeasurement, FieldOptions, measure_field};
+pub use measure::{FieldGroup, FieldMeasurement, FieldOptions, measure_field};
 pub use spectrum::FieldSpectrum;

@@ -1,6 +1,6 @@
 //! Numbers read off a power spectrum [ρ, ν], measured or predicted alike.
 
-use etendue_field::SliceGrid;
+use etendue_field::{Profile, SliceGrid, Window};
 use ndarray::{ArrayView2, Axis};
 
 /// A second moment of the power, Σ P ρᵐ νⁿ / Σ P with m + n = 2, `powers` being [m, n].
@@ -51,6 +51,38 @@ pub fn high_frequency_share(power: ArrayView2<'_, f64>, grid: &SliceGrid, cut: f
     (all > 0.0).then(|| high / all)
 }
 
+/// The share of power in the wedge of blockers that stand between two distances from the plane, `[nearest, farthest]` in metres.
+///
+/// A blocker at distance d puts its frequencies on the line ν = −d ρ (Durand et al. 2005, section 3.2; Egan et al. 2009).
+/// The window blurs them: a frequency is inside when it is within the main lobe of a Hann window of the wedge, 1/half-width
+/// along each axis. Frequencies within the main lobe of zero, where light has its mean, are left out. `None` when the sum
+/// of all others is not positive.
+#[must_use]
+pub fn wedge_share(
+    power: ArrayView2<'_, f64>,
+    grid: &SliceGrid,
+    window: &Window,
+    distances: [f64; 2],
+) -> Option<f64> {
+    let lobe = |a: &Profile, b: &Profile| 1.0 / a.half_width().min(b.half_width());
+    let [rho_lobe, nu_lobe] = [lobe(&window.x, &window.y), lobe(&window.u, &window.v)];
+    let (mut inside, mut all) = (0.0, 0.0);
+    for ((i, j), p) in power.indexed_iter() {
+        let (rho, nu) = (grid.rho.value(i), grid.nu.value(j));
+        if rho.abs() < rho_lobe && nu.abs() < nu_lobe {
+            continue;
+        }
+        all += p;
+        let from_lines = distances.map(|d| nu + d * rho);
+        let is_near = |(line, d): (f64, f64)| line.abs() < nu_lobe + d * rho_lobe;
+        let is_between = (from_lines[0] < 0.0) != (from_lines[1] < 0.0);
+        if is_between || from_lines.into_iter().zip(distances).any(is_near) {
+            inside += p;
+        }
+    }
+    (all > 0.0).then(|| inside / all)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -96,6 +128,34 @@ mod tests {
         }
         assert!(shear_slope((-ridge(1.0)).view(), &grid()).is_none());
         assert!(shear_slope(Array2::zeros((21, 81)).view(), &grid()).is_none());
+    }
+
+    /// Power along two lines of blockers 0.5 and 1 m away, and as much on a third 5 m away.
+    #[test]
+    fn lines_of_a_wedge_are_inside() {
+        let grid = grid();
+        let profile = Profile::Hann(2.0);
+        let window = Window {
+            x: profile,
+            y: profile,
+            u: profile,
+            v: profile,
+        };
+        let lines = ridge(-0.5) + ridge(-1.0) + ridge(-5.0) * 2.0;
+        let share = |distances| wedge_share(lines.view(), &grid, &window, distances).unwrap();
+        let beyond = |slope| {
+            let line = ridge(slope);
+            let outside = line.indexed_iter().filter(|((i, j), _)| {
+                let (rho, nu) = (grid.rho.value(*i).abs(), grid.nu.value(*j).abs());
+                rho >= 0.5 || nu >= 0.5
+            });
+            outside.map(|(_, p)| p).sum::<f64>()
+        };
+        let all = beyond(-0.5) + beyond(-1.0) + 2.0 * beyond(-5.0);
+        // Of each line e^(−1) lies beyond the lobe of 0.5 /m at most; near zero the far line is within reach too.
+        let alone = (beyond(-0.5) + beyond(-1.0)) / all;
+        assert!(share([0.5, 1.0]) > 0.9 * alone && share([0.5, 1.0]) < 0.8);
+        assert!(share([0.5, 5.0]) > 0.97);
     }
 
     #[test]

@@ -1,6 +1,6 @@
 //! What every theory answers.
 
-use crate::nets::Budget;
+use crate::nets::{Budget, RayNets};
 use crate::parameter::{New, Parameter};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
@@ -28,7 +28,11 @@ pub trait Model: Clone {
     /// The slices with their error, a picture, and the derivatives by some of its parameters.
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted;
 
-    /// What that takes.
+    /// Calls `then` with the light field as nets of rays, drawn as [`predict`](Self::predict) draws them. It
+    /// is not called where no ray arrives.
+    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets));
+
+    /// What a prediction takes.
     fn work(&self, over: Over<'_>, budget: Budget) -> Work;
 
     /// The unit of a parameter; empty if it is a pure number.

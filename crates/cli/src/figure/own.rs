@@ -67,6 +67,7 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
         texts: Vec::new(),
         inputs,
         has_table: false,
+        full_radial: false,
         also: &[],
         draw: if planes.is_empty() {
             |taken| taken.strip()

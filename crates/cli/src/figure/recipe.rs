@@ -24,6 +24,8 @@ pub(crate) struct Recipe {
     pub(crate) also: &'static [Text],
     /// Whether it shows curves or bars, which are kept as a table.
     pub(crate) has_table: bool,
+    /// Whether it shows full radial spectra.
+    pub(crate) full_radial: bool,
     pub(crate) draw: fn(&Taken<'_>) -> Result<Figure, Failure>,
 }
 
@@ -44,6 +46,7 @@ impl Recipe {
             texts: self.scenes.iter().chain(self.also).copied().collect(),
             inputs: Vec::new(),
             has_table: self.has_table,
+            full_radial: self.full_radial,
             also: self.also,
             planes: Vec::new(),
             draw: self.draw,
@@ -106,6 +109,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
+        full_radial: true,
         draw: |taken| taken.strip(),
     },
     Recipe {
@@ -114,6 +118,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig3", scene!("fig3"))],
         also: &[("fig8", scene!("fig8"))],
         has_table: true,
+        full_radial: false,
         draw: coordinates,
     },
     Recipe {
@@ -126,6 +131,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: lights,
     },
     Recipe {
@@ -134,6 +140,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[],
         also: &[],
         has_table: true,
+        full_radial: false,
         draw: kernels::slopes,
     },
     Recipe {
@@ -142,6 +149,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig1", scene!("fig1"))],
         also: &[],
         has_table: false,
+        full_radial: true,
         draw: steps,
     },
     Recipe {
@@ -154,6 +162,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: occluders,
     },
     Recipe {
@@ -162,6 +171,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig8", scene!("fig8"))],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: parameterisations,
     },
     Recipe {
@@ -174,6 +184,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: true,
+        full_radial: true,
         draw: blockers,
     },
     Recipe {
@@ -182,6 +193,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig10", scene!("fig10"))],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: |taken| taken.strip(),
     },
     Recipe {
@@ -190,6 +202,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("solar_oven", scene!("table1/solar_oven"))],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: |taken| taken.strip(),
     },
     Recipe {
@@ -198,6 +211,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[],
         also: &[],
         has_table: true,
+        full_radial: false,
         draw: kernels::fresnel,
     },
     Recipe {
@@ -206,6 +220,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[TWIST, ("twisted_glossy", scene!("table1/twisted_glossy"))],
         also: &[],
         has_table: true,
+        full_radial: false,
         draw: directions,
     },
     Recipe {
@@ -214,6 +229,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[("fig14", scene!("fig14"))],
         also: &[],
         has_table: true,
+        full_radial: false,
         draw: environment,
     },
     Recipe {
@@ -225,6 +241,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
             ("bandwidth_edge", scene!("bandwidth_edge")),
         ],
         has_table: true,
+        full_radial: false,
         draw: adaptive,
     },
     Recipe {
@@ -233,6 +250,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: creatures::criteria,
     },
     Recipe {
@@ -241,6 +259,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         scenes: &[],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: creatures::pictures,
     },
     Recipe {
@@ -258,6 +277,7 @@ pub(crate) const RECIPES: &[Recipe] = &[
         ],
         also: &[],
         has_table: false,
+        full_radial: false,
         draw: operators,
     },
 ];
@@ -294,7 +314,7 @@ mod tests {
             let quality = Quality::Sketch;
             let subject = recipe.subject().unwrap();
             let shots = subject.scenes.iter().cloned();
-            let shots = shots.map(|scene| Shot::take(scene, quality, true));
+            let shots = shots.map(|scene| Shot::take(scene, quality, recipe.full_radial, true));
             let shots: Vec<Shot> = shots.collect::<Result<_, _>>().unwrap();
             let taken = Taken {
                 shots: &shots,

@@ -3,7 +3,8 @@
 use crate::failure::Failure;
 use crate::figure::shot::Shot;
 use crate::pictures::{
-    light_field_axes, light_field_quantity, spectrum_axes, spectrum_quantity, verdict_lines,
+    full_radial, full_radial_quantity, light_field_axes, light_field_quantity, spectrum_axes,
+    spectrum_quantity, verdict_lines,
 };
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
@@ -87,10 +88,13 @@ pub(super) fn row<'a>(
     }
 }
 
-/// Light fields, measured and predicted spectra of some planes.
+/// Light fields, measured and predicted spectra of some planes, and their full radial spectra where there are.
 pub(super) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
     let pictures = |of: &dyn Fn(&Seen<'a>) -> Picture<'a>| seen.iter().map(of).collect();
-    vec![
+    let measured = pictures(&|seen| seen.spectrum(seen.found.radial.power.view()));
+    let predicted = pictures(&|seen| seen.spectrum(seen.found.predicted_radial.view()));
+    let spectra = |name, pictures| row(name, spectrum_quantity(), DECIBEL, shared, pictures);
+    let mut rows = vec![
         row(
             "light field",
             light_field_quantity(),
@@ -98,21 +102,20 @@ pub(super) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
             shared,
             pictures(&Seen::light_field),
         ),
-        row(
-            "measured",
-            spectrum_quantity(),
-            DECIBEL,
-            shared,
-            pictures(&|seen| seen.spectrum(seen.found.radial.power.view())),
-        ),
-        row(
-            "predicted",
-            spectrum_quantity(),
-            DECIBEL,
-            shared,
-            pictures(&|seen| seen.spectrum(seen.found.predicted_radial.view())),
-        ),
-    ]
+        spectra("measured", measured),
+        spectra("predicted", predicted),
+    ];
+    let full = seen.iter().map(|seen| {
+        let full = seen.found.full_radial.as_ref()?;
+        Some(full_radial(seen.plane, full))
+    });
+    let full: Option<Vec<[Picture<'a>; 2]>> = full.collect();
+    for (i, name) in ["full radial", "its prediction"].into_iter().enumerate() {
+        let Some(full) = &full else { break };
+        let pictures = full.iter().map(|both| both[i].clone()).collect();
+        rows.push(row(name, full_radial_quantity(), DECIBEL, shared, pictures));
+    }
+    rows
 }
 
 pub(super) fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {

@@ -6,8 +6,8 @@ use crate::failure::Failure;
 use crate::figure::Quality;
 use crate::method::Method;
 use crate::results::npz::Npz;
-use crate::{limits, machine};
-use etendue_compare::{Applicability, PlaneComparison};
+use crate::{field, limits, machine};
+use etendue_compare::{Applicability, PlaneComparison, Test};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
 use etendue_scene::{Scene, SceneFile};
 use ndarray::{Axis, arr1};
@@ -24,8 +24,13 @@ pub(crate) struct Shot {
 }
 
 impl Shot {
-    /// Runs a scene.
-    pub(crate) fn take(mut scene: Scene, quality: Quality, quiet: bool) -> Result<Self, Failure> {
+    /// Runs a scene, with full radial spectra or without.
+    pub(crate) fn take(
+        mut scene: Scene,
+        quality: Quality,
+        full_radial: bool,
+        quiet: bool,
+    ) -> Result<Self, Failure> {
         scene.run.photons = quality.photons(scene.run.photons);
         scene.file.run.photons = scene.run.photons;
         for plane in &mut scene.planes {
@@ -39,7 +44,11 @@ impl Shot {
         let theories = Applicability::of_planes(&scene);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
         let case = Case::of(scene, theories, Method::Photons, quiet)?;
-        let planes = judged(&case)?;
+        let tests = if full_radial { field::TESTS } else { 1 };
+        let mut planes = judged(&case, &Test::each(&case.scene, tests))?;
+        if full_radial {
+            field::compare(None, &case, &mut planes, quiet)?;
+        }
         Ok(Self {
             photons: case.measurement.emitted(),
             scene: case.scene,
@@ -81,6 +90,13 @@ pub(crate) fn arrays(shots: &[Shot]) -> Result<Vec<u8>, Failure> {
                 .add(&name("predicted_slice"), &predicted.index_axis(Axis(0), 0))?
                 .add(&name("rho"), &arr1(&plane.grid.rho.values()))?
                 .add(&name("nu"), &arr1(&plane.grid.nu.values()))?;
+            if let Some(full) = &found.full_radial {
+                npz = npz
+                    .add(&name("full_radial"), &full.measured.power)?
+                    .add(&name("full_radial_predicted"), &full.predicted)?
+                    .add(&name("rho_edges"), &arr1(&full.measured.rho_edges))?
+                    .add(&name("nu_edges"), &arr1(&full.measured.nu_edges))?;
+            }
         }
     }
     npz.bytes()

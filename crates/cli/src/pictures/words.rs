@@ -2,6 +2,7 @@
 
 use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_figures::{Axis, Quantity};
+use etendue_spectrum::field::FullRadial;
 
 /// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
 pub(super) struct Words {
@@ -9,6 +10,8 @@ pub(super) struct Words {
     pub(super) across: [&'static str; 2],
     angle: &'static str,
     per_angle: &'static str,
+    /// Of frequencies along both positions, and along both slopes.
+    rings: [&'static str; 2],
 }
 
 impl Words {
@@ -17,12 +20,14 @@ impl Words {
         across: ["*y*", "*v*"],
         angle: "",
         per_angle: "cycles/slope",
+        rings: ["|*Ω*_{xy}|", "|*Ω*_{uv}|"],
     };
     const ON_SURFACE: Self = Self {
         along: ["*s*", "*θ*"],
         across: ["*t*", "*φ*"],
         angle: "rad",
         per_angle: "cycles/rad",
+        rings: ["|*Ω*_{st}|", "|*Ω*_{θφ}|"],
     };
 
     pub(super) fn of(plane: &VirtualPlane) -> Self {
@@ -63,6 +68,27 @@ pub(crate) fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [
 /// The axes of its spectrum, (ρ, ν).
 pub(crate) fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
     Words::of(plane).frequency_axes(&plane.grid)
+}
+
+/// The axes of its full radial spectrum, (|Ωxy|, |Ωuv|). The first ring of each is that of zero, half as wide as the others; it is
+/// drawn alike.
+pub(crate) fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
+    let words = Words::of(plane);
+    let axis = |name, unit, edges: &[f64]| {
+        let rings = edges.len() - 1;
+        let width = edges[rings] / (rings as f64 - 0.5);
+        Axis::centers(name, unit, [0.0, edges[rings] - 0.5 * width], rings)
+    };
+    let [xy, uv] = words.rings;
+    [
+        axis(xy, "cycles/m", &of.rho_edges),
+        axis(uv, words.per_angle, &of.nu_edges),
+    ]
+}
+
+/// What a full radial spectrum holds.
+pub(crate) fn full_radial_quantity() -> Quantity {
+    Quantity::new("⟨|*ℓ̂*|^{2}⟩", "")
 }
 
 /// The axes of the light field across the other two coordinates, (y, v).

@@ -37,6 +37,7 @@ pub(crate) struct PredictedPlane {
     /// Names and units of the parameters, in the order of the arrays.
     parameters: Vec<[String; 2]>,
     cuts: Vec<f64>,
+    depth: Option<[f64; 2]>,
     /// Independent replicates of the slices, and of those of the chain of affine maps; none where they
     /// have no statistical error.
     replicates: [usize; 2],
@@ -98,6 +99,7 @@ fn stored(
         projection,
         parameters,
         cuts,
+        depth,
     } = prediction;
     let values: Array1<f64> = parameters.iter().map(|p| p.value).collect();
     let [azimuths, rho, nu] = slices.grid.half_shape();
@@ -139,6 +141,7 @@ fn stored(
             .map(|p| [p.name.clone(), p.unit.clone()])
             .collect(),
         cuts: cuts.clone(),
+        depth: *depth,
         replicates: [replicates.len(), linear_replicates.len()],
     };
     Ok((words, bytes))
@@ -236,6 +239,7 @@ fn read_plane(
         }),
         replicates,
         cuts: words.cuts.clone(),
+        depth: words.depth,
         unblocked: unblocked.into_scalar(),
         projection: Projection {
             grid: cells,

@@ -128,6 +128,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         spectrum: picture(),
         across: None,
         predicted: None,
+        full_radial: None,
         off_chain: None,
         verdict: vec![
             "*p* = 0.5, pass".to_owned(),
@@ -145,6 +146,7 @@ pub fn path(section: &Section, values: ArrayView2<'_, f64>) -> Figure {
         columns: section.planes.iter().map(|_| column()).collect(),
         light_field: Quantity::new("*L*", "W m⁻² sr⁻¹"),
         spectrum: Quantity::new("|*S*|^{2}", "W²"),
+        full_radial: Quantity::new("|*S*|^{2}", "W²"),
         floor: -60.0,
     };
     strip(&path, &Style::default()).unwrap()

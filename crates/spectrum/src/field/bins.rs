@@ -71,6 +71,20 @@ impl RadialBins {
         }
     }
 
+    /// Indices of Ωx and Ωy of a ring.
+    pub(super) fn of_ring(&self, ring: usize) -> impl Iterator<Item = [usize; 2]> {
+        let ny = self.grid.cells[1];
+        let all = self.xy.iter().enumerate();
+        let own = all.filter(move |(_, found)| **found == Some(ring));
+        own.map(move |(i, _)| [i / ny, i % ny])
+    }
+
+    /// Indices of Ωu and Ωv ≥ 0 with their rings, and how many frequencies each stands for.
+    pub(super) fn angular(&self) -> impl Iterator<Item = ([usize; 2], usize, f64)> {
+        let all = self.uv.iter();
+        all.map(|angular| (angular.index, angular.ring, angular.weight as f64))
+    }
+
     /// Means over the bins of numbers that are even in Ω, such as powers. `of` is asked at indices
     /// [x, y, u, v] of the spectrum.
     ///

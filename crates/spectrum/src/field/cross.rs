@@ -61,7 +61,7 @@ impl GroupPower {
 }
 
 /// The full radial spectrum of all groups.
-pub(crate) fn full_radial(bins: &RadialBins, groups: &[GroupPower]) -> FullRadial {
+pub(crate) fn full_radial(bins: &RadialBins, groups: &[&GroupPower]) -> FullRadial {
     let shape = bins.counts.raw_dim();
     let sum = |of: fn(&GroupPower) -> &Array2<f64>| {
         let mut sum = Array2::zeros(shape);
@@ -74,7 +74,7 @@ pub(crate) fn full_radial(bins: &RadialBins, groups: &[GroupPower]) -> FullRadia
     let power = &pairs / (1.0 - squares);
 
     let mut jackknife = Jackknife::new(shape);
-    for GroupPower { share, row, .. } in groups {
+    for &&GroupPower { share, ref row, .. } in groups {
         let norm = (1.0 - share).powi(2) - (squares - share * share);
         jackknife.add(&((&pairs - &(row * 2.0)) / norm));
     }

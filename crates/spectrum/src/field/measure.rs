@@ -22,18 +22,21 @@ pub struct FieldOptions {
     /// Keep the grids of all groups. Else photons are traced twice: once for the sum, once for the groups.
     /// The result is the same to the bit.
     pub keep: bool,
+    /// Return the spectra of all groups, which are then in memory together.
+    pub spectra: bool,
     /// Take the covariance of the spectrum too, over the frequencies of the plane, on a grid that reaches half as
     /// far again: what aliases into the highest frequencies is then an eighth of the spectrum at twice theirs.
     pub covariance: bool,
 }
 
 impl Default for FieldOptions {
-    /// Triangular shaped clouds, 16 groups, not kept, no covariance.
+    /// Triangular shaped clouds, 16 groups, not kept, no spectra of groups, no covariance.
     fn default() -> Self {
         Self {
             assignment: Assignment::Tsc,
             groups: 16,
             keep: false,
+            spectra: false,
             covariance: false,
         }
     }
@@ -59,7 +62,7 @@ impl FieldOptions {
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
         let groups = self.groups.max(LEAST);
-        let grids = if self.keep {
+        let grids = if self.keep || self.spectra {
             groups
         } else {
             groups.min(threads)
@@ -82,8 +85,19 @@ pub struct FieldMeasurement {
     pub spectrum: FieldSpectrum,
     /// Its full radial spectrum.
     pub full_radial: FullRadial,
+    /// The groups of batches it is the sum of, if their spectra were asked for.
+    pub groups: Vec<FieldGroup>,
     /// The covariance of its spectrum, if it was asked for.
     pub covariance: Option<FieldCovariance>,
+}
+
+/// What a group of batches adds to the spectrum of a light field.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FieldGroup {
+    /// The share of the batches that it holds.
+    pub share: f64,
+    /// Its share of the spectrum, whose expectation is `share` times the spectrum's.
+    pub spectrum: FieldSpectrum,
 }
 
 /// Measures the light field of plane number `index` of `source` on the grid [`FieldOptions::grid`] asks for.
@@ -121,6 +135,7 @@ pub fn measure_field(
         plane,
         groups: options.groups.clamp(LEAST, batches.len()),
         batches,
+        spectra: options.spectra,
         transform: FieldTransform::new(grid, options.assignment),
         progress,
     };
@@ -129,18 +144,28 @@ pub fn measure_field(
     let spectrum = run.transform.spectrum(sum);
     let bins = RadialBins::new(&grid);
     let moments = options.covariance.then(|| Moments::new(grid, &plane.grid));
-    let (powers, groups): (Vec<_>, Vec<_>) = run
-        .powers(&bins, moments.as_ref(), &spectrum, kept)
-        .into_iter()
-        .unzip();
+    let mut found = run.powers(&bins, moments.as_ref(), &spectrum, kept);
+    let groups = found.iter_mut().filter_map(|found| found.spectrum.take());
+    let groups = groups.collect();
+    let powers: Vec<&GroupPower> = found.iter().map(|found| &found.power).collect();
+    let of_groups = found.iter().filter_map(|found| found.moments.as_ref());
     Ok(FieldMeasurement {
         full_radial: full_radial(&bins, &powers),
-        covariance: moments.map(|moments| FieldCovariance::new(&moments, groups.iter().flatten())),
+        covariance: moments.map(|moments| FieldCovariance::new(&moments, of_groups)),
+        groups,
         grid,
         tally,
         field,
         spectrum,
     })
+}
+
+/// What a group leaves behind.
+struct OfGroup {
+    power: GroupPower,
+    moments: Option<GroupMoments>,
+    /// Where it is kept.
+    spectrum: Option<FieldGroup>,
 }
 
 /// What all groups need to know.
@@ -150,6 +175,7 @@ struct Run<'a> {
     plane: &'a VirtualPlane,
     batches: Vec<u32>,
     groups: usize,
+    spectra: bool,
     transform: FieldTransform,
     progress: &'a (dyn Fn(u64) + Sync),
 }
@@ -183,7 +209,7 @@ impl Run<'_> {
         moments: Option<&Moments>,
         all: &FieldSpectrum,
         kept: Vec<FieldCells>,
-    ) -> Vec<(GroupPower, Option<GroupMoments>)> {
+    ) -> Vec<OfGroup> {
         let mut kept = kept.into_iter();
         let mut powers = Vec::new();
         for wave in self.waves() {
@@ -191,10 +217,13 @@ impl Run<'_> {
             powers.par_extend(groups.into_par_iter().map(|(group, cells)| {
                 let cells = cells.unwrap_or_else(|| self.trace(group).0);
                 let share = self.members(group).len() as f64 / self.batches.len() as f64;
-                let group = self.transform.spectrum(cells);
-                let of_group =
-                    moments.map(|moments| GroupMoments::new(moments, share, &group, all));
-                (GroupPower::new(bins, share, &group, all), of_group)
+                let spectrum = self.transform.spectrum(cells);
+                OfGroup {
+                    power: GroupPower::new(bins, share, &spectrum, all),
+                    moments: moments
+                        .map(|moments| GroupMoments::new(moments, share, &spectrum, all)),
+                    spectrum: self.spectra.then_some(FieldGroup { share, spectrum }),
+                }
             }));
         }
         powers

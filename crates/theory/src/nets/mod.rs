@@ -7,9 +7,12 @@
 //! the error is below what is asked, or a budget is spent.
 
 mod density;
+mod rays;
 mod sobol;
 
 pub(crate) use density::{Density, Target};
+pub use rays::RayNets;
+pub(crate) use rays::Sampled;
 pub(crate) use sobol::{DIMENSIONS, Net};
 
 use crate::geometry::Matrix;

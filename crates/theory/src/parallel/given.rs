@@ -5,6 +5,7 @@
 
 use crate::mask::Barrier;
 use crate::model::Over;
+use crate::nets::RayNets;
 use crate::predicted::Predicted;
 use crate::work::Work;
 use crate::{Chain, Operator};
@@ -40,10 +41,11 @@ pub(super) fn predicted(
     rays: &RayLight,
     (window, grid, picture): Over<'_>,
 ) -> Predicted {
-    let steps: Vec<Step<'_>> = chain.operators.iter().map(step).collect();
-    let arriving = |given: &FluxRay| arrives(given, &steps, window);
-    let all = rays.rays().iter().filter_map(arriving);
-    let (slices, projection) = sums(all, grid, picture);
+    let (slices, projection) = sums(
+        GivenRays::new(chain, rays, window).arriving(),
+        grid,
+        picture,
+    );
     let open: Vec<Step<'_>> = chain
         .operators
         .iter()
@@ -61,6 +63,38 @@ pub(super) fn predicted(
         covariance: None,
         derivatives: Vec::new(),
         to_first_order: None,
+    }
+}
+
+/// The rays of a file at the end of a chain: one net, which is all of them.
+pub(super) struct GivenRays<'a> {
+    rays: &'a RayLight,
+    steps: Vec<Step<'a>>,
+    window: &'a Window,
+}
+
+impl<'a> GivenRays<'a> {
+    pub(super) fn new(chain: &'a Chain, rays: &'a RayLight, window: &'a Window) -> Self {
+        Self {
+            rays,
+            steps: chain.operators.iter().map(step).collect(),
+            window,
+        }
+    }
+
+    fn arriving(&self) -> impl Iterator<Item = (TwoPlane, f64)> {
+        let rays = self.rays.rays().iter();
+        rays.filter_map(|given| arrives(given, &self.steps, self.window))
+    }
+}
+
+impl RayNets for GivenRays<'_> {
+    fn count(&self) -> usize {
+        1
+    }
+
+    fn emit(&self, _net: usize, each: &mut dyn FnMut(&TwoPlane, f64)) {
+        self.arriving().for_each(|(ray, weight)| each(&ray, weight));
     }
 }
 

@@ -6,7 +6,7 @@ use crate::parallel::expansion::Expansion;
 use crate::parallel::row::FrequencyRow;
 use crate::parallel::slope::Slope;
 use crate::parallel::weighted_rectangle::DiscResolution;
-use etendue_field::{Complex, Window};
+use etendue_field::{Assignment, Complex, FieldGrid, Window};
 use rayon::prelude::*;
 
 /// The spectrum of a chain on a 4D grid of frequencies: multiples of a spacing along each axis.
@@ -45,11 +45,40 @@ impl Harmonics {
         spacing: [f64; 4],
         half: [usize; 4],
     ) -> Option<Self> {
+        Self::built(chain, window, (spacing, half), None)
+    }
+
+    /// What rays shared among the cells of a grid have for their spectrum in the mean, the spline of the
+    /// assignment divided out: the spectrum of the chain and, folded onto it, what lies beyond Nyquist.
+    ///
+    /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, f = ΔΩ being cycles per cell and p the order of the
+    /// spline (Hockney and Eastwood 1981, chapter 5). Summed to |nᵢ| ≤ [`FOLDS`]; `None` as of [`new`](Self::new).
+    #[must_use]
+    pub fn on_grid(
+        chain: &Chain,
+        window: &Window,
+        grid: &FieldGrid,
+        assignment: Assignment,
+    ) -> Option<Self> {
+        let axes = [0, 1, 2, 3];
+        let spacing = axes.map(|axis| grid.spacing(axis));
+        let half = axes.map(|axis| grid.cells[axis] / 2);
+        Self::built(chain, window, (spacing, half), Some(assignment))
+    }
+
+    fn built(
+        chain: &Chain,
+        window: &Window,
+        (spacing, half): ([f64; 4], [usize; 4]),
+        folded: Option<Assignment>,
+    ) -> Option<Self> {
         let path: Path<'_> = chain.path();
         if path.receiver().is_some() {
             return None;
         }
-        let max = |axis: usize| spacing[axis] * half[axis] as f64;
+        // Of what lies beyond twice Nyquist an order 3 spline leaves less than 1/27.
+        let reach = if folded.is_some() { 2.0 } else { 1.0 };
+        let max = |axis: usize| reach * spacing[axis] * half[axis] as f64;
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
         let fineness = DiscResolution::for_spectrum(&path, window, highest);
         let slope = Slope::new([&window.u, &window.v], path.slope_power());
@@ -69,12 +98,19 @@ impl Harmonics {
                 axis,
                 along,
                 [half[axis], half[axis + 2]],
+                folded,
             )
         };
         let products = expansion.products.iter();
         let tables = products.map(|waves| [0, 1].map(|axis| table(waves, axis)));
         let tables = tables.collect();
         Some(Self { expansion, tables })
+    }
+
+    /// Products that are summed for each frequency.
+    #[must_use]
+    pub fn terms(&self) -> usize {
+        self.expansion.terms.len() * self.tables.len()
     }
 
     /// ℓ̂ at the harmonics (i, j, k, l) of the spacings; the same as [`at`](crate::at) there.
@@ -103,25 +139,35 @@ impl HarmonicTable {
         axis: usize,
         spacing: [f64; 2],
         half: [usize; 2],
+        folded: Option<Assignment>,
     ) -> Self {
         let section = &expansion.sections[axis];
         let corners = Corners::new(section, waves);
         let polygons = section.polygons.len();
+        let along = half.map(|half| Folds { half, folded });
         let count = 2 * half[1] + 1;
         let rows: Vec<Vec<Complex>> = (0..=2 * half[0])
             .into_par_iter()
             .map(|i| {
-                let harmonic = i as f64 - half[0] as f64;
-                let [position, step] = section.reduced([harmonic * spacing[0], spacing[1]]);
-                let half = half[1];
-                let row = corners.row(&FrequencyRow {
-                    position,
-                    step,
-                    half,
-                });
-                // From [polygon, slope] to [slope, polygon].
-                let each = (0..count).flat_map(|n| (0..polygons).map(move |p| p * count + n));
-                each.map(|index| row[index]).collect()
+                let mut sum = vec![Complex::ZERO; count * polygons];
+                for (harmonic, share) in along[0].of(i) {
+                    let [position, step] = section.reduced([harmonic * spacing[0], spacing[1]]);
+                    let half = along[1].reach();
+                    let row = corners.row(&FrequencyRow {
+                        position,
+                        step,
+                        half,
+                    });
+                    // From [polygon, slope] to [slope, polygon].
+                    for (n, sum) in sum.chunks_exact_mut(polygons).enumerate() {
+                        for (at, share_of_slope) in along[1].indices(n) {
+                            for (p, sum) in sum.iter_mut().enumerate() {
+                                *sum += row[p * (2 * half + 1) + at] * (share * share_of_slope);
+                            }
+                        }
+                    }
+                }
+                sum
             })
             .collect();
         Self {
@@ -142,6 +188,57 @@ impl HarmonicTable {
         };
         let start = (i * (2 * self.half[1] + 1) + n) * self.polygons;
         &self.values[start..start + self.polygons]
+    }
+}
+
+/// Spectra beyond Nyquist that are folded onto a grid, on either side.
+const FOLDS: u32 = 4;
+
+/// Which frequencies of an axis of a table are one on its grid.
+#[derive(Clone, Copy)]
+struct Folds {
+    /// Harmonics on either side of zero, half a period of the spectrum on the grid.
+    half: usize,
+    folded: Option<Assignment>,
+}
+
+impl Folds {
+    /// Harmonics on either side of zero that take part.
+    fn reach(self) -> usize {
+        match self.folded {
+            Some(_) => self.half * (2 * FOLDS as usize + 1),
+            None => self.half,
+        }
+    }
+
+    /// Harmonics that come to that at `index`, and their shares.
+    fn of(self, index: usize) -> impl Iterator<Item = (f64, f64)> {
+        let (half, folds) = (self.half as f64, f64::from(FOLDS));
+        let own = index as f64 - half;
+        let order = self.folded.map(|assignment| assignment.order());
+        let each = (0..=2 * FOLDS).map(move |n| f64::from(n) - folds);
+        each.filter_map(move |n| {
+            let harmonic = own + 2.0 * half * n;
+            if n == 0.0 {
+                return Some((harmonic, 1.0));
+            }
+            let sign = if n.abs() % 2.0 == 0.0 { 1.0 } else { -1.0 };
+            let one = sign * own / harmonic;
+            let share: f64 = (0..order?).map(|_| one).product();
+            (share != 0.0).then_some((harmonic, share))
+        })
+    }
+
+    /// The same with the indices of the harmonics among all within [`reach`](Self::reach).
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "whole numbers within reach"
+    )]
+    fn indices(self, index: usize) -> impl Iterator<Item = (usize, f64)> {
+        let reach = self.reach() as f64;
+        let each = self.of(index);
+        each.map(move |(harmonic, share)| ((harmonic + reach) as usize, share))
     }
 }
 

@@ -1,7 +1,7 @@
 //! A chain as a model: its parameters and its prediction.
 
 use crate::model::{Model, Over};
-use crate::nets::{Budget, work_of_nets};
+use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parallel::weighted_rectangle::DiscResolution;
 use crate::parallel::{at, derivative, given, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
@@ -105,6 +105,13 @@ impl Model for Chain {
             covariance: None,
             to_first_order: None,
             slices,
+        }
+    }
+
+    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+        match self.given() {
+            Some(rays) => then(&given::GivenRays::new(self, rays, over.0)),
+            None => self.with_sampled(over, budget, then),
         }
     }
 

@@ -2,7 +2,7 @@
 //! of rays.
 
 use crate::model::{Model, Moved, Observed, Over};
-use crate::nets::Budget;
+use crate::nets::{Budget, RayNets};
 use crate::predicted::Predicted;
 use crate::rays::Plane;
 use crate::{Chain, Parameter, rays, scattering};
@@ -38,6 +38,19 @@ impl Chain {
                 let chain = scattering::chain(&view);
                 scattering::predict(&view, chain.as_ref(), &moved, over, budget)
             }
+        }
+    }
+
+    /// The rays that [`sampled`](Self::sampled) sums.
+    pub(super) fn with_sampled(
+        &self,
+        over: Over<'_>,
+        budget: Budget,
+        then: &mut dyn FnMut(&dyn RayNets),
+    ) {
+        match self.followed(over.0) {
+            Sampled::Rays(view) => view.with_rays(over, budget, then),
+            Sampled::Scattering(view) => view.with_rays(over, budget, then),
         }
     }
 

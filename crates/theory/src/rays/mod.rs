@@ -86,7 +86,7 @@ pub use crate::plane::Plane;
 pub(crate) use central::Incidence;
 pub(crate) use emission::{emitted, point_of};
 pub(crate) use model::shrunk_light;
-pub(crate) use predict::predict;
+pub(crate) use predict::{predict, with_rays};
 pub(crate) use trace::{Ray, bent};
 
 use crate::obstacle::Obstacle;

@@ -2,9 +2,9 @@
 //! prediction.
 
 use super::central::Hit;
-use super::{System, predict};
+use super::{System, predict, with_rays};
 use crate::model::{Model, Moved, Observed, Over};
-use crate::nets::{Budget, work_of_nets};
+use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
 use crate::predicted::Predicted;
 use crate::work::Work;
@@ -102,6 +102,10 @@ impl Model for Observed<System> {
             over,
             budget,
         )
+    }
+
+    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+        with_rays(self, over, budget, then);
     }
 
     fn work(&self, over: Over<'_>, budget: Budget) -> Work {

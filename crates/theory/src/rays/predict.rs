@@ -7,7 +7,7 @@ use super::{Plane, Ray, System};
 use crate::geometry::{Map, SpectrumMap};
 use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
 use crate::obstacle::Obstacles;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
@@ -45,6 +45,31 @@ pub(crate) fn predict(
     Predicted {
         derivatives: derivatives(moved, over, way.map(|(_, strategy)| strategy)),
         ..summed(&field, observed, way, over, budgets)
+    }
+}
+
+/// Calls `then` with the rays that [`predict`] sums over nets.
+pub(crate) fn with_rays(
+    view: &Observed<System>,
+    over: Over<'_>,
+    budget: Budget,
+    then: &mut dyn FnMut(&dyn RayNets),
+) {
+    let Observed { system, plane } = view;
+    let observed = (system, Some(plane));
+    let masks = Masks::new(&system.layers, &system.obstacles);
+    let field = exact_field(view, &masks);
+    let draw = neighbourhood(system, plane).and_then(|lands| {
+        let strategy = best(&field, observed, &lands, over)?;
+        Draw::new(observed, over.0, &lands, strategy)
+    });
+    if let Some(draw) = draw {
+        let drawn = Drawn {
+            field: Box::new(field),
+            draw: &draw,
+            window: over.0,
+        };
+        then(&nets::Sampled::new(&drawn, budget));
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Interaction, Surface, System, predict};
 use crate::model::{Model, Moved, Observed, Over};
-use crate::nets::{Budget, work_of_nets};
+use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
 use crate::rays::shrunk_light;
@@ -153,6 +153,10 @@ impl Model for Observed<System> {
             found.derivatives.insert(i, derivative);
         }
         found
+    }
+
+    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+        predict::with_rays(self, over, budget, then);
     }
 
     fn work(&self, over: Over<'_>, budget: Budget) -> Work {

@@ -4,7 +4,7 @@ use super::System;
 use super::chain::{Chain, chain};
 use super::path::Paths;
 use crate::model::{Moved, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
 use crate::predicted::Predicted;
 use etendue_field::Slices;
 
@@ -22,6 +22,19 @@ pub(crate) fn predict(
     match chain(view) {
         Some(chain) => by(view, chain, moved, over, budget),
         None => dark(moved, over),
+    }
+}
+
+/// Calls `then` with the paths that [`predict`] sums over nets, if there are any.
+pub(crate) fn with_rays(
+    view: &Observed<System>,
+    (window, ..): Over<'_>,
+    budget: Budget,
+    then: &mut dyn FnMut(&dyn RayNets),
+) {
+    let paths = chain(view).and_then(|chain| Paths::new(view, window, chain));
+    if let Some(paths) = paths {
+        then(&nets::Sampled::new(&paths, budget));
     }
 }
 

@@ -37,7 +37,7 @@ pub(crate) use brdf::narrowest;
 pub(crate) use chain::{local, reflection};
 pub(crate) use draw::{bell, bell_density};
 pub(crate) use linear::kernel;
-pub(crate) use predict::predict;
+pub(crate) use predict::{predict, with_rays};
 
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Reflectance};

@@ -1,8 +1,8 @@
 //! A surface with a BRDF and a plane behind it as a model: its parameters and its prediction.
 
-use super::{System, chain, predict};
+use super::{System, chain, predict, with_rays};
 use crate::model::{Model, Moved, Observed, Over};
-use crate::nets::{Budget, work_of_nets};
+use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
 use crate::work::Work;
@@ -87,6 +87,10 @@ impl Model for Observed<System> {
             found.derivatives.insert(i, derivative);
         }
         found
+    }
+
+    fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets)) {
+        with_rays(self, chain(self).as_ref(), over, budget, then);
     }
 
     fn work(&self, over: Over<'_>, budget: Budget) -> Work {

@@ -7,10 +7,10 @@ use super::linear::Linear;
 use super::{ReflectionChain, System};
 use crate::mask::Masks;
 use crate::model::{Moved, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
 use crate::predicted::Predicted;
 use crate::rays::{Plane, Ray};
-use etendue_field::{EnvironmentMap, Light, TwoPlane, Window};
+use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
 /// The windowed spectrum of what a surface scatters, with the derivatives by what was moved.
@@ -30,22 +30,51 @@ pub(crate) fn predict(
     (window, grid, picture): Over<'_>,
     budget: Budget,
 ) -> Predicted {
-    let system = &view.system;
-    let field = |strategy| ScatteredField::new(view, window, chain, strategy);
-    let strategy = best(system, |strategy| {
-        nets::trial(&field(strategy), (window, grid)).powi(2) * strategy.time()
-    });
-    let field = field(strategy);
-    let budget = Budget {
-        nodes: budget.nodes / cost(system),
-        ..budget
-    };
+    let strategy = fastest(view, chain, (window, grid));
+    let field = ScatteredField::new(view, window, chain, strategy);
+    let budget = affordable(&view.system, budget);
     let around = Around::new(&field, chain, moved, strategy);
     let mut means = nets::means(&around, window, grid).into_iter();
     Predicted {
         to_first_order: around.linear.as_ref().and_then(|_| means.next()),
         derivatives: means.collect(),
         ..nets::sums(&field, (window, grid), picture.bins, budget)
+    }
+}
+
+/// Calls `then` with the rays that [`predict`] sums over nets.
+pub(crate) fn with_rays(
+    view: &Observed<System>,
+    chain: Option<&ReflectionChain>,
+    (window, grid, _): Over<'_>,
+    budget: Budget,
+    then: &mut dyn FnMut(&dyn RayNets),
+) {
+    let strategy = fastest(view, chain, (window, grid));
+    let field = ScatteredField::new(view, window, chain, strategy);
+    then(&nets::Sampled::new(
+        &field,
+        affordable(&view.system, budget),
+    ));
+}
+
+/// The strategy with the least error in the same time.
+fn fastest(
+    view: &Observed<System>,
+    chain: Option<&ReflectionChain>,
+    (window, grid): (&Window, &SliceGrid),
+) -> LightStrategy {
+    best(&view.system, |strategy| {
+        let field = ScatteredField::new(view, window, chain, strategy);
+        nets::trial(&field, (window, grid)).powi(2) * strategy.time()
+    })
+}
+
+/// The nodes that take as long as those of a budget do with few lobes of light.
+fn affordable(system: &System, budget: Budget) -> Budget {
+    Budget {
+        nodes: budget.nodes / cost(system),
+        ..budget
     }
 }
 

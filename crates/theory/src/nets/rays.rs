@@ -1,0 +1,59 @@
+//! The rays of nets one by one, for sums other than slices.
+
+use super::{Budget, DIMENSIONS, Integrand, Net, Node, REPLICATES};
+use etendue_field::TwoPlane;
+
+/// A light field at a plane as weighted rays, in independent nets that each stand for all of it.
+pub trait RayNets: Sync {
+    /// The number of nets. A single one has no statistical error.
+    fn count(&self) -> usize;
+
+    /// Gives `each` the rays of a net and what they add to the windowed radiance space.
+    fn emit(&self, net: usize, each: &mut dyn FnMut(&TwoPlane, f64));
+}
+
+/// The nets over which [`sums`](super::sums) adds the first field, all of the same number of nodes.
+pub(crate) struct Sampled<'a, I> {
+    integrand: &'a I,
+    nodes: u32,
+}
+
+/// Most nodes of a net.
+const MAX_NODES: f64 = (1_u32 << 29) as f64;
+
+impl<'a, I: Integrand> Sampled<'a, I> {
+    /// The largest power of two of nodes that a budget allows.
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "between 1 and 2^29"
+    )]
+    pub(crate) fn new(integrand: &'a I, budget: Budget) -> Self {
+        let allowed = (budget.nodes / REPLICATES as f64).clamp(1.0, MAX_NODES) as u32;
+        let nodes = 1 << allowed.ilog2();
+        Self { integrand, nodes }
+    }
+}
+
+impl<I: Integrand> RayNets for Sampled<'_, I> {
+    fn count(&self) -> usize {
+        REPLICATES
+    }
+
+    #[expect(clippy::cast_possible_truncation, reason = "below REPLICATES")]
+    fn emit(&self, net: usize, each: &mut dyn FnMut(&TwoPlane, f64)) {
+        let mut net = Net::new(net as u32, self.integrand.dimensions());
+        let share = 1.0 / f64::from(self.nodes);
+        let mut nodes = vec![Node::DARK; self.integrand.fields() * self.integrand.rays()];
+        for _ in 0..self.nodes {
+            nodes.fill(Node::DARK);
+            let at: [f64; DIMENSIONS] = net.point();
+            self.integrand.nodes(&at, &mut nodes);
+            let of_first = nodes.iter().take(self.integrand.rays());
+            for Node { z, weight } in of_first.filter(|node| node.weight != 0.0) {
+                let [x, y, u, v] = *z;
+                each(&TwoPlane { x, y, u, v }, share * weight);
+            }
+        }
+    }
+}
