@@ -173,7 +173,8 @@ impl Applicability {
             };
             view.plane.frame = view.plane.frame.travelled(off * plane.distance);
         }
-        Self::of(scene, plane, Theory::Specular(Box::new(view)))
+        let past = Self::of(scene, plane, Theory::Specular(Box::new(view)));
+        if past.reasons.is_empty() { past } else { found }
     }
 
     fn of(scene: &Scene, plane: &VirtualPlane, mut theory: Theory) -> Self {

@@ -51,7 +51,7 @@ pub struct FullRadialComparison {
 ///
 /// U (1 − Σa²) = Σ_r D_r·(2 Σ_(s≠r) S_s) + (2α − 1) Σ_(r≠s) D_r·D_s.
 ///
-/// If the prediction is true, each D_r is as likely as its negative, whatever the others and S are (docs/theory.md (14)).
+/// If the prediction is true, each D_r is as likely as its negative, whatever the others and S are (docs/theory.md (45)).
 struct Difference {
     /// 2 Σ_(s≠r) D_r·S_s/(1 − Σa²) of each group.
     linear: Vec<f64>,

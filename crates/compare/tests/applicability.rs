@@ -156,10 +156,7 @@ fn a_surface_that_the_path_does_not_visit() {
 fn a_wall_that_leans_away() {
     for (facing, reasons) in [
         ("(-1, 0, -1)", vec![]),
-        (
-            "(-1, 0, 1)",
-            vec!["light that meets wall out of turn".to_owned()],
-        ),
+        ("(-1, 0, 1)", vec!["visibility of wall".to_owned()]),
     ] {
         let surfaces = format!(
             r#"Smooth(name: "mirror", center: (0, 0, 1), {AT_45},
