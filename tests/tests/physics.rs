@@ -148,9 +148,9 @@ fn a_forgotten_surface_is_noticed() {
     );
 }
 
-/// Theory takes the receiver to be endless: where a window sees its edge, the other tracer is asked.
+/// The closed form takes the receiver to be endless: where a window sees its edge, paths are followed.
 #[test]
-fn the_edge_of_the_receiver_is_left_to_the_reference() {
+fn the_edge_of_the_receiver_is_left_to_paths() {
     let classes = |size: &str| -> Vec<Class> {
         let scene = scene(&[("size: (6, 6)", size)]);
         scene
@@ -161,7 +161,7 @@ fn the_edge_of_the_receiver_is_left_to_the_reference() {
     };
     assert!(classes("size: (3, 3)").iter().all(|c| *c == Class::Exact));
     let small = classes("size: (3, 2.9)");
-    assert_eq!(small[4], Class::Reference);
+    assert_eq!(small[4], Class::FirstOrder);
     assert!(small[..4].iter().all(|c| *c == Class::Exact));
 }
 
