@@ -351,8 +351,8 @@ fn decided_by_reference(
     plane: usize,
     theory: impl Fn(&Scene, Prediction) -> Prediction,
 ) {
-    let theory = Applicability::new(scene, &scene.planes[plane]);
-    assert!(!theory.reasons.is_empty() || !theory.declined.is_empty());
+    let found = Applicability::new(scene, &scene.planes[plane]);
+    assert!(!found.reasons.is_empty() || !found.declined.is_empty());
     let (photons, rays) = (photons(scene), backward(scene));
     let reference = by_reference(scene, plane, &rays);
     let judged = report(scene, &photons, plane, &reference);
