@@ -52,7 +52,7 @@ impl Harmonics {
     /// assignment divided out: the spectrum of the chain and, folded onto it, what lies beyond Nyquist.
     ///
     /// Σₙ ℓ̂(Ω + n/Δ) Πᵢ ((−1)^nᵢ fᵢ/(fᵢ + nᵢ))^p, f = ΔΩ being cycles per cell and p the order of the
-    /// spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). Summed to |nᵢ| ≤ [`FOLDS`]; `None` as of [`new`](Self::new).
+    /// spline (docs/theory.md (44); Hockney and Eastwood 1981, chapter 5). Summed to |nᵢ| ≤ `FOLDS`; `None` as of [`new`](Self::new).
     #[must_use]
     pub fn on_grid(
         chain: &Chain,
