@@ -5,9 +5,10 @@ use super::scene::{Bench, LIGHT, Seen, number, plane, squares};
 use super::{CHANCE, Claim, PULL, decreasing};
 use crate::report::Bound::{AtLeast, AtMost, Below};
 use crate::report::Check;
+use crate::shading::strips::{Strips, coefficients, in_common, strips};
 use crate::table1::slope;
 use etendue_field::{Complex, Slices};
-use std::f64::consts::{FRAC_1_SQRT_2, PI, TAU};
+use std::f64::consts::{FRAC_1_SQRT_2, PI};
 
 pub(super) fn claims(photons: u64) -> Vec<Claim> {
     vec![
@@ -239,16 +240,11 @@ fn before_average(photons: u64) -> Claim {
     }
 }
 
-/// Strips that let light through, [from, to], m.
-type Strips = Vec<[f64; 2]>;
-
-/// Strips of a pair of masks, the same every time (additive recurrences, Weyl).
-fn strips(pair: u32, offset: f64) -> Strips {
-    let cut =
-        |i: u32| (0.618_034 * f64::from(6 * pair + i) + offset * f64::from(i + 1)).fract() - 0.5;
-    let mut cuts: Vec<f64> = (0..6).map(cut).collect();
-    cuts.sort_by(f64::total_cmp);
-    cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
+/// Strips of a pair of masks about the central ray, m.
+fn centred(pair: u32, offset: f64) -> Strips {
+    let mut open = strips(pair, offset);
+    open.iter_mut().flatten().for_each(|edge| *edge -= 0.5);
+    open
 }
 
 /// What lets no light through between, as opaque rectangles over ± 1 m.
@@ -262,24 +258,6 @@ fn opaque(open: &Strips) -> String {
     });
     let shapes: String = each.collect();
     format!("Shapes(name: \"blockers\", center: (0, 0, 1), shapes: [{shapes}])")
-}
-
-/// Fourier coefficients −[`SUMMED`] … [`SUMMED`] of what is open within the window's period of 1 m.
-fn coefficients(open: &Strips) -> Vec<Complex> {
-    let wave = |cycles: f64| Complex::from_polar(1.0, -TAU * cycles);
-    (0..=2 * SUMMED)
-        .map(|i| {
-            let n = i as f64 - SUMMED as f64;
-            let each = open.iter().map(|[a, b]| {
-                if n.abs() < 0.5 {
-                    Complex::from(b - a)
-                } else {
-                    (wave(n * b) - wave(n * a)) * Complex::new(0.0, 1.0 / (TAU * n))
-                }
-            });
-            each.sum()
-        })
-        .collect()
 }
 
 /// Frequencies up to which bounds are held against spectra, and up to which they are summed, /m.
@@ -327,12 +305,8 @@ fn combined(photons: u64) -> Claim {
     );
     let (mut excess, mut ratios, mut under) = (Vec::new(), Vec::new(), 0);
     for pair in [0, 1, 2, 4, 5, 6, 7, 8] {
-        let (first, second) = (strips(pair, 0.137), strips(pair, 0.414));
-        let both: Strips = first
-            .iter()
-            .flat_map(|p| second.iter().map(|q| [p[0].max(q[0]), p[1].min(q[1])]))
-            .filter(|[low, high]| high > low)
-            .collect();
+        let (first, second) = (centred(pair, 0.137), centred(pair, 0.414));
+        let both = in_common(&first, &second);
         if both.is_empty() {
             continue;
         }
@@ -345,7 +319,7 @@ fn combined(photons: u64) -> Claim {
             };
             bench.seen(photons)
         });
-        let other = coefficients(&second);
+        let other = coefficients(&second, SUMMED);
         let pair = [(&one, 0), (&two, 0)];
         let over = number(&pair, &|slices| {
             let [real, bound, _] = bounded(slices, &other);

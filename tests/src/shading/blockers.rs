@@ -1,6 +1,7 @@
 //! Statements about blockers: replicas, combinations, wedges, averages, soft shadows.
 
 use super::primal::{about, between, integral, transform, wave};
+use super::strips::{coefficients, in_common, strips};
 use super::words::Statement;
 use crate::table1::slope;
 use etendue_field::Complex;
@@ -10,6 +11,8 @@ use std::f64::consts::{PI, TAU};
 const LIGHT: f64 = 0.2;
 const BEFORE: f64 = 1.0;
 const AFTER: f64 = 0.5;
+/// Frequencies up to which coefficients of patterns are summed.
+const SUMMED: usize = 48;
 
 pub(super) fn statements() -> Vec<Statement> {
     let mut all = vec![replicas()];
@@ -64,23 +67,6 @@ fn replicas() -> Statement {
     }
 }
 
-/// Fourier coefficients −N … N of open intervals of a period of 1.
-fn coefficients(open: &[[f64; 2]]) -> Vec<Complex> {
-    (-48..=48)
-        .map(|n| {
-            let n = f64::from(n);
-            let each = open.iter().map(|[a, b]| {
-                if n.abs() < 0.5 {
-                    Complex::from(b - a)
-                } else {
-                    (wave(n * b) - wave(n * a)) * Complex::new(0.0, 1.0 / (TAU * n))
-                }
-            });
-            each.sum()
-        })
-        .collect()
-}
-
 /// 90 % bandwidth of coefficients: the smallest |n| below which so much of the energy is.
 fn bandwidth(coefficients: &[Complex]) -> usize {
     let middle = coefficients.len() / 2;
@@ -101,24 +87,12 @@ fn combined() -> Vec<Statement> {
     let (mut largest, mut under, mut over) = (0.0_f64, 0, 0);
     let pairs: u32 = 200;
     for pair in 0..pairs {
-        // Additive recurrences (Weyl): three open intervals each, sorted, the same every time.
-        let pattern = |offset: f64| -> Vec<[f64; 2]> {
-            let mut cuts: Vec<f64> = (0..6)
-                .map(|i| (0.618_034 * f64::from(6 * pair + i) + offset * f64::from(i + 1)).fract())
-                .collect();
-            cuts.sort_by(f64::total_cmp);
-            cuts.chunks(2).map(|cut| [cut[0], cut[1]]).collect()
-        };
-        let (a, b) = (pattern(0.137), pattern(0.414));
-        let both: Vec<[f64; 2]> = a
-            .iter()
-            .flat_map(|p| b.iter().map(|q| [p[0].max(q[0]), p[1].min(q[1])]))
-            .filter(|[low, high]| high > low)
-            .collect();
+        let (a, b) = (strips(pair, 0.137), strips(pair, 0.414));
+        let both = in_common(&a, &b);
         if both.is_empty() {
             continue;
         }
-        let (first, second, true_one) = (coefficients(&a), coefficients(&b), coefficients(&both));
+        let [first, second, true_one] = [&a, &b, &both].map(|open| coefficients(open, SUMMED));
         let bound: Vec<Complex> = (0..first.len())
             .map(|n| {
                 let terms = (0..first.len()).filter_map(|m| {
@@ -166,7 +140,7 @@ fn combined() -> Vec<Statement> {
 }
 
 fn complementary() -> f64 {
-    let (a, b) = (coefficients(&[[0.0, 0.5]]), coefficients(&[[0.5, 1.0]]));
+    let [a, b] = [[0.0, 0.5], [0.5, 1.0]].map(|half| coefficients(&vec![half], SUMMED));
     let middle = a.len() / 2;
     // Σ c_m d_(n−m), and of the magnitudes, with the tail of 1/m² summed: for n = 0, opposite phases.
     let product: Complex = (0..a.len()).map(|m| a[m] * b[2 * middle - m]).sum();

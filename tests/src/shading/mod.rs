@@ -19,6 +19,7 @@ mod primal;
 mod scenes;
 mod semi;
 mod spreading;
+pub(crate) mod strips;
 mod tamper;
 mod traced;
 mod visibility;
