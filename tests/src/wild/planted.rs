@@ -76,19 +76,21 @@ pub(super) fn planted() -> Section {
     let number = scene.planes.iter().position(|plane| plane.name == PLANE);
     let scene = scene.seen_at(&[number.unwrap_or_default()]);
     let measured = traced(&scene);
-    let view = match Applicability::new(&scene, &scene.planes[0]).theory {
-        Theory::Reflections(view) => *view,
-        other => unreachable!("{SCENE} has two surfaces: {other:?}"),
+    let theory = Applicability::new(&scene, &scene.planes[0]);
+    let Theory::Reflections(view) = &theory.theory else {
+        unreachable!("{SCENE} has two surfaces that scatter");
     };
-    let sound = p_value(&scene, &measured, &view);
+    let like = Prediction::new(&scene, &scene.planes[0], &theory);
+    let p_value = |view: &Observed<System>| p_value(&scene, &measured, view, &like);
+    let sound = p_value(view);
     let mut rows = vec![Row::new(
         vec!["none".to_owned(), format!("{sound:.5}")],
         vec![Check::p("p", Some(sound), SEEN)],
     )];
     rows.extend(FAULTS.iter().map(|(name, change)| {
-        let mut view = view.clone();
+        let mut view = view.as_ref().clone();
         change(&mut view.system);
-        let p = p_value(&scene, &measured, &view);
+        let p = p_value(&view);
         let cells = vec![(*name).to_owned(), format!("{p:.5}")];
         Row::new(
             cells,
@@ -107,25 +109,23 @@ pub(super) fn planted() -> Section {
     }
 }
 
-fn p_value(scene: &Scene, measured: &Measurement, view: &Observed<System>) -> f64 {
+/// p of what is predicted for a view, all else being like another prediction.
+fn p_value(
+    scene: &Scene,
+    measured: &Measurement,
+    view: &Observed<System>,
+    like: &Prediction,
+) -> f64 {
     let plane = &scene.planes[0];
     let picture = ProjectionGrid::new(&plane.window, 1);
     let found = view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET);
-    let applicability = Applicability::new(scene, plane);
     let prediction = Prediction {
         slices: found.slices,
         replicates: found.replicates,
         quadrature_error: found.error,
         first_order: None,
-        ..Prediction::new(&cheap(scene), plane, &applicability)
+        ..like.clone()
     };
     let compared = compare(measured, 0, &prediction, &Test::of(scene));
     compared.map_or(1.0, |found| found.report.p_value.unwrap_or(1.0))
-}
-
-/// The scene with few photons, for what stands around a prediction.
-fn cheap(scene: &Scene) -> Scene {
-    let mut scene = scene.clone();
-    scene.run.photons = 1;
-    scene
 }
