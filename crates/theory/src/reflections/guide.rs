@@ -4,7 +4,7 @@
 //! before; a lobe blurs its angles there; the edge of a surface narrows its positions. What is left
 //! at a surface tells which directions matter at each of its points, and at the light which rays.
 
-use crate::geometry::{Map, Matrix, congruent, diagonal, from_fn, inverse, sum, times};
+use crate::geometry::{Map, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times};
 use crate::scattering::{bell, bell_density};
 use etendue_field::{Profile, Window};
 use std::f64::consts::{PI, TAU};
@@ -72,8 +72,9 @@ impl Gaussian<4> {
         })
     }
 
-    /// Of two coordinates, the other two being known.
-    pub(super) fn given(&self, [a, b]: [usize; 2], known: [f64; 2]) -> Option<Gaussian<2>> {
+    /// Of two coordinates, positions or slopes, the other two being known; `None` where these have no
+    /// width.
+    pub(super) fn given(&self, [a, b]: [usize; 2]) -> Option<Conditional> {
         let others = match a {
             0 => [2, 3],
             _ => [0, 1],
@@ -83,15 +84,36 @@ impl Gaussian<4> {
         };
         let known_inverse = inverse(&block([a, b], [a, b]))?;
         let across = block(others, [a, b]);
-        let gain = crate::geometry::product(&across, &known_inverse);
-        let off = [known[0] - self.mean[a], known[1] - self.mean[b]];
-        let moved = times(&gain, &off);
         let taken = congruent(&across, &known_inverse);
         let own = block(others, others);
-        Some(Gaussian {
-            mean: std::array::from_fn(|i| self.mean[others[i]] + moved[i]),
+        Some(Conditional {
+            known: [self.mean[a], self.mean[b]],
+            mean: others.map(|i| self.mean[i]),
+            gain: product(&across, &known_inverse),
             covariance: from_fn(|i, j| own[i][j] - taken[i][j]),
         })
+    }
+}
+
+/// A Gaussian of two coordinates, whose mean moves with two others.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Conditional {
+    /// Where the others have the mean here.
+    known: [f64; 2],
+    mean: [f64; 2],
+    /// How far it moves with them.
+    gain: Matrix<2>,
+    covariance: Matrix<2>,
+}
+
+impl Conditional {
+    pub(super) fn at(&self, known: [f64; 2]) -> Gaussian<2> {
+        let off = [known[0] - self.known[0], known[1] - self.known[1]];
+        let moved = times(&self.gain, &off);
+        Gaussian {
+            mean: [self.mean[0] + moved[0], self.mean[1] + moved[1]],
+            covariance: self.covariance,
+        }
     }
 }
 

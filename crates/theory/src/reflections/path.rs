@@ -2,7 +2,7 @@
 
 use super::aim::Aim;
 use super::chain::{Chain, Scatterer};
-use super::guide::{Gaussian, Mixture};
+use super::guide::{Bell, Conditional, Gaussian, Mixture};
 use super::{Surface, System};
 use crate::model::Observed;
 use crate::nets::{DIMENSIONS, Node};
@@ -20,8 +20,8 @@ pub(super) struct Paths<'a> {
     window: &'a Window,
     obstacles: Obstacles<'a>,
     chain: Chain,
-    /// At the light, and where light goes at each scatterer.
-    guides: Vec<Gaussian<4>>,
+    /// Rays of the light, and directions away from each scatterer, that come into the window.
+    guides: Vec<Conditional>,
     /// Of the leg from the light, and from each scatterer.
     aims: Vec<Aim>,
 }
@@ -56,12 +56,14 @@ impl<'a> Paths<'a> {
         let mut guide = Gaussian::of_window(window);
         for (scatterer, map) in chain.scatterers.iter().zip(&chain.maps[1..]).rev() {
             guide = guide.before(map)?;
-            guides.push(guide);
+            guides.push(guide.given([0, 1])?);
             let surface = &view.system.surfaces[scatterer.number];
             guide = on_surface(&guide, surface, scatterer)?;
         }
-        let at_light = guide.before(&chain.maps[0])?;
-        guides.push(of_light(&at_light, &view.system.light)?);
+        let light = &view.system.light;
+        let known = if light.is_distant() { [2, 3] } else { [0, 1] };
+        let at_light = of_light(&guide.before(&chain.maps[0])?, light)?;
+        guides.push(at_light.given(known)?);
         guides.reverse();
         let legs = 0..chain.maps.len();
         let aims = legs.map(|leg| Aim::new(view, &chain.scatterers, leg));
@@ -106,28 +108,25 @@ impl<'a> Paths<'a> {
             None => ([0.0; 2], 1.0),
         };
         let map = &self.chain.maps[0];
-        let mut aimed_at = None;
+        let (aim, guide) = (&self.aims[0], &self.guides[0]);
+        let mut target = None;
         let (ray, density) = if light.is_distant() {
-            let rays = Mixture::new([(1.0, self.guides[0].given([2, 3], outer))])?;
+            let rays = Bell::new(&guide.at(outer))?;
             let [x, y] = rays.draw([a, b]);
             ([x, y, 0.0, 0.0], rays.density([x, y]))
         } else {
-            let slopes = self.guides[0].given([0, 1], outer)?;
-            let aim = &self.aims[0];
-            let targets = Mixture::new([(1.0, Some(aim.seen(&slopes, outer, map)))])?;
-            let target = targets.draw([a, b]);
-            let density = targets.density(target);
             let [x, y] = outer;
+            let targets = Bell::new(&aim.seen(&guide.at(outer), outer, map))?;
+            let at = targets.draw([a, b]);
+            let density = targets.density(at);
             if matches!(aim, Aim::Angles) {
-                ([x, y, target[0], target[1]], density)
+                ([x, y, at[0], at[1]], density)
             } else {
-                let point = DVec3::new(x, y, 0.0);
-                let (direction, steradians) = aim.direction(point, target, None)?;
-                let [u, v] = [direction.x, direction.y].map(|d| d / direction.z);
-                aimed_at = aim.target(target);
+                let (d, steradians) = aim.direction(DVec3::new(x, y, 0.0), at, None)?;
+                target = aim.target(at);
                 // du dv = dω / cos³.
-                let per_steradian = density / steradians;
-                ([x, y, u, v], per_steradian * direction.z.powi(3))
+                let density = density / steradians * d.z.powi(3);
+                ([x, y, d.x / d.z, d.y / d.z], density)
             }
         };
         let flux = emitted(light, ray) * per_area / density;
@@ -137,7 +136,7 @@ impl<'a> Paths<'a> {
             flux,
             radiance: flux * (1.0 + u * u + v * v).powi(2) * map.det().abs(),
             at: map.apply(ray),
-            target: aimed_at,
+            target,
         })
     }
 
@@ -190,10 +189,9 @@ impl<'a> Paths<'a> {
             let mirrored = 2.0 * normal.dot(from) * normal - from;
             lobe.mean = aim.end(point, mirrored).unwrap_or(lobe.mean);
         }
-        let guide = self.guides[number + 1].given([0, 1], [s, t]);
-        let guide = guide.map(|guide| seen(&guide));
-        let both = guide.as_ref().and_then(|guide| guide.product(&lobe));
-        let targets = Mixture::new([(0.5, both), (0.25, guide), (0.25, Some(lobe))])?;
+        let guide = seen(&self.guides[number + 1].at([s, t]));
+        let both = guide.product(&lobe);
+        let targets = Mixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])?;
         let target = targets.draw(r);
         let (to, steradians) = aim.direction(point, target, Some((scatterer, normal)))?;
         let per_density = steradians / targets.density(target);
