@@ -158,7 +158,7 @@ impl Applicability {
     #[must_use]
     pub fn new(scene: &Scene, plane: &VirtualPlane) -> Self {
         let found = Self::of(scene, plane, Theory::of(scene, plane));
-        if plane.leg > 0 || found.reasons.is_empty() {
+        if plane.leg > 0 || found.reasons.is_empty() || !too_fine(scene).is_empty() {
             return found;
         }
         // Rays of the first leg are followed past what does not lie across it.
@@ -184,9 +184,9 @@ impl Applicability {
         };
         let mut reasons = theory.obstacles(scene, plane, off_patches);
         let mut declined = Vec::new();
-        let others = || reflected(scene, plane).filter(|_| too_fine(scene).is_empty());
         if !reasons.is_empty()
-            && let Some(view) = others()
+            && too_fine(scene).is_empty()
+            && let Some(view) = reflected(scene, plane)
         {
             theory = Theory::Reflections(Box::new(view));
             declined = std::mem::take(&mut reasons);

@@ -17,7 +17,8 @@ pub struct Convergence {
     /// Shares e of the scene's widths, descending, and ‖first order − exact‖/‖exact‖ for each.
     pub steps: Vec<[f64; 2]>,
     /// The order n in error ∝ eⁿ, by least squares over the last three steps. `None` where the
-    /// error is not clearly above that of the quadrature.
+    /// error is not clearly above that of the quadrature; where several surfaces scatter, that is not
+    /// looked at.
     pub order: Option<f64>,
 }
 
@@ -59,7 +60,7 @@ pub fn converge(
         let over = (&window, &grid, &picture);
         let [error, own] = match &applicability.theory {
             Theory::Specular(view) => by_rays(scene, view, e, over)?,
-            Theory::Reflections(view) => by_paths(view, e, over)?,
+            Theory::Reflections(view) => [by_paths(view, e, over)?, 0.0],
             _ => return None,
         };
         clear &= error > CLEAR * own;
@@ -92,10 +93,9 @@ fn by_rays(
     Some([error, own(&exact).max(own(&linear))])
 }
 
-/// The same where several surfaces scatter. Both are summed over the same paths, so that the
-/// difference has a few per cent of its own error.
-fn by_paths(whole: &Observed<reflections::System>, e: f64, over: Over<'_>) -> Option<[f64; 2]> {
-    const SHARE: f64 = 0.05;
+/// The error where several surfaces scatter: the difference of the chain, a sum over the same paths
+/// with an error of its own of a few per cent.
+fn by_paths(whole: &Observed<reflections::System>, e: f64, over: Over<'_>) -> Option<f64> {
     let view = Observed {
         system: whole.system.shrunk(e)?,
         plane: whole.plane,
@@ -103,8 +103,7 @@ fn by_paths(whole: &Observed<reflections::System>, e: f64, over: Over<'_>) -> Op
     let exact = view.predict(&[], over, BUDGET);
     let mut linear = exact.to_first_order?;
     linear.half += &exact.slices.half;
-    let error = distance(&linear, &exact.slices);
-    Some([error, SHARE * error])
+    Some(distance(&linear, &exact.slices))
 }
 
 /// The slope of ln error over ln e.
