@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from etendue import types
 from etendue.progress import Progress, told
-from etendue.scene import Scene, _threads  # pyright: ignore[reportPrivateUsage]
+from etendue.ranges import thread_count
+from etendue.scene import Scene
 
 Floats = NDArray[np.float64]
 
@@ -98,7 +99,7 @@ def spectrum(
     plane = Scene(_around(window, frequencies), name="rays")
     with told(progress, rays, "rays") as tell:
         found: dict[str, Any] = plane._job.spectrum(  # pyright: ignore[reportPrivateUsage]
-            columns, group, batches, _threads(threads), tell
+            columns, group, batches, thread_count(threads), tell
         )
     if not np.isfinite(found["power"]).all():
         raise ValueError("the power of these weights is beyond the largest number; allowed: weights below 1e100 or so")

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import operator
 import os
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -144,21 +143,6 @@ def _seed(seed: int) -> int:
     if not 0 <= seed < 2**64 or seed != int(seed):
         raise ValueError(f"seed is {seed!r}; allowed: a whole number, 0 or above")
     return int(seed)
-
-
-def _count(name: str, value: int, least: int, most: int) -> int:
-    """A whole number within a range."""
-    try:
-        number = operator.index(value)
-    except TypeError:
-        number = None
-    if number is None or not least <= number <= most:
-        raise ValueError(f"{name} is {value!r}; allowed: a whole number from {least} to {most}")
-    return number
-
-
-def _threads(threads: int | None) -> int | None:
-    return None if threads is None else _count("threads", threads, 1, 1024)
 
 
 def _text(value: Value) -> str:

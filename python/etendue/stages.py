@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 
 from etendue import _etendue
 from etendue.progress import Progress, told
+from etendue.ranges import thread_count, whole
 from etendue.result import Result
-from etendue.scene import Method, Scene, Source, Value, _count, _threads, as_scene  # pyright: ignore[reportPrivateUsage]
+from etendue.scene import Method, Scene, Source, Value, as_scene
 
 
 class Measurement:
@@ -73,7 +74,7 @@ def measure(
     """Traces photons of a scene: all its batches, or those of these numbers. Other threads of Python go on meanwhile."""
     scene = as_scene(scene, set, photons, seed, method)
     numbers = _batches(scene, batches)
-    threads = _threads(threads)
+    threads = thread_count(threads)
     with told(progress, scene.photons * len(numbers) // scene.batches, "photons") as tell:
         raw = scene._job.measure(numbers, threads, tell)  # pyright: ignore[reportPrivateUsage]
     return Measurement(scene, raw)
@@ -84,7 +85,7 @@ def predict(
 ) -> Prediction:
     """What theory says of each plane of a scene."""
     scene = as_scene(scene, set)
-    return Prediction(scene, scene._job.predict(_threads(threads)))  # pyright: ignore[reportPrivateUsage]
+    return Prediction(scene, scene._job.predict(thread_count(threads)))  # pyright: ignore[reportPrivateUsage]
 
 
 def merge(measurements: Iterable[Measurement]) -> Measurement:
@@ -116,7 +117,7 @@ def compare(measurement: Measurement, prediction: Prediction | None = None, *, t
     raw = scene._job.compare(  # pyright: ignore[reportPrivateUsage]
         measurement._raw,  # pyright: ignore[reportPrivateUsage]
         prediction._raw,  # pyright: ignore[reportPrivateUsage]
-        _threads(threads),
+        thread_count(threads),
     )
     return Result(scene, raw)
 
@@ -185,4 +186,4 @@ def _batches(scene: Scene, batches: Iterable[int] | None) -> list[int]:
         return list(range(scene.batches))
     if not isinstance(batches, Iterable):  # pyright: ignore[reportUnnecessaryIsInstance]
         raise TypeError(f"batches is {batches!r}; allowed: their numbers, such as range(8)")
-    return sorted({_count("one of batches", number, 0, scene.batches - 1) for number in batches})
+    return sorted({whole("one of batches", number, 0, scene.batches - 1) for number in batches})
