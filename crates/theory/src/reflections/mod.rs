@@ -32,7 +32,6 @@ mod surface;
 mod tests;
 
 pub use chain::{Chain, chain, defect};
-pub use predict::beside;
 
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Patch, Reflectance, Specular};

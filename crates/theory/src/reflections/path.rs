@@ -1,7 +1,7 @@
 //! One path from the light to the plane, drawn at a point of the unit cube.
 
 use super::aim::Aim;
-use super::chain::{Chain, Scatterer};
+use super::chain::{Chain, Scatterer, chain};
 use super::guide::{Bell, Conditional, Gaussian, Mixture};
 use super::{Surface, System};
 use crate::model::Observed;
@@ -47,11 +47,8 @@ struct Going {
 
 impl<'a> Paths<'a> {
     /// `None` where the chain does not tell where light must go.
-    pub(super) fn new(
-        view: &'a Observed<System>,
-        window: &'a Window,
-        chain: Chain,
-    ) -> Option<Self> {
+    pub(super) fn new(view: &'a Observed<System>, window: &'a Window) -> Option<Self> {
+        let chain = chain(view)?;
         let mut guides = Vec::new();
         let mut guide = Gaussian::of_window(window);
         for (scatterer, map) in chain.scatterers.iter().zip(&chain.maps[1..]).rev() {

@@ -1,7 +1,6 @@
 //! Slices of light that several surfaces send on, over scrambled nets of paths.
 
 use super::System;
-use super::chain::{Chain, chain};
 use super::path::Paths;
 use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
@@ -19,53 +18,12 @@ pub(crate) fn predict(
     over: Over<'_>,
     budget: Budget,
 ) -> Predicted {
-    match chain(view) {
-        Some(chain) => by(view, chain, moved, over, budget),
-        None => dark(moved, over),
-    }
-}
-
-/// Calls `then` with the paths that [`predict`] sums over nets, if there are any.
-pub(crate) fn with_rays(
-    view: &Observed<System>,
-    (window, ..): Over<'_>,
-    budget: Budget,
-    then: &mut dyn FnMut(&dyn RayNets),
-) {
-    let paths = chain(view).and_then(|chain| Paths::new(view, window, chain));
-    if let Some(paths) = paths {
-        then(&nets::Sampled::new(&paths, budget));
-    }
-}
-
-/// Of light that the chain does not lead to the plane.
-fn dark(moved: &[Moved<Observed<System>>], (_, grid, picture): Over<'_>) -> Predicted {
-    Predicted {
-        derivatives: vec![Slices::zeros(*grid); moved.len()],
-        ..Predicted::dark(grid, picture)
-    }
-}
-
-/// What a chain that may be another than that of [`chain`] predicts: the paths as they are, and
-/// their difference to the chain.
-#[must_use]
-pub fn beside(view: &Observed<System>, chain: &Chain, over: Over<'_>, budget: Budget) -> Predicted {
-    by(view, chain.clone(), &[], over, budget)
-}
-
-fn by(
-    view: &Observed<System>,
-    chain: Chain,
-    moved: &[Moved<Observed<System>>],
-    (window, grid, picture): Over<'_>,
-    budget: Budget,
-) -> Predicted {
-    let Some(paths) = Paths::new(view, window, chain) else {
-        return dark(moved, (window, grid, picture));
+    let (window, grid, picture) = over;
+    let of = |view| Paths::new(view, window);
+    let Some(paths) = of(view) else {
+        return dark(moved, over);
     };
-    let of = |view| Paths::new(view, window, self::chain(view)?);
-    let sides = moved.iter();
-    let sides = sides.map(|moved| {
+    let sides = moved.iter().map(|moved| {
         let [above, below] = &moved.sides;
         (moved.apart, [of(above), of(below)])
     });
@@ -78,6 +36,26 @@ fn by(
         to_first_order: means.next(),
         derivatives: means.collect(),
         ..nets::sums(&paths, (window, grid), picture.bins, budget)
+    }
+}
+
+/// Calls `then` with the paths that [`predict`] sums over nets, if there are any.
+pub(crate) fn with_rays(
+    view: &Observed<System>,
+    (window, ..): Over<'_>,
+    budget: Budget,
+    then: &mut dyn FnMut(&dyn RayNets),
+) {
+    if let Some(paths) = Paths::new(view, window) {
+        then(&nets::Sampled::new(&paths, budget));
+    }
+}
+
+/// Of light that the chain does not lead to the plane.
+fn dark(moved: &[Moved<Observed<System>>], (_, grid, picture): Over<'_>) -> Predicted {
+    Predicted {
+        derivatives: vec![Slices::zeros(*grid); moved.len()],
+        ..Predicted::dark(grid, picture)
     }
 }
 

@@ -1,3 +1,5 @@
+//! Light that several surfaces send on, held against theories and sums of its own.
+
 use super::*;
 use crate::numerics::distance;
 use crate::obstacle::ObstacleForm;
