@@ -5,7 +5,8 @@ mod reflected;
 use crate::bounce::at;
 use crate::emit::{LAMBERTIAN, by_cosine, point, radiance};
 use crate::form::Form;
-use crate::obstacles::{Around, Obstacles, direction, ray_through, start};
+use crate::heading::{Both, Heading};
+use crate::obstacles::{Around, Obstacles, direction, start};
 use crate::pieces::Pieces;
 use crate::proposal::Follower;
 use crate::shares::{BLOCK, Shares};
@@ -52,20 +53,34 @@ enum Source {
 /// A leg of the path, looked along from its end.
 #[derive(Debug)]
 struct Leg {
+    courses: Both<Course>,
+    /// What it ends on.
+    ends: Option<Object>,
+}
+
+/// What light meets that goes one way on a leg.
+#[derive(Debug)]
+struct Course {
     /// In the frame at the light.
     frame: Frame,
     obstacles: Obstacles,
     /// The surface at its beginning; `None` for the first.
     leaves: Option<Leaves>,
-    /// What it ends on.
-    ends: Option<Object>,
+}
+
+/// A ray along which light of a leg may come, in the frame of its way.
+#[derive(Clone, Copy, Debug)]
+struct Incoming {
+    leg: usize,
+    heading: Heading,
+    ray: TwoPlane,
 }
 
 /// The surface that light leaves at the beginning of a leg.
 #[derive(Debug)]
 struct Leaves {
     object: Object,
-    /// In the frame of the leg.
+    /// In the frame of the course.
     targets: Targets<()>,
     how: How,
     rounding: f64,
@@ -76,12 +91,12 @@ struct Leaves {
 enum How {
     /// Diffusely, from pieces of which points can be drawn.
     Diffuse { albedo: f64, pieces: Pieces },
-    /// By a BRDF that may vary over a patch, in the frame of the leg.
+    /// By a BRDF that may vary over a patch, in the frame of the course.
     Reflects {
         patch: Patch,
         reflectance: Box<Reflectance>,
     },
-    /// Turned; the lens's frame, in the frame of the leg.
+    /// Turned; the lens's frame, in the frame of the course.
     Turned { lens: Frame, event: Specular },
 }
 
@@ -96,10 +111,10 @@ pub struct LightNotFound {
 }
 
 /// How rays of one plane are drawn.
-#[derive(Clone, Copy, Debug)]
+#[derive(Debug)]
 struct Looker {
     leg: usize,
-    station: Station,
+    stations: Both<Station>,
     position: [Follower; 2],
     slope: [Follower; 2],
     /// Whether slopes are drawn towards points of the light: where they are the narrower choice.
@@ -128,7 +143,7 @@ impl Backward {
             | Light::Rays { .. } => Source::Narrow(scene.light.clone()),
         };
         let planes = scene.planes.iter().enumerate();
-        let lookers = planes.map(|(i, p)| Looker::new(Station::new(scene, i, p), p, &light));
+        let lookers = planes.map(|(i, p)| Looker::new(scene, i, p, &light));
         let lookers = lookers.collect();
         Ok(Self {
             light,
@@ -166,11 +181,9 @@ impl Backward {
         let [u, v] = match &self.light {
             Source::Area { shape, .. } if looker.to_light => {
                 let [x0, y0] = point(shape, [r[2], r[3]]);
-                density *= looker.station.distance * looker.station.distance / shape.area();
-                [
-                    (x - x0) / looker.station.distance,
-                    (y - y0) / looker.station.distance,
-                ]
+                let distance = looker.stations.along.distance;
+                density *= distance * distance / shape.area();
+                [(x - x0) / distance, (y - y0) / distance]
             }
             Source::Sky(sky) if looker.to_light => {
                 // Half of them by the environment; its directions go forward or nowhere.
@@ -191,39 +204,45 @@ impl Backward {
             }
         };
         let ray = TwoPlane { x, y, u, v };
-        let is_ahead = looker.leg > 0 || looker.station.is_ahead([x, y]);
-        let on_leg = looker.station.leg_ray(&ray);
+        let is_ahead = looker.leg > 0 || looker.stations.along.is_ahead([x, y]);
+        let on_leg = looker.leg_ray(&ray);
         let on_leg = on_leg.filter(|_| density > 0.0 && is_ahead);
-        let Some((on_leg, area)) = on_leg else {
+        let Some((on_leg, end, area)) = on_leg else {
             return Crossing { ray, weight: 0.0 };
         };
-        let found = self.incident(looker.leg, &on_leg, End::of(&looker.station), 1, &words);
+        let found = self.incident(&on_leg, end, 1, &words);
         Crossing {
             ray,
             weight: area * found / density,
         }
     }
 
-    /// The radiance that arrives at the end of a ray of a leg, given where the leg begins; `block` numbers the random
+    /// The radiance that arrives at the end of a ray; `block` numbers the random
     /// numbers of the next surface on its way back.
     fn incident(
         &self,
-        leg: usize,
-        ray: &TwoPlane,
+        incoming: &Incoming,
         end: End,
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
-        let this = &self.legs[leg];
+        let Incoming { leg, heading, ray } = incoming;
+        let this = &self.legs[*leg];
+        let Some(Course {
+            frame,
+            obstacles,
+            leaves,
+        }) = this.courses.of(*heading)
+        else {
+            return 0.0;
+        };
         let (distance, side) = end.at();
-        let Some(leaves) = &this.leaves else {
+        let Some(leaves) = leaves else {
             let radiance = self.light.radiance(ray);
             if radiance <= 0.0 {
                 return 0.0;
             }
-            let visible = this
-                .obstacles
-                .visibility(ray, 0.0, distance, side, |what| what.is(this.ends));
+            let visible = obstacles.visibility(ray, 0.0, distance, side, |what| what.is(this.ends));
             return radiance * visible;
         };
         let Some((begin, target)) = leaves.targets.last(ray, end.of_line()) else {
@@ -231,11 +250,9 @@ impl Backward {
         };
         let from = begin + leaves.rounding;
         let ignored = |object| Some(object) == this.ends || object == leaves.object;
-        let visible = this
-            .obstacles
-            .visibility(ray, from, distance, side, |what| {
-                what.object().is_some_and(ignored)
-            });
+        let visible = obstacles.visibility(ray, from, distance, side, |what| {
+            what.object().is_some_and(ignored)
+        });
         if visible <= 0.0 {
             return 0.0;
         }
@@ -245,31 +262,29 @@ impl Backward {
             How::Diffuse { albedo, .. } => {
                 // It was left on the side it goes away from.
                 let normal = target.normal(point);
-                let normal = this
-                    .frame
-                    .vector_to_world(normal.dot(along).signum() * normal);
-                let point = this.frame.to_world(point);
+                let normal = frame.vector_to_world(normal.dot(along).signum() * normal);
+                let point = frame.to_world(point);
                 visible * albedo / LAMBERTIAN
-                    * self.irradiance(leg - 1, point, normal, block, words)
+                    * self.irradiance(*leg - 1, point, normal, block, words)
             }
             How::Reflects { patch, reflectance } => {
                 let facing = target.normal(point);
                 if along.dot(facing) <= 0.0 {
                     return 0.0;
                 }
-                let frame = Frame::IDENTITY.turned_to(this.frame.vector_to_world(facing));
-                let to = frame.vector_to_local(this.frame.vector_to_world(along));
+                let at_point = Frame::IDENTITY.turned_to(frame.vector_to_world(facing));
+                let to = at_point.vector_to_local(frame.vector_to_world(along));
                 let brdf = at(patch, reflectance, point);
                 if brdf.albedo() <= 0.0 {
                     return 0.0;
                 }
                 let reflection = Reflection {
                     brdf,
-                    point: this.frame.to_world(point),
-                    frame,
+                    point: frame.to_world(point),
+                    frame: at_point,
                     to: to.normalize(),
                 };
-                visible * self.reflected(leg - 1, &reflection, block, words)
+                visible * self.reflected(*leg - 1, &reflection, block, words)
             }
             How::Turned { lens, event } => {
                 let facing = target.normal(point);
@@ -278,42 +293,57 @@ impl Backward {
                 };
                 let to_front = along.dot(facing) > 0.0;
                 let factor = radiance_factor(lens, *event, to_front, along, came);
-                let before = self.legs[leg - 1].frame.decompose(&this.frame);
-                let end = before.to_world(point);
-                let Some(ray) = ray_through(end, before.vector_to_world(-came)) else {
-                    return 0.0;
-                };
-                visible * factor * self.arriving(leg - 1, &ray, end.z, block, words)
+                let [point, came] = [frame.to_world(point), frame.vector_to_world(-came)];
+                visible * factor * self.along(*leg - 1, point, came, block, words)
             }
         }
     }
 
-    /// The radiance that arrives along a ray at a point, `end` along the leg, of the surface that ends it: of a hollow or a bulky one, another part
+    /// The radiance that arrives in a direction at a point of the surface that ends a leg, both in the frame at the light.
+    fn along(
+        &self,
+        leg: usize,
+        point: DVec3,
+        direction: DVec3,
+        block: u32,
+        words: &impl Fn(u32) -> [f64; 4],
+    ) -> f64 {
+        let frame = &self.legs[leg].courses.along.frame;
+        let [point, direction] = [frame.to_local(point), frame.vector_to_local(direction)];
+        Heading::of(point, direction).map_or(0.0, |(heading, ray)| {
+            let incoming = Incoming { leg, heading, ray };
+            self.arriving(&incoming, heading.turned(point).z, block, words)
+        })
+    }
+
+    /// The radiance that arrives along a ray at a point, `end` along the way, of the surface that ends its leg: of a hollow or a bulky one, another part
     /// may stand in the way.
     fn arriving(
         &self,
-        leg: usize,
-        ray: &TwoPlane,
+        incoming: &Incoming,
         end: f64,
         block: u32,
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
+        let Incoming { leg, heading, ray } = incoming;
         // Light begins in the plane across the central ray at its centre.
-        if leg == 0 && end <= 0.0 {
+        if *leg == 0 && end <= 0.0 {
             return 0.0;
         }
-        let this = &self.legs[leg];
+        let this = &self.legs[*leg];
+        let Some(course) = this.courses.of(*heading) else {
+            return 0.0;
+        };
         if !matches!(this.ends, Some(Object::Surface(_))) {
-            let leaves = this.leaves.as_ref();
-            let from = leaves.map_or(0.0, |leaves| {
+            let from = course.leaves.as_ref().map_or(0.0, |leaves| {
                 let left = leaves.targets.last(ray, end);
                 left.map_or(0.0, |(at, _)| at + leaves.rounding)
             });
-            if this.obstacles.is_behind(this.ends, ray, from, end) {
+            if course.obstacles.is_behind(this.ends, ray, from, end) {
                 return 0.0;
             }
         }
-        self.incident(leg, ray, End::Surface(end), block, words)
+        self.incident(incoming, End::Surface(end), block, words)
     }
 
     /// The irradiance at a point, with its normal, at the end of a leg, from one point of what light leaves at its beginning;
@@ -327,7 +357,8 @@ impl Backward {
         words: &impl Fn(u32) -> [f64; 4],
     ) -> f64 {
         let r = words(block);
-        let pieces = match &self.legs[leg].leaves {
+        let this = &self.legs[leg].courses;
+        let pieces = match &this.along.leaves {
             None => None,
             Some(Leaves {
                 how: How::Diffuse { pieces, .. },
@@ -347,37 +378,40 @@ impl Backward {
             (None, Source::Narrow(light)) => {
                 return connection(light, point).map_or(0.0, |(ray, irradiance)| {
                     let cosine = -direction(&ray).normalize().dot(normal);
-                    let found = self.arriving(leg, &ray, point.z, block + 1, words);
+                    let incoming = Incoming::from_light(ray);
+                    let found = self.arriving(&incoming, point.z, block + 1, words);
                     cosine.max(0.0) * irradiance * found
                 });
             }
             (None, Source::Sky(sky)) => {
                 return sky.irradiance(point, normal, r, |ray, end| {
-                    self.arriving(leg, ray, end, block + 1, words)
+                    self.arriving(&Incoming::from_light(*ray), end, block + 1, words)
                 });
             }
         };
-        let this = &self.legs[leg];
-        let [end, begin] = [point, from].map(|p| this.frame.to_local(p));
-        let way = end - begin;
-        let cosines = way.dot(this.frame.vector_to_local(facing)).abs()
-            * -way.dot(this.frame.vector_to_local(normal));
-        let Some(ray) = ray_through(end, way).filter(|_| cosines > 0.0) else {
+        let way = point - from;
+        let cosines = way.dot(facing).abs() * -way.dot(normal);
+        let frame = &this.along.frame;
+        let [end, begin] = [point, from].map(|p| frame.to_local(p));
+        let Some((heading, ray)) = Heading::of(end, end - begin).filter(|_| cosines > 0.0) else {
             return 0.0;
         };
+        let [end, begin] = [end, begin].map(|p| heading.turned(p).z);
         // What stands nearer on the same line is not the point that was drawn.
         let nearer = |leaves: &Leaves| {
             leaves
                 .targets
-                .last(&ray, end.z)
-                .is_none_or(|(at, _)| at > begin.z + leaves.rounding)
+                .last(&ray, end)
+                .is_none_or(|(at, _)| at > begin + leaves.rounding)
         };
-        if this.leaves.as_ref().is_some_and(nearer) {
+        let leaves = this.of(heading).and_then(|course| course.leaves.as_ref());
+        if leaves.is_some_and(nearer) {
             return 0.0;
         }
         // cos θ cos θ' dA / r².
         let solid = cosines * area / way.length_squared().powi(2);
-        solid * self.arriving(leg, &ray, end.z, block + 1, words)
+        let incoming = Incoming { leg, heading, ray };
+        solid * self.arriving(&incoming, end, block + 1, words)
     }
 }
 
@@ -394,12 +428,18 @@ impl Backward {
     ) -> f64 {
         let towards = by_cosine([r[0], r[1]]);
         let towards = Frame::IDENTITY.turned_to(normal).vector_to_world(towards);
-        let this = &self.legs[leg].frame;
-        let end = this.to_local(point);
-        let Some(ray) = ray_through(end, this.vector_to_local(-towards)) else {
-            return 0.0;
-        };
-        LAMBERTIAN * self.arriving(leg, &ray, end.z, block + 1, words)
+        LAMBERTIAN * self.along(leg, point, -towards, block + 1, words)
+    }
+}
+
+impl Incoming {
+    /// A ray of the light.
+    fn from_light(ray: TwoPlane) -> Self {
+        Self {
+            leg: 0,
+            heading: Heading::Along,
+            ray,
+        }
     }
 }
 
@@ -427,13 +467,13 @@ fn radiance_factor(
 
 impl Leg {
     fn new(scene: &Scene, leg: usize) -> Self {
-        let this = &scene.path.legs[leg];
-        let ends = scene.path.ends_at(leg).map(|hit| hit.object);
         Self {
-            frame: this.frame,
-            obstacles: Obstacles::new(scene, this),
-            leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
-            ends,
+            courses: Both::new(scene, leg, |_, this| Course {
+                frame: this.frame,
+                obstacles: Obstacles::new(scene, this),
+                leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
+            }),
+            ends: scene.path.ends_at(leg).map(|hit| hit.object),
         }
     }
 }
@@ -500,7 +540,7 @@ impl Source {
 }
 
 impl Looker {
-    fn new(station: Station, plane: &VirtualPlane, light: &Source) -> Self {
+    fn new(scene: &Scene, index: usize, plane: &VirtualPlane, light: &Source) -> Self {
         let w = &plane.window;
         let narrower = match light {
             Source::Area { shape, .. } => {
@@ -513,11 +553,26 @@ impl Looker {
         };
         Self {
             leg: plane.leg,
-            station,
+            stations: Both::new(scene, plane.leg, |heading, leg| {
+                Station::of(heading, leg, scene, index, plane)
+            }),
             position: [Follower::new(&w.x), Follower::new(&w.y)],
             slope: [Follower::new(&w.u), Follower::new(&w.v)],
             to_light: plane.leg == 0 && narrower && plane.orientation == Orientation::Orthogonal,
         }
+    }
+
+    /// The ray of the leg that the plane has as `seen`, where it is looked at, and dA over dx dy there; `None` if there is none.
+    fn leg_ray(&self, seen: &TwoPlane) -> Option<(Incoming, End, f64)> {
+        let headings = [Heading::Along, Heading::Against];
+        headings.into_iter().find_map(|heading| {
+            let station = self.stations.of(heading)?;
+            let (ray, area) = station.leg_ray(seen)?;
+            let end = station.crossing(&ray, f64::NEG_INFINITY)?;
+            let leg = self.leg;
+            let incoming = Incoming { leg, heading, ray };
+            Some((incoming, End::Plane(end, station.side), area))
+        })
     }
 }
 

@@ -1,8 +1,7 @@
 use crate::emit::LAMBERTIAN;
-use crate::obstacles::ray_through;
 use crate::scatter::{Scatterer, Spread};
-use crate::tracer::{Arrival, cosines};
-use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular, TwoPlane};
+use crate::tracer::Arrival;
+use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
@@ -48,9 +47,9 @@ impl Bounce {
         })
     }
 
-    /// The ray of a photon and what it adds to radiance space; `None` when it does not go on along the leg.
+    /// Where a photon goes on, and what it adds to radiance space; `None` when it does not.
     #[inline]
-    pub(crate) fn sample(&self, arrival: &Arrival, words: [u32; 4]) -> Option<(TwoPlane, f64)> {
+    pub(crate) fn sample(&self, arrival: &Arrival, words: [u32; 4]) -> Option<(DVec3, f64)> {
         match self {
             Self::Diffuse(albedo, scatterer) => {
                 if *albedo <= 0.0 {
@@ -58,9 +57,9 @@ impl Bounce {
                 }
                 let scatterer = scatterer.as_ref()?;
                 let (point, normal) = (arrival.point, arrival.normal);
-                let (ray, density) = scatterer.sample(point, normal, &Spread::Cosine, words)?;
+                let (towards, density) = scatterer.sample(point, normal, &Spread::Cosine, words)?;
                 // Radiance albedo/π · E, and a photon's flux is E at its point.
-                Some((ray, albedo * arrival.flux / (LAMBERTIAN * density)))
+                Some((towards, albedo * arrival.flux / (LAMBERTIAN * density)))
             }
             Self::Reflects {
                 patch,
@@ -81,16 +80,18 @@ impl Bounce {
                 let frame = Frame::IDENTITY.turned_to(facing);
                 let wi = frame.vector_to_local(-direction).normalize();
                 let spread = Spread::Lobe { brdf, frame, wi };
-                let (ray, density) = scatterer.as_ref()?.sample(point, facing, &spread, words)?;
+                let (towards, density) =
+                    scatterer.as_ref()?.sample(point, facing, &spread, words)?;
                 // Radiance f · E, as above.
-                let value = spread.value(&ray);
-                (value > 0.0).then(|| (ray, value * flux / density))
+                let value = spread.value(towards);
+                (value > 0.0).then(|| (towards, value * flux / density))
             }
             Self::Specular(lens, event) => {
                 let Arrival { point, facing, .. } = *arrival;
                 let onwards = event.turned(lens, facing, point, arrival.direction)?;
-                let ray = ray_through(arrival.point, onwards)?;
-                Some((ray, arrival.flux * cosines(&ray)))
+                // Flux over radiance space is cos⁴θ.
+                let secant = onwards.length() / onwards.z.abs();
+                Some((onwards, arrival.flux * secant.powi(4)))
             }
         }
     }

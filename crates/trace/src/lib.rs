@@ -4,7 +4,8 @@
 //! crosses before that. It keeps the ledger of flux, and knows nothing of windows' spectra or of theory.
 //!
 //! Each leg of the path is computed in its own frame, so a direction is (u, v, 1) and a
-//! distance along the central ray is a coordinate. Its numbers are functions of (seed, batch, photon), so a photon's
+//! distance along the central ray is a coordinate. Light that goes back along a leg has a frame that is turned around.
+//! Its numbers are functions of (seed, batch, photon), so a photon's
 //! life does not depend on who traces it.
 
 mod aim;
@@ -15,6 +16,7 @@ mod emit;
 mod form;
 mod grid;
 mod ground;
+mod heading;
 mod mesh;
 mod numbers;
 mod obstacles;

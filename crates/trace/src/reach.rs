@@ -9,7 +9,8 @@ use etendue_scene::{Event, Hit, Leg, Object, Scene, Surface};
 use glam::{DVec2, DVec3};
 
 /// Half-widths, across the end of `leg`, of a box around the central ray through which all light passes that can
-/// reach the window of `plane`, on a later leg or on what ends this one, coming from `origins` (in the frame of the leg); `None` if there is none.
+/// reach the window of `plane`, on a later leg or on what ends this one, coming from `origins` (in the frame of the leg); `None` if there is none, and
+/// where light of a later leg must go across it or back along it.
 pub(crate) fn reach(
     scene: &Scene,
     plane: &VirtualPlane,
@@ -29,8 +30,12 @@ pub(crate) fn reach(
     let mut half = [0.0_f64; 2];
     for from in origins {
         for to in &points {
-            // What lies behind the origin cannot be reached from there.
-            let share = (this.length - from.z) / (to.z - from.z).max(LEAST * this.length);
+            let ahead = to.z - from.z;
+            if leg > 0 && ahead < LEAST * this.length {
+                return None;
+            }
+            // What lies behind the light cannot be reached from there.
+            let share = (this.length - from.z) / ahead.max(LEAST * this.length);
             let at = from.lerp(*to, share);
             half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
         }

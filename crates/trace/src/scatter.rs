@@ -1,16 +1,15 @@
 use crate::brdf;
 use crate::emit::LAMBERTIAN;
-use crate::obstacles::direction;
 use crate::proposal::{Aim, Follower};
 use crate::reach::{looks_at_surface, outline, reach, reflects};
 use crate::station::{Station, View};
-use etendue_field::{Frame, Mixture, Profile, TwoPlane, random};
+use etendue_field::{Frame, Mixture, Profile, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// How light leaves the surface at the beginning of a leg: a density over slopes at each of its
-/// points, and a way to sample it. Rays are in the frame of the leg.
+/// points, and a way to sample it. Directions are in the frame of the leg, 1 along D or against it: (u, v, ±1).
 #[derive(Clone, Debug)]
 pub(crate) struct Scatterer {
     /// Ways to draw a ray, with equal shares.
@@ -68,26 +67,26 @@ impl Spread<'_> {
         }
     }
 
-    /// The density of [`Self::sample`] with respect to du dv over n · (u, v, 1), which is `cosine`.
+    /// The density of [`Self::sample`] with respect to du dv over n · (u, v, ±1), which is `cosine`.
     #[inline]
-    fn density(&self, ray: &TwoPlane, cosine: f64) -> f64 {
-        let secant_squared = ray.secant_squared();
+    fn density(&self, towards: DVec3, cosine: f64) -> f64 {
+        let secant_squared = towards.length_squared();
         match self {
             Self::Cosine => 1.0 / (LAMBERTIAN * secant_squared * secant_squared),
             Self::Lobe { brdf, frame, wi } => {
-                let wo = frame.vector_to_local(direction(ray)).normalize();
+                let wo = frame.vector_to_local(towards).normalize();
                 brdf::densities(brdf, *wi, wo) * per_slope(secant_squared, cosine)
             }
         }
     }
 
-    /// The BRDF towards a ray; without the albedo, where light is spread by the cosine.
+    /// The BRDF towards a direction; without the albedo, where light is spread by the cosine.
     #[inline]
-    pub(crate) fn value(&self, ray: &TwoPlane) -> f64 {
+    pub(crate) fn value(&self, towards: DVec3) -> f64 {
         match self {
             Self::Cosine => 1.0 / LAMBERTIAN,
             Self::Lobe { brdf, frame, wi } => {
-                let wo = frame.vector_to_local(direction(ray)).normalize();
+                let wo = frame.vector_to_local(towards).normalize();
                 brdf::sum(brdf, *wi, wo)
             }
         }
@@ -102,16 +101,14 @@ impl Angles {
     }
 
     /// The density of [`Self::sample`] per solid angle, which is cos φ dθ dφ.
-    fn density(&self, point: DVec3, ray: &TwoPlane) -> f64 {
-        self.view
-            .angles(point, direction(ray))
-            .map_or(0.0, |[u, v]| {
-                self.across[0].density(u) * self.across[1].density(v) / libm::cos(v)
-            })
+    fn density(&self, point: DVec3, towards: DVec3) -> f64 {
+        self.view.angles(point, towards).map_or(0.0, |[u, v]| {
+            self.across[0].density(u) * self.across[1].density(v) / libm::cos(v)
+        })
     }
 }
 
-/// dω over du dv / n · (u, v, 1): dω is du dv / (1 + u² + v²)^(3/2).
+/// dω over du dv / n · (u, v, ±1): dω is du dv / (1 + u² + v²)^(3/2).
 #[inline]
 fn per_slope(secant_squared: f64, cosine: f64) -> f64 {
     1.0 / (secant_squared * secant_squared.sqrt() * cosine)
@@ -171,8 +168,8 @@ impl Scatterer {
         Some(Self { ways })
     }
 
-    /// A ray that leaves a point, where the surface has this normal, and its density with respect to du dv over n · (u, v, 1);
-    /// `None` when the chosen plane cannot be reached from there, or the ray leaves behind the surface.
+    /// A direction in which light leaves a point, where the surface has this normal, and its density with respect to du dv over n · (u, v, ±1);
+    /// `None` when the chosen plane cannot be reached from there, or the direction goes behind the surface.
     #[inline]
     pub(crate) fn sample(
         &self,
@@ -180,40 +177,37 @@ impl Scatterer {
         normal: DVec3,
         spread: &Spread<'_>,
         words: [u32; 4],
-    ) -> Option<(TwoPlane, f64)> {
+    ) -> Option<(DVec3, f64)> {
         let r = words.map(random::unit);
         let from = point.z;
-        let slopes =
-            |leaves: DVec3| (leaves.z > 0.0).then(|| [leaves.x / leaves.z, leaves.y / leaves.z]);
-        let [u, v] = match &self.ways[random::index(words[2], self.ways.len())] {
-            Way::Window([along_x, along_y]) => [
+        let drawn = match &self.ways[random::index(words[2], self.ways.len())] {
+            Way::Window([along_x, along_y]) => DVec3::new(
                 along_x.sample(point.x, from, r[0])?,
                 along_y.sample(point.y, from, r[1])?,
-            ],
-            Way::Angles(angles) => slopes(angles.sample(point, [r[0], r[1]])?)?,
-            Way::Lobe => slopes(spread.sample(normal, [r[0], r[1]]))?,
+                1.0,
+            ),
+            Way::Angles(angles) => angles.sample(point, [r[0], r[1]])?,
+            Way::Lobe => spread.sample(normal, [r[0], r[1]]),
         };
-        let ray = TwoPlane {
-            x: point.x - from * u,
-            y: point.y - from * v,
-            u,
-            v,
-        };
-        let cosine = normal.dot(direction(&ray));
-        if cosine <= 0.0 {
+        let towards = drawn / drawn.z.abs();
+        let cosine = normal.dot(towards);
+        if cosine <= 0.0 || !cosine.is_finite() {
             return None;
         }
-        let plain = spread.density(&ray, cosine);
+        let plain = spread.density(towards, cosine);
         let densities = self.ways.iter().map(|way| match way {
+            Way::Window(_) if towards.z < 0.0 => 0.0,
             Way::Window([a, b]) => {
-                a.density(point.x, from, u) * b.density(point.y, from, v) / cosine
+                let [x, y] = [(a, point.x, towards.x), (b, point.y, towards.y)]
+                    .map(|(aim, at, slope)| aim.density(at, from, slope));
+                x * y / cosine
             }
             Way::Angles(angles) => {
-                angles.density(point, &ray) * per_slope(ray.secant_squared(), cosine)
+                angles.density(point, towards) * per_slope(towards.length_squared(), cosine)
             }
             Way::Lobe => plain,
         });
         let density = densities.sum::<f64>() / self.ways.len() as f64;
-        (density > 0.0).then_some((ray, density))
+        (density > 0.0).then_some((towards, density))
     }
 }

@@ -1,6 +1,7 @@
+use crate::heading::Heading;
 use crate::obstacles::{direction, ray_through, start};
 use etendue_field::{Frame, Orientation, Patch, Side, TwoPlane, VirtualPlane, Window};
-use etendue_scene::{Object, Scene};
+use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
 
@@ -10,6 +11,8 @@ pub(crate) struct Station {
     pub(crate) plane: usize,
     /// Along the leg.
     pub(crate) distance: f64,
+    /// Of the light that it looks at.
+    heading: Heading,
     pub(crate) side: Side,
     /// `None` across the leg.
     surface: Option<View>,
@@ -80,9 +83,20 @@ impl Station {
     }
 
     pub(crate) fn new(scene: &Scene, index: usize, plane: &VirtualPlane) -> Self {
+        let leg = &scene.path.legs[plane.leg];
+        Self::of(Heading::Along, leg, scene, index, plane)
+    }
+
+    /// As it looks at light that goes one way on its leg, which is given in the frame of that way.
+    pub(crate) fn of(
+        heading: Heading,
+        leg: &Leg,
+        scene: &Scene,
+        index: usize,
+        plane: &VirtualPlane,
+    ) -> Self {
         let path = &scene.path;
         let arriving = plane.side == Side::Before;
-        let leg = &path.legs[plane.leg];
         let hit = if arriving {
             path.ends_at(plane.leg)
         } else {
@@ -103,10 +117,23 @@ impl Station {
         });
         Self {
             plane: index,
-            distance: path.along(plane),
+            distance: heading.turned(path.along(plane) * DVec3::Z).z,
+            heading,
             side: plane.side,
             surface,
         }
+    }
+
+    /// How far along its way light on a ray of the leg, from `from` on, comes to the plane; `None` if it does not.
+    ///
+    /// Light that goes back along the leg comes to a plane on a surface, and nowhere near the central hit.
+    #[inline]
+    pub(crate) fn crossing(&self, ray: &TwoPlane, from: f64) -> Option<f64> {
+        if self.heading == Heading::Along {
+            return Some(self.distance);
+        }
+        let (point, _) = self.surface.as_ref()?.met(start(ray), direction(ray))?;
+        (self.side == Side::After || point.z > from).then_some(point.z)
     }
 
     /// The largest slopes in the leg, along x and y, of light that arrives on a surface in the window of a plane; `None` across

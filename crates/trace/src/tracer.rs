@@ -1,12 +1,13 @@
 use crate::bounce::Bounce;
 use crate::emit::{ABREAST, Emitter};
+use crate::heading::{Both, Heading};
 use crate::numbers::{Numbers, Source};
 use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
 use crate::shares::{BLOCK, Shares};
 use crate::station::Station;
 use crate::targets::Met;
 use etendue_field::random::Stream;
-use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane};
+use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
 use std::ops::Range;
@@ -31,10 +32,7 @@ pub struct Tracer {
 /// A leg of the path, as photons see it.
 #[derive(Debug)]
 struct Leg {
-    /// In the frame at the light.
-    frame: Frame,
-    obstacles: Obstacles,
-    stations: Vec<Station>,
+    courses: Both<Course>,
     /// How light begins the leg; `None` for the first.
     bounce: Option<Bounce>,
     /// What the leg begins and ends on.
@@ -46,11 +44,21 @@ struct Leg {
     rounding: f64,
 }
 
+/// What photons see that go one way on a leg.
+#[derive(Debug)]
+struct Course {
+    /// In the frame at the light.
+    frame: Frame,
+    obstacles: Obstacles,
+    stations: Vec<Station>,
+}
+
 /// A photon on a leg.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Flight {
     pub(crate) ray: TwoPlane,
-    /// Where it begins, along the leg.
+    pub(crate) heading: Heading,
+    /// Where it begins, along its way.
     pub(crate) from: f64,
     /// What it adds to radiance space.
     pub(crate) weight: f64,
@@ -131,10 +139,14 @@ impl Tracer {
                 // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
                 if weight > 0.0 {
                     ledger.emitted += weight / cosines(&ray);
-                    let from = 0.0;
                     photons.push(Photon {
                         index,
-                        flight: Flight { ray, from, weight },
+                        flight: Flight {
+                            ray,
+                            heading: Heading::Along,
+                            from: 0.0,
+                            weight,
+                        },
                         counts: true,
                     });
                 }
@@ -157,16 +169,27 @@ impl Tracer {
         // Scattered light is aimed at windows: what becomes of it is in no account.
         let mut beyond = Ledger::default();
         let account = if photon.counts { ledger } else { &mut beyond };
-        let Flight { ray, from, weight } = photon.flight;
+        let Flight {
+            ray,
+            heading,
+            from,
+            weight,
+        } = photon.flight;
+        let Some(course) = this.courses.of(heading) else {
+            return false;
+        };
         let flux = weight / cosines(&ray);
-        let met = this.obstacles.first(&ray, from);
+        let met = course.obstacles.first(&ray, from);
         if met.is_some_and(|(_, target)| target.tag.is(this.leaves)) {
             account.stopped += flux;
             return false;
         }
-        this.record(&photon.flight, met, crossings);
+        this.record(course, &photon.flight, met, crossings);
         let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
-        let arrives = flux * this.obstacles.transmittance(&ray, from, end, Side::Before);
+        let arrives = flux
+            * course
+                .obstacles
+                .transmittance(&ray, from, end, Side::Before);
         account.absorbed += flux - arrives;
         let Some((distance, target)) = met else {
             account.escaped += arrives;
@@ -190,7 +213,7 @@ impl Tracer {
             }
             photon.counts = false;
         }
-        let onwards = next.and_then(|next| next.begin(this, &arrival(), words()));
+        let onwards = next.and_then(|next| next.begin(course, &arrival(), words()));
         match onwards {
             Some(flight) => photon.flight = flight,
             None if matches!(material, Material::Specular(_)) => account.stopped += arrives,
@@ -244,12 +267,16 @@ impl Leg {
         let planes = scene.planes.iter().enumerate();
         let stations = planes.filter(|(_, plane)| plane.leg == leg);
         let leaves = this.leaves.map(|hit| hit.object);
+        let stations: Vec<(usize, &VirtualPlane)> = stations.collect();
         Self {
-            frame: this.frame,
-            obstacles: Obstacles::new(scene, this),
-            stations: stations
-                .map(|(i, plane)| Station::new(scene, i, plane))
-                .collect(),
+            courses: Both::new(scene, leg, |heading, leg| Course {
+                frame: leg.frame,
+                obstacles: Obstacles::new(scene, leg),
+                stations: stations
+                    .iter()
+                    .map(|(i, plane)| Station::of(heading, leg, scene, *i, plane))
+                    .collect(),
+            }),
             bounce: Bounce::new(scene, leg),
             leaves,
             rejoins: leaves.filter(|object| bends(scene, *object)),
@@ -260,32 +287,49 @@ impl Leg {
 
     /// How a photon that arrives at the end of the leg before begins this one; `None` when it does not.
     #[inline(never)]
-    fn begin(&self, before: &Self, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
-        let arrival = arrival.moved(&before.frame, &self.frame);
-        let (ray, weight) = self.bounce.as_ref()?.sample(&arrival, words)?;
-        let from = arrival.point.z + self.rounding;
-        Some(Flight { ray, from, weight })
+    fn begin(&self, before: &Course, arrival: &Arrival, words: [u32; 4]) -> Option<Flight> {
+        let arrival = arrival.moved(&before.frame, &self.courses.along.frame);
+        let (towards, weight) = self.bounce.as_ref()?.sample(&arrival, words)?;
+        let (heading, ray) = Heading::of(arrival.point, towards)?;
+        self.courses.of(heading)?;
+        Some(Flight {
+            ray,
+            heading,
+            from: heading.turned(arrival.point).z + self.rounding,
+            weight,
+        })
     }
 
     /// The planes a photon crosses before what it meets.
     #[inline]
     fn record(
         &self,
+        course: &Course,
         flight: &Flight,
         met: Option<(f64, Met<'_, Meeting>)>,
         crossings: &mut [Vec<Crossing>],
     ) {
-        let Flight { ray, from, weight } = *flight;
+        let Flight {
+            ray, from, weight, ..
+        } = *flight;
+        let Course {
+            obstacles,
+            stations,
+            ..
+        } = course;
         // What would meet again what it has left is gone, even where something stops it before: no
         // blocker beyond a plane lights it.
         let stopped = self.rejoins.is_some() && met.is_some();
-        if stopped && self.obstacles.meets(self.rejoins, &ray, from) {
+        if stopped && obstacles.meets(self.rejoins, &ray, from) {
             return;
         }
         let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
         let on_path = met.is_some_and(|(_, target)| target.tag.is(self.ends));
-        for station in &self.stations {
-            let (distance, side) = (station.distance, station.side);
+        for station in stations {
+            let side = station.side;
+            let Some(distance) = station.crossing(&ray, from) else {
+                continue;
+            };
             // A plane beside something is at the very same distance: no rounding can come between.
             let crossed = match side {
                 Side::Before => distance <= end,
@@ -293,15 +337,13 @@ impl Leg {
             };
             // A surface that is not flat, or not across the leg, begins before the plane that looks at what it receives.
             let ends = |what: &Meeting| what.is(self.ends);
-            let crossed = crossed
-                || on_path && self.obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
+            let crossed =
+                crossed || on_path && obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
             if crossed
                 && let Some((ray, weight)) = station.look(&ray, weight)
                 && (self.leaves.is_some() || station.is_ahead([ray.x, ray.y]))
             {
-                let passes = self
-                    .obstacles
-                    .transmittance(&flight.ray, from, distance, side);
+                let passes = obstacles.transmittance(&flight.ray, from, distance, side);
                 crossings[station.plane].push(Crossing {
                     ray,
                     weight: weight * passes,

@@ -5,6 +5,8 @@
 mod common;
 
 use common::estimates;
+use etendue_field::PhotonSource;
+use etendue_field::random::{Stream, unit, words};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
 use glam::DVec3;
@@ -229,5 +231,126 @@ fn both_ways_agree_behind_smooth_surfaces() {
                 );
             }
         }
+    }
+}
+
+/// A wall that lights a floor near to it from all around, so that light goes along and against the central ray.
+const WIDE: &str = r#"Rectangle(name: "wall", center: (-0.5, 0, 1.2), size: (2, 3), facing: (0, 0, -1), albedo: 0.9)"#;
+const GLOSSY: &str = r#"Smooth(name: "wall", center: (-0.3, 0, 1.2), facing: (0, 0, -1), form: Plane, aperture: 1, event: Reflects(brdf: (lobe: Phong(2), albedo: 0.9)))"#;
+const NEAR: &str = r#"Rectangle(name: "floor", center: (-0.5, 0, 1), size: (0.4, 0.5), facing: (0, 0, 1), albedo: 0.5)"#;
+/// Stands in the way of light that goes back.
+const CARD: &str = r#"Shapes(name: "card", center: (-0.8, 0, 1.1), shapes: [Rectangle(center: (0, 0), size: (0.15, 0.2))])"#;
+const ABOVE: &str = r#"Rectangle(name: "ceiling", center: (-0.9, 0, 1.16), size: (0.3, 0.4), facing: (0, 0, -1), albedo: 0.5)"#;
+
+fn going_back(wall: &str, blockers: &str, visits: &[&str]) -> Scene {
+    let last = visits[visits.len() - 1];
+    let surfaces = match last {
+        "ceiling" => format!("{NEAR}, {ABOVE}"),
+        _ => NEAR.to_owned(),
+    };
+    let text = format!(
+        r#"(
+            light: Rectangle(center: (0, 0, 0), size: (0.3, 0.3), radiance: 2),
+            blockers: [{blockers}],
+            surfaces: [{wall}, {surfaces}],
+            path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: {visits:?}),
+            planes: [
+                (name: "leaves", at: After("{last}")),
+                (name: "arrives", at: Before("{last}"), orientation: Tangent, window: (x: Hann(0.1), u: Box(1.5))),
+            ],
+            window: (x: Hann(0.05), u: Hann(0.1)),
+            frequencies: (rho: (max: 4), nu: (max: 4)),
+            run: (photons: 3_000_000),
+        )"#
+    );
+    let file = SceneFile::parse(&text).unwrap();
+    resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
+}
+
+#[test]
+fn light_that_goes_back_along_a_leg_arrives() {
+    for (wall, blockers, visits) in [
+        (WIDE, "", &["wall", "floor"][..]),
+        (WIDE, CARD, &["wall", "floor"]),
+        (GLOSSY, CARD, &["wall", "floor"]),
+        (WIDE, "", &["wall", "floor", "ceiling"]),
+    ] {
+        let scene = going_back(wall, blockers, visits);
+        let (backward, _) = estimates(&Backward::new(&scene).unwrap(), &scene);
+        let (photons, _) = estimates(&Tracer::new(&scene), &scene);
+        for (plane, (a, b)) in backward.iter().zip(&photons).enumerate() {
+            let name = &scene.planes[plane].name;
+            for (a, b) in a.iter().zip(b) {
+                let z = (a[0] - b[0]) / a[1].hypot(b[1]);
+                // 24 tests: 4 standard errors are passed in one run of 600.
+                assert!(z.abs() < 4.0, "{name}: {a:?} and {b:?}, {wall}, {blockers}");
+            }
+            let [mean, error] = b[0];
+            assert!(
+                error < 0.04 * mean,
+                "{name}: {mean} ± {error}, {visits:?} {wall}"
+            );
+        }
+    }
+}
+
+/// ∫ L W at the plane after the floor: a sum over random points of the window, the wall and the light, in world coordinates.
+#[test]
+fn light_that_went_back_along_a_leg_is_what_a_plain_sum_says() {
+    let scene = going_back(WIDE, "", &["wall", "floor"]);
+    let plane = &scene.planes[0];
+    let [wall, floor] = [0, 1].map(|i| &scene.surfaces[i]);
+    let to_light = |p: DVec3| scene.path.frame.to_local(p);
+    let is_on_floor = |p: DVec3| {
+        let local = floor.frame.to_local(p);
+        local.x.abs() < 0.5 * floor.size[0] && local.y.abs() < 0.5 * floor.size[1]
+    };
+    let meets_floor = |from: DVec3, along: DVec3| {
+        let t = (floor.frame.origin - from).dot(floor.frame.d) / along.dot(floor.frame.d);
+        from + t * along
+    };
+    // cos θ cos θ' / r².
+    let form = |way: DVec3, from: DVec3, to: DVec3| {
+        way.dot(from).max(0.0) * (-way.dot(to)).max(0.0) / way.length_squared().powi(2)
+    };
+    let w = &plane.window;
+    let half = [w.x, w.y, w.u, w.v].map(|p| p.half_width());
+    let volume: f64 = half.iter().map(|h| 2.0 * h).product();
+    let samples = 8_000_000;
+    let [mut sum, mut squares, mut back] = [0.0; 3];
+    for index in 0..samples {
+        let r = [0, 1].map(|block| words(5, Stream::Even, index, block).map(unit));
+        let [x, y, u, v] = [0, 1, 2, 3].map(|i| (2.0 * r[0][i] - 1.0) * half[i]);
+        let at = to_light(plane.frame.to_world(DVec3::new(x, y, 0.0)));
+        let along = to_light(plane.frame.to_world(DVec3::new(x + u, y + v, 1.0))) - at;
+        let to = meets_floor(at, along);
+        assert!(is_on_floor(to), "the window sees the floor alone");
+        let [a, b] = [0, 1].map(|i| (r[1][i] - 0.5) * wall.size[i]);
+        let over = wall.frame.to_world(DVec3::new(a, b, 0.0));
+        let light = DVec3::new((r[1][2] - 0.5) * 0.3, (r[1][3] - 0.5) * 0.3, 0.0);
+        if is_on_floor(meets_floor(light, over - light)) {
+            continue;
+        }
+        let first = form(over - light, DVec3::Z, wall.frame.d) * 2.0 * 0.3 * 0.3;
+        let second = form(to - over, wall.frame.d, floor.frame.d) * wall.size[0] * wall.size[1];
+        let value = w.value(&etendue_field::TwoPlane { x, y, u, v });
+        let found = volume * value * (0.9 / PI) * (0.5 / PI) * first * second;
+        sum += found;
+        squares += found * found;
+        if (to - over).dot(scene.path.legs[1].frame.d) < 0.0 {
+            back += found;
+        }
+    }
+    let n = samples as f64;
+    assert!(back > 0.1 * sum, "{back} of {sum}");
+    let [sum, noise] = [sum / n, (squares / n - (sum / n).powi(2)).sqrt() / n.sqrt()];
+    for (source, most) in [
+        (&Backward::new(&scene).unwrap() as &dyn PhotonSource, 0.01),
+        (&Tracer::new(&scene), 0.03),
+    ] {
+        let [mean, error] = estimates(source, &scene).0[0][0];
+        let sigma = error.hypot(noise);
+        assert!(sigma < most * sum, "{mean} ± {sigma}");
+        assert!((mean - sum).abs() < 4.0 * sigma, "{mean} ± {sigma}, {sum}");
     }
 }

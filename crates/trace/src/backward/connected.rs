@@ -2,7 +2,7 @@
 //!
 //! From a point the way to such a light is known, so it is looked for there and nowhere else.
 
-use super::{Backward, End, Looker};
+use super::{Backward, End, Incoming, Looker};
 use etendue_field::{Crossing, Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
@@ -58,7 +58,7 @@ impl Backward {
         [x, y]: [f64; 2],
         density: f64,
     ) -> Option<Crossing> {
-        let station = &looker.station;
+        let station = &looker.stations.along;
         let (point, normal, area) = station.point([x, y])?;
         let (at_light, _) = connection(light, point)?;
         let along = DVec3::new(at_light.u, at_light.v, 1.0);
@@ -71,7 +71,8 @@ impl Backward {
         };
         let nothing = |_| [0.0; 4];
         // A plane on a surface looks at all that arrives there, as photons are counted.
-        let found = self.incident(0, &at_light, End::of(station), 1, &nothing);
+        let end = End::Plane(station.distance, station.side);
+        let found = self.incident(&Incoming::from_light(at_light), end, 1, &nothing);
         let weight = found * per_ray * area / density;
         let (ray, weight) = station.look(&at_light, weight)?;
         Some(Crossing { ray, weight })

@@ -1,6 +1,5 @@
 //! Where rays traced back begin, and what that says of the surface they come to.
 
-use crate::station::Station;
 use etendue_field::Side;
 
 /// Where a ray is looked at, along its leg.
@@ -13,10 +12,6 @@ pub(super) enum End {
 }
 
 impl End {
-    pub(super) fn of(station: &Station) -> Self {
-        Self::Plane(station.distance, station.side)
-    }
-
     pub(super) fn at(self) -> (f64, Side) {
         match self {
             Self::Plane(distance, side) => (distance, side),

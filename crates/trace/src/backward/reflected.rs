@@ -1,9 +1,9 @@
 //! Light that a surface with a BRDF reflects, from one direction it may have come from.
 
-use super::{Backward, Source, connection};
+use super::{Backward, Incoming, Source, connection};
 use crate::brdf;
 use crate::emit::point;
-use crate::obstacles::{direction, ray_through};
+use crate::obstacles::direction;
 use etendue_field::{Frame, Mixture};
 use glam::DVec3;
 
@@ -32,13 +32,13 @@ impl Backward {
         let Reflection {
             brdf, frame, to, ..
         } = at;
-        let this = &self.legs[leg];
-        let sees_light = this.leaves.is_none();
+        let sees_light = self.legs[leg].courses.along.leaves.is_none();
         if let (Source::Narrow(light), true) = (&self.light, sees_light) {
             return connection(light, at.point).map_or(0.0, |(ray, irradiance)| {
                 let from = frame.vector_to_local(-direction(&ray).normalize());
                 let carried = brdf::sum(brdf, from, *to) * from.z.max(0.0);
-                let found = self.arriving(leg, &ray, at.point.z, block + 1, words);
+                let incoming = Incoming::from_light(ray);
+                let found = self.arriving(&incoming, at.point.z, block + 1, words);
                 carried * irradiance * found
             });
         }
@@ -57,18 +57,17 @@ impl Backward {
         };
         let carried = brdf::sum(brdf, from, *to) * from.z;
         let towards = frame.vector_to_world(from);
-        let end = this.frame.to_local(at.point);
-        let came = this.frame.vector_to_local(-towards);
-        let Some(ray) = ray_through(end, came).filter(|_| carried > 0.0) else {
-            return 0.0;
-        };
         let by_lobe = brdf::densities(brdf, *to, from);
         let density = if sees_light {
             0.5 * (by_lobe + self.light.density_towards(at.point, towards))
         } else {
             by_lobe
         };
-        carried / density * self.arriving(leg, &ray, end.z, block + 1, words)
+        if carried > 0.0 {
+            carried / density * self.along(leg, at.point, -towards, block + 1, words)
+        } else {
+            0.0
+        }
     }
 }
 
