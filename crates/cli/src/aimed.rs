@@ -1,10 +1,10 @@
 //! Whether photons that are aimed at the window of a plane reach it.
 
 use crate::case::Case;
-use crate::method::Method;
 use etendue_compare::{Class, EACH, PlaneComparison, Verdict};
 use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::Scene;
+use etendue_store::Method;
 use etendue_trace::Tracer;
 use rayon::prelude::*;
 

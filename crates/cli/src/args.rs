@@ -1,9 +1,10 @@
 use crate::figure::Quality;
-use crate::method::Method;
 use crate::values::{Setting, Sweep, setting, sweep};
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use etendue_field::tidy;
 use etendue_scene::RunFile;
+use etendue_store::Method;
 use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -315,8 +316,28 @@ pub(crate) struct PhotonArgs {
     pub(crate) seed: Option<u64>,
 
     /// How light is measured
-    #[arg(long, value_name = "METHOD", default_value = "photons")]
+    #[arg(long, value_name = "METHOD", default_value = "photons", value_parser = methods())]
     pub(crate) method: Method,
+}
+
+/// The methods that a user may name.
+fn methods() -> impl TypedValueParser<Value = Method> {
+    let named = |method: Method, help: &'static str| PossibleValue::new(method.name()).help(help);
+    PossibleValuesParser::new([
+        named(Method::Photons, "Photons from the light, forward"),
+        named(
+            Method::Backward,
+            "Rays drawn in the window of each plane, traced back to the light",
+        ),
+    ])
+    .map(|name| {
+        let backward = name == Method::Backward.name();
+        if backward {
+            Method::Backward
+        } else {
+            Method::Photons
+        }
+    })
 }
 
 impl PhotonArgs {

@@ -1,7 +1,5 @@
 use crate::args::BandwidthArgs;
-use crate::failure::Failure;
 use crate::measure::measured;
-use crate::results::output::OutputFile;
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::values::{Point, points, said_at, shown};
@@ -9,6 +7,8 @@ use crate::{deliver, limits, load, method, progress, say};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_field::{Term, VirtualPlane};
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::output::OutputFile;
 use etendue_theory::shading::Criterion;
 use std::path::PathBuf;
 

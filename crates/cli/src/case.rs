@@ -1,9 +1,9 @@
 //! What is known of a scene when all is measured and predicted.
 
-use crate::method::Method;
 use etendue_compare::{Applicability, Prediction};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
+use etendue_store::Method;
 
 /// A scene, and all that was measured and predicted of it.
 #[derive(Debug)]

@@ -1,11 +1,11 @@
 use crate::args::CheckArgs;
-use crate::failure::Failure;
-use crate::method::Method;
-use crate::results::output::OutputFile;
-use crate::{deliver, limits, load, pictures, say, warnings};
+use crate::{deliver, limits, load, method, pictures, say, warnings};
 use etendue_compare::{Applicability, Class, Memory, seconds};
 use etendue_field::{Orientation, tidy};
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::output::OutputFile;
 use etendue_theory::rays::AffineChain;
 use std::num::NonZero;
 use std::thread::available_parallelism;
@@ -107,7 +107,10 @@ fn description(scene: &Scene, theories: &[Applicability]) -> String {
                 .map(|step| format!("  {step}")),
         );
         if applicability.class() == Class::Reference {
-            lines.push(format!("  {}", Method::Photons.judge(scene, plane).step()));
+            lines.push(format!(
+                "  {}",
+                method::step(method::judge_of(Method::Photons, scene, plane))
+            ));
         }
         let assumptions = applicability.theory.assumptions().iter();
         lines.extend(assumptions.map(|assumption| format!("  assumes  {assumption}")));

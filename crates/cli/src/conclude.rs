@@ -1,18 +1,19 @@
 use crate::args::{Expect, Save};
 use crate::case::Case;
-use crate::failure::Failure;
 use crate::inquiry::inquire;
 use crate::measure::measured;
-use crate::method::Method;
 use crate::predict::predicted;
 use crate::report::explorer;
-use crate::results::arrays;
-use crate::results::summary::{Stopwatch, Summary};
-use crate::results::{Finished, Plan, Results, SUMMARY, TIMING};
+use crate::say_replaced;
+use crate::summary::{Stopwatch, Summary};
 use crate::{aimed, field, photons, pictures, progress, report, say, table, target};
 use etendue_compare::{Applicability, PlaneComparison, PlaneReport, Test, Verdict, compare};
 use etendue_field::VirtualPlane;
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::arrays;
+use etendue_store::{Finished, Plan, Results, SUMMARY, TIMING};
 use std::path::PathBuf;
 
 impl Case {
@@ -91,7 +92,7 @@ pub(crate) fn conclude(
     let seconds = watch.seconds("trace");
     let finished = written(case, ending, results, &judged, watch)?;
     stage.finish_and_clear();
-    finished.tell_replaced(ending.quiet);
+    say_replaced(&finished, ending.quiet);
     let summary = judged.summary;
     if !ending.quiet {
         table::print(&summary, &finished.folder);

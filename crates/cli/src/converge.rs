@@ -1,10 +1,10 @@
 use crate::args::ConvergeArgs;
-use crate::failure::Failure;
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::{deliver, limits, load, progress, say};
 use etendue_compare::{Applicability, Convergence, converge as shrink};
 use etendue_scene::Scene;
+use etendue_store::Failure;
 
 /// `etendue converge`: returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {

@@ -3,22 +3,24 @@
 mod said;
 
 use crate::args::CovarianceArgs;
-use crate::failure::Failure;
 use crate::measure::measured;
 use crate::method::source;
 use crate::predict::predicted;
-use crate::results::sealed::json;
-use crate::results::stored::VERSION;
-use crate::results::{COVARIANCE, Plan, Results};
+use crate::say_replaced;
 use crate::table::{grouped, spaced};
 use crate::threads::on_threads;
-use crate::{deliver, limits, load, machine, method, pictures, progress};
+use crate::{deliver, limits, load, method, pictures, progress};
 use etendue_compare::{Applicability, CovarianceReport, Prediction, SliceMoment};
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_figures::{Ellipse, Ellipses, Picture, Quantity, ellipses};
 use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldOptions, measure_field};
 use etendue_spectrum::{CrossPower, Measurement};
+use etendue_store::Failure;
+use etendue_store::machine;
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
+use etendue_store::{COVARIANCE, Plan, Results};
 use serde_json::json as tree_of;
 use std::path::Path;
 
@@ -80,7 +82,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
         index["files"] = tree_of!(files);
         json(&index)
     })?;
-    finished.tell_replaced(args.quiet);
+    say_replaced(&finished, args.quiet);
     if !args.quiet {
         deliver(&format!("results in {}", finished.folder.display()))?;
     }

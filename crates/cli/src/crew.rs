@@ -8,14 +8,14 @@ mod led;
 mod message;
 
 pub(crate) use led::Led;
-pub(crate) use message::{Packed, Piece, joined, split};
+pub(crate) use message::{Packed, Piece};
 
 use crate::args::{Cli, Command, RunArgs};
-use crate::failure::Failure;
-use crate::results::stored::VERSION;
 use crate::{ended, interrupt, not_parsed, predict, run, sweep};
 use clap::Parser;
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::stored::VERSION;
 use std::ffi::OsString;
 
 /// Processes that work together, by whatever carries bytes between them. Number 0 leads.

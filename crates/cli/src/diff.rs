@@ -7,9 +7,9 @@ mod text;
 use crate::args::DiffArgs;
 use crate::conclude::code_of;
 use crate::deliver;
-use crate::failure::Failure;
-use crate::results::fields::{FieldChange, differences};
 use etendue_compare::{Verdict, sidak};
+use etendue_store::Failure;
+use etendue_store::fields::{FieldChange, differences};
 use planes::{Found, PlaneDiff};
 use stored::StoredResult;
 

@@ -1,9 +1,10 @@
 use crate::args::ExportArgs;
-use crate::failure::Failure;
-use crate::results::sealed::json;
-use crate::results::stored::VERSION;
-use crate::results::{EXPORT, Plan, Results};
+use crate::say_replaced;
 use crate::{load, say};
+use etendue_store::Failure;
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
+use etendue_store::{EXPORT, Plan, Results};
 use serde_json::json as tree_of;
 use std::path::Path;
 
@@ -34,7 +35,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
             "files": files,
         }))
     })?;
-    finished.tell_replaced(false);
+    say_replaced(&finished, false);
     say(&format!("{}: exported to {}", scene.name, folder.display()));
     Ok(0)
 }

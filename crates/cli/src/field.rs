@@ -1,17 +1,18 @@
 //! `--save field`: the light field of each plane on a 4D grid, and its full radial spectrum.
 
 use crate::case::Case;
-use crate::failure::Failure;
-use crate::machine;
-use crate::method::{Method, source};
+use crate::method::{judge_of, source};
 use crate::progress;
-use crate::results::Results;
-use crate::results::npz::Npz;
-use crate::results::sealed::json;
 use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField, Test, Theory};
 use etendue_field::{FieldGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::Results;
+use etendue_store::machine;
+use etendue_store::npz::Npz;
+use etendue_store::sealed::json;
 use ndarray::{Array1, Array4};
 use ndarray_npy::WriteNpyExt;
 use serde::Serialize;
@@ -95,7 +96,7 @@ impl Field {
         let mut measured = on_grid((case, case.method), index, &options, quiet)?;
         let theory = &case.theories[index];
         let predicted = if matches!(theory.theory, Theory::None) {
-            let judge = case.method.judge(&case.scene, plane);
+            let judge = judge_of(case.method, &case.scene, plane);
             let reference = on_grid((case, judge), index, &options, quiet)?;
             Some(PredictedField::reference(reference.groups))
         } else {

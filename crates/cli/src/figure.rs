@@ -16,10 +16,7 @@ mod table1;
 
 use crate::args::FigureArgs;
 use crate::conclude::code_of;
-use crate::failure::Failure;
-use crate::results::sealed::json;
-use crate::results::stored::VERSION;
-use crate::results::{FIGURE, Plan, Results};
+use crate::say_replaced;
 use crate::threads::on_threads;
 use crate::values::shell_word;
 use crate::{progress, say};
@@ -27,6 +24,10 @@ use clap::ValueEnum;
 use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
 use etendue_figures::{Figure, Style};
 use etendue_scene::{Scene, SceneFile};
+use etendue_store::Failure;
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
+use etendue_store::{FIGURE, Plan, Results};
 use recipe::{RECIPES, Recipe, Taken, Text};
 use serde::Serialize;
 use shot::Shot;
@@ -269,7 +270,7 @@ fn made(args: &FigureArgs, style: Option<Style>, subject: &Subject) -> Result<Ve
             files: written,
         })
     })?;
-    finished.tell_replaced(args.quiet);
+    say_replaced(&finished, args.quiet);
     for (shot, report) in all.iter().filter(|_| !args.quiet) {
         if let Some(reason) = &report.undecided {
             say(&format!(

@@ -1,13 +1,13 @@
 //! What another tracer says of planes that fail.
 
 use crate::case::Case;
-use crate::failure::Failure;
 use crate::judge::Judge;
-use crate::method::Method;
-use crate::results::summary::Inquiry;
+use crate::summary::Inquiry;
 use crate::table::percent;
 use etendue_compare::{Class, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare};
 use etendue_spectrum::estimate::TooFewBatches;
+use etendue_store::Failure;
+use etendue_store::Method;
 
 /// Measures planes that disagree with theory by the other method, and compares all three.
 pub(crate) fn inquire(

@@ -5,84 +5,31 @@
 //! so and aborts: that is exit code 3 too. A file that the system allows no further growth is an error of the
 //! write, not the death of the process.
 
-use crate::failure::{CANNOT_RUN, Failure};
-use std::fs;
-use std::path::PathBuf;
-use std::sync::{Mutex, MutexGuard, PoisonError};
-
-/// What waits to become a result, and the lock on its folder. Global as signals are.
-static UNFINISHED: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-
-/// What to say at the end instead, where something is kept.
-static KEPT: Mutex<Option<&str>> = Mutex::new(None);
-
-/// From now on an interrupted command says this.
-pub(crate) fn keeps(message: &'static str) {
-    *KEPT.lock().unwrap_or_else(PoisonError::into_inner) = Some(message);
-}
-
-fn unfinished() -> MutexGuard<'static, Vec<PathBuf>> {
-    UNFINISHED.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Makes what waits to become a result, and names all that is to be removed when the user asks to stop. A first
-/// signal waits for both.
-pub(crate) fn begin<T, E>(
-    paths: Vec<PathBuf>,
-    make: impl FnOnce() -> Result<T, E>,
-) -> Result<T, E> {
-    let mut unfinished = unfinished();
-    let made = make()?;
-    *unfinished = paths;
-    Ok(made)
-}
-
-/// Releases what waited; from now on nothing waits. A first signal waits for both.
-pub(crate) fn ended(release: impl FnOnce()) {
-    let mut unfinished = unfinished();
-    release();
-    unfinished.clear();
-}
-
-/// Does short work that a first signal waits for.
-pub(crate) fn undisturbed<T>(work: impl FnOnce() -> T) -> T {
-    let _held = unfinished();
-    work()
-}
+use etendue_store::{CANNOT_RUN, Failure, unfinished};
 
 /// Ends the process in good order.
 #[cfg(unix)]
-fn end() -> ! {
+fn end() {
     use std::io::Write;
     use std::sync::mpsc;
     use std::time::Duration;
-    let unfinished = unfinished();
-    let kept = *KEPT.lock().unwrap_or_else(PoisonError::into_inner);
-    let message = if let Some(kept) = kept {
-        kept
-    } else if unfinished.first().is_some_and(|first| first.exists()) {
-        "interrupted: no result was written"
-    } else {
-        "interrupted"
-    };
-    for path in unfinished.iter() {
-        let _ = fs::remove_dir_all(path).or_else(|_| fs::remove_file(path));
-    }
-    // A reader that has gone, or that reads no more, must not keep the process.
-    let (told, wait) = mpsc::channel();
-    std::thread::spawn(move || {
-        let _ = writeln!(std::io::stderr(), "\n{message}");
-        let _ = told.send(());
+    unfinished::abandon(|message| {
+        // A reader that has gone, or that reads no more, must not keep the process.
+        let (told, wait) = mpsc::channel();
+        std::thread::spawn(move || {
+            let _ = writeln!(std::io::stderr(), "\n{message}");
+            let _ = told.send(());
+        });
+        let _ = wait.recv_timeout(Duration::from_secs(1));
+        #[expect(clippy::exit, reason = "the user asked to stop")]
+        std::process::exit(CANNOT_RUN.into());
     });
-    let _ = wait.recv_timeout(Duration::from_secs(1));
-    #[expect(clippy::exit, reason = "the user asked to stop")]
-    std::process::exit(CANNOT_RUN.into());
 }
 
 /// Lets signals end the process as said above.
 #[cfg(unix)]
 pub(crate) fn install() -> Result<(), Failure> {
-    use crate::machine;
+    use etendue_store::machine;
     use signal_hook::consts::{SIGABRT, SIGHUP, SIGINT, SIGTERM, SIGXFSZ};
     use signal_hook::flag::{register, register_conditional_shutdown};
     use signal_hook::iterator::Signals;

@@ -1,10 +1,11 @@
 //! Measurements that judge another one, plane by plane.
 
-use crate::failure::Failure;
 use crate::measure::measured;
-use crate::method::Method;
+use crate::method::judge_of;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
+use etendue_store::Failure;
+use etendue_store::Method;
 
 /// A measurement of some planes of a scene by one method.
 #[derive(Debug)]
@@ -26,7 +27,7 @@ impl Judge {
     ) -> Result<Vec<Self>, Failure> {
         let methods = [Method::Photons, Method::Backward, Method::Even];
         let judged = methods.map(|judge| {
-            let is_judge = |i: &usize| method.judge(scene, &scene.planes[*i]) == judge;
+            let is_judge = |i: &usize| judge_of(method, scene, &scene.planes[*i]) == judge;
             (judge, planes.iter().copied().filter(is_judge).collect())
         });
         let judged = judged.into_iter();

@@ -1,15 +1,17 @@
 //! A measurement that outlives its process: its batches are kept as they are done, and those on the way every few seconds.
 
 use crate::crew::Led;
-use crate::failure::Failure;
 use crate::job::Job;
-use crate::method::{Method, source};
-use crate::results::kept::{Kept, Progress};
+use crate::method::source;
+use crate::progress;
 use crate::warnings::warn;
-use crate::{interrupt, progress};
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::kept::{Kept, Progress};
+use etendue_store::unfinished;
 use indicatif::ProgressBar;
 use std::collections::BTreeMap;
 use std::hash::{BuildHasher, RandomState};
@@ -181,7 +183,7 @@ impl Keeper<'_> {
             }
             return;
         }
-        interrupt::keeps(
+        unfinished::keeps(
             "interrupted: what is measured is kept, up to the last few seconds, and the same command with --resume goes on from it",
         );
     }

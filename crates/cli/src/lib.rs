@@ -16,7 +16,6 @@ mod crew;
 mod diff;
 mod drawing;
 mod export;
-mod failure;
 mod field;
 mod figure;
 mod inquiry;
@@ -26,7 +25,6 @@ mod judge;
 mod lasting;
 mod limits;
 mod load;
-mod machine;
 mod measure;
 mod method;
 mod photons;
@@ -37,10 +35,10 @@ mod progress;
 mod rays;
 mod render;
 mod report;
-mod results;
 mod run;
 mod schema;
 mod split;
+mod summary;
 mod sweep;
 mod table;
 mod target;
@@ -53,10 +51,10 @@ use args::{Cli, Command};
 use clap::Parser;
 pub use crew::{Crew, in_crew};
 use etendue_scene::shown;
-pub use failure::Failure;
+use etendue_store::Finished;
+pub use etendue_store::arrays::SliceArrays;
+pub use etendue_store::{Failure, Method};
 pub use job::{Job, Options, Outcome};
-pub use method::Method;
-pub use results::arrays::SliceArrays;
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
@@ -140,6 +138,13 @@ pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
             Err(Failure::write(Path::new("to standard output"), e))
         }
         _ => Ok(()),
+    }
+}
+
+/// Says which files of somebody else are no more, since `--force` was there.
+pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
+    if let Some(message) = finished.replaced_message().filter(|_| !quiet) {
+        say(&message);
     }
 }
 

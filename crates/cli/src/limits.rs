@@ -1,10 +1,10 @@
 //! What a command takes, held against what there is, before it begins.
 
-use crate::failure::Failure;
-use crate::machine;
 use etendue_compare::{Applicability, Memory, too_much_work};
 use etendue_field::Light;
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::machine;
 
 /// Fails where a run of the scene on so many threads would not end, or not fit into this machine.
 /// `theories` are those of its planes.

@@ -1,12 +1,12 @@
 use crate::args::SceneArgs;
-use crate::failure::Failure;
-use crate::machine;
-use crate::results::stored::copy_of;
-use crate::results::{Plan, Results};
 use crate::values::{Point, said_at};
 use etendue_scene::{
     RunFile, Scene, SceneError, SceneFile, limits, read_below, read_file, resolve,
 };
+use etendue_store::Failure;
+use etendue_store::machine;
+use etendue_store::stored::copy_of;
+use etendue_store::{Plan, Results};
 use std::path::{Path, PathBuf};
 
 /// Reads, overrides and resolves the scene named on the command line; `options` are overrides of the command

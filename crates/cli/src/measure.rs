@@ -1,15 +1,17 @@
 use crate::args::MeasureArgs;
-use crate::failure::Failure;
-use crate::method::{Method, source};
-use crate::results::MEASUREMENT;
-use crate::results::batches::{self, Held};
-use crate::results::stored::Index;
+use crate::method::source;
+use crate::say_replaced;
 use crate::table::grouped;
 use crate::threads::on_threads;
 use crate::{limits, load, method, progress, say, warnings};
 use etendue_compare::Applicability;
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
+use etendue_store::Failure;
+use etendue_store::MEASUREMENT;
+use etendue_store::Method;
+use etendue_store::batches::{self, Held};
+use etendue_store::stored::Index;
 use std::ops::Range;
 
 /// `etendue measure`: returns the exit code.
@@ -50,7 +52,7 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
     })?;
     let index = Index::new(&scene, held.clone());
     let finished = index.finish(results)?;
-    finished.tell_replaced(args.quiet);
+    say_replaced(&finished, args.quiet);
     if !args.quiet {
         say(&format!(
             "{}: measured batches {}..{} of {}, {} photons, seed {}",

@@ -4,12 +4,12 @@ mod file;
 
 use crate::args::Save;
 use crate::case::Case;
-use crate::failure::Failure;
 use crate::method::source;
-use crate::results::Results;
-use crate::results::sealed::json;
 use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::Results;
+use etendue_store::sealed::json;
 use file::{Content, Rays};
 use serde::Serialize;
 use std::io;

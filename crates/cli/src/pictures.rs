@@ -11,10 +11,7 @@ pub(crate) use words::{
 
 use crate::case::Case;
 use crate::drawing;
-use crate::failure::Failure;
-use crate::results::Results;
-use crate::results::arrays::{radial_z, z};
-use crate::results::summary::Summary;
+use crate::summary::Summary;
 use crate::table::{self, grouped, spaced, word};
 use across::differs_across;
 use etendue_compare::{
@@ -26,6 +23,9 @@ use etendue_figures::{
     Column, Comparison, Figure, Guide, Picture, Scale, Strip, Style, comparison, section, strip,
 };
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::Results;
+use etendue_store::arrays::{radial_z, z};
 use ndarray::Array2;
 use std::cmp::Ordering;
 use std::path::Path;

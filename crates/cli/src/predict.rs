@@ -1,15 +1,16 @@
 use crate::args::PredictArgs;
 use crate::crew::Led;
-use crate::failure::Failure;
 use crate::judge::Judge;
-use crate::method::Method;
-use crate::results::PREDICTION;
-use crate::results::predictions;
-use crate::results::stored::Index;
+use crate::say_replaced;
 use crate::threads::on_threads;
 use crate::{limits, load, method, progress, say, warnings};
 use etendue_compare::{Applicability, Class, Prediction};
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::PREDICTION;
+use etendue_store::predictions;
+use etendue_store::stored::Index;
 use std::collections::BTreeMap;
 
 /// `etendue predict`: returns the exit code.
@@ -40,7 +41,7 @@ pub(crate) fn predict_with(args: &PredictArgs, crew: Option<&Led<'_>>) -> Result
         Ok((results, content))
     })?;
     let finished = Index::new(&scene, content).finish(results)?;
-    finished.tell_replaced(args.quiet);
+    say_replaced(&finished, args.quiet);
     if !args.quiet {
         let planes = scene.planes.len();
         say(&format!("{}: predicted {planes} planes", scene.name));
@@ -94,7 +95,7 @@ pub(crate) fn predicted(
         bar.inc(1);
         let reference = Prediction::reference(scene, i, theory, &judge.measurement, at);
         let mut prediction = reference.map_err(Failure::cannot_run)?;
-        prediction.steps.push(judge.method.step());
+        prediction.steps.push(method::step(judge.method));
         Ok(prediction)
     });
     let planes = planes.collect();

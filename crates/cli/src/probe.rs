@@ -5,10 +5,7 @@ mod map;
 mod said;
 
 use crate::args::ProbeArgs;
-use crate::failure::Failure;
-use crate::results::sealed::json;
-use crate::results::stored::VERSION;
-use crate::results::{PROBE, Plan, Results, arrays};
+use crate::say_replaced;
 use crate::threads::on_threads;
 use crate::{deliver, pictures, progress, world};
 use covariance::FoundCovariance;
@@ -18,6 +15,10 @@ use etendue_import::Imported;
 use etendue_paths::{BackwardProbe, Budget, Paths, PhotonProbe, Probe, Question};
 use etendue_spectrum::bandwidth::{Widest, bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::{CrossPower, Measurement, Uncertain, measure};
+use etendue_store::Failure;
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
+use etendue_store::{PROBE, Plan, Results, arrays};
 use etendue_world::Camera;
 use said::{of_plane, of_stop, said};
 use serde_json::{Value, json as tree_of};
@@ -171,7 +172,7 @@ impl Case<'_> {
             made_from["files"] = tree_of!(files);
             json(&made_from)
         })?;
-        finished.tell_replaced(self.args.quiet);
+        say_replaced(&finished, self.args.quiet);
         Ok(verdict)
     }
 }

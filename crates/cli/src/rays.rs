@@ -1,15 +1,15 @@
 //! `etendue rays`: what a ray file holds, and the same rays in another format.
 
 use crate::args::RaysArgs;
-use crate::failure::Failure;
-use crate::machine;
-use crate::results::output::OutputFile;
 use crate::{deliver, say};
 use etendue_field::tidy;
 use etendue_rays::mcpl::{McplFile, PHOTON};
 use etendue_rays::tm25::{Header, Tm25File};
 use etendue_rays::{Format, MEMORY, MEMORY_FREE, RayFile, RaySet, Wavelengths, convert, gz};
 use etendue_scene::{read_file, shown};
+use etendue_store::Failure;
+use etendue_store::machine;
+use etendue_store::output::OutputFile;
 use std::path::Path;
 
 /// Most bytes of a ray file.

@@ -3,15 +3,16 @@
 mod adaptive;
 
 use crate::args::{RenderArgs, RenderMethod};
-use crate::failure::Failure;
-use crate::results::exr::{Part, exr};
-use crate::results::npz::Npz;
-use crate::results::sealed::json;
-use crate::results::stored::VERSION;
-use crate::results::{PICTURE, Plan, Results};
+use crate::say_replaced;
 use crate::threads::on_threads;
 use crate::{progress, say, world};
 use etendue_paths::{Paths, Picture};
+use etendue_store::Failure;
+use etendue_store::exr::{Part, exr};
+use etendue_store::npz::Npz;
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
+use etendue_store::{PICTURE, Plan, Results};
 use ndarray::Array2;
 use serde_json::{Value, json as tree_of};
 use std::path::Path;
@@ -77,7 +78,7 @@ pub(crate) fn render(args: &RenderArgs) -> Result<u8, Failure> {
         index["files"] = tree_of!(files);
         json(&index)
     })?;
-    finished.tell_replaced(args.quiet);
+    say_replaced(&finished, args.quiet);
     if !args.quiet {
         world::notes(&imported)
             .iter()

@@ -5,14 +5,14 @@ mod data;
 pub(crate) mod explorer;
 
 use crate::args::ReportArgs;
-use crate::failure::Failure;
-use crate::results::output::OutputFile;
-use crate::results::{self, SUMMARY};
 use crate::say;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 pub(crate) use data::data;
 use etendue_scene::read_file;
+use etendue_store::Failure;
+use etendue_store::SUMMARY;
+use etendue_store::output::OutputFile;
 use serde::de::IgnoredAny;
 use std::path::{Path, PathBuf};
 
@@ -56,7 +56,7 @@ pub(crate) fn report(args: &ReportArgs) -> Result<u8, Failure> {
 fn stored(folder: &Path) -> Result<String, Failure> {
     let shown = folder.join(NAME);
     let fault = |what: &str| Failure::bad_input(format!("{}: {what}", shown.display()));
-    let hash = results::hash_of(folder, SUMMARY, NAME).ok_or_else(|| {
+    let hash = etendue_store::hash_of(folder, SUMMARY, NAME).ok_or_else(|| {
         let folder = folder.display();
         Failure::bad_input(format!(
             "{folder} is no whole result with a {NAME}: run the scene again with this version"

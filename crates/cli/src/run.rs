@@ -2,19 +2,19 @@ use crate::args::{RunArgs, Save};
 use crate::case::Case;
 use crate::conclude::{Ending, code_of, conclude, plan};
 use crate::crew::Led;
-use crate::failure::Failure;
 use crate::lasting::{self, Lasting};
 use crate::predict::predicted;
-use crate::results::kept::Kept;
-use crate::results::stored::{check_earlier, summary_of};
-use crate::results::summary::Stopwatch;
-use crate::results::{Plan, Results, SUMMARY};
+use crate::summary::Stopwatch;
 use crate::table::word;
 use crate::threads::on_threads;
 use crate::{field, limits, load, method, photons, say, target, warnings};
 use clap::ValueEnum;
 use etendue_compare::{Applicability, Verdict};
 use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::kept::Kept;
+use etendue_store::stored::{check_earlier, summary_of};
+use etendue_store::{Plan, Results, SUMMARY};
 use std::path::Path;
 use std::time::Instant;
 
@@ -44,7 +44,7 @@ pub(crate) fn run_with(args: &RunArgs, crew: Option<&Led<'_>>) -> Result<u8, Fai
         check_earlier(&folder, SUMMARY, &scene, args.force.force)?;
         let begin = |plan: Plan| {
             if args.resume {
-                Results::claim_in_turn(&folder, plan)
+                Results::claim_in_turn(&folder, plan, &warnings::warn)
             } else {
                 Results::claim(&folder, plan)
             }
@@ -158,7 +158,7 @@ fn stages(
     let results = match place.results {
         Some(results) => results,
         None => {
-            let results = Results::claim_in_turn(place.folder, place.plan)?;
+            let results = Results::claim_in_turn(place.folder, place.plan, &warnings::warn)?;
             if let Some(code) = finished(place.folder, &case.scene, args) {
                 return Ok(code);
             }

@@ -2,7 +2,7 @@
 
 use crate::args::SchemaArgs;
 use crate::deliver;
-use crate::failure::Failure;
+use etendue_store::Failure;
 use serde_json::{Map, Value};
 
 /// `etendue schema`: returns the exit code.

@@ -1,11 +1,10 @@
 //! `etendue split`: the commands that measure a scene in parts, on as many machines, and put them together.
 
 use crate::args::SplitArgs;
-use crate::failure::Failure;
-use crate::method::Method;
 use crate::values::shell_word;
 use crate::{deliver, load, method};
-use clap::ValueEnum;
+use etendue_store::Failure;
+use etendue_store::Method;
 use std::path::Path;
 
 /// `etendue split`: returns the exit code.
@@ -57,8 +56,7 @@ fn scene_words(args: &SplitArgs) -> String {
         );
     }
     if args.photons.method != Method::Photons {
-        let method = args.photons.method.to_possible_value();
-        let name = method.as_ref().map_or("", |value| value.get_name());
+        let name = args.photons.method.name();
         words.extend(["--method".to_owned(), name.to_owned()]);
     }
     let words = words.iter().map(|word| shell_word(word));

@@ -10,19 +10,21 @@ use crate::args::{SceneArgs, SweepArgs};
 use crate::case::Case;
 use crate::conclude::judged;
 use crate::crew::Led;
-use crate::failure::Failure;
-use crate::method::Method;
-use crate::results::sealed::json;
-use crate::results::stored::{VERSION, check_earlier, summary_of};
-use crate::results::summary::Summary;
-use crate::results::{LINKED, MOST_INDEX, Plan, Results, SUMMARY, SWEEP, inside};
+use crate::say_replaced;
+use crate::summary::Summary;
 use crate::table::aligned;
 use crate::threads::on_threads;
 use crate::values::{Point, Setting, Sweep, points, shown};
-use crate::{interrupt, limits, load, method, progress, say, warnings};
+use crate::{limits, load, method, progress, say, warnings};
 use etendue_compare::{Applicability, Test};
 use etendue_field::{decimals, fixed, uncertain};
 use etendue_scene::{Scene, SceneFile, read_file};
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::sealed::json;
+use etendue_store::stored::{VERSION, check_earlier, summary_of};
+use etendue_store::unfinished;
+use etendue_store::{LINKED, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, inside};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
@@ -59,7 +61,7 @@ pub(crate) fn sweep_with(args: &SweepArgs, crew: Option<&Led<'_>>) -> Result<u8,
         let inputs = load::inputs(&all.scene, base);
         // Before the work, and once more for the table: each point claims a folder of its own.
         drop(Results::claim(&folder, plan(&inputs, args.force.force))?);
-        interrupt::keeps(
+        unfinished::keeps(
             "interrupted: the points that are done are kept, and the same command goes on from them",
         );
         let found = run_all(args, &folder, &inputs, &all, crew)?;
@@ -166,7 +168,7 @@ fn check(args: &SweepArgs, set: &[(String, String)], sweeps: &[Sweep]) -> Result
 
 /// Fails where the folder holds a sweep of other fields.
 fn check_fields(folder: &Path, sweeps: &[Sweep], force: bool) -> Result<(), Failure> {
-    let earlier = read_file(&folder.join(SWEEP), MOST_INDEX).ok();
+    let earlier = read_file(&folder.join(SWEEP), MAX_INDEX_BYTES).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let Some(fields) = earlier
         .as_ref()
@@ -336,7 +338,7 @@ fn finish(
             files,
         })
     })?;
-    finished.tell_replaced(args.quiet);
+    say_replaced(&finished, args.quiet);
     if !args.quiet {
         say(&aligned(rows(&paths, found)).join("\n"));
         if figures.is_empty() {

@@ -1,7 +1,7 @@
 //! What the run came to, at a glance.
 
-use crate::results::summary::Summary;
 use crate::say;
+use crate::summary::Summary;
 use etendue_compare::{
     FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, Verdict, sidak,
 };

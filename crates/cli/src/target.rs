@@ -1,14 +1,14 @@
 //! Photons until there is little enough noise, and how long less noise would take.
 
-use crate::failure::Failure;
 use crate::measure::measured;
-use crate::method::Method;
 use crate::say;
 use crate::table::{grouped, percent};
 use etendue_compare::PlaneReport;
 use etendue_field::tidy;
 use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, estimate};
+use etendue_store::Failure;
+use etendue_store::Method;
 use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 

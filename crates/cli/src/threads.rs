@@ -1,5 +1,5 @@
 use crate::args::ThreadArgs;
-use crate::failure::Failure;
+use etendue_store::Failure;
 
 /// Does `work` on so many threads, one for each core unless said.
 pub(crate) fn on_threads<T: Send>(

@@ -1,7 +1,7 @@
 //! The values that fields of a scene take in a sweep.
 
-use crate::failure::Failure;
 use etendue_field::tidy;
+use etendue_store::Failure;
 
 /// A field of the scene and its values.
 #[derive(Clone, Debug, PartialEq)]

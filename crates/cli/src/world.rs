@@ -2,9 +2,9 @@
 
 use crate::args::{CameraArgs, ImportArgs, ViewArgs, WorldArgs};
 use crate::deliver;
-use crate::failure::Failure;
 use crate::table::aligned;
 use etendue_import::{Imported, import};
+use etendue_store::Failure;
 use etendue_world::{Camera, Geometry, Light, Projection, World};
 use glam::{DAffine3, DMat3};
 

@@ -1,14 +1,15 @@
 //! A process that does what the one that leads asks for.
 
-use super::message::{Order, Packed, Piece, Said, Task, joined, packed, split, unpack};
+use super::message::{Order, Packed, Piece, Said, Task, packed, unpack};
 use super::{Crew, key};
 use crate::args::{Command, PhotonArgs, SceneArgs, ThreadArgs};
-use crate::failure::Failure;
 use crate::job::{Job, Options};
 use crate::sweep::Points;
 use crate::threads::on_threads;
 use etendue_field::PhotonSource;
 use etendue_spectrum::{PartialBatch, Watch, measure_watched};
+use etendue_store::Failure;
+use etendue_store::framing::{joined, split};
 use std::time::{Duration, Instant};
 
 /// Does whatever the process that leads asks for, until it is dismissed.

@@ -1,13 +1,14 @@
 //! The processes that this one leads: it hands out what they ask for, and takes what they have done.
 
-use super::message::{Order, Packed, Piece, Said, Task, packed, split, unpack};
+use super::message::{Order, Packed, Piece, Said, Task, packed, unpack};
 use super::{Crew, key};
-use crate::failure::Failure;
 use crate::job::Job;
 use etendue_compare::Prediction;
 use etendue_field::PhotonSource;
 use etendue_scene::Scene;
 use etendue_spectrum::{Measurement, PartialBatch, Watch, measure_watched};
+use etendue_store::Failure;
+use etendue_store::framing::split;
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::thread;

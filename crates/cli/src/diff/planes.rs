@@ -1,10 +1,10 @@
 //! One plane of two results: which tests are made, and what they come to.
 
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
-use crate::failure::Failure;
-use crate::results::fields::{FieldChange, differences};
 use etendue_compare::{Class, EACH, Estimate, Sample, TwoSamples, Verdict, pull};
 use etendue_field::{Complex, SliceGrid, percent, tidy};
+use etendue_store::Failure;
+use etendue_store::fields::{FieldChange, differences};
 use ndarray::Array3;
 use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;

@@ -1,12 +1,12 @@
 //! A result folder as `diff` reads it: every file verified, nothing taken for granted.
 
-use crate::failure::Failure;
-use crate::results::npz::NpzFile;
-use crate::results::stored::listed_bytes;
-use crate::results::{MOST_INDEX, SUMMARY, sealed};
 use etendue_compare::{Estimate, Sample};
 use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use etendue_scene::read_below;
+use etendue_store::Failure;
+use etendue_store::npz::NpzFile;
+use etendue_store::stored::listed_bytes;
+use etendue_store::{MAX_INDEX_BYTES, SUMMARY, sealed};
 use ndarray::{Array1, Array3, Axis};
 use serde::Deserialize;
 use serde_json::Value;
@@ -100,7 +100,7 @@ impl StoredResult {
         let path = folder.join(SUMMARY);
         let shown = path.display();
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
-        let bytes = read_below(folder, SUMMARY, MOST_INDEX)
+        let bytes = read_below(folder, SUMMARY, MAX_INDEX_BYTES)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let index: ResultIndex = serde_json::from_slice(&bytes)
             .map_err(|e| fault(format!("it is no summary of a run: {e}")))?;

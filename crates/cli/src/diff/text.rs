@@ -3,10 +3,10 @@
 use super::planes::{Compared, Found, PlaneDiff, ROUNDING};
 use super::stored::{ResultIndex, StoredResult};
 use super::{Diff, has_other_inputs, is_of_run};
-use crate::results::fields::FieldChange;
 use crate::table::{aligned, grouped, number, percent, with_unit};
 use etendue_compare::{Estimate, Verdict};
 use etendue_field::{percent as percent_of, tidy, uncertain};
+use etendue_store::fields::FieldChange;
 
 /// Most fields of the scene that are listed.
 const MOST_FIELDS: usize = 20;

@@ -1,6 +1,5 @@
 //! Figs. 16 and 17: a picture of few shading samples, and the criteria that put them where they are.
 
-use crate::failure::Failure;
 use crate::figure::Quality;
 use crate::figure::recipe::Taken;
 use crate::progress;
@@ -10,6 +9,7 @@ use etendue_figures::{
 };
 use etendue_import::{Options, import};
 use etendue_paths::Paths;
+use etendue_store::Failure;
 use etendue_world::Camera;
 use ndarray::{Array2, Axis as Along};
 use std::fs;

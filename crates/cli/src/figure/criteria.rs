@@ -1,13 +1,13 @@
 //! The sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected, beside photons.
 
-use crate::failure::Failure;
 use crate::figure::Quality;
 use crate::figure::recipe::{Taken, Text};
 use crate::figure::shot::resolved;
 use crate::measure::measured;
-use crate::method::Method;
 use etendue_compare::{Applicability, criterion, measured_bandwidth};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity};
+use etendue_store::Failure;
+use etendue_store::Method;
 use etendue_theory::shading::Criterion;
 
 /// A field of a scene, and the values it takes.

@@ -1,8 +1,8 @@
 //! The scene of Fig. 6 in flatland, read off the scene in 3D.
 
-use crate::failure::Failure;
 use etendue_field::{Light, Shape, VirtualPlane};
 use etendue_scene::{BlockersFile, Scene};
+use etendue_store::Failure;
 use etendue_theory::shading::{DiffuseStep, Flatland};
 use ndarray::Array2;
 

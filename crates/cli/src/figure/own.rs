@@ -1,7 +1,6 @@
 //! Figures of the user's scenes: one along its path, or several side by side at a plane.
 
 use crate::args::{FigureArgs, SceneArgs};
-use crate::failure::Failure;
 use crate::figure::Subject;
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{Seen, compared, feet};
@@ -11,6 +10,7 @@ use crate::values::shell_word;
 use crate::{load, warnings};
 use etendue_figures::{Figure, Plate};
 use etendue_scene::Scene;
+use etendue_store::Failure;
 use std::path::{Path, PathBuf};
 
 /// Whether a name on the command line is that of a scene file.

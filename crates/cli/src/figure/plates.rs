@@ -1,6 +1,5 @@
 //! Figures of several scenes, or several kinds of spectra, side by side.
 
-use crate::failure::Failure;
 use crate::figure::flat::Flat;
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
@@ -9,6 +8,7 @@ use crate::pictures::light_field_quantity;
 use etendue_compare::{Bandwidth, Theory};
 use etendue_field::{Orientation, VirtualPlane, percent, uncertain};
 use etendue_figures::{Bars, Figure, Plate, Quantity, Scale};
+use etendue_store::Failure;
 use etendue_theory::Operator;
 use ndarray::Array2;
 

@@ -1,6 +1,5 @@
 //! What each figure of the paper is made of.
 
-use crate::failure::Failure;
 use crate::figure::plates::{blockers, lights, occluders, parameterisations, steps};
 use crate::figure::shading::{adaptive, environment};
 use crate::figure::shot::{Shot, resolved};
@@ -9,6 +8,7 @@ use crate::figure::table1::operators;
 use crate::figure::{Quality, Subject, creatures, kernels};
 use crate::pictures;
 use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
+use etendue_store::Failure;
 use std::path::Path;
 
 /// A figure: the scenes it is measured in, and how it is drawn.

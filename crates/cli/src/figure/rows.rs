@@ -1,6 +1,5 @@
 //! What figures show of the planes of their scenes, row by row.
 
-use crate::failure::Failure;
 use crate::figure::shot::Shot;
 use crate::pictures::{
     full_radial, full_radial_quantity, light_field_axes, light_field_quantity, spectrum_axes,
@@ -9,6 +8,7 @@ use crate::pictures::{
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_figures::{Picture, PlateRow, Quantity, Scale};
+use etendue_store::Failure;
 use ndarray::{Array2, ArrayView2, Axis as Along};
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.

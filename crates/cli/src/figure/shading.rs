@@ -1,6 +1,5 @@
 //! Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy reflections.
 
-use crate::failure::Failure;
 use crate::figure::criteria::criteria;
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{Seen, compared, feet};
@@ -8,6 +7,7 @@ use etendue_field::{
     Complex, EnvironmentMap, Light, Profile, Slices, SphericalGaussian, cis, modulus,
 };
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, stacked};
+use etendue_store::Failure;
 use etendue_theory::shading::environment::{Glow, irradiance};
 use std::f64::consts::TAU;
 

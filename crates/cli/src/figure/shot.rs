@@ -2,14 +2,15 @@
 
 use crate::case::Case;
 use crate::conclude::judged;
-use crate::failure::Failure;
 use crate::figure::Quality;
-use crate::method::Method;
-use crate::results::npz::Npz;
-use crate::{field, limits, machine};
+use crate::{field, limits};
 use etendue_compare::{Applicability, PlaneComparison, Test};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
 use etendue_scene::{Scene, SceneFile};
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::machine;
+use etendue_store::npz::Npz;
 use ndarray::{Axis, arr1};
 use std::path::Path;
 

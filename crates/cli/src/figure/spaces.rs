@@ -1,6 +1,5 @@
 //! Figs. 3 and 13: coordinates of rays, and what it costs to take them for each other.
 
-use crate::failure::Failure;
 use crate::figure::recipe::{TWIST, Taken, Text};
 use crate::figure::rows::{Seen, compared, feet, row};
 use crate::figure::shot::resolved;
@@ -10,6 +9,7 @@ use etendue_field::percent;
 use etendue_figures::{
     Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, Scale, stacked,
 };
+use etendue_store::Failure;
 use ndarray::Array2;
 
 /// Fig. 3: stripes at equal angles, by slopes and by angles, and after travel.

@@ -1,8 +1,8 @@
 //! The looks of figures, from a file.
 
-use crate::failure::Failure;
 use etendue_figures::Style;
 use etendue_scene::{limits, read_file};
+use etendue_store::Failure;
 use std::path::Path;
 
 /// Reads a style.

@@ -1,10 +1,10 @@
 //! Table 1: each operator by the light before and after it.
 
-use crate::failure::Failure;
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{DECIBEL, Seen, feet, row};
 use crate::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
+use etendue_store::Failure;
 
 /// An operator: its name, and scene and plane before and after it.
 type Step = (&'static str, [[&'static str; 2]; 2]);

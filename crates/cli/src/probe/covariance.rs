@@ -3,13 +3,13 @@
 
 use super::{BATCHES, Found};
 use crate::covariance::{check_memory, fitting};
-use crate::failure::Failure;
 use crate::progress;
 use crate::table::aligned;
 use etendue_compare::AXES;
 use etendue_field::uncertain;
 use etendue_paths::{BackwardProbe, Budget, Probe};
 use etendue_spectrum::field::{FieldCovariance, MatrixEstimate, measure_field};
+use etendue_store::Failure;
 use etendue_theory::covariance::{SpectralCovariance, window};
 use etendue_theory::geometry::Map;
 use serde_json::{Value, json as tree_of};

@@ -2,17 +2,18 @@
 
 use super::said::{ON_GRID, criterion};
 use super::{BATCHES, Case};
-use crate::failure::Failure;
-use crate::results::Results;
-use crate::results::exr::{Part, exr};
-use crate::results::npz::Npz;
-use crate::results::sealed::json;
+use crate::say_replaced;
 use crate::threads::on_threads;
 use crate::{deliver, pictures, progress};
 use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
 use etendue_paths::{BackwardProbe, Budget, Probe};
 use etendue_spectrum::bandwidth::bandwidth_nu;
 use etendue_spectrum::{CrossPower, estimate, measure};
+use etendue_store::Failure;
+use etendue_store::Results;
+use etendue_store::exr::{Part, exr};
+use etendue_store::npz::Npz;
+use etendue_store::sealed::json;
 use ndarray::{Array2, Axis as ArrayAxis};
 use rayon::prelude::*;
 use serde_json::json as tree_of;
@@ -131,7 +132,7 @@ fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(
         made_from["files"] = tree_of!(files);
         json(&made_from)
     })?;
-    finished.tell_replaced(case.args.quiet);
+    say_replaced(&finished, case.args.quiet);
     Ok(())
 }
 

@@ -1,14 +1,14 @@
 //! Pictures with few shading samples, their maps, and how long each stage took.
 
 use crate::args::RenderArgs;
-use crate::failure::Failure;
 use crate::progress;
-use crate::results::exr::{Part, exr};
-use crate::results::npz::Npz;
-use crate::results::sealed::json;
-use crate::results::{Results, TIMING};
 use etendue_adaptive::{Layers, Method, Plan, Rendered, Stage};
 use etendue_paths::Paths;
+use etendue_store::Failure;
+use etendue_store::exr::{Part, exr};
+use etendue_store::npz::Npz;
+use etendue_store::sealed::json;
+use etendue_store::{Results, TIMING};
 use etendue_world::{Camera, Projection};
 use indicatif::ProgressBar;
 use ndarray::Array2;

@@ -1,10 +1,8 @@
 //! What a page shows of a run.
 
 use crate::case::Case;
-use crate::method::Method;
 use crate::pictures::{light_field_axes, spectrum_axes, verdict_line};
-use crate::results::arrays::{radial_z, z};
-use crate::results::summary::Summary;
+use crate::summary::Summary;
 use crate::table::{self, grouped, on_chain, verdict_text};
 use crate::values::shell_word;
 use base64::Engine;
@@ -13,6 +11,8 @@ use etendue_compare::{PlaneComparison, PlaneReport, Prediction, Verdict};
 use etendue_field::VirtualPlane;
 use etendue_figures::Axis;
 use etendue_scene::SceneFile;
+use etendue_store::Method;
+use etendue_store::arrays::{radial_z, z};
 use ndarray::{Array2, ArrayView2, Axis as Along, Zip};
 use serde::Serialize;
 

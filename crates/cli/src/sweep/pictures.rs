@@ -1,10 +1,10 @@
 //! Curves of a sweep: what each plane's numbers do along its first field.
 
-use crate::failure::Failure;
 use crate::sweep::table::{BANDWIDTHS, Found, Number, SLOPE, numbers};
 use crate::table::spaced;
 use crate::values::{Point, short, shown};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Style};
+use etendue_store::Failure;
 
 /// Names of the pictures, without their endings.
 pub(crate) const NAMES: [&str; 3] = ["bandwidth_rho", "bandwidth_nu", "slope"];

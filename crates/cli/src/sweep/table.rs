@@ -1,7 +1,7 @@
 //! The numbers of a sweep as one table, a row for each number of each plane at each point.
 
-use crate::failure::Failure;
 use crate::values::Point;
+use etendue_store::Failure;
 use parquet::basic::{LogicalType, Repetition, Type as Physical};
 use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
 use parquet::errors::ParquetError;

@@ -1,7 +1,7 @@
 //! What stands in a results folder before anything is written there.
 
 use super::{LINKED, Results, TIMING, UNFINISHED, has_hash, inside, listed, sealed_bytes};
-use crate::failure::Failure;
+use crate::Failure;
 use std::collections::{BTreeMap, HashSet};
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,13 +1,13 @@
 //! What this machine has, as far as it says so (Linux); elsewhere nothing is known and nothing refused.
 
-use crate::failure::Failure;
+use crate::Failure;
 use etendue_scene::{Scene, SceneFile, resolve};
 use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Memory that this process may still take without swapping, in bytes: of the machine, of the control groups it is
 /// in, and of its own limits (`ulimit -v`, `ulimit -d`).
-pub(crate) fn available_memory() -> u64 {
+pub fn available_memory() -> u64 {
     let machine = kilobytes("/proc/meminfo", "MemAvailable:");
     let limits = [
         limit("Max address space").zip(kilobytes("/proc/self/status", "VmSize:")),
@@ -20,12 +20,7 @@ pub(crate) fn available_memory() -> u64 {
 }
 
 /// Resolves a scene file for this machine; its meshes are in `folder`, and `shown` is where it comes from, for messages.
-pub(crate) fn resolved(
-    name: &str,
-    file: SceneFile,
-    folder: &Path,
-    shown: &str,
-) -> Result<Scene, Failure> {
+pub fn resolved(name: &str, file: SceneFile, folder: &Path, shown: &str) -> Result<Scene, Failure> {
     resolve(name, file, folder, available_memory()).map_err(|error| {
         let message = format!("{shown}:\n{error}");
         Failure::of_scene(&error, message)
@@ -33,12 +28,12 @@ pub(crate) fn resolved(
 }
 
 /// The most memory this process has held, in bytes.
-pub(crate) fn peak_memory() -> Option<u64> {
+pub fn peak_memory() -> Option<u64> {
     kilobytes("/proc/self/status", "VmHWM:")
 }
 
 /// Whether a signal was ignored when this process began, as `nohup` has it.
-pub(crate) fn ignores(signal: i32) -> bool {
+pub fn ignores(signal: i32) -> bool {
     let read = || {
         let text = fs::read_to_string("/proc/self/status").ok()?;
         let mask = field(&text, "SigIgn:")?;

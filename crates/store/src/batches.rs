@@ -1,10 +1,10 @@
 //! The batches of a measurement as files: `ledger.npz`, and `batches.npz` for each plane.
 
-use crate::failure::Failure;
-use crate::method::Method;
-use crate::results::Results;
-use crate::results::npz::{Npz, NpzFile};
-use crate::results::stored::Stored;
+use crate::Failure;
+use crate::Method;
+use crate::Results;
+use crate::npz::{Npz, NpzFile};
+use crate::stored::Stored;
 use etendue_field::{Ledger, PlaneTally, Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments};
 use ndarray::{Array1, Array2, Array3, Array4, ArrayView, Axis, Dimension, RemoveAxis, stack};
@@ -14,13 +14,15 @@ use std::ops::Range;
 
 /// What `measurement.json` says beside the scene.
 #[derive(Clone, Debug, Serialize, Deserialize)]
-pub(crate) struct Held {
-    pub(crate) seed: u64,
-    pub(crate) method: Method,
+pub struct Held {
+    /// Of the photons.
+    pub seed: u64,
+    /// How they were measured.
+    pub method: Method,
     /// Photons emitted in the batches held.
-    pub(crate) photons: u64,
+    pub photons: u64,
     /// The batches held.
-    pub(crate) batches: Range<u32>,
+    pub batches: Range<u32>,
 }
 
 const LEDGER: &str = "ledger.npz";
@@ -30,13 +32,13 @@ fn file_of(plane: &VirtualPlane) -> String {
 }
 
 /// The names of the files of a measurement.
-pub(crate) fn names(planes: &[VirtualPlane]) -> Vec<String> {
+pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     let each = planes.iter().map(file_of);
     each.chain([LEDGER.to_owned()]).collect()
 }
 
 /// Writes all batches of a measurement.
-pub(crate) fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Failure> {
+pub fn write(results: &mut Results, measurement: &Measurement) -> Result<(), Failure> {
     let batches: Vec<&Batch> = measurement.batches().collect();
     let files = files(measurement.planes(), &batches)?;
     let mut files = files.into_iter();
@@ -44,7 +46,7 @@ pub(crate) fn write(results: &mut Results, measurement: &Measurement) -> Result<
 }
 
 /// The files of some batches at `planes`: name and content of each.
-pub(crate) fn files(
+pub fn files(
     planes: &[VirtualPlane],
     batches: &[&Batch],
 ) -> Result<Vec<(String, Vec<u8>)>, Failure> {
@@ -113,7 +115,7 @@ where
 }
 
 /// Reads the batches of a stage of `planes`.
-pub(crate) fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Measurement, Failure> {
+pub fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Measurement, Failure> {
     let held = &stored.index.content;
     let seed = stored.index.scene_file.run.seed;
     if held.seed != seed {
@@ -123,7 +125,7 @@ pub(crate) fn read(stored: &Stored<Held>, planes: &[VirtualPlane]) -> Result<Mea
 }
 
 /// Reads the batches that are held in files, which `open` opens by their names.
-pub(crate) fn read_files(
+pub fn read_files(
     open: &dyn Fn(&str) -> Result<NpzFile, Failure>,
     held: &Held,
     planes: &[VirtualPlane],

@@ -4,26 +4,13 @@
 //! as `summary.json`, lists them by their hashes and comes last. What the index of an earlier result lists, and
 //! still has that hash, is removed; anything else in the folder is somebody's, and stays (docs/files.md).
 
-pub(crate) mod arrays;
-pub(crate) mod batches;
 mod claim;
 mod commit;
-pub(crate) mod exr;
-pub(crate) mod fields;
-pub(crate) mod kept;
-mod lock;
-pub(crate) mod npz;
-pub(crate) mod output;
-pub(crate) mod predictions;
-pub(crate) mod sealed;
-pub(crate) mod stored;
-pub(crate) mod summary;
 
-use crate::failure::Failure;
-use crate::warnings::warn;
-use crate::{interrupt, say};
+use crate::Failure;
+use crate::lock::Lock;
+use crate::{lock, sealed, unfinished};
 use etendue_scene::read_file;
-use lock::Lock;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -31,54 +18,55 @@ use std::path::{Component, Path, PathBuf};
 use std::time::{Duration, Instant};
 
 /// The index of a comparison.
-pub(crate) const SUMMARY: &str = "summary.json";
+pub const SUMMARY: &str = "summary.json";
 /// The index of `etendue measure`.
-pub(crate) const MEASUREMENT: &str = "measurement.json";
+pub const MEASUREMENT: &str = "measurement.json";
 /// The index of `etendue predict`.
-pub(crate) const PREDICTION: &str = "prediction.json";
+pub const PREDICTION: &str = "prediction.json";
 /// The index of `etendue export`.
-pub(crate) const EXPORT: &str = "export.json";
+pub const EXPORT: &str = "export.json";
 /// The index of a figure.
-pub(crate) const FIGURE: &str = "figure.json";
+pub const FIGURE: &str = "figure.json";
 /// The index of `etendue sweep`.
-pub(crate) const SWEEP: &str = "sweep.json";
+pub const SWEEP: &str = "sweep.json";
 /// The index of a folder with a picture.
-pub(crate) const PICTURE: &str = "picture.json";
+pub const PICTURE: &str = "picture.json";
 /// The index of `etendue probe`.
-pub(crate) const PROBE: &str = "probe.json";
+pub const PROBE: &str = "probe.json";
 /// The index of `etendue covariance`.
-pub(crate) const COVARIANCE: &str = "covariance.json";
+pub const COVARIANCE: &str = "covariance.json";
 /// Seconds of a comparison: beside the index, since they are never the same twice.
-pub(crate) const TIMING: &str = "timing.json";
+pub const TIMING: &str = "timing.json";
 
 /// Most bytes of an index.
-pub(crate) const MOST_INDEX: u64 = 1 << 26;
+pub const MAX_INDEX_BYTES: u64 = 1 << 26;
 
 /// Where new files wait.
 const UNFINISHED: &str = ".etendue-unfinished";
 const LOCK: &str = ".etendue.lock";
 
 /// Why nothing is written below a folder.
-pub(crate) const LINKED: &str = "a link or a file stands where a folder is to be";
+pub const LINKED: &str = "a link or a file stands where a folder is to be";
 
 /// How long another process may hold a folder before that is said.
 const PATIENCE: Duration = Duration::from_secs(3);
 
 /// What a command is going to write, and what it reads.
 #[derive(Clone, Debug)]
-pub(crate) struct Plan {
-    pub(crate) index: &'static str,
+pub struct Plan {
+    /// Name of the index.
+    pub index: &'static str,
     /// Files beside the index, relative to the folder, with `/`.
-    pub(crate) files: Vec<String>,
+    pub files: Vec<String>,
     /// What must not be among them.
-    pub(crate) inputs: Vec<PathBuf>,
+    pub inputs: Vec<PathBuf>,
     /// Whether files of somebody else are replaced.
-    pub(crate) force: bool,
+    pub force: bool,
 }
 
 /// A results folder being written by this process alone.
 #[derive(Debug)]
-pub(crate) struct Results {
+pub struct Results {
     folder: PathBuf,
     /// As the user has it, for messages.
     shown: PathBuf,
@@ -96,28 +84,29 @@ pub(crate) struct Results {
 
 /// What became of a results folder.
 #[derive(Debug)]
-pub(crate) struct Finished {
-    pub(crate) folder: PathBuf,
+pub struct Finished {
+    /// As the user has named it.
+    pub folder: PathBuf,
     /// Files of the earlier result that are there no more.
-    pub(crate) gone: Vec<String>,
+    pub gone: Vec<String>,
     /// Files of somebody else that were replaced.
-    pub(crate) replaced: Vec<String>,
+    pub replaced: Vec<String>,
 }
 
 impl Finished {
-    /// Says which files of somebody else are no more, since `--force` was there.
-    pub(crate) fn tell_replaced(&self, quiet: bool) {
-        if !quiet && !self.replaced.is_empty() {
-            let names = self.replaced.join(", ");
-            say(&format!("replaced in {}: {names}", self.folder.display()));
-        }
+    /// Says which files of somebody else were replaced, if any.
+    #[must_use]
+    pub fn replaced_message(&self) -> Option<String> {
+        let names = self.replaced.join(", ");
+        let folder = self.folder.display();
+        (!self.replaced.is_empty()).then(|| format!("replaced in {folder}: {names}"))
     }
 }
 
 impl Results {
     /// Claims a folder, before any work is done: makes it, locks it, removes what a dead process left, and
     /// refuses when a file of somebody else, or an input, stands where one is to be written.
-    pub(crate) fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
+    pub fn claim(folder: &Path, plan: Plan) -> Result<Self, Failure> {
         let failure = |e| Failure::write(folder, e);
         if folder.symlink_metadata().is_ok() && !folder.is_dir() {
             return Err(Failure::write(folder, "what stands there is no folder"));
@@ -126,7 +115,7 @@ impl Results {
         fs::create_dir_all(folder).map_err(failure)?;
         let canonical = folder.canonicalize().map_err(failure)?;
         let path = canonical.join(LOCK);
-        let lock = interrupt::begin(vec![path.clone()], || Lock::take(&path, folder))?;
+        let lock = unfinished::begin(vec![path.clone()], || Lock::take(&path, folder))?;
         let mut results = Self {
             folder: canonical,
             shown: folder.to_owned(),
@@ -142,13 +131,13 @@ impl Results {
         results.refuse_foreign()?;
         let staged = results.staged("");
         let unfinished = [UNFINISHED, LOCK].map(|name| results.folder.join(name));
-        interrupt::begin(unfinished.to_vec(), || fs::create_dir_all(&staged))
+        unfinished::begin(unfinished.to_vec(), || fs::create_dir_all(&staged))
             .map_err(|e| Failure::write(&staged, e))?;
         Ok(results)
     }
 
     /// The same for a folder `name` of an `out` that the user names: below it nothing is written through a link.
-    pub(crate) fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
+    pub fn claim_below(out: &Path, name: &str, plan: Plan) -> Result<Self, Failure> {
         let folder = out.join(name);
         if inside(out, &format!("{name}/{}", plan.index)).is_none() {
             return Err(Failure::write(&folder, LINKED));
@@ -156,8 +145,8 @@ impl Results {
         Self::claim(&folder, plan)
     }
 
-    /// The same, but waits while another process writes there.
-    pub(crate) fn claim_in_turn(folder: &Path, plan: Plan) -> Result<Self, Failure> {
+    /// The same, but waits while another process writes there, and warns if that takes long.
+    pub fn claim_in_turn(folder: &Path, plan: Plan, warn: &dyn Fn(&str)) -> Result<Self, Failure> {
         let mut begun = Some(Instant::now());
         loop {
             match Self::claim(folder, plan.clone()) {
@@ -174,17 +163,17 @@ impl Results {
     }
 
     /// Does not write planned files whose names end so.
-    pub(crate) fn leave_out(&mut self, ends: &'static [&'static str]) {
+    pub fn leave_out(&mut self, ends: &'static [&'static str]) {
         self.left_out = ends;
     }
 
     /// Writes a file that the index lists.
-    pub(crate) fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
+    pub fn write(&mut self, name: &str, bytes: &[u8]) -> Result<(), Failure> {
         self.stream(name, &mut |file| file.write_all(bytes))
     }
 
     /// The same for a file too large for memory, which `content` writes.
-    pub(crate) fn stream(
+    pub fn stream(
         &mut self,
         name: &str,
         content: &mut dyn FnMut(&mut dyn Write) -> io::Result<()>,
@@ -198,7 +187,7 @@ impl Results {
     }
 
     /// Writes a JSON file that is not part of the promise of same bytes, with a hash of its own.
-    pub(crate) fn write_unlisted(&self, name: &str, json: &[u8]) -> Result<(), Failure> {
+    pub fn write_unlisted(&self, name: &str, json: &[u8]) -> Result<(), Failure> {
         let bytes = sealed::sealed(json);
         self.put(name, &mut |file| file.write_all(&bytes)).map(drop)
     }
@@ -219,7 +208,7 @@ impl Results {
         let path = self.staged(name);
         let mut write = || {
             // An interrupted process has removed the folder, and must not make it again.
-            let file = interrupt::undisturbed(|| {
+            let file = unfinished::undisturbed(|| {
                 if let Some(folder) = path.parent() {
                     fs::create_dir_all(folder)?;
                 }
@@ -237,7 +226,7 @@ impl Results {
     }
 
     /// Makes the index of the hashes of all files so far, and puts everything in its place.
-    pub(crate) fn finish(
+    pub fn finish(
         mut self,
         index: impl FnOnce(&BTreeMap<String, String>) -> Vec<u8>,
     ) -> Result<Finished, Failure> {
@@ -246,7 +235,7 @@ impl Results {
         // Somebody may have put a file there since the folder was claimed.
         self.refuse_inputs()?;
         self.refuse_foreign()?;
-        let moved = interrupt::undisturbed(|| self.commit())?;
+        let moved = unfinished::undisturbed(|| self.commit())?;
         self.is_new = false;
         let mut replaced = std::mem::take(&mut self.replaced);
         replaced.extend(moved.replaced);
@@ -297,7 +286,7 @@ impl Drop for Results {
         if self.ready_index().is_none() {
             let _ = fs::remove_dir_all(self.folder.join(UNFINISHED));
         }
-        interrupt::ended(|| drop(self.lock.take()));
+        unfinished::ended(|| drop(self.lock.take()));
         if self.is_new {
             // Where nothing was written.
             let _ = fs::remove_dir(&self.folder);
@@ -306,7 +295,7 @@ impl Drop for Results {
 }
 
 /// The path of a file of a folder; `None` if it leads out of it, by `..` or by a link.
-pub(crate) fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
+pub fn inside(folder: &Path, name: &str) -> Option<PathBuf> {
     let mut path = folder.to_owned();
     let mut components = Path::new(name).components().peekable();
     while let Some(component) = components.next() {
@@ -335,7 +324,7 @@ fn listed(index: &Path) -> Option<BTreeMap<String, String>> {
 }
 
 /// The hash that the index of a whole result has for a file.
-pub(crate) fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
+pub fn hash_of(folder: &Path, index: &str, name: &str) -> Option<String> {
     listed(&folder.join(index))?.remove(name)
 }
 
@@ -356,7 +345,7 @@ fn has_hash(path: &Path, hash: &str) -> bool {
 
 /// The content of a regular file that ends with the hash of itself.
 fn sealed_bytes(path: &Path) -> Option<Vec<u8>> {
-    let bytes = || read_file(path, MOST_INDEX).ok();
+    let bytes = || read_file(path, MAX_INDEX_BYTES).ok();
     let bytes = is_regular(path).then(bytes).flatten();
     bytes.filter(|bytes| sealed::is_sealed(bytes))
 }

@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 /// Readable JSON with a final newline. Numbers that are not finite become null.
-pub(crate) fn json(value: &impl Serialize) -> Vec<u8> {
+pub fn json(value: &impl Serialize) -> Vec<u8> {
     // Cannot fail: all keys are text.
     let mut bytes = serde_json::to_vec_pretty(value).unwrap_or_default();
     bytes.push(b'\n');
@@ -20,14 +20,14 @@ const AFTER: &str = "\"\n}\n";
 const END: &str = "\n}\n";
 
 /// Adds its hash to a JSON object in readable form, of at least one field.
-pub(crate) fn sealed(json: &[u8]) -> Vec<u8> {
+pub fn sealed(json: &[u8]) -> Vec<u8> {
     let body = json.strip_suffix(END.as_bytes()).unwrap_or(json);
     let hash = blake3::hash(body).to_hex();
     [body, BEFORE.as_bytes(), hash.as_bytes(), AFTER.as_bytes()].concat()
 }
 
 /// Whether bytes end with the hash of themselves.
-pub(crate) fn is_sealed(bytes: &[u8]) -> bool {
+pub fn is_sealed(bytes: &[u8]) -> bool {
     let hash_of = || {
         let rest = bytes.strip_suffix(AFTER.as_bytes())?;
         let (rest, digits) = rest.split_at_checked(rest.len().checked_sub(64)?)?;

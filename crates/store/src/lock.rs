@@ -1,6 +1,6 @@
 //! One writer at a time: a lock that the system takes away when its process ends.
 
-use crate::failure::Failure;
+use crate::Failure;
 use same_file::Handle;
 use std::fs::{self, File, TryLockError};
 use std::io;

@@ -7,7 +7,7 @@
 use super::{
     LINKED, Results, TIMING, UNFINISHED, has_hash, is_regular, listed, parents, sealed_bytes,
 };
-use crate::failure::Failure;
+use crate::Failure;
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};

@@ -1,13 +1,13 @@
 //! What a stage leaves in its folder for a later one: arrays, and last an index that names them.
 
-use crate::failure::Failure;
+use crate::Failure;
+use crate::Method;
+use crate::fields::{FieldChange, difference};
 use crate::machine;
-use crate::method::Method;
-use crate::results::fields::{FieldChange, difference};
-use crate::results::npz::NpzFile;
-use crate::results::sealed;
-use crate::results::sealed::json;
-use crate::results::{Finished, MOST_INDEX, Results, SUMMARY};
+use crate::npz::NpzFile;
+use crate::sealed;
+use crate::sealed::json;
+use crate::{Finished, MAX_INDEX_BYTES, Results, SUMMARY};
 use etendue_scene::{Scene, SceneFile, read_below, read_file, scene_hash};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -17,32 +17,34 @@ use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 /// Where a stage keeps a copy of a mesh or picture, beside the index of that name.
-pub(crate) fn copy_of(index: &str, input: &str) -> String {
+pub fn copy_of(index: &str, input: &str) -> String {
     let stage = index.trim_end_matches(".json");
     format!("{stage}.inputs/{input}")
 }
 
 /// The version of this program: stages of different ones do not mix.
-pub(crate) const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// An index: what was done, of which scene, and the hash of each file.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Index<T> {
-    pub(crate) scene: String,
+pub struct Index<T> {
+    /// Name of the scene.
+    pub scene: String,
     scene_hash: String,
     version: String,
     /// What the stage says of itself.
     #[serde(flatten)]
-    pub(crate) content: T,
+    pub content: T,
     /// The scene file, defaults and overrides included.
-    pub(crate) scene_file: SceneFile,
+    pub scene_file: SceneFile,
     /// BLAKE3 of each mesh and picture of the scene, by the name the scene file has for it.
     inputs: BTreeMap<String, String>,
     files: BTreeMap<String, String>,
 }
 
 impl<T: Serialize> Index<T> {
-    pub(crate) fn new(scene: &Scene, content: T) -> Self {
+    /// The index of what a stage did with a scene.
+    pub fn new(scene: &Scene, content: T) -> Self {
         Self {
             scene: scene.name.clone(),
             scene_hash: scene.hash(),
@@ -55,7 +57,7 @@ impl<T: Serialize> Index<T> {
     }
 
     /// Writes it after the files it lists.
-    pub(crate) fn finish(mut self, results: Results) -> Result<Finished, Failure> {
+    pub fn finish(mut self, results: Results) -> Result<Finished, Failure> {
         results.finish(|files| {
             self.files.clone_from(files);
             json(&self)
@@ -65,20 +67,22 @@ impl<T: Serialize> Index<T> {
 
 /// The folder of an earlier stage.
 #[derive(Debug)]
-pub(crate) struct Stored<T> {
-    pub(crate) folder: PathBuf,
+pub struct Stored<T> {
+    /// Where it is.
+    pub folder: PathBuf,
     /// Path of the index, for messages.
     path: PathBuf,
     name: &'static str,
-    pub(crate) index: Index<T>,
+    /// What the stage says of itself.
+    pub index: Index<T>,
 }
 
 impl<T: DeserializeOwned> Stored<T> {
     /// Reads the index called `name` in a folder. It must be of this version, and as it was written.
-    pub(crate) fn read(folder: &Path, name: &'static str) -> Result<Self, Failure> {
+    pub fn read(folder: &Path, name: &'static str) -> Result<Self, Failure> {
         let path = folder.join(name);
         let shown = path.display();
-        let bytes = read_below(folder, name, MOST_INDEX)
+        let bytes = read_below(folder, name, MAX_INDEX_BYTES)
             .map_err(|e| Failure::bad_input(format!("cannot read {shown}: {e}")))?;
         let fault = |what: String| Failure::bad_input(format!("{shown}: {what}"));
         let tree: Value = serde_json::from_slice(&bytes).unwrap_or_default();
@@ -109,7 +113,7 @@ impl<T: DeserializeOwned> Stored<T> {
 
 impl<T> Stored<T> {
     /// The scene it is of; what it names are the stage's own copies.
-    pub(crate) fn scene(&self) -> Result<Scene, Failure> {
+    pub fn scene(&self) -> Result<Scene, Failure> {
         let Index {
             scene,
             scene_file,
@@ -131,19 +135,19 @@ impl<T> Stored<T> {
     }
 
     /// The stage's copies of what its scene names must be those that were written.
-    pub(crate) fn check_inputs(&self) -> Result<(), Failure> {
+    pub fn check_inputs(&self) -> Result<(), Failure> {
         let mut names = self.index.inputs.keys();
         names.try_for_each(|name| self.bytes(&copy_of(self.name, name)).map(drop))
     }
 
     /// The paths of the index and of all files it lists.
-    pub(crate) fn paths(&self) -> Vec<PathBuf> {
+    pub fn paths(&self) -> Vec<PathBuf> {
         let files = self.index.files.keys().map(|name| self.folder.join(name));
         files.chain([self.path.clone()]).collect()
     }
 
     /// The arrays in the file `name`.
-    pub(crate) fn npz(&self, name: &str) -> Result<NpzFile, Failure> {
+    pub fn npz(&self, name: &str) -> Result<NpzFile, Failure> {
         NpzFile::new(self.folder.join(name), self.bytes(name)?)
     }
 
@@ -153,7 +157,7 @@ impl<T> Stored<T> {
     }
 
     /// Fails when `other` is of another scene; with `run`, also when the scene is to be measured in another way.
-    pub(crate) fn check_scene<U>(&self, other: &Stored<U>, run: bool) -> Result<(), Failure> {
+    pub fn check_scene<U>(&self, other: &Stored<U>, run: bool) -> Result<(), Failure> {
         let tree = |file: &SceneFile, inputs: &BTreeMap<String, String>| {
             let mut tree = serde_json::to_value(file).unwrap_or_default();
             if let Some(fields) = tree.as_object_mut() {
@@ -170,7 +174,7 @@ impl<T> Stored<T> {
     }
 
     /// Fails when this and `other` hold different values.
-    pub(crate) fn check_same<U>(
+    pub fn check_same<U>(
         &self,
         other: &Stored<U>,
         own: &Value,
@@ -187,13 +191,13 @@ impl<T> Stored<T> {
     }
 
     /// What is wrong with the index, for the user.
-    pub(crate) fn fault(&self, what: impl Display) -> Failure {
+    pub fn fault(&self, what: impl Display) -> Failure {
         Failure::bad_input(format!("{}: {what}", self.path.display()))
     }
 }
 
 /// The file `name` of a folder, whose bytes must be those that the index called `index` lists in `files`.
-pub(crate) fn listed_bytes(
+pub fn listed_bytes(
     folder: &Path,
     index: &str,
     files: &BTreeMap<String, String>,
@@ -214,8 +218,8 @@ pub(crate) fn listed_bytes(
 }
 
 /// The summary of a run of this very scene, by the same method and version.
-pub(crate) fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
-    let bytes = read_file(&folder.join(SUMMARY), MOST_INDEX).ok()?;
+pub fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option<Value> {
+    let bytes = read_file(&folder.join(SUMMARY), MAX_INDEX_BYTES).ok()?;
     let summary: Value = serde_json::from_slice(&bytes).ok()?;
     let same = summary["scene_hash"] == scene.hash()
         && summary["version"] == VERSION
@@ -225,14 +229,14 @@ pub(crate) fn summary_of(folder: &Path, scene: &Scene, method: Method) -> Option
 
 /// Fails where a folder holds a result of another scene, so that no result takes the place of one
 /// that only shares its name. How a scene was measured does not count.
-pub(crate) fn check_earlier(
+pub fn check_earlier(
     folder: &Path,
     index: &str,
     scene: &Scene,
     force: bool,
 ) -> Result<(), Failure> {
     let path = folder.join(index);
-    let earlier = read_file(&path, MOST_INDEX).ok();
+    let earlier = read_file(&path, MAX_INDEX_BYTES).ok();
     let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
     let Some(mut earlier) =
         earlier.and_then(|mut earlier| Some(earlier.get_mut("scene_file")?.take()))

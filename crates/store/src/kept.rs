@@ -4,13 +4,13 @@
 //! the hash of its content. A batch has the same bytes whoever measures it: processes need no lock to share the work, and one that
 //! dies holds nothing up. A batch on the way is a file too, the sum of its first parts: the next one replaces it.
 
-use crate::failure::Failure;
+use crate::Failure;
+use crate::Method;
+use crate::batches::{Held, files, read_files};
 use crate::machine::available_memory;
-use crate::method::Method;
-use crate::results::batches::{Held, files, read_files};
-use crate::results::npz::NpzFile;
-use crate::results::stored::VERSION;
-use crate::results::{LINKED, inside};
+use crate::npz::NpzFile;
+use crate::stored::VERSION;
+use crate::{LINKED, inside};
 use etendue_field::VirtualPlane;
 use etendue_scene::{Scene, read_file};
 use etendue_spectrum::{Batch, Measurement, PartialBatch};
@@ -26,7 +26,7 @@ const FOLDER: &str = "batches";
 
 /// The batches of one run.
 #[derive(Debug)]
-pub(crate) struct Kept {
+pub struct Kept {
     /// The folder of the results.
     out: PathBuf,
     folder: PathBuf,
@@ -37,7 +37,7 @@ pub(crate) struct Kept {
 
 impl Kept {
     /// Those of a run into `out`: of this scene, measured in this way by this version.
-    pub(crate) fn of(out: &Path, scene: &Scene, method: Method) -> Self {
+    pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
         let what = format!("{VERSION} {} {}", scene.hash(), method.words());
         let key = &blake3::hash(what.as_bytes()).to_hex()[..16];
         Self {
@@ -50,19 +50,19 @@ impl Kept {
     }
 
     /// Where they are, for messages.
-    pub(crate) fn folder(&self) -> &Path {
+    pub fn folder(&self) -> &Path {
         &self.folder
     }
 
     /// How many batches are done, and how many are begun.
-    pub(crate) fn count(&self) -> [usize; 2] {
+    pub fn count(&self) -> [usize; 2] {
         let found = self.furthest();
         let done = found.values().filter(|name| name.parts.is_none()).count();
         [done, found.len() - done]
     }
 
     /// How far a batch is; `None` if it is not begun.
-    pub(crate) fn progress(&self, batch: u32) -> Option<Progress> {
+    pub fn progress(&self, batch: u32) -> Option<Progress> {
         let furthest = self.furthest().remove(&batch)?;
         Some(furthest.parts.map_or(Progress::Done, Progress::Parts))
     }
@@ -93,12 +93,12 @@ impl Kept {
     }
 
     /// Keeps a batch.
-    pub(crate) fn write(&self, batch: &Batch) -> Result<(), Failure> {
+    pub fn write(&self, batch: &Batch) -> Result<(), Failure> {
         self.put(batch, None)
     }
 
     /// Keeps the first parts of a batch, unless more of them are kept.
-    pub(crate) fn write_partial(&self, batch: &PartialBatch) -> Result<(), Failure> {
+    pub fn write_partial(&self, batch: &PartialBatch) -> Result<(), Failure> {
         let is_new = match self.progress(batch.index) {
             None => true,
             Some(Progress::Parts(parts)) => parts < batch.parts,
@@ -137,7 +137,7 @@ impl Kept {
 
     /// Adds the batches that are done and not yet in a measurement. Returns those that are begun, and the paths of damaged files, which
     /// were removed: what they held is measured again. `emitted` says how many photons a batch has.
-    pub(crate) fn read(
+    pub fn read(
         &self,
         all: &mut Measurement,
         emitted: &dyn Fn(u32) -> u64,
@@ -181,7 +181,7 @@ impl Kept {
     }
 
     /// Removes them, and what a process that died has left unfinished.
-    pub(crate) fn remove(&self) {
+    pub fn remove(&self) {
         if !self.is_inside() {
             return;
         }
@@ -194,7 +194,7 @@ impl Kept {
 }
 
 /// A batch as the bytes of its file.
-pub(crate) fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure> {
+pub fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
     for (name, bytes) in files(planes, &[batch])? {
@@ -207,11 +207,7 @@ pub(crate) fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, 
 }
 
 /// The batch that `held` names, from the bytes of its file.
-pub(crate) fn unpacked(
-    bytes: &[u8],
-    held: &Held,
-    planes: &[VirtualPlane],
-) -> Result<Batch, Failure> {
+pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Batch, Failure> {
     let open = |name: &str| {
         let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(Failure::bad_input)?;
         let mut content = Vec::new();
@@ -230,7 +226,7 @@ pub(crate) fn unpacked(
 
 /// How far a batch is.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Progress {
+pub enum Progress {
     /// So many of its first parts are summed.
     Parts(u32),
     /// It is whole.

@@ -4,20 +4,22 @@ use serde_json::Value;
 
 /// A field that differs, named as for `--set`, and what it is in each of two trees.
 #[derive(Debug)]
-pub(crate) struct FieldChange {
-    pub(crate) field: String,
-    pub(crate) values: [String; 2],
+pub struct FieldChange {
+    /// Path of the field, with dots.
+    pub field: String,
+    /// Its two values, shortened.
+    pub values: [String; 2],
 }
 
 /// All fields in which two trees differ, in the order of the first. A field that one lacks is null there.
-pub(crate) fn differences(a: &Value, b: &Value) -> Vec<FieldChange> {
+pub fn differences(a: &Value, b: &Value) -> Vec<FieldChange> {
     let mut found = Vec::new();
     collect(String::new(), a, b, &mut found);
     found
 }
 
 /// The first of them.
-pub(crate) fn difference(a: &Value, b: &Value) -> Option<FieldChange> {
+pub fn difference(a: &Value, b: &Value) -> Option<FieldChange> {
     differences(a, b).into_iter().next()
 }
 

@@ -1,11 +1,11 @@
 //! Predictions as files: `prediction.npz` for each plane.
 
-use crate::crew::{joined, split};
-use crate::failure::Failure;
-use crate::method::Method;
-use crate::results::Results;
-use crate::results::npz::{Npz, NpzFile};
-use crate::results::stored::Stored;
+use crate::Failure;
+use crate::Method;
+use crate::Results;
+use crate::framing::{joined, split};
+use crate::npz::{Npz, NpzFile};
+use crate::stored::Stored;
 use etendue_compare::{
     Applicability, Class, FirstOrder, FirstOrderChain, PredictedParameter, Prediction,
 };
@@ -18,15 +18,16 @@ use std::path::PathBuf;
 
 /// What `prediction.json` says beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct Predicted {
+pub struct Predicted {
     /// Of the measurement it is for: where there is no theory, the other method took its place.
     method: Method,
-    pub(crate) planes: Vec<PredictedPlane>,
+    /// One for each plane of the scene.
+    pub planes: Vec<PredictedPlane>,
 }
 
 /// The words of a prediction; its numbers are in the arrays.
 #[derive(Debug, Serialize, Deserialize)]
-pub(crate) struct PredictedPlane {
+pub struct PredictedPlane {
     name: String,
     class: Class,
     chain: Vec<String>,
@@ -48,12 +49,12 @@ fn file_of(plane: &VirtualPlane) -> String {
 }
 
 /// The names of the files of a prediction.
-pub(crate) fn names(planes: &[VirtualPlane]) -> Vec<String> {
+pub fn names(planes: &[VirtualPlane]) -> Vec<String> {
     planes.iter().map(file_of).collect()
 }
 
 /// Writes the predictions of the planes of a scene for a measurement by `method`; returns what the index says of them.
-pub(crate) fn write(
+pub fn write(
     results: &mut Results,
     scene: &Scene,
     method: Method,
@@ -69,13 +70,13 @@ pub(crate) fn write(
 }
 
 /// A prediction as bytes, for another process.
-pub(crate) fn packed(plane: &VirtualPlane, prediction: &Prediction) -> Result<Vec<u8>, Failure> {
+pub fn packed(plane: &VirtualPlane, prediction: &Prediction) -> Result<Vec<u8>, Failure> {
     let (words, bytes) = stored(plane, prediction)?;
     Ok(joined(&words, &bytes))
 }
 
 /// The prediction of a plane from bytes of [`packed`].
-pub(crate) fn unpacked(plane: &VirtualPlane, bytes: &[u8]) -> Result<Prediction, Failure> {
+pub fn unpacked(plane: &VirtualPlane, bytes: &[u8]) -> Result<Prediction, Failure> {
     let (words, bytes): (PredictedPlane, _) = split(bytes).map_err(Failure::cannot_run)?;
     let file = NpzFile::new(PathBuf::from(file_of(plane)), bytes.to_vec())?;
     read_plane(file, plane, &words)
@@ -158,7 +159,7 @@ fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
 }
 
 /// Reads the predictions of the planes of a scene for a measurement by `method`.
-pub(crate) fn read(
+pub fn read(
     stored: &Stored<Predicted>,
     scene: &Scene,
     theories: &[Applicability],

@@ -1,19 +1,19 @@
 //! The array files of one plane: `slices.npz`, `radial.npz`, `radial.exr`.
 
-use crate::failure::Failure;
-use crate::results::Results;
-use crate::results::exr::{Part, exr};
-use crate::results::npz::{Npz, azimuths};
+use crate::Failure;
+use crate::Results;
+use crate::exr::{Part, exr};
+use crate::npz::{Npz, azimuths};
 use etendue_compare::PlaneComparison;
 use etendue_field::Complex;
 use ndarray::{Array1, Array2, Array3};
 use serde_json::{Value, json};
 
 /// The files of a plane.
-pub(crate) const NAMES: [&str; 3] = ["slices.npz", "radial.npz", "radial.exr"];
+pub const NAMES: [&str; 3] = ["slices.npz", "radial.npz", "radial.exr"];
 
 /// Writes them; `made_from` says what from.
-pub(crate) fn write(
+pub fn write(
     results: &mut Results,
     made_from: Value,
     plane: &PlaneComparison,
@@ -93,7 +93,7 @@ fn radial(plane: &PlaneComparison) -> Result<Vec<u8>, Failure> {
 }
 
 /// Measured minus predicted radial power over its standard deviation if the prediction is true.
-pub(crate) fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
+pub fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
     z(
         &plane.radial.power,
         &plane.predicted_radial,
@@ -102,11 +102,7 @@ pub(crate) fn radial_z(plane: &PlaneComparison) -> Array2<f64> {
 }
 
 /// (measured − predicted) / sigma; NaN where no photon told an error.
-pub(crate) fn z(
-    measured: &Array2<f64>,
-    predicted: &Array2<f64>,
-    sigma: &Array2<f64>,
-) -> Array2<f64> {
+pub fn z(measured: &Array2<f64>, predicted: &Array2<f64>, sigma: &Array2<f64>) -> Array2<f64> {
     let mut z = measured - predicted;
     z.zip_mut_with(sigma, |z, s| *z = if *s > 0.0 { *z / s } else { f64::NAN });
     z

@@ -1,29 +1,40 @@
 //! NPZ files: named arrays, written to memory and read back with every fault named.
 
-use crate::failure::Failure;
+use crate::Failure;
 use etendue_field::{Complex, SliceGrid};
 use ndarray::{Array, Array1, ArrayBase, ArrayView, Data, Dimension, IntoDimension};
 use ndarray_npy::{
     NpzWriter, ReadNpyExt, ReadableElement, ViewElement, ViewNpyError, ViewNpyExt, WritableElement,
 };
-use std::fmt::Display;
+use std::fmt::{self, Display};
 use std::io::{Cursor, Read};
 use std::path::PathBuf;
 use zip::ZipArchive;
 
 /// Named arrays in the making of a file.
-pub(crate) struct Npz(NpzWriter<Cursor<Vec<u8>>>);
+pub struct Npz(NpzWriter<Cursor<Vec<u8>>>);
+
+impl fmt::Debug for Npz {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Npz").finish_non_exhaustive()
+    }
+}
+
+impl Default for Npz {
+    fn default() -> Self {
+        Self::new()
+    }
+}
 
 impl Npz {
-    pub(crate) fn new() -> Self {
+    /// No arrays yet.
+    #[must_use]
+    pub fn new() -> Self {
         Self(NpzWriter::new(Cursor::new(Vec::new())))
     }
 
-    pub(crate) fn add<A, S, D>(
-        mut self,
-        name: &str,
-        array: &ArrayBase<S, D>,
-    ) -> Result<Self, Failure>
+    /// Adds an array by its name.
+    pub fn add<A, S, D>(mut self, name: &str, array: &ArrayBase<S, D>) -> Result<Self, Failure>
     where
         A: WritableElement,
         S: Data<Elem = A>,
@@ -36,12 +47,13 @@ impl Npz {
     }
 
     /// Adds the frequencies of arrays [azimuth, ρ ≥ 0, ν].
-    pub(crate) fn add_half_axes(self, grid: &SliceGrid) -> Result<Self, Failure> {
+    pub fn add_half_axes(self, grid: &SliceGrid) -> Result<Self, Failure> {
         let mut axes = half_axes(grid).into_iter();
         axes.try_fold(self, |npz, (name, values)| npz.add(name, &values))
     }
 
-    pub(crate) fn bytes(self) -> Result<Vec<u8>, Failure> {
+    /// The bytes of the file.
+    pub fn bytes(self) -> Result<Vec<u8>, Failure> {
         let finished = self.0.finish().map_err(Failure::cannot_run)?;
         Ok(finished.into_inner())
     }
@@ -58,14 +70,23 @@ fn half_axes(grid: &SliceGrid) -> [(&'static str, Array1<f64>); 3] {
 }
 
 /// A file to read arrays from.
-pub(crate) struct NpzFile {
+pub struct NpzFile {
     path: PathBuf,
     archive: ZipArchive<Cursor<Vec<u8>>>,
     length: usize,
 }
 
+impl fmt::Debug for NpzFile {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let path = &self.path;
+        f.debug_struct("NpzFile")
+            .field("path", path)
+            .finish_non_exhaustive()
+    }
+}
+
 /// A number an array may hold.
-pub(crate) trait Number: ReadableElement + ViewElement + Copy {
+pub trait Number: ReadableElement + ViewElement + Copy {
     /// Whether it is neither infinite nor NaN.
     fn is_finite(self) -> bool;
 }
@@ -121,7 +142,7 @@ const HEADER: usize = 1 << 16;
 
 impl NpzFile {
     /// The file of these bytes; `path` is for messages.
-    pub(crate) fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
+    pub fn new(path: PathBuf, bytes: Vec<u8>) -> Result<Self, Failure> {
         let length = bytes.len();
         match ZipArchive::new(Cursor::new(bytes)) {
             Ok(archive) => Ok(Self {
@@ -134,7 +155,7 @@ impl NpzFile {
     }
 
     /// The array `name`, in C order; it must have this shape and hold finite numbers.
-    pub(crate) fn array<A: Number, I: IntoDimension>(
+    pub fn array<A: Number, I: IntoDimension>(
         &mut self,
         name: &str,
         shape: I,
@@ -154,13 +175,13 @@ impl NpzFile {
     }
 
     /// The numbers of an axis, of any length.
-    pub(crate) fn axis(&mut self, name: &str) -> Result<Array1<f64>, Failure> {
+    pub fn axis(&mut self, name: &str) -> Result<Array1<f64>, Failure> {
         // What is not compressed is no larger than the file.
         self.finite(name, self.length)
     }
 
     /// Whether the file is long enough for so many numbers of eight bytes, as it is where nothing is compressed.
-    pub(crate) fn may_hold(&self, numbers: usize) -> bool {
+    pub fn may_hold(&self, numbers: usize) -> bool {
         numbers <= self.length / size_of::<f64>()
     }
 
@@ -189,14 +210,14 @@ impl NpzFile {
     }
 
     /// Whether it has an array of this name.
-    pub(crate) fn has(&self, name: &str) -> bool {
+    pub fn has(&self, name: &str) -> bool {
         self.archive
             .index_for_name(&format!("{name}.npy"))
             .is_some()
     }
 
     /// Its axes must be those of a grid, to the bit.
-    pub(crate) fn check_half_axes(&mut self, grid: &SliceGrid) -> Result<(), Failure> {
+    pub fn check_half_axes(&mut self, grid: &SliceGrid) -> Result<(), Failure> {
         for (name, values) in half_axes(grid) {
             let found: Array1<f64> = self.array(name, [values.len()])?;
             if found != values {
@@ -207,7 +228,7 @@ impl NpzFile {
     }
 
     /// What is wrong with array `name`, for the user.
-    pub(crate) fn fault(&self, name: &str, what: impl Display) -> Failure {
+    pub fn fault(&self, name: &str, what: impl Display) -> Failure {
         let path = self.path.display();
         Failure::bad_input(format!("{path}: array {name}: {what}"))
     }

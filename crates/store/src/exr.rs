@@ -1,6 +1,6 @@
 //! OpenEXR files: parts of one channel Y each, with what they were made from.
 
-use crate::failure::Failure;
+use crate::Failure;
 use exr::prelude::{
     AnyChannel, AnyChannels, AttributeValue, Encoding, FlatSamples, Image, ImageAttributes,
     IntegerBounds, Layer, LayerAttributes, Text, WritableImage,
@@ -10,13 +10,15 @@ use std::io::Cursor;
 
 /// One part of a file: rows from the top, each from the left.
 #[derive(Debug)]
-pub(crate) struct Part {
-    pub(crate) name: &'static str,
-    pub(crate) samples: Vec<f32>,
+pub struct Part {
+    /// Name of the channel.
+    pub name: &'static str,
+    /// One number for each pixel, row by row from the top.
+    pub samples: Vec<f32>,
 }
 
 /// The bytes of a file; `provenance` is an attribute of each part.
-pub(crate) fn exr(
+pub fn exr(
     [width, height]: [usize; 2],
     parts: Vec<Part>,
     provenance: &Value,

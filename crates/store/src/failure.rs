@@ -14,17 +14,19 @@ pub struct Failure {
 /// Exit code of bad input.
 const BAD_INPUT: u8 = 2;
 /// Exit code of a run that cannot be made here: directory, disk, memory, interruption.
-pub(crate) const CANNOT_RUN: u8 = 3;
+pub const CANNOT_RUN: u8 = 3;
 
 impl Failure {
-    pub(crate) fn bad_input(message: impl Display) -> Self {
+    /// Something that the user gave is wrong: exit code 2.
+    pub fn bad_input(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
             code: BAD_INPUT,
         }
     }
 
-    pub(crate) fn cannot_run(message: impl Display) -> Self {
+    /// What was asked cannot be done here: exit code 3.
+    pub fn cannot_run(message: impl Display) -> Self {
         Self {
             message: message.to_string(),
             code: CANNOT_RUN,
@@ -32,7 +34,7 @@ impl Failure {
     }
 
     /// A scene that is not legal, or sound and too large for this machine.
-    pub(crate) fn of_scene(error: &SceneError, message: impl Display) -> Self {
+    pub fn of_scene(error: &SceneError, message: impl Display) -> Self {
         match error {
             SceneError::Values(faults) if faults.iter().all(|f| f.memory) => {
                 Self::cannot_run(message)
@@ -42,7 +44,7 @@ impl Failure {
     }
 
     /// The result file or folder `path` could not be written.
-    pub(crate) fn write(path: &Path, reason: impl Display) -> Self {
+    pub fn write(path: &Path, reason: impl Display) -> Self {
         Self::cannot_run(format!("cannot write {}: {reason}", path.display()))
     }
 }

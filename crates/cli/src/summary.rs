@@ -1,11 +1,11 @@
 use crate::case::Case;
-use crate::machine;
-use crate::method::Method;
-use crate::results::sealed::json;
-use crate::results::stored::VERSION;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;
 use etendue_scene::{Emission, SceneFile};
+use etendue_store::Method;
+use etendue_store::machine;
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::time::Instant;

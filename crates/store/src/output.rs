@@ -1,7 +1,7 @@
 //! A single file of the user's choosing, such as a picture or a table.
 
-use crate::failure::Failure;
-use crate::results::lock::Lock;
+use crate::Failure;
+use crate::lock::Lock;
 use std::fs;
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
@@ -9,7 +9,7 @@ use tempfile::TempPath;
 
 /// A file that is there when it is whole, and not before.
 #[derive(Debug)]
-pub(crate) struct OutputFile {
+pub struct OutputFile {
     path: PathBuf,
     force: bool,
     /// The file that becomes it.
@@ -19,7 +19,7 @@ pub(crate) struct OutputFile {
 impl OutputFile {
     /// Proves that the file can be written, before any work is done. What stands at the path stays, unless
     /// `force` is there and it is a regular file; it must not be among `inputs` in any case.
-    pub(crate) fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
+    pub fn claim(path: &Path, force: bool, inputs: &[PathBuf]) -> Result<Self, Failure> {
         let failure = |e: io::Error| Failure::write(path, e);
         let Some(name) = path.file_name() else {
             return Err(Failure::write(path, "it names no file"));
@@ -54,7 +54,7 @@ impl OutputFile {
     }
 
     /// Writes it whole.
-    pub(crate) fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
+    pub fn write(mut self, bytes: &[u8]) -> Result<(), Failure> {
         let mut write = || -> io::Result<()> {
             self.lock.file.set_len(0)?;
             self.lock.file.write_all(bytes)?;

@@ -1,0 +1,34 @@
+//! Result folders: who owns a file, how new files take the place of old ones, and what is in them.
+//!
+//! [`Results`] claims a folder, writes files and an index of their hashes, and puts them in place together. The other
+//! modules know what the files hold: arrays, batches, predictions, and indices that a later stage reads.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a Failure carries the whole message for the user, written where it occurs"
+)]
+
+pub mod arrays;
+pub mod batches;
+pub mod exr;
+mod failure;
+pub mod fields;
+pub mod framing;
+pub mod kept;
+mod lock;
+pub mod machine;
+mod method;
+pub mod npz;
+pub mod output;
+pub mod predictions;
+mod results;
+pub mod sealed;
+pub mod stored;
+pub mod unfinished;
+
+pub use failure::{CANNOT_RUN, Failure};
+pub use method::Method;
+pub use results::{
+    COVARIANCE, EXPORT, FIGURE, Finished, LINKED, MAX_INDEX_BYTES, MEASUREMENT, PICTURE,
+    PREDICTION, PROBE, Plan, Results, SUMMARY, SWEEP, TIMING, hash_of, inside,
+};
