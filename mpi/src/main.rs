@@ -8,7 +8,8 @@
 //! Why `ferrompi`: it needs no libclang, its calls return errors instead of aborting, and both MPICH and Open MPI are tested there.
 //! `mpi` (rsmpi) generates its bindings by libclang, which the nodes of clusters often lack.
 
-use etendue::{Crew, in_crew};
+use etendue::command_of_workers;
+use etendue_pipeline::Workers;
 use ferrompi::{Communicator, Mpi, Source, Tag, ThreadLevel};
 use std::io::Write;
 use std::process::ExitCode;
@@ -24,7 +25,7 @@ const PAUSE: Duration = Duration::from_micros(200);
 /// All ranks of the job.
 struct Ranks(Communicator);
 
-impl Crew for Ranks {
+impl Workers for Ranks {
     fn number(&self) -> usize {
         usize::try_from(self.0.rank()).unwrap_or(0)
     }
@@ -67,5 +68,5 @@ fn main() -> ExitCode {
         }
     };
     let ranks = Ranks(mpi.world());
-    ExitCode::from(in_crew(std::env::args_os(), &ranks))
+    ExitCode::from(command_of_workers(std::env::args_os(), &ranks))
 }

@@ -4,9 +4,10 @@ use crate::live::alive;
 use crate::outcome::Outcome;
 use crate::raised::raised;
 use crate::rays::{Rays, spectrum};
-use etendue::{Failure, Method, Options};
 use etendue_field::Crossing;
+use etendue_pipeline::Options;
 use etendue_spectrum::{Batch, Watch};
+use etendue_store::{Failure, Method};
 use ndarray::Array2;
 use numpy::{PyArray2, PyReadonlyArray1};
 use pyo3::prelude::*;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 
 /// A scene, and how it is measured.
 #[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Job(Arc<etendue::Job>);
+pub(crate) struct Job(Arc<etendue_pipeline::Job>);
 
 /// Some batches of a scene.
 #[pyclass(frozen, module = "etendue._etendue")]
@@ -46,7 +47,7 @@ fn options(
 }
 
 impl Job {
-    fn of(py: Python<'_>, job: Result<etendue::Job, Failure>) -> PyResult<Self> {
+    fn of(py: Python<'_>, job: Result<etendue_pipeline::Job, Failure>) -> PyResult<Self> {
         let job = job.map_err(|failure| raised(py, failure))?;
         Ok(Self(Arc::new(job)))
     }
@@ -65,7 +66,7 @@ impl Job {
     ) -> PyResult<Self> {
         Self::of(
             py,
-            etendue::Job::read(&path, &options(set, photons, seed, backward)),
+            etendue_pipeline::Job::read(&path, &options(set, photons, seed, backward)),
         )
     }
 
@@ -82,7 +83,10 @@ impl Job {
         backward: bool,
     ) -> PyResult<Self> {
         let options = options(set, photons, seed, backward);
-        Self::of(py, etendue::Job::parse(text, name, &folder, &options))
+        Self::of(
+            py,
+            etendue_pipeline::Job::parse(text, name, &folder, &options),
+        )
     }
 
     #[getter]

@@ -1,8 +1,8 @@
 //! Long work that Python can follow and stop.
 
 use crate::raised::raised;
-use etendue::Failure;
 use etendue_spectrum::Watch;
+use etendue_store::Failure;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 use std::panic::resume_unwind;
@@ -55,10 +55,7 @@ pub(crate) fn alive<T: Send + 'static>(
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads.unwrap_or(0));
         let found = match pool.build() {
             Ok(pool) => pool.install(|| work(&of_thread)),
-            Err(error) => Err(Failure {
-                message: error.to_string(),
-                code: 3,
-            }),
+            Err(error) => Err(Failure::cannot_run(error)),
         };
         // Nobody listens where Ctrl-C came.
         let _ = tell.send(found);

@@ -2,9 +2,9 @@
 
 use crate::arrays::Arrays;
 use crate::raised::raised;
-use etendue::SliceArrays;
 use etendue_compare::PlaneComparison;
 use etendue_field::ProjectionGrid;
+use etendue_store::arrays::SliceArrays;
 use ndarray::Array1;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -13,7 +13,7 @@ use std::path::PathBuf;
 
 /// A scene whose planes are measured, predicted and compared.
 #[pyclass(frozen, module = "etendue._etendue")]
-pub(crate) struct Outcome(pub(crate) etendue::Outcome);
+pub(crate) struct Outcome(pub(crate) etendue_pipeline::Outcome);
 
 impl Outcome {
     fn plane(&self, plane: usize) -> PyResult<&PlaneComparison> {
@@ -87,7 +87,7 @@ impl Outcome {
     }
 
     fn save(&self, py: Python<'_>, folder: PathBuf, force: bool) -> PyResult<PathBuf> {
-        let saved = py.detach(|| self.0.save(&folder, force));
+        let saved = py.detach(|| etendue_report::save(&self.0, &folder, force));
         saved.map_err(|failure| raised(py, failure))
     }
 }

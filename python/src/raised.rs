@@ -1,6 +1,6 @@
 //! Failures as exceptions.
 
-use etendue::Failure;
+use etendue_store::Failure;
 use pyo3::create_exception;
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;

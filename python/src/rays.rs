@@ -3,13 +3,13 @@
 use crate::arrays::Arrays;
 use crate::live::Live;
 use crate::outcome::cells;
-use etendue::Failure;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
 use etendue_spectrum::moments::shear_slope;
 use etendue_spectrum::{
     CrossPower, PartialBatch, RadialPower, Uncertain, estimate, measure_watched,
 };
+use etendue_store::Failure;
 use ndarray::Array1;
 use numpy::PyReadonlyArray1;
 use pyo3::exceptions::PyValueError;

@@ -3,6 +3,8 @@ use crate::values::{Setting, Sweep, setting, sweep};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use etendue_field::tidy;
+use etendue_pipeline::load::SceneSource;
+use etendue_pipeline::photons::Save;
 use etendue_scene::RunFile;
 use etendue_store::Method;
 use std::ops::Range;
@@ -122,7 +124,7 @@ pub(crate) struct RunArgs {
     pub(crate) time: Option<Duration>,
 
     /// What else to keep
-    #[arg(long, value_name = "WHAT", value_delimiter = ',')]
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = saves())]
     pub(crate) save: Vec<Save>,
 
     /// A small folder for an archive: without CSV and SVG beside the pictures, and without the explorer
@@ -386,6 +388,16 @@ pub(crate) struct SceneArgs {
     pub(crate) set: Vec<(String, String)>,
 }
 
+impl SceneArgs {
+    /// The scene, for the pipeline.
+    pub(crate) fn source(&self) -> SceneSource {
+        SceneSource {
+            path: self.path.clone(),
+            set: self.set.clone(),
+        }
+    }
+}
+
 #[derive(Debug, Args)]
 #[command(after_help = "Example:
   etendue export --to mitsuba scenes/fig9b.ron --out out/mitsuba
@@ -631,17 +643,19 @@ pub(crate) enum Program {
 }
 
 /// What `--save` keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub(crate) enum Save {
-    /// Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each
-    Photons,
-    /// The same photons as rays of the world with their power in W, photons.mcpl: 64 bytes for each
-    Mcpl,
-    /// The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each
-    Tm25,
-    /// The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz, which is
-    /// predicted and compared too; takes another pass over the photons for each plane, or two where memory is short
-    Field,
+fn saves() -> impl TypedValueParser<Value = Save> {
+    let named = |save: Save, help: &'static str| PossibleValue::new(save.name()).help(help);
+    PossibleValuesParser::new([
+        named(Save::Photons, "Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each"),
+        named(Save::Mcpl, "The same photons as rays of the world with their power in W, photons.mcpl: 64 bytes for each"),
+        named(Save::Tm25, "The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each"),
+        named(Save::Field, "The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz, which is predicted and compared too; takes another pass over the photons for each plane, or two where memory is short"),
+    ])
+    .map(|name| {
+        let all = [Save::Photons, Save::Mcpl, Save::Tm25];
+        let saved = all.into_iter().find(|save| save.name() == name);
+        saved.unwrap_or(Save::Field)
+    })
 }
 
 /// What `--expect` may expect.

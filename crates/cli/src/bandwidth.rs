@@ -1,11 +1,14 @@
 use crate::args::BandwidthArgs;
-use crate::measure::measured;
-use crate::table::aligned;
+use crate::progress::Terminal;
 use crate::threads::on_threads;
+use crate::values::scene_at;
 use crate::values::{Point, points, said_at, shown};
-use crate::{deliver, limits, load, method, progress, say};
+use crate::{deliver, progress, say};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_field::{Term, VirtualPlane};
+use etendue_pipeline::measured;
+use etendue_pipeline::table::aligned;
+use etendue_pipeline::{limits, load, method};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::output::OutputFile;
@@ -15,7 +18,7 @@ use std::path::PathBuf;
 /// `etendue bandwidth`: returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
-    let at = |point| load::scene_at(&args.scene, point, |run| args.photons.set(run));
+    let at = |point| scene_at(&args.scene, point, |run| args.photons.set(run));
     let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
     if args.measure {
         for scene in &scenes {
@@ -26,7 +29,7 @@ pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     }
     let inputs: Vec<_> = scenes
         .iter()
-        .flat_map(|scene| load::inputs(&args.scene, scene))
+        .flat_map(|scene| load::inputs(&args.scene.source(), scene))
         .collect();
     let claim = |path: &PathBuf| OutputFile::claim(path, args.force.force, &inputs);
     let csv = args.csv.as_ref().map(claim).transpose()?;
@@ -144,7 +147,12 @@ fn of(
         .collect();
     let measurement = if args.measure && !planes.is_empty() {
         let batches = 0..scene.run.batches;
-        Some(measured(scene, args.photons.method, batches, quiet)?)
+        Some(measured(
+            scene,
+            args.photons.method,
+            batches,
+            &Terminal::new(quiet),
+        )?)
     } else {
         None
     };

@@ -1,7 +1,9 @@
 use crate::args::CheckArgs;
-use crate::{deliver, limits, load, method, pictures, say, warnings};
+use crate::{deliver, say, warnings};
 use etendue_compare::{Applicability, Class, Memory, seconds};
 use etendue_field::{Orientation, tidy};
+use etendue_pipeline::{limits, load, method};
+use etendue_report::pictures;
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::Method;
@@ -12,8 +14,8 @@ use std::thread::available_parallelism;
 
 /// `etendue check`: returns the exit code.
 pub(crate) fn check(args: &CheckArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, |_| ())?;
-    let inputs = load::inputs(&args.scene, &scene);
+    let scene = load::scene(&args.scene.source(), |_| ())?;
+    let inputs = load::inputs(&args.scene.source(), &scene);
     let picture = args.draw.as_ref().map(|path| {
         let bytes = pictures::drawn_scene(&scene, path)?;
         Ok((

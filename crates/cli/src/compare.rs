@@ -1,10 +1,11 @@
 use crate::args::CompareArgs;
-use crate::case::Case;
-use crate::conclude::{Ending, conclude, plan};
-use crate::summary::Stopwatch;
+use crate::conclude::{Ending, conclude};
 use crate::threads::on_threads;
 use crate::{progress, say};
 use etendue_compare::Applicability;
+use etendue_pipeline::MeasuredScene;
+use etendue_pipeline::Stopwatch;
+use etendue_report::{OutputOptions, plan};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_store::Failure;
@@ -34,16 +35,18 @@ pub(crate) fn compare(args: &CompareArgs) -> Result<u8, Failure> {
         say(&format!("{held} of {all} batches were measured"));
     }
     let ending = Ending {
-        save: &[],
+        options: OutputOptions {
+            save: &[],
+            compact: false,
+        },
         expect: args.expect,
-        compact: false,
         quiet: args.quiet,
     };
     on_threads(&args.threads, || conclude(&case, &ending, results, watch))
 }
 
 /// All that was measured and predicted, if it fits together, and the files it was read from.
-fn read(args: &CompareArgs) -> Result<(Case, Vec<PathBuf>), Failure> {
+fn read(args: &CompareArgs) -> Result<(MeasuredScene, Vec<PathBuf>), Failure> {
     let shards = args.measured.iter();
     let shards: Vec<Stored<Held>> = shards
         .map(|folder| Stored::read(folder, MEASUREMENT))
@@ -65,7 +68,7 @@ fn read(args: &CompareArgs) -> Result<(Case, Vec<PathBuf>), Failure> {
         .chain(predicted.paths());
     let inputs = inputs.collect();
     let theories = Applicability::of_planes(&scene);
-    let case = Case {
+    let case = MeasuredScene {
         method,
         predictions: predictions::read(&predicted, &scene, &theories, method)?,
         theories,

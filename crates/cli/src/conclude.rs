@@ -1,101 +1,42 @@
-use crate::args::{Expect, Save};
-use crate::case::Case;
-use crate::inquiry::inquire;
-use crate::measure::measured;
-use crate::predict::predicted;
-use crate::report::explorer;
-use crate::say_replaced;
-use crate::summary::{Stopwatch, Summary};
-use crate::{aimed, field, photons, pictures, progress, report, say, table, target};
-use etendue_compare::{Applicability, PlaneComparison, PlaneReport, Test, Verdict, compare};
-use etendue_field::VirtualPlane;
-use etendue_scene::Scene;
-use etendue_store::Failure;
-use etendue_store::Method;
-use etendue_store::arrays;
-use etendue_store::{Finished, Plan, Results, SUMMARY, TIMING};
-use std::path::PathBuf;
+//! The end of a command that compares: writes the result, prints it, and has the exit code.
 
-impl Case {
-    /// Measures a scene and predicts it.
-    pub(crate) fn of(
-        scene: Scene,
-        theories: Vec<Applicability>,
-        method: Method,
-        quiet: bool,
-    ) -> Result<Self, Failure> {
-        let measurement = measured(&scene, method, 0..scene.run.batches, quiet)?;
-        let predictions = predicted(&scene, &theories, method, None, quiet)?;
-        Ok(Self {
-            scene,
-            theories,
-            method,
-            measurement,
-            predictions,
-        })
-    }
-}
+use crate::args::Expect;
+use crate::progress::Terminal;
+use crate::{say, say_replaced};
+use etendue_compare::{PlaneReport, Verdict};
+use etendue_pipeline::photons::Save;
+use etendue_pipeline::{Judged, MeasuredScene, Reporter, Stopwatch, Summary, Work, table, target};
+use etendue_report::{OutputOptions, write_result};
+use etendue_store::{Failure, Results};
 
-/// What the user wants beside the result.
+/// What a user wants of the end of a command.
 #[derive(Debug)]
 pub(crate) struct Ending<'a> {
-    pub(crate) save: &'a [Save],
+    pub(crate) options: OutputOptions<'a>,
     pub(crate) expect: Option<Expect>,
-    /// Without the files that pictures and arrays already say.
-    pub(crate) compact: bool,
     pub(crate) quiet: bool,
-}
-
-/// Ends of names of files that a compact result does without: `report.html` has what is drawn, arrays have the numbers.
-const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
-
-/// What a comparison of a scene writes.
-pub(crate) fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> Plan {
-    let of_plane = |plane: &VirtualPlane| {
-        let mut names = [arrays::NAMES.as_slice(), pictures::NAMES.as_slice()].concat();
-        names.extend(save.iter().flat_map(|save| photons::names(*save)));
-        if save.contains(&Save::Field) {
-            names.extend(field::NAMES);
-        }
-        let names = names.into_iter();
-        let names = names.map(|name| format!("{}/{name}", plane.name));
-        names.collect::<Vec<_>>()
-    };
-    let beside = pictures::PATH_NAMES
-        .into_iter()
-        .chain([TIMING, report::NAME])
-        .chain(explorer::fragment(&scene.file).map(|_| explorer::NAME));
-    Plan {
-        index: SUMMARY,
-        files: scene
-            .planes
-            .iter()
-            .flat_map(of_plane)
-            .chain(beside.map(str::to_owned))
-            .collect(),
-        inputs,
-        force,
-    }
 }
 
 /// Compares, draws and writes the result; returns the exit code.
 pub(crate) fn conclude(
-    case: &Case,
+    case: &MeasuredScene,
     ending: &Ending<'_>,
     mut results: Results,
     mut watch: Stopwatch,
 ) -> Result<u8, Failure> {
-    let fields = ending.save.contains(&Save::Field);
-    let judged = Judged::of(case, fields.then_some(&mut results), ending.quiet)?;
+    let fields = ending.options.save.contains(&Save::Field);
+    let terminal = Terminal::new(ending.quiet);
+    let judged = Judged::of(case, fields.then_some(&mut results), &terminal)?;
     watch.lap("compare");
-    let stage = progress::stage("writing results", ending.quiet);
+    let stage = terminal.begin(Work::Stage("writing results"));
     let seconds = watch.seconds("trace");
-    let finished = written(case, ending, results, &judged, watch)?;
-    stage.finish_and_clear();
+    let finished = write_result(case, &ending.options, results, &judged, watch)?;
+    drop(stage);
     say_replaced(&finished, ending.quiet);
     let summary = judged.summary;
     if !ending.quiet {
-        table::print(&summary, &finished.folder);
+        say(&table::text(&summary));
+        say(&format!("results in {}", finished.folder.display()));
         if let Some(outlook) = seconds.and_then(|s| target::outlook(&summary.planes, s)) {
             say(&outlook);
         }
@@ -109,34 +50,6 @@ pub(crate) fn conclude(
         }
     }
     Ok(exit_code(ending.expect, &summary))
-}
-
-/// What a case comes to.
-#[derive(Debug)]
-pub(crate) struct Judged {
-    pub(crate) planes: Vec<PlaneComparison>,
-    pub(crate) summary: Summary,
-}
-
-impl Judged {
-    /// Compares all planes, and looks into those that fail. The light fields of the planes are compared too where they
-    /// are saved to a result.
-    pub(crate) fn of(
-        case: &Case,
-        fields: Option<&mut Results>,
-        quiet: bool,
-    ) -> Result<Self, Failure> {
-        let stage = progress::stage("comparing", quiet);
-        let tests = if fields.is_some() { field::TESTS } else { 1 };
-        let mut planes = judged(case, &Test::each(&case.scene, tests))?;
-        if let Some(results) = fields {
-            stage.suspend(|| field::compare(Some(results), case, &mut planes, quiet))?;
-        }
-        let inquiries = stage.suspend(|| inquire(case, &planes, quiet))?;
-        stage.finish_and_clear();
-        let summary = Summary::new(case, &planes, inquiries);
-        Ok(Self { planes, summary })
-    }
 }
 
 /// What is expected is that photons agree with every exact prediction, and that a first-order chain
@@ -166,55 +79,4 @@ pub(crate) fn code_of(verdict: Verdict) -> u8 {
         Verdict::Fail => 1,
         Verdict::Undecided => 4,
     }
-}
-
-/// Each plane compared, with its verdict.
-pub(crate) fn judged(case: &Case, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
-    let each = case.predictions.iter().enumerate();
-    let compared = each.map(|(i, prediction)| {
-        compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
-    });
-    let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
-    aimed::leave_open(case, &mut planes);
-    Ok(planes)
-}
-
-/// Writes everything; the summary last.
-pub(crate) fn written(
-    case: &Case,
-    ending: &Ending<'_>,
-    mut results: Results,
-    Judged { planes, summary }: &Judged,
-    mut watch: Stopwatch,
-) -> Result<Finished, Failure> {
-    if ending.compact {
-        results.leave_out(NOT_COMPACT);
-    }
-    let each = case.predictions.iter().zip(planes);
-    for ((prediction, plane), at) in each.zip(&case.scene.planes) {
-        arrays::write(&mut results, summary.made_from(), plane)?;
-        pictures::plane(
-            &mut results,
-            &pictures::made_from(summary),
-            prediction,
-            at,
-            plane,
-        )?;
-    }
-    let path = pictures::path(&mut results, case, planes)?;
-    let explorer = explorer::fragment(&summary.scene_file).filter(|_| !ending.compact);
-    let data = report::data(case, summary, planes, (&path, explorer.as_deref()));
-    results.write(
-        report::NAME,
-        report::page(&case.scene.name, &[(String::new(), data)]).as_bytes(),
-    )?;
-    if explorer.is_some() {
-        results.write(explorer::NAME, explorer::PAGE)?;
-    }
-    for save in ending.save {
-        photons::save(&mut results, case, *save)?;
-    }
-    watch.lap("write");
-    results.write_unlisted(TIMING, &watch.json(summary.photons))?;
-    results.finish(|files| summary.json(files))
 }

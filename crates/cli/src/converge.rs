@@ -1,14 +1,15 @@
 use crate::args::ConvergeArgs;
-use crate::table::aligned;
 use crate::threads::on_threads;
-use crate::{deliver, limits, load, progress, say};
+use crate::{deliver, progress, say};
 use etendue_compare::{Applicability, Convergence, converge as shrink};
+use etendue_pipeline::table::aligned;
+use etendue_pipeline::{limits, load};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 
 /// `etendue converge`: returns the exit code.
 pub(crate) fn converge(args: &ConvergeArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, |_| ())?;
+    let scene = load::scene(&args.scene.source(), |_| ())?;
     let theories = Applicability::of_planes(&scene);
     limits::check_work(&scene, &theories)?;
     let planes = on_threads(&args.threads, || Ok(shrunk(&scene, &theories)))?;

@@ -3,16 +3,19 @@
 mod said;
 
 use crate::args::CovarianceArgs;
-use crate::measure::measured;
-use crate::method::source;
-use crate::predict::predicted;
+use crate::progress::Terminal;
 use crate::say_replaced;
-use crate::table::{grouped, spaced};
 use crate::threads::on_threads;
-use crate::{deliver, limits, load, method, pictures, progress};
+use crate::{deliver, progress};
 use etendue_compare::{Applicability, CovarianceReport, Prediction, SliceMoment};
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_figures::{Ellipse, Ellipses, Picture, Quantity, ellipses};
+use etendue_pipeline::measured;
+use etendue_pipeline::method::source;
+use etendue_pipeline::predicted;
+use etendue_pipeline::table::{grouped, spaced};
+use etendue_pipeline::{limits, load, method};
+use etendue_report::pictures;
 use etendue_scene::Scene;
 use etendue_spectrum::field::{FieldOptions, measure_field};
 use etendue_spectrum::{CrossPower, Measurement};
@@ -29,7 +32,7 @@ const NAMES: [&str; 3] = ["covariance.png", "covariance.svg", "covariance.csv"];
 
 /// `etendue covariance`: returns the exit code.
 pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
-    let mut scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    let mut scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     choose(&mut scene, &args.plane)?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
@@ -40,7 +43,7 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
     let plan = Plan {
         index: COVARIANCE,
         files: files.collect(),
-        inputs: load::inputs(&args.scene, &scene),
+        inputs: load::inputs(&args.scene.source(), &scene),
         force: args.force.force,
     };
     let (results, reports) = on_threads(&args.threads, || {
@@ -48,8 +51,13 @@ pub(crate) fn covariance(args: &CovarianceArgs) -> Result<u8, Failure> {
         check_memory(&scene.planes)?;
         let mut results = Results::claim(&folder, plan.clone())?;
         let method = args.photons.method;
-        let measurement = measured(&scene, method, 0..scene.run.batches, args.quiet)?;
-        let predictions = predicted(&scene, &theories, method, None, args.quiet)?;
+        let measurement = measured(
+            &scene,
+            method,
+            0..scene.run.batches,
+            &Terminal::new(args.quiet),
+        )?;
+        let predictions = predicted(&scene, &theories, method, None, &Terminal::new(args.quiet))?;
         let source = source(&scene, method)?;
         let mut reports = Vec::new();
         for (index, prediction) in predictions.iter().enumerate() {

@@ -1,6 +1,7 @@
 use crate::args::ExportArgs;
+use crate::say;
 use crate::say_replaced;
-use crate::{load, say};
+use etendue_pipeline::load;
 use etendue_store::Failure;
 use etendue_store::sealed::json;
 use etendue_store::stored::VERSION;
@@ -10,7 +11,7 @@ use std::path::Path;
 
 /// `etendue export`: returns the exit code.
 pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, |_| ())?;
+    let scene = load::scene(&args.scene.source(), |_| ())?;
     // One other program is known so far, and clap has checked that it is meant.
     let export = etendue_export::mitsuba(&scene).map_err(Failure::bad_input)?;
     let folder = args
@@ -20,7 +21,7 @@ pub(crate) fn export(args: &ExportArgs) -> Result<u8, Failure> {
     let plan = Plan {
         index: EXPORT,
         files: export.files.iter().map(|(name, _)| name.clone()).collect(),
-        inputs: load::inputs(&args.scene, &scene),
+        inputs: load::inputs(&args.scene.source(), &scene),
         force: args.force.force,
     };
     let mut results = Results::claim(&folder, plan)?;

@@ -18,11 +18,11 @@ use crate::args::FigureArgs;
 use crate::conclude::code_of;
 use crate::say_replaced;
 use crate::threads::on_threads;
-use crate::values::shell_word;
 use crate::{progress, say};
 use clap::ValueEnum;
 use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
 use etendue_figures::{Figure, Style};
+use etendue_report::shell_word;
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::Failure;
 use etendue_store::sealed::json;
@@ -118,7 +118,7 @@ pub(crate) fn figure(args: &FigureArgs) -> Result<u8, Failure> {
             let verdict = bar.suspend(|| made(args, style, subject))?;
             if !args.quiet {
                 let seconds = begun.elapsed().as_secs_f64();
-                let verdict = crate::table::word(verdict);
+                let verdict = etendue_pipeline::table::word(verdict);
                 let Subject { name, about, .. } = subject;
                 let line = format!("figure {name}: {verdict}, {seconds:.1} s: {about}");
                 bar.suspend(|| say(&line));

@@ -3,32 +3,18 @@
 //! `run` measures a scene, predicts it, compares and draws; `measure`, `predict` and `compare` are its stages
 //! over files; `check` says what a scene says.
 
-mod aimed;
 mod args;
 mod bandwidth;
-mod case;
 mod check;
 mod compare;
 mod conclude;
 mod converge;
 mod covariance;
-mod crew;
 mod diff;
-mod drawing;
 mod export;
-mod field;
 mod figure;
-mod inquiry;
 mod interrupt;
-mod job;
-mod judge;
-mod lasting;
-mod limits;
-mod load;
 mod measure;
-mod method;
-mod photons;
-mod pictures;
 mod predict;
 mod probe;
 mod progress;
@@ -38,27 +24,23 @@ mod report;
 mod run;
 mod schema;
 mod split;
-mod summary;
 mod sweep;
-mod table;
-mod target;
 mod threads;
 mod values;
 mod warnings;
+mod workers;
 mod world;
 
 use args::{Cli, Command};
 use clap::Parser;
-pub use crew::{Crew, in_crew};
 use etendue_scene::shown;
+use etendue_store::Failure;
 use etendue_store::Finished;
-pub use etendue_store::arrays::SliceArrays;
-pub use etendue_store::{Failure, Method};
-pub use job::{Job, Options, Outcome};
 use std::ffi::OsString;
 use std::io::{ErrorKind, Write};
 use std::path::Path;
 use std::process::ExitCode;
+pub use workers::command_of_workers;
 
 /// The program: its exit code.
 #[must_use]

@@ -1,22 +1,20 @@
 use crate::args::MeasureArgs;
-use crate::method::source;
+use crate::progress::Terminal;
 use crate::say_replaced;
-use crate::table::grouped;
 use crate::threads::on_threads;
-use crate::{limits, load, method, progress, say, warnings};
+use crate::{say, warnings};
 use etendue_compare::Applicability;
-use etendue_scene::Scene;
-use etendue_spectrum::Measurement;
+use etendue_pipeline::measured;
+use etendue_pipeline::table::grouped;
+use etendue_pipeline::{limits, load, method};
 use etendue_store::Failure;
 use etendue_store::MEASUREMENT;
-use etendue_store::Method;
 use etendue_store::batches::{self, Held};
 use etendue_store::stored::Index;
-use std::ops::Range;
 
 /// `etendue measure`: returns the exit code.
 pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
     let all = 0..scene.run.batches;
@@ -37,10 +35,10 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
             MEASUREMENT,
             files,
             &scene,
-            &args.scene,
+            &args.scene.source(),
             args.force.force,
         )?;
-        let measurement = measured(&scene, method, batches.clone(), args.quiet)?;
+        let measurement = measured(&scene, method, batches.clone(), &Terminal::new(args.quiet))?;
         batches::write(&mut results, &measurement)?;
         let held = Held {
             seed: scene.run.seed,
@@ -66,21 +64,4 @@ pub(crate) fn measure(args: &MeasureArgs) -> Result<u8, Failure> {
         say(&format!("measurement in {}", finished.folder.display()));
     }
     Ok(0)
-}
-
-/// Measures some batches of a scene at all its planes.
-pub(crate) fn measured(
-    scene: &Scene,
-    method: Method,
-    batches: Range<u32>,
-    quiet: bool,
-) -> Result<Measurement, Failure> {
-    let source = source(scene, method)?;
-    let photons = batches.clone().map(|batch| source.emitted(batch)).sum();
-    let bar = progress::photons(photons, quiet);
-    let measurement = etendue_spectrum::measure(&*source, &scene.planes, batches, &|photons| {
-        bar.inc(photons);
-    });
-    bar.finish_and_clear();
-    Ok(measurement)
 }

@@ -1,4 +1,72 @@
-use indicatif::{ProgressBar, ProgressStyle};
+//! Progress bars on a terminal; nothing elsewhere.
+
+use crate::{say, warnings};
+use etendue_pipeline::{Progress, Reporter, Work};
+use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
+
+/// Prints what a run tells, and shows how far it is.
+#[derive(Debug)]
+pub(crate) struct Terminal {
+    quiet: bool,
+    bars: MultiProgress,
+}
+
+impl Terminal {
+    /// With `quiet`, warnings of a run alone are printed.
+    pub(crate) fn new(quiet: bool) -> Self {
+        let bars = MultiProgress::new();
+        Self { quiet, bars }
+    }
+}
+
+impl Reporter for Terminal {
+    fn note(&self, text: &str) {
+        if !self.quiet {
+            self.bars.suspend(|| say(text));
+        }
+    }
+
+    fn warn(&self, text: &str) {
+        self.bars.suspend(|| warnings::warn(text));
+    }
+
+    fn begin(&self, work: Work) -> Box<dyn Progress + '_> {
+        let quiet = self.quiet;
+        let bar = match work {
+            Work::Photons(total) => photons(total, quiet),
+            Work::Steps {
+                verb,
+                total,
+                things,
+            } => steps(verb, total, things, quiet),
+            Work::Stage(name) => stage(name, quiet),
+        };
+        Box::new(Bar(self.bars.add(bar)))
+    }
+}
+
+/// A bar that goes away with its work.
+struct Bar(ProgressBar);
+
+impl Drop for Bar {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+    }
+}
+
+impl Progress for Bar {
+    fn advance(&self, steps: u64) {
+        self.0.inc(steps);
+    }
+
+    fn set(&self, steps: u64) {
+        self.0.set_position(steps);
+    }
+
+    fn name(&self, step: &str) {
+        self.0.set_message(step.to_owned());
+    }
+}
 
 /// Photons done, rate and time left, on a terminal; nothing elsewhere.
 pub(crate) fn photons(total: u64, quiet: bool) -> ProgressBar {

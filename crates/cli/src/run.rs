@@ -1,18 +1,21 @@
-use crate::args::{RunArgs, Save};
-use crate::case::Case;
-use crate::conclude::{Ending, code_of, conclude, plan};
-use crate::crew::Led;
-use crate::lasting::{self, Lasting};
-use crate::predict::predicted;
-use crate::summary::Stopwatch;
-use crate::table::word;
+use crate::args::RunArgs;
+use crate::conclude::{Ending, code_of, conclude};
+use crate::progress::Terminal;
 use crate::threads::on_threads;
-use crate::{field, limits, load, method, photons, say, target, warnings};
-use clap::ValueEnum;
+use crate::{say, warnings};
 use etendue_compare::{Applicability, Verdict};
+use etendue_pipeline::Leader;
+use etendue_pipeline::MeasuredScene;
+use etendue_pipeline::Stopwatch;
+use etendue_pipeline::checkpoint::{self, Checkpointing};
+use etendue_pipeline::photons::Save;
+use etendue_pipeline::predicted;
+use etendue_pipeline::table::word;
+use etendue_pipeline::{field, limits, load, method, photons, target};
+use etendue_report::{OutputOptions, plan};
 use etendue_scene::Scene;
 use etendue_store::Failure;
-use etendue_store::kept::Kept;
+use etendue_store::checkpoints::CheckpointStore;
 use etendue_store::stored::{check_earlier, summary_of};
 use etendue_store::{Plan, Results, SUMMARY};
 use std::path::Path;
@@ -24,16 +27,16 @@ pub(crate) fn run(args: &RunArgs) -> Result<u8, Failure> {
 }
 
 /// The same, with other processes that measure as well.
-pub(crate) fn run_with(args: &RunArgs, crew: Option<&Led<'_>>) -> Result<u8, Failure> {
+pub(crate) fn run_with(args: &RunArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     check_saved(&args.save)?;
-    let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     let theories = Applicability::of_planes(&scene);
     method::check(&scene, args.photons.method)?;
     let folder = args
         .out
         .clone()
         .unwrap_or_else(|| Path::new("out").join(&scene.name));
-    let inputs = load::inputs(&args.scene, &scene);
+    let inputs = load::inputs(&args.scene.source(), &scene);
     let plan = plan(&scene, &args.save, inputs, args.force.force);
     on_threads(&args.threads, || {
         warnings::tell(&scene, args.quiet);
@@ -65,7 +68,7 @@ pub(crate) fn run_with(args: &RunArgs, crew: Option<&Led<'_>>) -> Result<u8, Fai
                 folder: &folder,
                 plan,
                 results,
-                crew,
+                workers,
             },
         )
     })
@@ -77,8 +80,7 @@ fn check_saved(save: &[Save]) -> Result<(), Failure> {
     let Some((_, twice)) = each.find(|(i, what)| save[..*i].contains(what)) else {
         return Ok(());
     };
-    let value = twice.to_possible_value();
-    let name = value.as_ref().map_or("", |value| value.get_name());
+    let name = twice.name();
     Err(Failure::bad_input(format!("--save: {name} is given twice")))
 }
 
@@ -89,13 +91,13 @@ struct Place<'a> {
     /// `None` where several processes measure.
     results: Option<Results>,
     /// Other processes, which this one leads.
-    crew: Option<&'a Led<'a>>,
+    workers: Option<&'a Leader<'a>>,
 }
 
 /// The exit code of a run that is done, whose verdict is told once more. Batches that a process has left are removed.
 fn finished(folder: &Path, scene: &Scene, args: &RunArgs) -> Option<u8> {
     let summary = summary_of(folder, scene, args.photons.method)?;
-    Kept::of(folder, scene, args.photons.method).remove();
+    CheckpointStore::of(folder, scene, args.photons.method).remove();
     let verdict: Verdict = serde_json::from_value(summary["verdict"].clone()).ok()?;
     if !args.quiet {
         say(&format!(
@@ -125,30 +127,31 @@ fn stages(
             say(&announcement);
         }
     }
+    let terminal = Terminal::new(args.quiet);
     let method = args.photons.method;
-    let kept = Kept::of(place.folder, &scene, method);
-    let lasting = Lasting {
+    let kept = CheckpointStore::of(place.folder, &scene, method);
+    let checkpointing = Checkpointing {
         resume: args.resume,
         until: args.time.and_then(|time| Instant::now().checked_add(time)),
-        crew: place.crew,
+        workers: place.workers,
     };
     let measurement = match args.target_error {
         None => {
             let is_done = || summary_of(place.folder, &scene, method).is_some();
-            lasting::measured(&scene, method, (&kept, &is_done), lasting, args.quiet)?
+            checkpoint::measured(&scene, method, (&kept, &is_done), checkpointing, &terminal)?
         }
         Some(target) => {
             let target = (target, args.photons.photons);
-            Some(target::reached(&mut scene, method, target, args.quiet)?)
+            Some(target::reached(&mut scene, method, target, &terminal)?)
         }
     };
     let Some(measurement) = measurement else {
         return finished(place.folder, &scene, args).ok_or_else(|| gone(place.folder));
     };
     watch.lap("trace");
-    let predictions = predicted(&scene, &theories, method, place.crew, args.quiet)?;
+    let predictions = predicted(&scene, &theories, method, place.workers, &terminal)?;
     watch.lap("predict");
-    let case = Case {
+    let case = MeasuredScene {
         scene,
         theories,
         method,
@@ -166,9 +169,11 @@ fn stages(
         }
     };
     let ending = Ending {
-        save: &args.save,
+        options: OutputOptions {
+            save: &args.save,
+            compact: args.compact,
+        },
         expect: args.expect,
-        compact: args.compact,
         quiet: args.quiet,
     };
     let code = conclude(&case, &ending, results, watch)?;

@@ -1,15 +1,16 @@
 //! `etendue split`: the commands that measure a scene in parts, on as many machines, and put them together.
 
 use crate::args::SplitArgs;
-use crate::values::shell_word;
-use crate::{deliver, load, method};
+use crate::deliver;
+use etendue_pipeline::{load, method};
+use etendue_report::shell_word;
 use etendue_store::Failure;
 use etendue_store::Method;
 use std::path::Path;
 
 /// `etendue split`: returns the exit code.
 pub(crate) fn split(args: &SplitArgs) -> Result<u8, Failure> {
-    let scene = load::scene(&args.scene, |run| args.photons.set(run))?;
+    let scene = load::scene(&args.scene.source(), |run| args.photons.set(run))?;
     method::check(&scene, args.photons.method)?;
     let (parts, batches) = (args.parts, scene.run.batches);
     if parts > batches {

@@ -7,17 +7,20 @@ mod pictures;
 mod table;
 
 use crate::args::{SceneArgs, SweepArgs};
-use crate::case::Case;
-use crate::conclude::judged;
-use crate::crew::Led;
 use crate::say_replaced;
-use crate::summary::Summary;
-use crate::table::aligned;
 use crate::threads::on_threads;
+use crate::values::scene_at;
 use crate::values::{Point, Setting, Sweep, points, shown};
-use crate::{limits, load, method, progress, say, warnings};
+use crate::{progress, say, warnings};
 use etendue_compare::{Applicability, Test};
 use etendue_field::{decimals, fixed, uncertain};
+use etendue_pipeline::Leader;
+use etendue_pipeline::MeasuredScene;
+use etendue_pipeline::Silent;
+use etendue_pipeline::Summary;
+use etendue_pipeline::judged;
+use etendue_pipeline::table::aligned;
+use etendue_pipeline::{limits, load, method};
 use etendue_scene::{Scene, SceneFile, read_file};
 use etendue_store::Failure;
 use etendue_store::Method;
@@ -40,7 +43,7 @@ pub(crate) fn sweep(args: &SweepArgs) -> Result<u8, Failure> {
 }
 
 /// The same, with other processes that run points as well.
-pub(crate) fn sweep_with(args: &SweepArgs, crew: Option<&Led<'_>>) -> Result<u8, Failure> {
+pub(crate) fn sweep_with(args: &SweepArgs, workers: Option<&Leader<'_>>) -> Result<u8, Failure> {
     on_threads(&args.threads, || {
         let all = Points::read(args)?;
         let folder = args.out.clone();
@@ -58,13 +61,13 @@ pub(crate) fn sweep_with(args: &SweepArgs, crew: Option<&Led<'_>>) -> Result<u8,
         let Points { base, sweeps, .. } = &all;
         check_earlier(&folder, SWEEP, base, args.force.force)?;
         check_fields(&folder, sweeps, args.force.force)?;
-        let inputs = load::inputs(&all.scene, base);
+        let inputs = load::inputs(&all.scene.source(), base);
         // Before the work, and once more for the table: each point claims a folder of its own.
         drop(Results::claim(&folder, plan(&inputs, args.force.force))?);
         unfinished::keeps(
             "interrupted: the points that are done are kept, and the same command goes on from them",
         );
-        let found = run_all(args, &folder, &inputs, &all, crew)?;
+        let found = run_all(args, &folder, &inputs, &all, workers)?;
         let results = Results::claim(&folder, plan(&inputs, args.force.force))?;
         finish(args, base, sweeps, &found, results)
     })
@@ -90,11 +93,11 @@ impl Points {
             path: args.path.clone(),
             set,
         };
-        let base = load::scene(&scene, |run| args.photons.set(run))?;
+        let base = load::scene(&scene.source(), |run| args.photons.set(run))?;
         let points = points(&sweeps, args.together)?;
         let has_own_seed = !args.common_seed && sweeps.iter().all(|s| s.path != "run.seed");
         let at = |point| {
-            let mut at = load::scene_at(&scene, point, |run| args.photons.set(run))?;
+            let mut at = scene_at(&scene, point, |run| args.photons.set(run))?;
             if has_own_seed {
                 at.run.seed = seed_of(&at);
                 at.file.run.seed = at.run.seed;
@@ -117,7 +120,7 @@ impl Points {
         let scene = self.scenes.get(point as usize);
         let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
         let theories = Applicability::of_planes(scene);
-        let case = Case::of(scene.clone(), theories, self.method, true)?;
+        let case = MeasuredScene::of(scene.clone(), theories, self.method, &Silent)?;
         let summary = Summary::new(&case, &judged(&case, &Test::of(&case.scene))?, Vec::new());
         Ok(summary.json(&BTreeMap::new()))
     }
@@ -219,7 +222,7 @@ fn run_all(
     folder: &Path,
     inputs: &[PathBuf],
     all: &Points,
-    crew: Option<&Led<'_>>,
+    workers: Option<&Leader<'_>>,
 ) -> Result<Vec<Found>, Failure> {
     let bar = progress::steps("running", all.points.len(), "points", args.quiet);
     let names = folders(args, folder, all)?;
@@ -251,12 +254,12 @@ fn run_all(
     let missing = missing.filter(|(_, summary)| summary.is_none());
     let missing: Vec<u32> = missing.map(|(point, _)| point).collect();
     bar.set_position((names.len() - missing.len()) as u64);
-    let found: BTreeMap<u32, Value> = match crew {
+    let found: BTreeMap<u32, Value> = match workers {
         None => missing
             .iter()
             .map(|i| Ok((*i, own(*i)?)))
             .collect::<Result<_, Failure>>()?,
-        Some(crew) => crew.run(&all.scenes, &missing, &own, &|point, summary| {
+        Some(workers) => workers.run(&all.scenes, &missing, &own, &|point, summary| {
             kept(claimed(point)?, summary)
         })?,
     };
@@ -322,7 +325,7 @@ fn finish(
     results.write(TABLES[1], &table::parquet(&paths, found)?)?;
     let figures = pictures::drawn(&base.name, found, args.together)?;
     for (name, figure) in pictures::NAMES.iter().zip(&figures) {
-        crate::pictures::write(&mut results, name, figure)?;
+        etendue_report::pictures::write(&mut results, name, figure)?;
     }
     let finished = results.finish(|files| {
         json(&Index {

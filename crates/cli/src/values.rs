@@ -1,6 +1,9 @@
 //! The values that fields of a scene take in a sweep.
 
+use crate::args::SceneArgs;
 use etendue_field::tidy;
+use etendue_pipeline::load;
+use etendue_scene::{RunFile, Scene};
 use etendue_store::Failure;
 
 /// A field of the scene and its values.
@@ -173,14 +176,20 @@ pub(crate) fn short(path: &str) -> &str {
     dots.nth(name).map_or(path, |at| &path[at..])
 }
 
-/// A word as a shell reads it.
-pub(crate) fn shell_word(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=^,:+".contains(c);
-    if word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
+/// The scene with some fields set to numbers besides.
+pub(crate) fn scene_at(
+    args: &SceneArgs,
+    point: &Point,
+    options: impl FnOnce(&mut RunFile),
+) -> Result<Scene, Failure> {
+    let mut source = args.source();
+    let numbers = point.iter();
+    let numbers = numbers.map(|(path, value)| (path.clone(), format!("{value:?}")));
+    source.set.extend(numbers);
+    load::scene(&source, options).map_err(|failure| Failure {
+        message: said_at(point, failure.message),
+        ..failure
+    })
 }
 
 #[cfg(test)]

@@ -2,8 +2,8 @@
 
 use crate::args::{CameraArgs, ImportArgs, ViewArgs, WorldArgs};
 use crate::deliver;
-use crate::table::aligned;
 use etendue_import::{Imported, import};
+use etendue_pipeline::table::aligned;
 use etendue_store::Failure;
 use etendue_world::{Camera, Geometry, Light, Projection, World};
 use glam::{DAffine3, DMat3};

@@ -10,11 +10,11 @@
 
 pub mod arrays;
 pub mod batches;
+pub mod checkpoints;
 pub mod exr;
 mod failure;
 pub mod fields;
 pub mod framing;
-pub mod kept;
 mod lock;
 pub mod machine;
 mod method;

@@ -1,8 +1,8 @@
 //! Covariances as a table.
 
-use crate::table::aligned;
 use etendue_compare::{AXES, CovarianceReport};
 use etendue_field::{tidy, uncertain};
+use etendue_pipeline::table::aligned;
 
 /// The entries of a matrix that are shown: variances, and what travel makes.
 const SHOWN: [[usize; 2]; 6] = [[0, 0], [0, 2], [2, 2], [1, 1], [1, 3], [3, 3]];

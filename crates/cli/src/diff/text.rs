@@ -3,9 +3,9 @@
 use super::planes::{Compared, Found, PlaneDiff, ROUNDING};
 use super::stored::{ResultIndex, StoredResult};
 use super::{Diff, has_other_inputs, is_of_run};
-use crate::table::{aligned, grouped, number, percent, with_unit};
 use etendue_compare::{Estimate, Verdict};
 use etendue_field::{percent as percent_of, tidy, uncertain};
+use etendue_pipeline::table::{aligned, grouped, number, percent, with_unit};
 use etendue_store::fields::FieldChange;
 
 /// Most fields of the scene that are listed.

@@ -3,9 +3,10 @@
 use crate::figure::Quality;
 use crate::figure::recipe::{Taken, Text};
 use crate::figure::shot::resolved;
-use crate::measure::measured;
+use crate::progress::Terminal;
 use etendue_compare::{Applicability, criterion, measured_bandwidth};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity};
+use etendue_pipeline::measured;
 use etendue_store::Failure;
 use etendue_store::Method;
 use etendue_theory::shading::Criterion;
@@ -122,7 +123,12 @@ fn counted(
     let quality: Quality = taken.quality;
     let scene = resolved(name, text, &set(sweep, value), |n| quality.photons(n))?;
     let batches = 0..scene.run.batches;
-    let measurement = measured(&scene, Method::Photons, batches, taken.quiet)?;
+    let measurement = measured(
+        &scene,
+        Method::Photons,
+        batches,
+        &Terminal::new(taken.quiet),
+    )?;
     let found = measured_bandwidth(&measurement, 0).map_err(Failure::cannot_run)?;
     let dark = || Failure::cannot_run(format!("no light comes to the eye of {name}"));
     let found = found.ok_or_else(dark)?;

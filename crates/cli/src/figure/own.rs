@@ -4,11 +4,12 @@ use crate::args::{FigureArgs, SceneArgs};
 use crate::figure::Subject;
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{Seen, compared, feet};
-use crate::pictures::spectra_are;
-use crate::table::{grouped, spaced};
-use crate::values::shell_word;
-use crate::{load, warnings};
+use crate::warnings;
 use etendue_figures::{Figure, Plate};
+use etendue_pipeline::load;
+use etendue_pipeline::table::{grouped, spaced};
+use etendue_report::pictures::spectra_are;
+use etendue_report::shell_word;
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use std::path::{Path, PathBuf};
@@ -34,7 +35,7 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
             path: PathBuf::from(name),
             set: args.set.clone(),
         };
-        let found = load::scene(&scene, |_| ())?;
+        let found = load::scene(&scene.source(), |_| ())?;
         if scenes.iter().any(|scene| scene.name == found.name) {
             let message = format!(
                 "two scenes are named {}: give one file another name",
@@ -43,7 +44,7 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
             return Err(Failure::bad_input(message));
         }
         warnings::tell(&found, args.quiet);
-        inputs.extend(load::inputs(&scene, &found));
+        inputs.extend(load::inputs(&scene.source(), &found));
         scenes.push(found);
     }
     let planes = planes(&scenes, args.plane.as_deref())?;

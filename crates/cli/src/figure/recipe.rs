@@ -6,8 +6,8 @@ use crate::figure::shot::{Shot, resolved};
 use crate::figure::spaces::{coordinates, directions};
 use crate::figure::table1::operators;
 use crate::figure::{Quality, Subject, creatures, kernels};
-use crate::pictures;
 use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
+use etendue_report::pictures;
 use etendue_store::Failure;
 use std::path::Path;
 

@@ -1,13 +1,13 @@
 //! What figures show of the planes of their scenes, row by row.
 
 use crate::figure::shot::Shot;
-use crate::pictures::{
-    full_radial, full_radial_quantity, light_field_axes, light_field_quantity, spectrum_axes,
-    spectrum_quantity, verdict_lines,
-};
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_figures::{Picture, PlateRow, Quantity, Scale};
+use etendue_report::pictures::{
+    full_radial, full_radial_quantity, light_field_axes, light_field_quantity, spectrum_axes,
+    spectrum_quantity, verdict_lines,
+};
 use etendue_store::Failure;
 use ndarray::{Array2, ArrayView2, Axis as Along};
 

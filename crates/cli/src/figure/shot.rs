@@ -1,11 +1,12 @@
 //! A scene that is run for a figure.
 
-use crate::case::Case;
-use crate::conclude::judged;
 use crate::figure::Quality;
-use crate::{field, limits};
+use crate::progress::Terminal;
 use etendue_compare::{Applicability, PlaneComparison, Test};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
+use etendue_pipeline::MeasuredScene;
+use etendue_pipeline::judged;
+use etendue_pipeline::{field, limits};
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::Failure;
 use etendue_store::Method;
@@ -44,11 +45,11 @@ impl Shot {
         }
         let theories = Applicability::of_planes(&scene);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
-        let case = Case::of(scene, theories, Method::Photons, quiet)?;
+        let case = MeasuredScene::of(scene, theories, Method::Photons, &Terminal::new(quiet))?;
         let tests = if full_radial { field::TESTS } else { 1 };
         let mut planes = judged(&case, &Test::each(&case.scene, tests))?;
         if full_radial {
-            field::compare(None, &case, &mut planes, quiet)?;
+            field::compare(None, &case, &mut planes, &Terminal::new(quiet))?;
         }
         Ok(Self {
             photons: case.measurement.emitted(),

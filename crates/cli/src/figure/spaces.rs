@@ -3,12 +3,12 @@
 use crate::figure::recipe::{TWIST, Taken, Text};
 use crate::figure::rows::{Seen, compared, feet, row};
 use crate::figure::shot::resolved;
-use crate::pictures::{across, across_axes, light_field_quantity};
 use etendue_compare::{Applicability, Convergence, converge};
 use etendue_field::percent;
 use etendue_figures::{
     Curve, CurveKind, CurvePanel, Curves, Figure, Plate, Quantity, Scale, stacked,
 };
+use etendue_report::pictures::{across, across_axes, light_field_quantity};
 use etendue_store::Failure;
 use ndarray::Array2;
 
@@ -128,7 +128,7 @@ fn orders(
         let [widest, error] = plane.steps[0];
         let line = |[e, _]: &[f64; 2]| [*e, error * (e / widest).powi(order), 0.0];
         CurvePanel {
-            title: crate::table::spaced(&plane.plane),
+            title: etendue_pipeline::table::spaced(&plane.plane),
             x: Quantity::new("*e*", ""),
             curves: vec![
                 Curve::new(

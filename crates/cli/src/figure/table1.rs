@@ -2,8 +2,8 @@
 
 use crate::figure::recipe::Taken;
 use crate::figure::rows::{DECIBEL, Seen, feet, row};
-use crate::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
+use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_store::Failure;
 
 /// An operator: its name, and scene and plane before and after it.

@@ -4,10 +4,10 @@
 use super::{BATCHES, Found};
 use crate::covariance::{check_memory, fitting};
 use crate::progress;
-use crate::table::aligned;
 use etendue_compare::AXES;
 use etendue_field::uncertain;
 use etendue_paths::{BackwardProbe, Budget, Probe};
+use etendue_pipeline::table::aligned;
 use etendue_spectrum::field::{FieldCovariance, MatrixEstimate, measure_field};
 use etendue_store::Failure;
 use etendue_theory::covariance::{SpectralCovariance, window};

@@ -1,10 +1,10 @@
 //! What a probe comes to, in words and in JSON.
 
 use super::{Found, covariance, verdict};
-use crate::table::aligned;
 use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{Lobe, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
+use etendue_pipeline::table::aligned;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
 use etendue_theory::shading::Criterion;

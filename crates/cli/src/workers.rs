@@ -1,0 +1,85 @@
+//! Commands whose work several processes share.
+
+use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
+use crate::sweep::Points;
+use crate::threads::on_threads;
+use crate::{ended, interrupt, not_parsed, predict, run, sweep};
+use clap::Parser;
+use etendue_pipeline::{Job, Leader, Options, Workers, follow_job, follow_points, report_failure};
+use etendue_store::Failure;
+use std::ffi::OsString;
+
+/// What a command line comes to in a workers; returns the exit code. `run`, `predict` and `sweep` are for many.
+pub fn command_of_workers(line: impl IntoIterator<Item = OsString>, workers: &dyn Workers) -> u8 {
+    let leads = workers.number() == 0;
+    let command = match Cli::try_parse_from(line) {
+        Ok(cli) => cli.command,
+        Err(error) => {
+            // Whoever sees the terminal says it.
+            if leads {
+                return not_parsed(&error);
+            }
+            return u8::try_from(error.exit_code()).unwrap_or(2);
+        }
+    };
+    if !is_shared(&command) {
+        let message =
+            "only `run` without --target-error, `predict` and `sweep` are for several processes";
+        return ended(Err(Failure::bad_input(message)), !leads);
+    }
+    if !leads {
+        follow(&command, workers);
+        return 0;
+    }
+    let led = Leader::new(workers);
+    let outcome = interrupt::install().and_then(|()| match &command {
+        Command::Run(args) => run::run_with(args, Some(&led)),
+        Command::Predict(args) => predict::predict_with(args, Some(&led)),
+        Command::Sweep(args) => sweep::sweep_with(args, Some(&led)),
+        _ => Ok(0),
+    });
+    // The others wait for work, because there is no more or something failed.
+    let dismissed = led.dismiss_all();
+    ended(outcome.and_then(|code| dismissed.map(|()| code)), false)
+}
+
+fn is_shared(command: &Command) -> bool {
+    match command {
+        Command::Run(RunArgs { target_error, .. }) => target_error.is_none(),
+        command => matches!(command, Command::Predict(_) | Command::Sweep(_)),
+    }
+}
+
+/// Does whatever the process that leads asks for, until it is dismissed.
+fn follow(command: &Command, workers: &dyn Workers) {
+    let followed = match command {
+        Command::Run(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
+        Command::Predict(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
+        Command::Sweep(args) => on_threads(&args.threads, || {
+            let points = Points::read(args)?;
+            follow_points(workers, &points.scenes, &|number| points.summary(number))
+        }),
+        _ => Ok(()),
+    };
+    if let Err(failure) = followed {
+        report_failure(workers, failure);
+    }
+}
+
+/// Measures batches and predicts planes of a scene.
+fn with_job(
+    scene: &SceneArgs,
+    photons: &PhotonArgs,
+    threads: &ThreadArgs,
+    workers: &dyn Workers,
+) -> Result<(), Failure> {
+    let options = Options {
+        set: scene.set.clone(),
+        photons: photons.photons,
+        seed: photons.seed,
+        method: photons.method,
+    };
+    on_threads(threads, || {
+        follow_job(workers, &Job::read(&scene.path, &options)?)
+    })
+}

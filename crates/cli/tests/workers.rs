@@ -1,0 +1,156 @@
+//! Several processes on one job: here threads that send bytes to each other, as ranks of MPI do.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod common;
+
+use common::{SCENE, call, files};
+use etendue::command_of_workers;
+use etendue_pipeline::Workers;
+use std::ffi::OsString;
+use std::fs;
+use std::path::Path;
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread;
+
+type Message = (usize, Vec<u8>);
+
+/// A process of a workers that lives in threads.
+struct Member {
+    number: usize,
+    to: Vec<Sender<Message>>,
+    inbox: Mutex<Receiver<Message>>,
+    /// How many messages this one has sent.
+    sent: AtomicUsize,
+}
+
+impl Workers for Member {
+    fn number(&self) -> usize {
+        self.number
+    }
+
+    fn count(&self) -> usize {
+        self.to.len()
+    }
+
+    fn send(&self, to: usize, bytes: &[u8]) -> Result<(), String> {
+        self.sent.fetch_add(1, Ordering::Relaxed);
+        let message = (self.number, bytes.to_vec());
+        self.to[to].send(message).map_err(|e| e.to_string())
+    }
+
+    fn receive(&self) -> Result<Message, String> {
+        self.inbox.lock().unwrap().recv().map_err(|e| e.to_string())
+    }
+}
+
+/// Does what `lines` say, one for each process; returns the exit code of the first, and what each of the others has sent.
+fn in_crew_of(lines: &[String]) -> (u8, Vec<usize>) {
+    let (to, inboxes): (Vec<_>, Vec<_>) = lines.iter().map(|_| channel()).unzip();
+    let members = inboxes.into_iter().enumerate();
+    let members: Vec<Member> = members
+        .map(|(number, inbox)| Member {
+            number,
+            to: to.clone(),
+            inbox: Mutex::new(inbox),
+            sent: AtomicUsize::new(0),
+        })
+        .collect();
+    let codes: Vec<u8> = thread::scope(|scope| {
+        let begin = |number: usize| {
+            let words: Vec<OsString> = lines[number].split(' ').map(OsString::from).collect();
+            let member = &members[number];
+            scope.spawn(move || command_of_workers(words, member))
+        };
+        let others: Vec<_> = (1..lines.len()).map(begin).collect();
+        // The one that leads begins when the others have said that they are there: work this small is done before they are heard otherwise.
+        for (member, process) in members[1..].iter().zip(&others) {
+            while member.sent.load(Ordering::Relaxed) == 0 && !process.is_finished() {
+                thread::yield_now();
+            }
+        }
+        let processes = std::iter::once(begin(0)).chain(others);
+        processes.map(|p| p.join().unwrap()).collect()
+    });
+    let sent = members[1..].iter();
+    (
+        codes[0],
+        sent.map(|m| m.sent.load(Ordering::Relaxed)).collect(),
+    )
+}
+
+/// `lines` in a workers leave the files that `line` alone leaves, whatever `{}` stands for; times apart.
+fn same_files(path: &Path, line: &str, processes: usize) -> Vec<usize> {
+    let scene = path.join("small.ron").display().to_string();
+    let with = |out: &str| {
+        let line = line.replace("SCENE", &scene);
+        line.replace("OUT", &path.join(out).display().to_string())
+    };
+    let alone = call(path, &with("alone"));
+    let lines = vec![format!("etendue {} --quiet", with("workers")); processes];
+    let (code, sent) = in_crew_of(&lines);
+    assert_eq!(Some(i32::from(code)), alone.status.code(), "{alone:?}");
+    let [alone, workers] = ["alone", "workers"].map(|out| {
+        let mut files = files(&path.join(out));
+        files.remove("timing.json");
+        files
+    });
+    assert_eq!(
+        alone.keys().collect::<Vec<_>>(),
+        workers.keys().collect::<Vec<_>>()
+    );
+    for (name, bytes) in &alone {
+        assert!(workers[name] == *bytes, "{name} has other bytes");
+    }
+    sent
+}
+
+fn folder() -> tempfile::TempDir {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("small.ron"), SCENE).unwrap();
+    folder
+}
+
+#[test]
+fn runs_predictions_and_sweeps_have_the_bytes_of_one_process() {
+    for line in [
+        "run SCENE --threads 1 --photons 2^16 --out OUT",
+        "predict SCENE --threads 1 --photons 2^16 --out OUT",
+        "sweep SCENE --threads 1 --photons 4096 --set blockers.0.pitch=0.05..0.2:4 --out OUT",
+    ] {
+        // Whoever is first takes the next piece, so a busy machine may leave nothing to the others: then again.
+        let helped = (0..20).any(|_| {
+            let sent = same_files(folder().path(), line, 3);
+            // One word to say that it is there, and one for each order that it has followed.
+            sent.iter().sum::<usize>() > 2
+        });
+        assert!(helped, "{line}: nobody helped");
+    }
+}
+
+#[test]
+fn processes_with_other_scenes_are_refused() {
+    let folder = folder();
+    let path = folder.path().join("small.ron").display().to_string();
+    let out = folder.path().join("out").display().to_string();
+    // So many photons that the second process is heard before the first is done alone.
+    let line = |seed| {
+        format!("etendue run {path} --quiet --threads 1 --photons 2^21 --seed {seed} --out {out}")
+    };
+    let (code, _) = in_crew_of(&[line(1), line(2)]);
+    assert_eq!(code, 3);
+    assert!(!Path::new(&out).join("summary.json").exists());
+}
+
+#[test]
+fn what_is_not_for_several_is_refused() {
+    let folder = folder();
+    let path = folder.path().join("small.ron").display().to_string();
+    let lines = [
+        format!("etendue check {path}"),
+        format!("etendue check {path}"),
+    ];
+    assert_eq!(in_crew_of(&lines).0, 2);
+}

@@ -1,0 +1,61 @@
+//! Whether photons that are aimed at the window of a plane reach it.
+
+use crate::case::MeasuredScene;
+use etendue_compare::{Class, EACH, PlaneComparison, Verdict};
+use etendue_field::{Crossing, PhotonSource};
+use etendue_scene::Scene;
+use etendue_store::Method;
+use etendue_trace::Tracer;
+use rayon::prelude::*;
+
+/// Leaves open what fails by photons that were aimed at other windows.
+///
+/// Photons are aimed at all windows in equal parts. Where those aimed at a window hardly reach it,
+/// such as behind a curved mirror, what is seen there may be the part of the light that others happen
+/// to see, with an error that is far too small.
+pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
+    let count = case.scene.planes.len() as u64;
+    if count < 2 {
+        return;
+    }
+    for (plane, compared) in planes.iter_mut().enumerate() {
+        let report = &mut compared.report;
+        let by_photons = case.method == Method::Photons || report.class == Class::Reference;
+        if report.exact_verdict() != Verdict::Fail || !by_photons {
+            continue;
+        }
+        let photons = case.scene.run.photons / count;
+        let reach = reached(&case.scene, plane, photons);
+        if (reach as f64) < EACH * f64::from(case.scene.run.batches) {
+            let has_wrong_map = report.first_order.as_mut().is_some_and(|chain| {
+                chain.exact = Verdict::Undecided;
+                chain.verdict == Verdict::Fail
+            });
+            if !has_wrong_map {
+                report.verdict = Verdict::Undecided;
+            }
+            report.undecided = Some(format!(
+                "{reach} of {photons} photons aimed at this window reach it; what others see of it may \
+                 be a part. Measure it alone, or by --method backward"
+            ));
+        }
+    }
+}
+
+/// How many of so many photons reach the window of a plane, when they are aimed at it alone.
+fn reached(scene: &Scene, plane: usize, photons: u64) -> u64 {
+    let mut alone = scene.seen_at(&[plane]);
+    alone.run.photons = photons;
+    let tracer = Tracer::new(&alone);
+    let window = &alone.planes[0].window;
+    let of_batch = |batch: u32| {
+        let mut inside = 0;
+        let mut count = |_: usize, crossings: &[Crossing]| {
+            let seen = crossings.iter().filter(|c| window.value(&c.ray) > 0.0);
+            inside += seen.count() as u64;
+        };
+        tracer.emit(batch, &mut count, &|_| ());
+        inside
+    };
+    (0..alone.run.batches).into_par_iter().map(of_batch).sum()
+}

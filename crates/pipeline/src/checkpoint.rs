@@ -1,0 +1,235 @@
+//! A measurement that outlives its process: its batches are kept as they are done, and those on the way every few seconds.
+
+use crate::method::source;
+use crate::reporter::{Progress, Reporter, Work};
+use crate::workers::{Leader, Packing};
+use etendue_field::PhotonSource;
+use etendue_scene::Scene;
+use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::checkpoints::{BatchProgress, CheckpointStore};
+use etendue_store::unfinished;
+use std::collections::BTreeMap;
+use std::hash::{BuildHasher, RandomState};
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Mutex, PoisonError};
+use std::time::{Duration, Instant};
+
+/// Batches done before this are not kept: they are soon made again.
+const SHORT: Duration = Duration::from_secs(5);
+/// How often a batch on the way is kept.
+const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
+
+/// How long a measurement may take, and whether others have a part in it.
+#[derive(Clone, Copy, Debug)]
+pub struct Checkpointing<'a> {
+    /// Goes on from what is kept, and shares the work with others that do.
+    pub resume: bool,
+    /// When no more parts of batches are begun.
+    pub until: Option<Instant>,
+    /// Other processes that measure as well.
+    pub workers: Option<&'a Leader<'a>>,
+}
+
+/// Measures all batches of a scene; `None` where another process that shares the work has ended it, which `is_done` tells. Where time is up
+/// first, those that are done are kept, and that is said.
+pub fn measured(
+    scene: &Scene,
+    method: Method,
+    (kept, is_done): (&CheckpointStore, &(dyn Fn() -> bool + Sync)),
+    checkpointing: Checkpointing<'_>,
+    reporter: &dyn Reporter,
+) -> Result<Option<Measurement>, Failure> {
+    let source = source(scene, method)?;
+    let emitted = |batch: u32| source.emitted(batch);
+    let lit: Vec<u32> = (0..scene.run.batches).filter(|b| emitted(*b) > 0).collect();
+    let bar = reporter.begin(Work::Photons(lit.iter().map(|b| emitted(*b)).sum()));
+    let keeper = Keeper {
+        kept,
+        is_done,
+        checkpointing,
+        bar: &*bar,
+        reporter,
+        begun: Instant::now(),
+        partial: Mutex::default(),
+        is_late: AtomicBool::default(),
+        is_full: AtomicBool::default(),
+    };
+    let mut all = Measurement::new(scene.planes.clone());
+    if !checkpointing.resume {
+        kept.remove();
+    }
+    loop {
+        // Where another process has ended the run, the batches are gone.
+        if checkpointing.resume && is_done() {
+            drop(bar);
+            return Ok(None);
+        }
+        let missing = keeper.missing(&mut all, &*source, &lit)?;
+        if missing.is_empty() {
+            break;
+        }
+        let (found, left) = match checkpointing.workers {
+            Some(workers) => {
+                let packing = Packing { scene, method };
+                workers.measure(packing, &*source, missing, &keeper)?
+            }
+            None => {
+                let mut missing = missing.into_iter();
+                measure_watched(&*source, &scene.planes, &mut missing, &keeper)
+            }
+        };
+        all = all.merge(found).map_err(Failure::cannot_run)?;
+        if keeper.is_late.load(Ordering::Relaxed) {
+            let mut left = left.iter();
+            left.try_for_each(|batch| kept.write_partial(batch))?;
+            drop(bar);
+            return Err(time_is_up(kept, lit.len()));
+        }
+    }
+    drop(bar);
+    Ok(Some(all))
+}
+
+/// How many photons of a batch are traced, about.
+fn photons_of(source: &dyn PhotonSource, batch: &PartialBatch) -> u64 {
+    let parts = u64::from(source.parts(batch.index));
+    source.emitted(batch.index) / parts * u64::from(batch.parts)
+}
+
+/// The error of a run whose time was up, which says what is kept.
+fn time_is_up(kept: &CheckpointStore, batches: usize) -> Failure {
+    let [done, begun] = kept.count();
+    let begun = match begun {
+        0 => String::new(),
+        begun => format!(", and the beginning of {begun} more,"),
+    };
+    Failure::cannot_run(format!(
+        "time is up: {done} of {batches} batches{begun} are kept in {}; the same command with --resume goes on from them",
+        kept.folder().display()
+    ))
+}
+
+/// Keeps batches as they are done, and on the way.
+struct Keeper<'a> {
+    kept: &'a CheckpointStore,
+    is_done: &'a (dyn Fn() -> bool + Sync),
+    checkpointing: Checkpointing<'a>,
+    bar: &'a dyn Progress,
+    reporter: &'a dyn Reporter,
+    begun: Instant,
+    /// When each batch on the way was kept last.
+    partial: Mutex<BTreeMap<u32, Instant>>,
+    is_late: AtomicBool,
+    /// Whether no more can be kept.
+    is_full: AtomicBool,
+}
+
+impl Keeper<'_> {
+    /// Reads what is kept, if the run goes on from it; returns the batches that are left to do, each from where it was left.
+    fn missing(
+        &self,
+        all: &mut Measurement,
+        source: &dyn PhotonSource,
+        lit: &[u32],
+    ) -> Result<Vec<PartialBatch>, Failure> {
+        let mut begun = BTreeMap::new();
+        if self.checkpointing.resume {
+            let damaged;
+            (begun, damaged) = self.kept.read(all, &|batch| source.emitted(batch))?;
+            for path in damaged {
+                let path = path.display();
+                let message = format!("{path} is damaged: the batch is measured again");
+                self.reporter.warn(&message);
+            }
+            let photons = begun.values().map(|batch| photons_of(source, batch));
+            self.bar.set(all.emitted() + photons.sum::<u64>());
+        }
+        let missing = lit.iter().filter(|b| !all.contains(**b));
+        let missing = missing.map(|b| begun.remove(b).unwrap_or_else(|| PartialBatch::new(*b)));
+        let mut missing: Vec<PartialBatch> = missing.collect();
+        if self.checkpointing.resume && !missing.is_empty() {
+            // Processes that share the work begin at different batches.
+            let begin = RandomState::new().hash_one(0) % missing.len() as u64;
+            missing.rotate_left(usize::try_from(begin).unwrap_or(0));
+        }
+        Ok(missing)
+    }
+
+    /// Whether anything is to be kept by now.
+    fn keeps(&self) -> bool {
+        let Checkpointing {
+            resume,
+            until,
+            workers,
+        } = self.checkpointing;
+        let is_eager = resume || until.is_some() || workers.is_some();
+        is_eager || self.begun.elapsed() > SHORT
+    }
+
+    /// Keeps something by `write`. Where that fails the run goes on without it.
+    fn keep(&self, write: impl FnOnce() -> Result<(), Failure>) {
+        if self.is_full.load(Ordering::Relaxed) {
+            return;
+        }
+        if let Err(failure) = write() {
+            if !self.is_full.swap(true, Ordering::Relaxed) {
+                let message = failure.message;
+                self.reporter
+                    .warn(&format!("{message}: a run that ends early cannot go on"));
+            }
+            return;
+        }
+        unfinished::keeps(
+            "interrupted: what is measured is kept, up to the last few seconds, and the same command with --resume goes on from it",
+        );
+    }
+
+    /// Whether a batch on the way was not kept for a while; from now on it was.
+    fn is_due(&self, batch: u32) -> bool {
+        let mut partial = self.partial.lock().unwrap_or_else(PoisonError::into_inner);
+        let last = partial.entry(batch).or_insert(self.begun);
+        let is_due = last.elapsed() > PARTIAL_INTERVAL;
+        if is_due {
+            *last = Instant::now();
+        }
+        is_due
+    }
+}
+
+impl Watch for Keeper<'_> {
+    fn traced(&self, photons: u64) {
+        self.bar.advance(photons);
+    }
+
+    fn goes_on(&self, batch: u32, part: u32) -> bool {
+        let until = self.checkpointing.until;
+        if until.is_some_and(|until| Instant::now() >= until) {
+            self.is_late.store(true, Ordering::Relaxed);
+            return false;
+        }
+        if !self.checkpointing.resume {
+            return true;
+        }
+        // A batch where another process is ahead is left to it.
+        !(self.is_done)()
+            && match self.kept.progress(batch) {
+                None => true,
+                Some(BatchProgress::Parts(parts)) => parts <= part,
+                Some(BatchProgress::Done) => false,
+            }
+    }
+
+    fn begun(&self, batch: &PartialBatch) {
+        if self.keeps() && self.is_due(batch.index) {
+            self.keep(|| self.kept.write_partial(batch));
+        }
+    }
+
+    fn done(&self, batch: &Batch) {
+        if self.keeps() {
+            self.keep(|| self.kept.write(batch));
+        }
+    }
+}

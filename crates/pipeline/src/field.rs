@@ -1,0 +1,217 @@
+//! `--save field`: the light field of each plane on a 4D grid, and its full radial spectrum.
+
+use crate::case::MeasuredScene;
+use crate::method::{judge_of, source};
+use crate::reporter::{Reporter, Work};
+use etendue_compare::{FullRadialComparison, PlaneComparison, PredictedField, Test, Theory};
+use etendue_field::{FieldGrid, Slices, VirtualPlane};
+use etendue_scene::Scene;
+use etendue_spectrum::field::{FieldMeasurement, FieldOptions, measure_field};
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::Results;
+use etendue_store::machine;
+use etendue_store::npz::Npz;
+use etendue_store::sealed::json;
+use ndarray::{Array1, Array4};
+use ndarray_npy::WriteNpyExt;
+use serde::Serialize;
+use std::io;
+
+/// The files of a plane.
+pub const NAMES: [&str; 3] = ["field.npy", "field.json", "full_radial.npz"];
+
+/// `field.json`.
+#[derive(Serialize)]
+struct Index {
+    axes: [&'static str; 4],
+    units: [&'static str; 5],
+    cells: [usize; 4],
+    /// Centres of the first cells and widths of all: cell i is at `first` + i · `width`.
+    first: [f64; 4],
+    width: [f64; 4],
+    window: etendue_field::Window,
+    assignment: etendue_field::Assignment,
+    /// ‖4D − slices‖/‖slices‖ of the same photons on shared frequencies up to half of Nyquist, and what it is held against.
+    aliasing: Option<Aliasing>,
+}
+
+#[derive(Serialize)]
+struct Aliasing {
+    frequencies: usize,
+    difference: f64,
+    /// What aliasing makes of it if the spectrum beyond Nyquist is as strong as just inside.
+    expected: f64,
+    /// What it cannot be more than, whatever the photons.
+    bound: f64,
+}
+
+/// Fails, before anything is traced, when a plane's grid is larger than memory.
+pub fn check_memory(scene: &Scene) -> Result<(), Failure> {
+    let memory = machine::available_memory();
+    for plane in &scene.planes {
+        let grid = FieldGrid::new(&plane.window, &plane.grid);
+        let bytes = FieldOptions::default().bytes(&grid, rayon::current_num_threads());
+        if bytes > memory {
+            let [nx, ny, nu, nv] = grid.cells;
+            let gigabytes = |bytes: u64| bytes as f64 / 1e9;
+            return Err(Failure::cannot_run(format!(
+                "--save field: the grid of {} has {nx} x {ny} x {nu} x {nv} cells and needs {:.1} GB; memory holds {:.1} GB here",
+                plane.name,
+                gigabytes(bytes),
+                gigabytes(memory),
+            )));
+        }
+    }
+    Ok(())
+}
+
+/// The light field of a plane, and its full radial spectrum held against its prediction.
+#[derive(Debug)]
+struct Field {
+    measured: FieldMeasurement,
+    /// `None` where nothing is predicted, or there is no memory to hold all groups against it.
+    compared: Option<FullRadialComparison>,
+}
+
+impl Field {
+    /// Puts the photons of plane `index` on a grid: traces them again.
+    fn new(case: &MeasuredScene, index: usize, reporter: &dyn Reporter) -> Result<Self, Failure> {
+        let plane = &case.scene.planes[index];
+        let grid = FieldGrid::new(&plane.window, &plane.grid);
+        let options = FieldOptions {
+            keep: true,
+            spectra: true,
+            ..FieldOptions::default()
+        };
+        // The prediction has as many groups.
+        let groups = options.groups.min(case.measurement.batches().len());
+        let needed = grid.bytes().saturating_mul(groups as u64);
+        let needed = needed.saturating_add(options.bytes(&grid, rayon::current_num_threads()));
+        if needed > machine::available_memory() {
+            let measured = on_grid(
+                (case, case.method),
+                index,
+                &FieldOptions::default(),
+                reporter,
+            )?;
+            let compared = None;
+            return Ok(Self { measured, compared });
+        }
+        let mut measured = on_grid((case, case.method), index, &options, reporter)?;
+        let theory = &case.theories[index];
+        let predicted = if matches!(theory.theory, Theory::None) {
+            let judge = judge_of(case.method, &case.scene, plane);
+            let reference = on_grid((case, judge), index, &options, reporter)?;
+            Some(PredictedField::reference(reference.groups))
+        } else {
+            let over = (grid, options.assignment);
+            PredictedField::new(&case.scene, plane, theory, over, groups)
+        };
+        let seed = case.scene.run.seed;
+        let compared = predicted.map(|field| FullRadialComparison::new(&measured, &field, seed));
+        measured.groups.clear();
+        Ok(Self { measured, compared })
+    }
+}
+
+/// Traces a plane by a method, once if the groups are kept: else once for the sum and once for them.
+fn on_grid(
+    (case, method): (&MeasuredScene, Method),
+    index: usize,
+    options: &FieldOptions,
+    reporter: &dyn Reporter,
+) -> Result<FieldMeasurement, Failure> {
+    let scene = case.scene.seen_at(&[index]);
+    // Photons are aimed at all planes of a scene, and those that are judged must be the same ones.
+    let (source, at) = if method == case.method {
+        (source(&case.scene, method)?, index)
+    } else {
+        (source(&scene, method)?, 0)
+    };
+    let passes = if options.keep { 1 } else { 2 };
+    let bar = reporter.begin(Work::Photons(passes * case.measurement.emitted()));
+    let batches = 0..case.scene.run.batches;
+    let plane = &case.scene.planes[index];
+    let measured = measure_field(&*source, at, plane, batches, options, &|photons| {
+        bar.advance(photons);
+    });
+    drop(bar);
+    measured.map_err(Failure::cannot_run)
+}
+
+/// Measures and judges the light field of each plane, and writes it if there is a result to write it to.
+pub fn compare(
+    mut results: Option<&mut Results>,
+    case: &MeasuredScene,
+    planes: &mut [PlaneComparison],
+    reporter: &dyn Reporter,
+) -> Result<(), Failure> {
+    let test = Test::each(&case.scene, TESTS);
+    let each = case.scene.planes.iter().zip(planes).enumerate();
+    for (index, (plane, comparison)) in each {
+        let field = Field::new(case, index, reporter)?;
+        if let Some(results) = &mut results {
+            write(results, plane, &field, &comparison.measured)?;
+        }
+        if let Some(compared) = field.compared {
+            comparison.add_full_radial(compared, &case.predictions[index], &test);
+        }
+    }
+    Ok(())
+}
+
+/// Tests of each plane whose light field is saved: of its slices, and of its full radial spectrum.
+pub const TESTS: usize = 2;
+
+/// The share of Nyquist up to which the grid is held against the slices.
+const COMPARED: f64 = 0.5;
+
+fn write(
+    results: &mut Results,
+    plane: &VirtualPlane,
+    Field { measured, compared }: &Field,
+    slices: &Slices,
+) -> Result<(), Failure> {
+    let name = &plane.name;
+    let FieldMeasurement {
+        grid, full_radial, ..
+    } = measured;
+    let field: &Array4<f64> = &measured.field;
+    results.stream(&format!("{name}/field.npy"), &mut |file| {
+        field.write_npy(file).map_err(io::Error::other)
+    })?;
+    let index = Index {
+        axes: ["x", "y", "u", "v"],
+        units: ["m", "m", "slope", "slope", "W m⁻² sr⁻¹"],
+        cells: grid.cells,
+        first: [0, 1, 2, 3].map(|axis| grid.center(axis, 0)),
+        width: [0, 1, 2, 3].map(|axis| grid.cell_width(axis)),
+        window: plane.window,
+        assignment: measured.spectrum.assignment,
+        aliasing: measured
+            .spectrum
+            .aliasing(slices, COMPARED)
+            .map(|a| Aliasing {
+                frequencies: a.compared,
+                difference: a.difference,
+                expected: a.expected,
+                bound: a.bound,
+            }),
+    };
+    results.write(&format!("{name}/field.json"), &json(&index))?;
+    let mut npz = Npz::new().add("power", &full_radial.power)?;
+    if let Some(compared) = compared {
+        npz = npz
+            .add("predicted_power", &compared.predicted)?
+            .add("sigma_predicted", &compared.sigma)?;
+    }
+    let bytes = npz
+        .add("sigma", &full_radial.sigma)?
+        .add("shot_noise", &full_radial.shot_noise)?
+        .add("counts", &full_radial.counts)?
+        .add("rho_edges", &Array1::from(full_radial.rho_edges.clone()))?
+        .add("nu_edges", &Array1::from(full_radial.nu_edges.clone()))?
+        .bytes()?;
+    results.write(&format!("{name}/full_radial.npz"), &bytes)
+}

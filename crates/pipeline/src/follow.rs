@@ -1,0 +1,119 @@
+//! A process that does what the one that leads asks for.
+
+use crate::job::Job;
+use crate::workers::{Order, Packed, Piece, Task, WorkerMessage, Workers, key, packed, unpack};
+use etendue_field::PhotonSource;
+use etendue_scene::Scene;
+use etendue_spectrum::{PartialBatch, Watch, measure_watched};
+use etendue_store::Failure;
+use etendue_store::framing::{joined, split};
+use std::time::{Duration, Instant};
+
+/// Measures batches and predicts planes of a scene as the process that leads asks for them, until it is dismissed.
+pub fn follow_job(workers: &dyn Workers, job: &Job) -> Result<(), Failure> {
+    let mut source: Option<Box<dyn PhotonSource>> = None;
+    let mut done = |order: &Order, bytes: &[u8]| match order.task {
+        Task::Planes => {
+            let predicted =
+                |piece: &Piece| Ok(whole(piece.number, job.packed_prediction(piece.number)?));
+            order.pieces.iter().map(predicted).collect()
+        }
+        _ => {
+            if source.is_none() {
+                source = Some(job.source()?);
+            }
+            source
+                .as_deref()
+                .map_or(Ok(Vec::new()), |source| measured(job, source, order, bytes))
+        }
+    };
+    obey(workers, &key([job.scene()]), &mut done)
+}
+
+/// Does points of a sweep, whose scenes these are, as the process that leads asks for them: `run` has the bytes of a point.
+pub fn follow_points(
+    workers: &dyn Workers,
+    scenes: &[Scene],
+    run: &dyn Fn(u32) -> Result<Vec<u8>, Failure>,
+) -> Result<(), Failure> {
+    let mut done = |order: &Order, _: &[u8]| -> Result<_, Failure> {
+        let run = |piece: &Piece| Ok(whole(piece.number, run(piece.number)?));
+        order.pieces.iter().map(run).collect()
+    };
+    obey(workers, &key(scenes), &mut done)
+}
+
+/// Tells the process that leads why this one cannot go on: it says so and ends the run.
+pub fn report_failure(workers: &dyn Workers, Failure { message, .. }: Failure) {
+    // It may be gone itself.
+    let _ = workers.send(0, &joined(&WorkerMessage::Failed { message }, &[]));
+    let _ = workers.receive();
+}
+
+/// A piece that is done.
+fn whole(number: u32, bytes: Vec<u8>) -> Packed {
+    let piece = Piece {
+        number,
+        parts: None,
+        length: bytes.len(),
+    };
+    (piece, bytes)
+}
+
+/// Measures batches until it is time to send them back.
+fn measured(
+    job: &Job,
+    source: &dyn PhotonSource,
+    order: &Order,
+    bytes: &[u8],
+) -> Result<Vec<Packed>, Failure> {
+    let batches = unpack(&order.pieces, bytes);
+    let batches = batches.map(|(piece, own)| job.packing().unpacked_partial(source, piece, own));
+    let batches: Vec<PartialBatch> = batches.collect::<Result<_, _>>()?;
+    let until = Until(Instant::now() + Duration::from_secs_f64(order.seconds));
+    let planes = &job.scene().planes;
+    let (found, begun) = measure_watched(source, planes, &mut batches.into_iter(), &until);
+    let done = found.batches();
+    let done = done.map(|batch| Ok(whole(batch.index, job.packed(batch)?)));
+    let begun = begun
+        .iter()
+        .map(|batch| job.packing().packed_partial(batch));
+    done.chain(begun).collect()
+}
+
+/// Goes on until this moment.
+struct Until(Instant);
+
+impl Watch for Until {
+    fn traced(&self, _photons: u64) {}
+
+    fn goes_on(&self, _batch: u32, _part: u32) -> bool {
+        Instant::now() < self.0
+    }
+}
+
+/// What comes of an order, with the bytes it came with.
+type Done = Result<Vec<Packed>, Failure>;
+
+/// Follows orders by `done`, until one is empty.
+fn obey(
+    workers: &dyn Workers,
+    key: &str,
+    done: &mut dyn FnMut(&Order, &[u8]) -> Done,
+) -> Result<(), Failure> {
+    let ready = WorkerMessage::Ready {
+        key: key.to_owned(),
+        abreast: rayon::current_num_threads(),
+    };
+    let mut message = joined(&ready, &[]);
+    loop {
+        workers.send(0, &message).map_err(Failure::cannot_run)?;
+        let (_, answer) = workers.receive().map_err(Failure::cannot_run)?;
+        let (order, bytes): (Order, _) = split(&answer).map_err(Failure::cannot_run)?;
+        if order.pieces.is_empty() {
+            return Ok(());
+        }
+        let found = done(&order, bytes)?;
+        message = packed(|pieces| WorkerMessage::Done { pieces }, found);
+    }
+}

@@ -1,0 +1,223 @@
+//! What another tracer says of planes that fail.
+
+use crate::case::MeasuredScene;
+use crate::judge::Judge;
+use crate::reporter::Reporter;
+use crate::summary::Inquiry;
+use crate::table::percent;
+use etendue_compare::{Class, PlaneComparison, PlaneReport, Prediction, Test, Verdict, compare};
+use etendue_spectrum::estimate::TooFewBatches;
+use etendue_store::Failure;
+use etendue_store::Method;
+
+/// Measures planes that disagree with theory by the other method, and compares all three.
+pub(crate) fn inquire(
+    case: &MeasuredScene,
+    planes: &[PlaneComparison],
+    reporter: &dyn Reporter,
+) -> Result<Vec<Inquiry>, Failure> {
+    let failed: Vec<usize> = (0..planes.len())
+        .filter(|i| disagrees_with_theory(&planes[*i].report))
+        .collect();
+    let judges = Judge::all(&case.scene, &failed, case.method, reporter)?;
+    let test = Test::of(&case.scene);
+    let judged = |i: usize| {
+        let (judge, at) = Judge::of(&judges, i)?;
+        let inquiry = Inquiry::of(case, (i, &planes[i].report), (judge, at), &test);
+        Some(inquiry.map_err(Failure::cannot_run))
+    };
+    failed.into_iter().filter_map(judged).collect()
+}
+
+/// Whether a plane fails against a prediction, and not for its chain of affine maps alone.
+fn disagrees_with_theory(report: &PlaneReport) -> bool {
+    report.class != Class::Reference && report.exact_verdict() == Verdict::Fail
+}
+
+/// How many standard errors a disagreement must have, so that a test at 1 % finds it nine times in ten: 2.33 + 1.28.
+const DETECTABLE: f64 = 3.6;
+
+impl Inquiry {
+    /// Compares a judge of plane `i`, which has it at number `at`, with photons and with theory.
+    fn of(
+        case: &MeasuredScene,
+        (i, failed): (usize, &PlaneReport),
+        (judge, at): (&Judge, usize),
+        test: &Test,
+    ) -> Result<Self, TooFewBatches> {
+        let measured = &judge.measurement;
+        let reference = Prediction::reference(&case.scene, i, &case.theories[i], measured, at)?;
+        let tracers = compare(&case.measurement, i, &reference, test)?.report;
+        let theory = compare(measured, at, &case.predictions[i], test)?.report;
+        let methods = [case.method, judge.method];
+        let rays = measured.emitted() as f64;
+        Ok(Self::new(methods, failed, (&tracers, &theory), rays))
+    }
+
+    /// `failed` compares a measurement with its prediction. Another tracer with so many `rays` is compared with the measurement, and with
+    /// the prediction.
+    fn new(
+        methods: [Method; 2],
+        failed: &PlaneReport,
+        (tracers, theory): (&PlaneReport, &PlaneReport),
+        rays: f64,
+    ) -> Self {
+        let [this, other] = methods.map(Method::words);
+        let finding = match (tracers.verdict, theory.exact_verdict()) {
+            (Verdict::Pass, Verdict::Fail) => {
+                format!("{this} and {other} agree, the prediction does not: a finding about theory")
+            }
+            (Verdict::Fail, Verdict::Pass) => {
+                format!("{other} and the prediction agree, {this} do not: a finding about {this}")
+            }
+            (Verdict::Fail, Verdict::Fail) => {
+                format!("no two of {this}, {other} and the prediction agree")
+            }
+            (Verdict::Pass, Verdict::Pass) => both_pass([this, other], failed, theory, rays),
+            (Verdict::Undecided, _) | (_, Verdict::Undecided) => {
+                format!("{other} are too few to tell who is wrong; take more photons")
+            }
+        };
+        Self {
+            plane: tracers.name.clone(),
+            tracers: (tracers.verdict, tracers.p_value),
+            other: (theory.exact_verdict(), theory.p_value),
+            finding,
+        }
+    }
+}
+
+/// What it means that so many rays of another tracer agree with a measurement and with its prediction, which do not agree.
+fn both_pass(
+    [this, other]: [&str; 2],
+    failed: &PlaneReport,
+    theory: &PlaneReport,
+    rays: f64,
+) -> String {
+    let squares = disagreement(failed);
+    let error = theory.excess_squared_error.unwrap_or(f64::INFINITY);
+    if squares.iter().all(|square| *square >= DETECTABLE * error) {
+        return format!("{other} agree with both: chance may have made it fail; take another seed");
+    }
+    let noise = percent(theory.noise_limit);
+    let cannot = format!("{other} cannot tell who is wrong: their noise is {noise}");
+    let positive = squares.into_iter().filter(|square| *square > 0.0);
+    let least = positive.fold(f64::INFINITY, f64::min);
+    // The standard error of a square falls as the number of rays, or faster.
+    let needed = rays * DETECTABLE * error / least;
+    if needed > rays && needed.is_finite() {
+        let apart = percent(Some(least.sqrt()));
+        format!(
+            "{cannot}, and {this} and the prediction are {apart} apart; it takes {needed:.1e} of them or more (--photons)"
+        )
+    } else {
+        format!("{cannot}, and the disagreement is within the noise; take more photons")
+    }
+}
+
+/// Squares of how far a plane that fails is from its prediction, beyond noise: with all frequencies alike, and as the test has it, where
+/// frequencies of less noise count more. Another tracer has its noise elsewhere, so it must be able to see the smaller one.
+fn disagreement(failed: &PlaneReport) -> [f64; 2] {
+    let alike = failed.excess.map(|excess| excess * excess.abs());
+    let tested = failed.chi2_per_dof.zip(failed.noise_limit);
+    let tested = tested.map(|(chi2, noise)| (chi2 - 1.0) * noise * noise);
+    [alike, tested].map(|square| square.unwrap_or(0.0))
+}
+
+#[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+mod tests {
+    use super::*;
+    use crate::measure::measured;
+    use crate::reporter::Silent;
+    use etendue_compare::Applicability;
+    use etendue_scene::{Scene, SceneFile, resolve};
+
+    fn scene(radiance: f64) -> Scene {
+        let text = format!(
+            "(light: Rectangle(center: (0, 0, 0), size: (0.2, 0.2), radiance: {radiance}), \
+             surfaces: [Rectangle(name: \"floor\", center: (0, 0, 2), size: (9, 9))], \
+             path: (direction: (0, 0, 1), x_axis: (1, 0, 0), visits: [\"floor\"]), \
+             planes: [(name: \"p\", at: Distance(1))], window: (x: Hann(0.5), u: Hann(0.5)), \
+             frequencies: (azimuths: 2, rho: (max: 4), nu: (max: 4)), run: (photons: 200_000))"
+        );
+        let file = SceneFile::parse(&text).unwrap();
+        resolve("test", file, ".".as_ref(), u64::MAX).unwrap()
+    }
+
+    /// A plane whose photons, backward rays and prediction are of lights with these radiances.
+    fn compared(photons: f64, rays: f64, predicted: f64) -> (MeasuredScene, PlaneComparison) {
+        let of = |radiance| scene(radiance);
+        let prediction = |scene: &Scene| {
+            let theory = Applicability::new(scene, &scene.planes[0]);
+            Prediction::new(scene, &scene.planes[0], &theory)
+        };
+        let traced = of(photons);
+        let batches = 0..traced.run.batches;
+        let case = MeasuredScene {
+            measurement: measured(&traced, Method::Photons, batches, &Silent).unwrap(),
+            predictions: vec![prediction(&of(predicted))],
+            theories: Applicability::of_planes(&of(rays)),
+            scene: of(rays),
+            method: Method::Photons,
+        };
+        let test = Test::of(&case.scene);
+        let compared = compare(&case.measurement, 0, &case.predictions[0], &test).unwrap();
+        (case, compared)
+    }
+
+    /// What is found there.
+    fn found(photons: f64, rays: f64, predicted: f64) -> Vec<String> {
+        let (case, compared) = compared(photons, rays, predicted);
+        let inquiries = inquire(&case, &[compared], &Silent).unwrap();
+        inquiries
+            .into_iter()
+            .map(|inquiry| inquiry.finding)
+            .collect()
+    }
+
+    #[test]
+    fn who_is_wrong_is_told() {
+        assert!(found(1.0, 1.0, 1.0).is_empty());
+        let theory = found(1.0, 1.0, 1.2).concat();
+        assert!(theory.ends_with("a finding about theory"), "{theory}");
+        let photons = found(1.2, 1.0, 1.0).concat();
+        assert!(photons.ends_with("a finding about photons"), "{photons}");
+        let all = found(1.2, 1.0, 0.8).concat();
+        assert!(all.starts_with("no two of"), "{all}");
+    }
+
+    /// Photons are 0.55 % off their prediction. Rays that pass both may have had the power to see that, or not.
+    #[test]
+    fn rays_too_few_to_tell_are_no_sign_of_chance() {
+        let (_, PlaneComparison { report, .. }) = compared(1.0, 1.0, 1.0);
+        let with = |verdict, chi2, noise, squared_error| PlaneReport {
+            verdict,
+            excess: Some(0.006),
+            chi2_per_dof: Some(chi2),
+            noise_limit: Some(noise),
+            excess_squared_error: Some(squared_error),
+            ..report.clone()
+        };
+        // 0.55 % is half of their noise of 1.1 %.
+        let found = |chi2, squared_error| {
+            let failed = with(Verdict::Fail, chi2, 0.011, 1e-6);
+            let passed = with(Verdict::Pass, 1.0, 0.015, squared_error);
+            let methods = [Method::Photons, Method::Backward];
+            Inquiry::new(methods, &failed, (&passed, &passed), 1e6).finding
+        };
+        let chance = "agree with both: chance may have made it fail";
+        assert!(found(1.25, 8.4e-6).contains(chance), "3.6 standard errors");
+        let open = found(1.25, 8.5e-6);
+        assert!(open.contains("cannot tell who is wrong"), "{open}");
+        let open = found(1.25, 3e-5);
+        for words in [
+            "0.550 % apart",
+            "their noise is 1.500 %",
+            "it takes 3.6e6 of them or more",
+        ] {
+            assert!(open.contains(words), "{words}: {open}");
+        }
+        assert!(found(0.99, 1e-9).contains("within the noise"));
+    }
+}

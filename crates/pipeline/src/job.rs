@@ -1,0 +1,260 @@
+//! Étendue inside another program: a scene measured, predicted and compared in memory, as `etendue run` does it.
+
+use crate::case::MeasuredScene;
+use crate::judged::Judged;
+use crate::load::SceneSource;
+use crate::method::{self, source};
+use crate::predict::predicted;
+use crate::reporter::Silent;
+use crate::workers::Packing;
+use crate::{limits, load};
+use etendue_compare::{Applicability, PlaneComparison, Prediction, Verdict};
+use etendue_field::PhotonSource;
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::{Batch, Measurement, PartialBatch, Watch, measure_watched};
+use etendue_store::Failure;
+use etendue_store::Method;
+use etendue_store::machine;
+use etendue_store::predictions;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+/// What is asked for beside a scene file, as on the command line.
+#[derive(Clone, Debug)]
+pub struct Options {
+    /// Fields set to values, each as by [`SceneFile::with`].
+    pub set: Vec<(String, String)>,
+    /// Photons, instead of the scene's.
+    pub photons: Option<u64>,
+    /// Seed of the photons, instead of the scene's.
+    pub seed: Option<u64>,
+    /// How light is measured.
+    pub method: Method,
+}
+
+/// A scene, and how it is measured.
+#[derive(Clone, Debug)]
+pub struct Job {
+    scene: Scene,
+    theories: Vec<Applicability>,
+    method: Method,
+    inputs: Vec<PathBuf>,
+}
+
+impl Job {
+    /// The scene in a file.
+    ///
+    /// # Errors
+    /// When it cannot be read, or is no sound scene: all its faults, with their lines.
+    pub fn read(path: &Path, options: &Options) -> Result<Self, Failure> {
+        let source = SceneSource {
+            path: path.to_owned(),
+            set: options.set.clone(),
+        };
+        let scene = load::scene(&source, |run| {
+            run.photons = options.photons.unwrap_or(run.photons);
+            run.seed = options.seed.unwrap_or(run.seed);
+        })?;
+        let inputs = load::inputs(&source, &scene);
+        Self::of(scene, options.method, inputs)
+    }
+
+    /// The scene that a text describes, in RON or JSON; its meshes and pictures are in `folder`.
+    ///
+    /// # Errors
+    /// When it is no sound scene: all its faults.
+    pub fn parse(
+        text: &str,
+        name: &str,
+        folder: &Path,
+        options: &Options,
+    ) -> Result<Self, Failure> {
+        let refused = |e| Failure::bad_input(format!("{name}: {e}"));
+        let file = SceneFile::parse(text).map_err(refused)?;
+        let mut file = file.with_all(&options.set).map_err(refused)?;
+        file.run.photons = options.photons.unwrap_or(file.run.photons);
+        file.run.seed = options.seed.unwrap_or(file.run.seed);
+        let set = load::named(&options.set);
+        let scene = resolve(name, file, folder, machine::available_memory());
+        let scene = scene.map_err(|error| load::refused(&error, name, "", &set))?;
+        let inputs = scene.inputs.keys().map(|name| folder.join(name)).collect();
+        Self::of(scene, options.method, inputs)
+    }
+
+    /// The job of a resolved scene, which was read from these files.
+    pub fn of(scene: Scene, method: Method, inputs: Vec<PathBuf>) -> Result<Self, Failure> {
+        method::check(&scene, method)?;
+        Ok(Self {
+            theories: Applicability::of_planes(&scene),
+            scene,
+            method,
+            inputs,
+        })
+    }
+
+    /// The scene.
+    #[must_use]
+    pub fn scene(&self) -> &Scene {
+        &self.scene
+    }
+
+    /// Which theory applies to each plane.
+    #[must_use]
+    pub fn theories(&self) -> &[Applicability] {
+        &self.theories
+    }
+
+    /// What emits its photons.
+    ///
+    /// # Errors
+    /// When the method finds no light.
+    pub fn source(&self) -> Result<Box<dyn PhotonSource>, Failure> {
+        source(&self.scene, self.method)
+    }
+
+    /// How its batches become bytes, for another process.
+    pub(crate) fn packing(&self) -> Packing<'_> {
+        Packing {
+            scene: &self.scene,
+            method: self.method,
+        }
+    }
+
+    /// A batch as bytes, for another process.
+    ///
+    /// # Errors
+    /// When there is no memory for them.
+    pub fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
+        self.packing().packed(batch)
+    }
+
+    /// The batch of that number in bytes of [`Self::packed`], as `source` would have emitted it.
+    ///
+    /// # Errors
+    /// When they are not of this scene, seed and number of photons.
+    pub fn unpacked(
+        &self,
+        source: &dyn PhotonSource,
+        number: u32,
+        bytes: &[u8],
+    ) -> Result<Batch, Failure> {
+        self.packing().unpacked(source, number, bytes)
+    }
+
+    /// The prediction of a plane that theory predicts, as bytes for another process.
+    pub fn packed_prediction(&self, plane: u32) -> Result<Vec<u8>, Failure> {
+        let number = plane as usize;
+        let found = self.scene.planes.get(number).zip(self.theories.get(number));
+        let (plane, theory) = found.ok_or_else(|| Failure::cannot_run("no such plane"))?;
+        let prediction = Prediction::new(&self.scene, plane, theory);
+        predictions::packed(plane, &prediction)
+    }
+
+    /// Fails where a run would not end, or not fit into this machine.
+    ///
+    /// # Errors
+    /// In these two cases.
+    pub fn check_limits(&self) -> Result<(), Failure> {
+        limits::check(&self.scene, &self.theories, rayon::current_num_threads())
+    }
+
+    /// Measures some batches, on the threads of the current pool.
+    ///
+    /// # Errors
+    /// When the method finds no light.
+    pub fn measure(&self, batches: &[u32], watch: &dyn Watch) -> Result<Measurement, Failure> {
+        let source = source(&self.scene, self.method)?;
+        let mut batches = batches.iter().copied().map(PartialBatch::new);
+        Ok(measure_watched(&*source, &self.scene.planes, &mut batches, watch).0)
+    }
+
+    /// Predicts all planes, on the threads of the current pool.
+    ///
+    /// # Errors
+    /// Where another method stands in for theory, and finds no light.
+    pub fn predict(&self) -> Result<Vec<Prediction>, Failure> {
+        predicted(&self.scene, &self.theories, self.method, None, &Silent)
+    }
+
+    /// Compares what was measured with what was predicted.
+    ///
+    /// # Errors
+    /// When the measurement has too few batches for errors.
+    pub fn compare(
+        &self,
+        measurement: Measurement,
+        predictions: Vec<Prediction>,
+    ) -> Result<Outcome, Failure> {
+        let case = MeasuredScene {
+            scene: self.scene.clone(),
+            theories: self.theories.clone(),
+            method: self.method,
+            measurement,
+            predictions,
+        };
+        let judged = Judged::of(&case, None, &Silent)?;
+        Ok(Outcome {
+            case,
+            judged,
+            inputs: self.inputs.clone(),
+        })
+    }
+}
+
+/// A scene whose planes are measured, predicted and compared.
+#[derive(Debug)]
+pub struct Outcome {
+    case: MeasuredScene,
+    judged: Judged,
+    inputs: Vec<PathBuf>,
+}
+
+impl Outcome {
+    /// The planes, in the order of the scene.
+    #[must_use]
+    pub fn planes(&self) -> &[PlaneComparison] {
+        &self.judged.planes
+    }
+
+    /// The verdict on all of them.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        self.judged.summary.verdict
+    }
+
+    /// What was held against the planes.
+    #[must_use]
+    pub fn predictions(&self) -> &[Prediction] {
+        &self.case.predictions
+    }
+
+    /// `summary.json`, without hashes of files.
+    #[must_use]
+    pub fn summary(&self) -> Vec<u8> {
+        self.judged.summary.json(&BTreeMap::new())
+    }
+
+    /// The table that `etendue run` prints.
+    #[must_use]
+    pub fn table(&self) -> String {
+        crate::table::text(&self.judged.summary)
+    }
+
+    /// The scene, what was measured and what was predicted.
+    #[must_use]
+    pub fn case(&self) -> &MeasuredScene {
+        &self.case
+    }
+
+    /// What they came to.
+    #[must_use]
+    pub fn judged(&self) -> &Judged {
+        &self.judged
+    }
+
+    /// The files that the scene was read from.
+    #[must_use]
+    pub fn inputs(&self) -> &[PathBuf] {
+        &self.inputs
+    }
+}

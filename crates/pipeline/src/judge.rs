@@ -1,0 +1,55 @@
+//! Measurements that judge another one, plane by plane.
+
+use crate::measure::measured;
+use crate::method::judge_of;
+use crate::reporter::Reporter;
+use etendue_scene::Scene;
+use etendue_spectrum::Measurement;
+use etendue_store::Failure;
+use etendue_store::Method;
+
+/// A measurement of some planes of a scene by one method.
+#[derive(Debug)]
+pub(crate) struct Judge {
+    pub(crate) method: Method,
+    pub(crate) measurement: Measurement,
+    /// The numbers of its planes in the scene, ascending.
+    planes: Vec<usize>,
+}
+
+impl Judge {
+    /// Measures some planes of a scene by the methods that judge `method` there, a measurement for
+    /// each method.
+    pub(crate) fn all(
+        scene: &Scene,
+        planes: &[usize],
+        method: Method,
+        reporter: &dyn Reporter,
+    ) -> Result<Vec<Self>, Failure> {
+        let methods = [Method::Photons, Method::Backward, Method::Even];
+        let judged = methods.map(|judge| {
+            let is_judge = |i: &usize| judge_of(method, scene, &scene.planes[*i]) == judge;
+            (judge, planes.iter().copied().filter(is_judge).collect())
+        });
+        let judged = judged.into_iter();
+        let judged = judged.filter(|(_, planes): &(_, Vec<usize>)| !planes.is_empty());
+        let judge = |(method, planes): (Method, Vec<usize>)| {
+            let scene = scene.seen_at(&planes);
+            let measurement = measured(&scene, method, 0..scene.run.batches, reporter)?;
+            Ok(Self {
+                method,
+                measurement,
+                planes,
+            })
+        };
+        judged.map(judge).collect()
+    }
+
+    /// The judge of a plane of the scene, and the plane's number in its measurement.
+    pub(crate) fn of(all: &[Self], plane: usize) -> Option<(&Self, usize)> {
+        all.iter().find_map(|judge| {
+            let at = judge.planes.binary_search(&plane).ok()?;
+            Some((judge, at))
+        })
+    }
+}

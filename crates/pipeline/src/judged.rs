@@ -1,0 +1,49 @@
+//! What a scene comes to that is measured and predicted.
+
+use crate::case::MeasuredScene;
+use crate::inquiry::inquire;
+use crate::reporter::{Reporter, Work};
+use crate::summary::Summary;
+use crate::{aimed, field};
+use etendue_compare::{PlaneComparison, Test, compare};
+use etendue_store::{Failure, Results};
+
+/// What a case comes to.
+#[derive(Debug)]
+pub struct Judged {
+    /// Each plane compared, in the order of the scene.
+    pub planes: Vec<PlaneComparison>,
+    /// The verdict, and what it rests on.
+    pub summary: Summary,
+}
+
+impl Judged {
+    /// Compares all planes, and looks into those that fail. The light fields of the planes are compared too where they
+    /// are saved to a result.
+    pub fn of(
+        case: &MeasuredScene,
+        fields: Option<&mut Results>,
+        reporter: &dyn Reporter,
+    ) -> Result<Self, Failure> {
+        let _stage = reporter.begin(Work::Stage("comparing"));
+        let tests = if fields.is_some() { field::TESTS } else { 1 };
+        let mut planes = judged(case, &Test::each(&case.scene, tests))?;
+        if let Some(results) = fields {
+            field::compare(Some(results), case, &mut planes, reporter)?;
+        }
+        let inquiries = inquire(case, &planes, reporter)?;
+        let summary = Summary::new(case, &planes, inquiries);
+        Ok(Self { planes, summary })
+    }
+}
+
+/// Each plane compared, with its verdict.
+pub fn judged(case: &MeasuredScene, test: &Test) -> Result<Vec<PlaneComparison>, Failure> {
+    let each = case.predictions.iter().enumerate();
+    let compared = each.map(|(i, prediction)| {
+        compare(&case.measurement, i, prediction, test).map_err(Failure::cannot_run)
+    });
+    let mut planes = compared.collect::<Result<Vec<_>, _>>()?;
+    aimed::leave_open(case, &mut planes);
+    Ok(planes)
+}

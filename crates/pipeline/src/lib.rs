@@ -1,0 +1,40 @@
+//! A run from scene to verdict, as a library: measuring, predicting, judging by another tracer, inquiring into
+//! failures, photons until noise is low enough, batches that outlive their process, and several processes.
+//!
+//! It knows no arguments and no terminal. What goes on is told to a [`Reporter`]. [`Job`] is the way in.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a Failure carries the whole message for the user, written where it occurs"
+)]
+
+mod aimed;
+mod case;
+pub mod checkpoint;
+pub mod field;
+mod follow;
+mod inquiry;
+mod job;
+mod judge;
+mod judged;
+pub mod limits;
+pub mod load;
+mod measure;
+pub mod method;
+pub mod photons;
+mod predict;
+mod reporter;
+mod summary;
+pub mod table;
+pub mod target;
+mod workers;
+
+pub use case::MeasuredScene;
+pub use follow::{follow_job, follow_points, report_failure};
+pub use job::{Job, Options, Outcome};
+pub use judged::{Judged, judged};
+pub use measure::measured;
+pub use predict::predicted;
+pub use reporter::{Progress, Reporter, Silent, Work};
+pub use summary::{Inquiry, Stopwatch, Summary};
+pub use workers::{Leader, Workers, key};

@@ -1,0 +1,73 @@
+//! What a command takes, held against what there is, before it begins.
+
+use etendue_compare::{Applicability, Memory, too_much_work};
+use etendue_field::Light;
+use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::machine;
+
+/// Fails where a run of the scene on so many threads would not end, or not fit into this machine.
+/// `theories` are those of its planes.
+pub fn check(scene: &Scene, theories: &[Applicability], threads: usize) -> Result<(), Failure> {
+    check_work(scene, theories)?;
+    check_memory(scene, theories, threads)
+}
+
+/// Fails where a prediction of the scene would not end.
+pub fn check_work(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
+    check_rays(scene, theories)?;
+    match too_much_work(scene, theories) {
+        Some(too_much) => Err(Failure::cannot_run(format!("{}: {too_much}", scene.name))),
+        None => Ok(()),
+    }
+}
+
+/// Fails where a plane would have nothing to be held against: rays traced back do not find those of a file.
+fn check_rays(scene: &Scene, theories: &[Applicability]) -> Result<(), Failure> {
+    if !matches!(scene.light, Light::Rays { .. }) {
+        return Ok(());
+    }
+    let mut planes = scene.planes.iter().zip(theories);
+    match planes.find(|(_, theory)| !theory.reasons.is_empty()) {
+        Some((plane, theory)) => Err(Failure::bad_input(format!(
+            "{}: plane {}: the light is a ray file, and there is no prediction ({}); allowed: planes across the central ray before the first surface, behind flat blockers across it. `etendue measure` takes any",
+            scene.name,
+            plane.name,
+            theory.reasons.join(", ")
+        ))),
+        None => Ok(()),
+    }
+}
+
+/// Fails where a run of the scene on so many threads would not fit into this machine.
+pub fn check_memory(
+    scene: &Scene,
+    theories: &[Applicability],
+    threads: usize,
+) -> Result<(), Failure> {
+    let needed = Memory::new(scene, theories, threads);
+    let available = machine::available_memory();
+    if needed.total() <= available as f64 {
+        return Ok(());
+    }
+    let gigabytes = |bytes: f64| format!("{:.2} GB", bytes / 1e9);
+    let Memory {
+        batches,
+        threads: grids,
+        predictions,
+        comparison,
+        meshes,
+    } = needed;
+    Err(Failure::cannot_run(format!(
+        "{}: on {threads} threads it needs {}: {} for {} batches, {} for the grids of threads, {} for predictions, {} to compare, {} for meshes; memory holds {} here",
+        scene.name,
+        gigabytes(needed.total()),
+        gigabytes(batches),
+        scene.run.batches,
+        gigabytes(grids),
+        gigabytes(predictions),
+        gigabytes(comparison),
+        gigabytes(meshes),
+        gigabytes(available as f64)
+    )))
+}

@@ -1,0 +1,169 @@
+//! `--save photons`, `mcpl` and `tm25`: every photon that crossed a plane, in batch order.
+
+mod file;
+
+use crate::case::MeasuredScene;
+use crate::method::source;
+use etendue_field::{Crossing, PhotonSource};
+use etendue_scene::Scene;
+use etendue_store::Failure;
+use etendue_store::Results;
+use etendue_store::sealed::json;
+use file::{Content, Rays};
+use serde::Serialize;
+use std::io;
+
+/// What is kept of a run beside its result.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Save {
+    /// Every photon that crossed a plane, in coordinates of the plane.
+    Photons,
+    /// The same photons as rays of the world, in MCPL.
+    Mcpl,
+    /// The same in IES TM-25.
+    Tm25,
+    /// The light field on a 4D grid, and its full radial spectrum.
+    Field,
+}
+
+impl Save {
+    /// As commands have it.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Photons => "photons",
+            Self::Mcpl => "mcpl",
+            Self::Tm25 => "tm25",
+            Self::Field => "field",
+        }
+    }
+}
+
+/// The index of a plane's NPY file.
+const INDEX: &str = "photons.json";
+
+/// The files of a plane.
+pub fn names(save: Save) -> Vec<&'static str> {
+    let index = (save == Save::Photons).then_some(INDEX);
+    file_of(save)
+        .map(|(name, ..)| name)
+        .into_iter()
+        .chain(index)
+        .collect()
+}
+
+/// The file of the photons of a plane, what stands in front of it on the command line, and the bytes of a photon in it.
+fn file_of(save: Save) -> Option<(&'static str, &'static str, u64)> {
+    match save {
+        Save::Photons => Some(("photons.npy", "photons", 40)),
+        Save::Mcpl => Some(("photons.mcpl", "mcpl", 64)),
+        Save::Tm25 => Some(("photons.tm25ray", "tm25", 28)),
+        Save::Field => None,
+    }
+}
+
+/// `photons.json`.
+#[derive(Serialize)]
+struct Index {
+    columns: [&'static str; 5],
+    /// First row of each batch, and the number of rows at the end.
+    batch_offsets: Vec<u64>,
+    /// Photons emitted in each batch.
+    emitted: Vec<u64>,
+}
+
+/// How large the files will be at most: if every photon crosses every plane.
+pub fn announcement(scene: &Scene, save: Save) -> Option<String> {
+    let (_, option, row) = file_of(save)?;
+    let planes = scene.planes.len();
+    let each = row * scene.run.photons;
+    let [all, each] = [each * planes as u64, each].map(size);
+    Some(format!(
+        "--save {option}: at most {all} on disk, {each} for each of {planes} planes"
+    ))
+}
+
+fn size(bytes: u64) -> String {
+    let megabytes = bytes as f64 / 1e6;
+    if megabytes < 1000.0 {
+        format!("{megabytes:.1} MB")
+    } else {
+        format!("{:.1} GB", megabytes / 1000.0)
+    }
+}
+
+/// Traces the photons again, one plane after the other, and streams them to disk: they are the same ones,
+/// and memory holds a block of them. A TM-25 file begins with their flux, for which they are traced once more.
+pub fn save(results: &mut Results, case: &MeasuredScene, save: Save) -> Result<(), Failure> {
+    let Some((name, ..)) = file_of(save) else {
+        return Ok(());
+    };
+    let source = source(&case.scene, case.method)?;
+    for (plane, at) in case.scene.planes.iter().enumerate() {
+        let of_plane = OfPlane {
+            case,
+            source: &*source,
+            plane,
+        };
+        let rows = case.measurement.tally(plane).crossed;
+        let name = format!("{}/{name}", at.name);
+        let Some(rays) = Rays::of(case, plane) else {
+            continue;
+        };
+        let mut offsets = Vec::new();
+        results.stream(&name, &mut |file| {
+            let mut content = match save {
+                Save::Mcpl => Content::mcpl(&rays, rows),
+                Save::Tm25 => {
+                    let mut flux = 0.0;
+                    of_plane.trace(&mut |crossings| {
+                        flux += crossings.iter().map(|c| rays.watts(c)).sum::<f64>();
+                        Ok(())
+                    })?;
+                    Content::tm25(&rays, rows, flux)
+                }
+                Save::Photons | Save::Field => Content::npy(rows),
+            };
+            file.write_all(&content.begin())?;
+            offsets = of_plane.trace(&mut |crossings| file.write_all(&content.rows(crossings)?))?;
+            Ok(())
+        })?;
+        if save == Save::Photons {
+            let index = Index {
+                columns: ["x", "y", "u", "v", "weight"],
+                batch_offsets: offsets,
+                emitted: case.measurement.batches().map(|b| b.emitted).collect(),
+            };
+            results.write(&format!("{}/{INDEX}", at.name), &json(&index))?;
+        }
+    }
+    Ok(())
+}
+
+/// The photons of a measurement that cross a plane.
+struct OfPlane<'a> {
+    case: &'a MeasuredScene,
+    source: &'a dyn PhotonSource,
+    plane: usize,
+}
+
+impl OfPlane<'_> {
+    /// Hands them over, block by block in batch order. Returns the number of those before each batch, and of all.
+    fn trace(&self, take: &mut dyn FnMut(&[Crossing]) -> io::Result<()>) -> io::Result<Vec<u64>> {
+        let mut offsets = vec![0];
+        let mut done = 0;
+        for batch in self.case.measurement.batches() {
+            let mut outcome = Ok(());
+            let mut record = |at: usize, crossings: &[Crossing]| {
+                if at == self.plane && outcome.is_ok() {
+                    done += crossings.len() as u64;
+                    outcome = take(crossings);
+                }
+            };
+            self.source.emit(batch.index, &mut record, &|_| ());
+            outcome?;
+            offsets.push(done);
+        }
+        Ok(offsets)
+    }
+}

@@ -1,0 +1,135 @@
+//! Photons in the formats that `--save` knows.
+
+use crate::case::MeasuredScene;
+use etendue_field::{Crossing, VirtualPlane};
+use etendue_rays::mcpl::{self, PHOTON, Particle, WATTS, stat_sum_comment};
+use etendue_rays::{npy_header, tm25};
+use etendue_trace::PlaneInWorld;
+use std::io;
+
+/// The photons of a plane as rays of the world.
+pub(super) struct Rays {
+    world: PlaneInWorld,
+    /// Photons emitted, those that met nothing included.
+    emitted: u64,
+    /// What the plane is, for people.
+    about: String,
+}
+
+impl Rays {
+    /// Those of a plane; `None` if there is no such plane.
+    pub(super) fn of(case: &MeasuredScene, plane: usize) -> Option<Self> {
+        let VirtualPlane { name, distance, .. } = case.scene.planes.get(plane)?;
+        let emitted = case.measurement.batches().map(|batch| batch.emitted).sum();
+        Some(Self {
+            world: PlaneInWorld::new(&case.scene, plane)?,
+            emitted,
+            about: format!(
+                "scene {}, plane {name}, {distance} m from the light along the central ray; seed {}",
+                case.scene.name, case.scene.run.seed
+            ),
+        })
+    }
+
+    /// The power of a photon, W.
+    pub(super) fn watts(&self, crossing: &Crossing) -> f64 {
+        self.world.flux(crossing) / self.emitted as f64
+    }
+
+    /// Position in metres, direction, and power in W.
+    fn ray(&self, crossing: &Crossing) -> io::Result<([f64; 3], [f64; 3], f64)> {
+        let [point, along] = self.world.ray(&crossing.ray).ok_or_else(|| {
+            let what = "a photon crossed where the plane has no ray: a fault of etendue";
+            io::Error::other(what)
+        })?;
+        Ok((point.to_array(), along.to_array(), self.watts(crossing)))
+    }
+}
+
+/// What a file begins with, and how a photon stands in it.
+pub(super) enum Content<'a> {
+    Npy(u64),
+    Mcpl(&'a Rays, Box<mcpl::Header>, u64),
+    Tm25(&'a Rays, Box<tm25::Header>, u64),
+}
+
+impl<'a> Content<'a> {
+    /// f64 [rows, 5], in the frame of the plane.
+    pub(super) fn npy(rows: u64) -> Self {
+        Self::Npy(rows)
+    }
+
+    /// Photons of unknown energy, in f64.
+    pub(super) fn mcpl(rays: &'a Rays, rows: u64) -> Self {
+        let mut comments = vec![WATTS.as_bytes().to_vec(), rays.about.clone().into_bytes()];
+        // A number of photons is a sum as the format has it.
+        comments.extend(stat_sum_comment("emitted_photons", rays.emitted as f64));
+        let header = mcpl::Header {
+            universal_pdg: Some(PHOTON),
+            source: format!("Etendue {}", env!("CARGO_PKG_VERSION")).into_bytes(),
+            comments,
+            ..mcpl::Header::default()
+        };
+        Self::Mcpl(rays, Box::new(header), rows)
+    }
+
+    /// Rays of this flux in all, W, without wavelengths.
+    pub(super) fn tm25(rays: &'a Rays, rows: u64, flux: f64) -> Self {
+        let mut header = tm25::Header {
+            radiant_flux: single(flux),
+            ..tm25::Header::default()
+        };
+        header.texts[3] = format!("Etendue {}", env!("CARGO_PKG_VERSION"));
+        header.texts[7].clone_from(&rays.about);
+        Self::Tm25(rays, Box::new(header), rows)
+    }
+
+    pub(super) fn begin(&self) -> Vec<u8> {
+        match self {
+            Self::Npy(rows) => npy_header(*rows, 5),
+            Self::Mcpl(_, header, rows) => header.bytes(*rows),
+            Self::Tm25(_, header, rows) => header.bytes(*rows),
+        }
+    }
+
+    pub(super) fn rows(&mut self, crossings: &[Crossing]) -> io::Result<Vec<u8>> {
+        let mut bytes = Vec::new();
+        for crossing in crossings {
+            match self {
+                Self::Npy(_) => {
+                    let Crossing { ray, weight } = crossing;
+                    let row = [ray.x, ray.y, ray.u, ray.v, *weight];
+                    bytes.extend(row.into_iter().flat_map(f64::to_le_bytes));
+                }
+                Self::Mcpl(rays, header, _) => {
+                    let (position, direction, weight) = rays.ray(crossing)?;
+                    let photon = Particle {
+                        position_cm: position.map(|c| 100.0 * c),
+                        direction,
+                        energy_mev: 0.0,
+                        time_ms: 0.0,
+                        weight,
+                        polarisation: [0.0; 3],
+                        pdg: PHOTON,
+                        user_flags: 0,
+                    };
+                    photon
+                        .encode(header, &mut bytes)
+                        .map_err(io::Error::other)?;
+                }
+                Self::Tm25(rays, ..) => {
+                    let (position, direction, power) = rays.ray(crossing)?;
+                    let position = position.map(|c| 1000.0 * c);
+                    let row = position.into_iter().chain(direction).chain([power]);
+                    bytes.extend(row.flat_map(|v| single(v).to_le_bytes()));
+                }
+            }
+        }
+        Ok(bytes)
+    }
+}
+
+#[expect(clippy::cast_possible_truncation, reason = "TM-25 holds f32")]
+fn single(value: f64) -> f32 {
+    value as f32
+}

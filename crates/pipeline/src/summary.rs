@@ -1,0 +1,174 @@
+use crate::case::MeasuredScene;
+use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
+use etendue_field::Ledger;
+use etendue_scene::{Emission, SceneFile};
+use etendue_store::Method;
+use etendue_store::machine;
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::time::Instant;
+
+/// `summary.json`, all but the hashes of the files.
+#[derive(Debug, Serialize)]
+pub struct Summary {
+    /// Name of the scene.
+    pub scene: String,
+    /// BLAKE3 of the scene: of its file, defaults and overrides included, and of what it names.
+    pub scene_hash: String,
+    /// The scene as it was run, defaults and overrides included.
+    pub scene_file: SceneFile,
+    /// Of this program.
+    pub version: &'static str,
+    /// Of the photons.
+    pub seed: u64,
+    /// How the scene was measured.
+    pub method: Method,
+    /// How photons were aimed.
+    pub emission: Emission,
+    /// Photons emitted.
+    pub photons: u64,
+    /// Batches they were emitted in.
+    pub batches: usize,
+    /// Flux, W; nothing when the method does not keep it.
+    pub ledger: Option<Ledger>,
+    /// (emitted − absorbed − escaped − stopped) / emitted.
+    pub ledger_imbalance: Option<f64>,
+    /// On all planes together.
+    pub verdict: Verdict,
+    /// Probability of failing where nothing is wrong.
+    pub alpha: f64,
+    /// One for each plane, in the order of the scene.
+    pub planes: Vec<PlaneReport>,
+    /// What the other tracer says of planes that fail.
+    pub inquiries: Vec<Inquiry>,
+}
+
+/// Who of three agrees on a plane that fails: photons, another tracer and the prediction.
+#[derive(Debug, Serialize)]
+pub struct Inquiry {
+    /// Name of the plane.
+    pub plane: String,
+    /// Verdict and p of photons against backward rays.
+    pub tracers: (Verdict, Option<f64>),
+    /// Verdict and p of the other tracer against the prediction.
+    pub other: (Verdict, Option<f64>),
+    /// What that comes to, in words.
+    pub finding: String,
+}
+
+impl Summary {
+    /// What its arrays are made from.
+    pub fn made_from(&self) -> serde_json::Value {
+        serde_json::json!({
+            "scene": self.scene,
+            "scene_hash": self.scene_hash,
+            "version": self.version,
+            "seed": self.seed,
+            "photons": self.photons,
+        })
+    }
+
+    /// The summary of what was compared.
+    pub fn new(case: &MeasuredScene, planes: &[PlaneComparison], inquiries: Vec<Inquiry>) -> Self {
+        let MeasuredScene {
+            scene,
+            method,
+            measurement,
+            ..
+        } = case;
+        let reports: Vec<PlaneReport> = planes.iter().map(|p| p.report.clone()).collect();
+        let any = |verdict| reports.iter().any(|plane| plane.verdict == verdict);
+        let worst = [Verdict::Fail, Verdict::Undecided]
+            .into_iter()
+            .find(|v| any(*v));
+        let sums = method.keeps_ledger().then(|| measurement.ledger());
+        let photons = measurement.emitted();
+        Self {
+            scene: scene.name.clone(),
+            scene_hash: scene.hash(),
+            scene_file: scene.file.clone(),
+            version: VERSION,
+            seed: scene.run.seed,
+            method: *method,
+            emission: scene.run.emission,
+            photons,
+            batches: measurement.batches().len(),
+            ledger: sums.map(|sums| sums.scaled(1.0 / photons as f64)),
+            ledger_imbalance: sums.map(|sums| sums.imbalance()),
+            verdict: worst.unwrap_or(Verdict::Pass),
+            alpha: scene.run.alpha,
+            planes: reports,
+            inquiries,
+        }
+    }
+
+    /// The file's bytes; `files` maps each file to its BLAKE3 hash.
+    pub fn json(&self, files: &BTreeMap<String, String>) -> Vec<u8> {
+        #[derive(Serialize)]
+        struct WithFiles<'a> {
+            #[serde(flatten)]
+            summary: &'a Summary,
+            files: &'a BTreeMap<String, String>,
+        }
+        json(&WithFiles {
+            summary: self,
+            files,
+        })
+    }
+}
+
+/// Seconds of each stage.
+#[derive(Debug)]
+pub struct Stopwatch {
+    last: Instant,
+    seconds: Vec<(&'static str, f64)>,
+}
+
+impl Stopwatch {
+    /// Starts now.
+    pub fn start() -> Self {
+        Self {
+            last: Instant::now(),
+            seconds: Vec::new(),
+        }
+    }
+
+    /// Ends a stage.
+    pub fn lap(&mut self, stage: &'static str) {
+        self.seconds
+            .push((stage, self.last.elapsed().as_secs_f64()));
+        self.last = Instant::now();
+    }
+
+    /// How long a stage took.
+    pub fn seconds(&self, stage: &str) -> Option<f64> {
+        let mut stages = self.seconds.iter();
+        stages.find(|(name, _)| *name == stage).map(|(_, s)| *s)
+    }
+
+    /// `timing.json`.
+    pub fn json(&self, photons: u64) -> Vec<u8> {
+        #[derive(Serialize)]
+        struct Timing {
+            /// What was typed.
+            command: Vec<String>,
+            seconds: BTreeMap<&'static str, f64>,
+            threads: usize,
+            /// Emitted photons over the seconds of tracing and transforming.
+            photons_per_second: Option<f64>,
+            peak_memory_bytes: Option<u64>,
+        }
+        let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+        json(&Timing {
+            command: words.collect(),
+            seconds: self.seconds.iter().copied().collect(),
+            threads: rayon::current_num_threads(),
+            photons_per_second: self
+                .seconds("trace")
+                .map(|seconds| photons as f64 / seconds),
+            peak_memory_bytes: machine::peak_memory(),
+        })
+    }
+}

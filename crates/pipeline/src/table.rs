@@ -1,0 +1,356 @@
+//! What the run came to, at a glance.
+
+use crate::summary::Summary;
+use etendue_compare::{
+    FirstOrderReport, FullRadialReport, ParameterReport, PlaneReport, Verdict, sidak,
+};
+use etendue_field::{decimals, fixed, tidy, uncertain};
+
+/// The table of planes, that of parameters, and the verdict, as `etendue run` prints them.
+pub fn text(summary: &Summary) -> String {
+    let ledger = summary.ledger_imbalance.map(|imbalance| {
+        let imbalance = imbalance.abs();
+        format!(", flux accounted for to {imbalance:.0e}")
+    });
+    let mut lines = vec![
+        format!(
+            "{}: {} photons, seed {}{}",
+            summary.scene,
+            grouped(summary.photons),
+            summary.seed,
+            ledger.unwrap_or_default(),
+        ),
+        String::new(),
+    ];
+    lines.extend(aligned(planes(summary)));
+    lines.push(String::new());
+    lines.extend(aligned(parameters(summary)));
+    lines.push(String::new());
+    if summary
+        .planes
+        .iter()
+        .any(|plane| plane.full_radial.is_some())
+    {
+        lines.extend(aligned(full_radials(summary)));
+        lines.push(String::new());
+    }
+    for plane in &summary.planes {
+        lines.extend(
+            plane
+                .warnings
+                .iter()
+                .map(|w| format!("warning: {}: {w}", plane.name)),
+        );
+    }
+    lines.extend(summary.planes.iter().filter_map(on_chain));
+    let inquiries = summary.inquiries.iter();
+    lines.extend(inquiries.map(|inquiry| format!("{}: {}", inquiry.plane, inquiry.finding)));
+    lines.push(format!("verdict: {}", verdict_text(summary)));
+    lines.join("\n")
+}
+
+/// What is to be said of a first-order chain that does not pass.
+pub fn on_chain(plane: &PlaneReport) -> Option<String> {
+    let FirstOrderReport { chain, verdict, .. } = plane.first_order.as_ref()?;
+    let name = &plane.name;
+    let printed = if chain.as_printed {
+        ", as printed,"
+    } else {
+        ""
+    };
+    match verdict {
+        Verdict::Pass => None,
+        Verdict::Fail if chain.radiance_defect.abs() >= chain.defect => Some(format!(
+            "{name}: the first-order chain{printed} has a wrong scale: it leaves the central ray {} of its radiance",
+            percent(Some(1.0 + chain.radiance_defect)),
+        )),
+        Verdict::Fail => Some(format!(
+            "{name}: the first-order chain{printed} has a wrong map: however near to the central ray, its rays stay {} of the window's half-width off",
+            percent(Some(chain.defect)),
+        )),
+        Verdict::Undecided => Some(format!(
+            "{name}: the first-order chain is off by {} here and says nothing of this light field",
+            percent(Some(chain.error)),
+        )),
+    }
+}
+
+/// How far measured and predicted are apart, plane by plane.
+pub fn planes(summary: &Summary) -> Vec<Vec<String>> {
+    let mut header = vec![
+        "plane",
+        "class",
+        "in window",
+        "χ²/dof",
+        "p",
+        "rel. error",
+        "noise alone",
+        "shear slope [m]",
+        "predicted",
+    ];
+    let chains = summary.planes.iter().any(|p| p.first_order.is_some());
+    header.extend(chains.then_some("chain off by (computed)"));
+    header.push("verdict");
+    let row = |plane: &PlaneReport| {
+        let mut row = vec![
+            plane.name.clone(),
+            plane.class.to_string(),
+            grouped(plane.in_window),
+            number(plane.chi2_per_dof, 3),
+            number(plane.p_value, 5),
+            percent(plane.relative_error),
+            percent(plane.noise_limit),
+            match (plane.slope.measured, plane.slope.error) {
+                (Some(value), Some(error)) => uncertain(value, error),
+                _ => number(None, 0),
+            },
+            predicted(plane),
+        ];
+        row.extend(chains.then(|| chain(plane)));
+        row.push(word(plane.verdict).to_owned());
+        row
+    };
+    std::iter::once(header.into_iter().map(str::to_owned).collect())
+        .chain(summary.planes.iter().map(row))
+        .collect()
+}
+
+/// How far the photons are from the first-order chain, beyond noise, and how far they should be.
+pub fn chain(plane: &PlaneReport) -> String {
+    let Some(first_order) = &plane.first_order else {
+        return "–".to_owned();
+    };
+    let error = 100.0 * first_order.chain.error;
+    format!("{} ({error:.3} %)", percent(first_order.excess))
+}
+
+/// The parameters of the chain as the photons measure them.
+pub fn parameters(summary: &Summary) -> Vec<Vec<String>> {
+    let header = [
+        "plane",
+        "parameter",
+        "scene",
+        "measured",
+        "smallest detectable change",
+    ];
+    let mut rows = vec![header.map(str::to_owned).to_vec()];
+    for plane in &summary.planes {
+        for parameter in &plane.parameters {
+            let [measured, change] = measured(parameter);
+            rows.push(vec![
+                plane.name.clone(),
+                with_unit(&parameter.name, &parameter.unit),
+                tidy(parameter.scene),
+                measured,
+                change,
+            ]);
+        }
+    }
+    rows
+}
+
+/// How far measured and predicted full radial spectra are apart, plane by plane.
+fn full_radials(summary: &Summary) -> Vec<Vec<String>> {
+    let header = [
+        "plane",
+        "bins of the full radial spectrum",
+        "χ²/bin",
+        "p",
+        "rel. error",
+        "noise alone",
+        "aliasing [σ]",
+    ];
+    let planes = summary.planes.iter();
+    let planes = planes.filter_map(|plane| Some((&plane.name, plane.full_radial?)));
+    let row = |(name, found): (&String, FullRadialReport)| {
+        vec![
+            name.clone(),
+            found.bins.to_string(),
+            number(found.chi2_per_bin, 3),
+            number(found.p_value, 5),
+            percent(found.relative_error),
+            percent(found.noise_limit),
+            number(found.aliasing, 2),
+        ]
+    };
+    let header = header.map(str::to_owned).to_vec();
+    std::iter::once(header).chain(planes.map(row)).collect()
+}
+
+/// A name with its unit in brackets.
+pub fn with_unit(name: &str, unit: &str) -> String {
+    if unit.is_empty() {
+        name.to_owned()
+    } else {
+        format!("{name} [{unit}]")
+    }
+}
+
+/// Measured value and smallest detectable change, this as a share of the parameter if it has a size. Where all of the
+/// parameter would go unnoticed, or its error is larger than what was measured, nothing was measured.
+fn measured(parameter: &ParameterReport) -> [String; 2] {
+    let value = uncertain(parameter.measured, parameter.error);
+    if parameter.scene.abs() < 1e-12 {
+        return [value, format!("{:.1e}", parameter.detectable)];
+    }
+    let share = (parameter.detectable / parameter.scene).abs();
+    let change = if share > 1.0 {
+        number(None, 0)
+    } else {
+        etendue_field::percent(share, 2)
+    };
+    if share > 1.0 || parameter.error > parameter.measured.abs() {
+        [number(None, 0), change]
+    } else {
+        [value, change]
+    }
+}
+
+/// Columns as wide as their widest cell, two spaces apart; text to the left, numbers to the right.
+pub fn aligned(rows: Vec<Vec<String>>) -> Vec<String> {
+    let width = |column: usize| {
+        let cells = rows.iter().map(|row| row[column].chars().count());
+        cells.max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..rows[0].len()).map(width).collect();
+    let text = |column: usize| {
+        let is_text = |cell: &String| cell.starts_with(|c: char| c.is_ascii_alphabetic());
+        rows.get(1).is_some_and(|row| is_text(&row[column]))
+    };
+    let is_text: Vec<bool> = (0..widths.len()).map(text).collect();
+    let line = |row: &Vec<String>| {
+        let cells = row.iter().zip(&widths).zip(&is_text);
+        let padded: Vec<String> = cells
+            .map(|((cell, &width), text)| {
+                if *text {
+                    format!("{cell:<width$}")
+                } else {
+                    format!("{cell:>width$}")
+                }
+            })
+            .collect();
+        padded.join("  ").trim_end().to_owned()
+    };
+    rows.iter().map(line).collect()
+}
+
+/// The verdict of a run in a sentence, with its reasons.
+pub fn verdict_text(summary: &Summary) -> String {
+    let with = |verdict: Verdict| -> Vec<&PlaneReport> {
+        let planes = summary.planes.iter();
+        planes.filter(|p| p.verdict == verdict).collect()
+    };
+    let names = |planes: &[&PlaneReport]| -> String {
+        let names: Vec<&str> = planes.iter().map(|p| p.name.as_str()).collect();
+        names.join(", ")
+    };
+    let alpha = 100.0 * summary.alpha;
+    match summary.verdict {
+        Verdict::Pass => {
+            let fields = summary.planes.iter().filter(|p| p.full_radial.is_some());
+            let level = sidak(summary.alpha, summary.planes.len() + fields.count());
+            format!(
+                "pass: no plane disagrees with its prediction (α = {alpha} % over all planes: p ≥ {level:.4} at each)"
+            )
+        }
+        Verdict::Fail => {
+            let is_exact = |plane: &&PlaneReport| plane.exact_verdict() == Verdict::Fail;
+            let (measured, chains): (Vec<_>, Vec<_>) =
+                with(Verdict::Fail).into_iter().partition(is_exact);
+            let said = |what: &str, planes: &[&PlaneReport]| {
+                (!planes.is_empty()).then(|| format!("{what} at {}", names(planes)))
+            };
+            let said = [
+                said("measured and predicted disagree", &measured),
+                said("the first-order chain is wrong", &chains),
+            ];
+            format!(
+                "fail: {}",
+                said.into_iter().flatten().collect::<Vec<_>>().join("; ")
+            )
+        }
+        Verdict::Undecided => {
+            let undecided = with(Verdict::Undecided);
+            let reasons = undecided.iter().filter_map(|plane| {
+                let reason = plane.undecided.as_ref()?;
+                Some(format!("\n  {}: {reason}", plane.name))
+            });
+            format!("undecided:{}", reasons.collect::<String>())
+        }
+    }
+}
+
+/// The predicted slope to as many digits as the measured one has.
+fn predicted(plane: &PlaneReport) -> String {
+    match (plane.slope.predicted, plane.slope.error) {
+        (Some(value), Some(error)) if error > 0.0 => fixed(value, decimals(error)),
+        (value, _) => number(value, 4),
+    }
+}
+
+/// A verdict in a word.
+pub fn word(verdict: Verdict) -> &'static str {
+    match verdict {
+        Verdict::Pass => "pass",
+        Verdict::Fail => "fail",
+        Verdict::Undecided => "undecided",
+    }
+}
+
+/// A number with so many digits after the point; – where there is none.
+pub fn number(value: Option<f64>, digits: usize) -> String {
+    value.map_or("–".to_owned(), |v| fixed(v, digits))
+}
+
+/// A share in per cent; – where there is none.
+pub fn percent(value: Option<f64>) -> String {
+    value.map_or("–".to_owned(), |share| etendue_field::percent(share, 3))
+}
+
+/// 10000000 as 10 000 000.
+pub fn grouped(n: u64) -> String {
+    let digits = n.to_string();
+    let groups: Vec<&str> = digits
+        .as_bytes()
+        .rchunks(3)
+        .rev()
+        .map(|group| std::str::from_utf8(group).unwrap_or_default())
+        .collect();
+    groups.join(" ")
+}
+
+/// A name as read: underscores are spaces.
+pub fn spaced(name: &str) -> String {
+    name.replace('_', " ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_photons_cannot_tell_is_not_shown() {
+        let shown = |scene: f64, value: f64, error: f64| {
+            measured(&ParameterReport {
+                name: "side".to_owned(),
+                unit: "m".to_owned(),
+                scene,
+                measured: value,
+                error,
+                detectable: 3.86 * error,
+            })
+        };
+        assert_eq!(shown(0.2, 0.21, 0.01), ["0.210 ± 0.010", "19.30 %"]);
+        assert_eq!(shown(2.0, -113.0, 41.0), ["–", "–"]);
+        assert_eq!(shown(1.0, 1.0, 6.3e-6)[1], "0.0024 %");
+        assert_eq!(shown(2.0, 0.1, 0.2), ["–", "38.60 %"]);
+        assert_eq!(shown(0.0, 0.1, 0.2), ["0.10 ± 0.20", "7.7e-1"]);
+    }
+
+    #[test]
+    fn nothing_is_minus_zero() {
+        assert_eq!(fixed(-0.004, 2), "0.00");
+        assert_eq!(fixed(-0.006, 2), "-0.01");
+        assert_eq!(uncertain(-0.04, 1.5), "0.0 ± 1.5");
+    }
+}

@@ -1,0 +1,67 @@
+//! Batches as bytes, for another process.
+
+use super::message::{Packed, Piece};
+use etendue_field::PhotonSource;
+use etendue_scene::Scene;
+use etendue_spectrum::{Batch, PartialBatch};
+use etendue_store::batches::Held;
+use etendue_store::{Failure, Method, checkpoints};
+
+/// Turns batches of a scene, measured by a method, into bytes and back.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Packing<'a> {
+    pub(crate) scene: &'a Scene,
+    pub(crate) method: Method,
+}
+
+impl Packing<'_> {
+    /// A batch as bytes.
+    pub(crate) fn packed(&self, batch: &Batch) -> Result<Vec<u8>, Failure> {
+        checkpoints::packed(&self.scene.planes, batch)
+    }
+
+    /// The batch of that number in bytes of [`Self::packed`], as `source` would have emitted it.
+    pub(crate) fn unpacked(
+        &self,
+        source: &dyn PhotonSource,
+        number: u32,
+        bytes: &[u8],
+    ) -> Result<Batch, Failure> {
+        let held = Held {
+            seed: self.scene.run.seed,
+            method: self.method,
+            photons: source.emitted(number),
+            batches: number..number.saturating_add(1),
+        };
+        checkpoints::unpacked(bytes, &held, &self.scene.planes)
+    }
+
+    /// The first parts of a batch as bytes.
+    pub(crate) fn packed_partial(&self, batch: &PartialBatch) -> Result<Packed, Failure> {
+        let bytes = batch
+            .sum
+            .as_ref()
+            .map_or(Ok(Vec::new()), |sum| self.packed(sum))?;
+        let piece = Piece {
+            number: batch.index,
+            parts: Some(batch.parts),
+            length: bytes.len(),
+        };
+        Ok((piece, bytes))
+    }
+
+    /// The first parts of a batch, from bytes of [`Self::packed_partial`].
+    pub(crate) fn unpacked_partial(
+        &self,
+        source: &dyn PhotonSource,
+        piece: &Piece,
+        bytes: &[u8],
+    ) -> Result<PartialBatch, Failure> {
+        let index = piece.number;
+        let Some(parts) = piece.parts.filter(|parts| *parts > 0) else {
+            return Ok(PartialBatch::new(index));
+        };
+        let sum = Some(self.unpacked(source, index, bytes)?);
+        Ok(PartialBatch { index, parts, sum })
+    }
+}

@@ -1,0 +1,16 @@
+//! What a run leaves for people: pictures of its planes and path, and a page that shows all of it.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a Failure carries the whole message for the user, written where it occurs"
+)]
+
+mod drawing;
+mod explorer;
+pub mod page;
+pub mod pictures;
+mod shell;
+mod write_result;
+
+pub use shell::shell_word;
+pub use write_result::{OutputOptions, plan, save, write_result};

@@ -1,0 +1,72 @@
+//! A result as one page that any browser shows, without network: `report.html` of each run, and
+//! `etendue report`, which puts several of them side by side.
+
+mod data;
+
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+pub use data::data;
+use etendue_scene::read_file;
+use etendue_store::Failure;
+use etendue_store::SUMMARY;
+use serde::de::IgnoredAny;
+use std::path::Path;
+
+/// The page of a run, among its results.
+pub const NAME: &str = "report.html";
+
+/// Most bytes of a page that is read.
+const MOST: u64 = 1 << 28;
+
+/// What is around the data of a run in a page; before it, where the explorer is.
+const BEFORE: &str = "class=\"run-data\">";
+const AFTER: &str = "</script>";
+
+/// The data of the run in a folder, as they were written.
+pub fn stored_data(folder: &Path) -> Result<String, Failure> {
+    let shown = folder.join(NAME);
+    let fault = |what: &str| Failure::bad_input(format!("{}: {what}", shown.display()));
+    let hash = etendue_store::hash_of(folder, SUMMARY, NAME).ok_or_else(|| {
+        let folder = folder.display();
+        Failure::bad_input(format!(
+            "{folder} is no whole result with a {NAME}: run the scene again with this version"
+        ))
+    })?;
+    let bytes = read_file(&shown, MOST).map_err(|e| fault(&e.to_string()))?;
+    if hash != blake3::hash(&bytes).to_hex().as_str() {
+        return Err(fault("damaged: its hash is not the one in summary.json"));
+    }
+    let text = String::from_utf8(bytes).map_err(|e| fault(&e.to_string()))?;
+    let inside = text
+        .split_once(BEFORE)
+        .and_then(|(_, rest)| rest.split_once(AFTER));
+    let (data, _) = inside.ok_or_else(|| fault("it holds no data of a run"))?;
+    // An index can be made anew around any page: what is taken from it is data.
+    serde_json::from_str::<IgnoredAny>(data).map_err(|e| fault(&e.to_string()))?;
+    Ok(data.to_owned())
+}
+
+/// A page of the data of some runs in JSON, each with the folder it is in, as seen from the page.
+pub fn page(title: &str, blocks: &[(String, String)]) -> String {
+    let block = |(folder, data): &(String, String)| {
+        let folder = escaped(folder).replace('"', "&quot;");
+        // In JSON it is in strings alone: no name in a scene ends the data.
+        let data = data.replace('<', "\\u003c");
+        format!("<script type=\"application/json\" data-folder=\"{folder}\" {BEFORE}{data}{AFTER}")
+    };
+    let data: Vec<String> = blocks.iter().map(block).collect();
+    let [sequential, diverging] = etendue_figures::palettes().map(|colors| STANDARD.encode(colors));
+    let colors = format!("{{\"sequential\": \"{sequential}\", \"diverging\": \"{diverging}\"}}");
+    // The data last: whatever stands in them is not looked at again.
+    include_str!("page/page.html")
+        .replace("<!--TITLE-->", &escaped(title))
+        .replace("<!--STYLE-->", include_str!("page/page.css"))
+        .replace("<!--SCRIPT-->", include_str!("page/page.js"))
+        .replace("<!--COLORS-->", &colors)
+        .replacen("<!--DATA-->", &data.join("\n"), 1)
+}
+
+fn escaped(text: &str) -> String {
+    let text = text.replace('&', "&amp;");
+    text.replace('<', "&lt;").replace('>', "&gt;")
+}

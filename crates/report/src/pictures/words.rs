@@ -1,0 +1,112 @@
+//! What the coordinates of a plane are called, and axes over them.
+
+use etendue_field::{FrequencyAxis, Orientation, ProjectionGrid, SliceGrid, VirtualPlane};
+use etendue_figures::{Axis, Quantity};
+use etendue_spectrum::field::FullRadial;
+
+/// The names of a plane's coordinates: slopes across the central ray, angles on a surface.
+pub(super) struct Words {
+    pub(super) along: [&'static str; 2],
+    pub(super) across: [&'static str; 2],
+    angle: &'static str,
+    per_angle: &'static str,
+    /// Of frequencies along both positions, and along both slopes.
+    rings: [&'static str; 2],
+}
+
+impl Words {
+    const ACROSS: Self = Self {
+        along: ["*x*", "*u*"],
+        across: ["*y*", "*v*"],
+        angle: "",
+        per_angle: "cycles/slope",
+        rings: ["|*Ω*_{xy}|", "|*Ω*_{uv}|"],
+    };
+    const ON_SURFACE: Self = Self {
+        along: ["*s*", "*θ*"],
+        across: ["*t*", "*φ*"],
+        angle: "rad",
+        per_angle: "cycles/rad",
+        rings: ["|*Ω*_{st}|", "|*Ω*_{θφ}|"],
+    };
+
+    pub(super) fn of(plane: &VirtualPlane) -> Self {
+        match plane.orientation {
+            Orientation::Orthogonal => Self::ACROSS,
+            _ => Self::ON_SURFACE,
+        }
+    }
+
+    pub(super) fn projection_axes(&self, grid: &ProjectionGrid) -> [Axis; 2] {
+        [
+            Axis::edges(self.along[0], "m", [-grid.half_x, grid.half_x]),
+            Axis::edges(self.along[1], self.angle, [-grid.half_u, grid.half_u]),
+        ]
+    }
+
+    pub(super) fn frequency_axes(&self, grid: &SliceGrid) -> [Axis; 2] {
+        let axis = |name, unit, axis: &FrequencyAxis| {
+            Axis::centers(name, unit, [-axis.max(), axis.max()], axis.count())
+        };
+        [
+            axis("*ρ*", "cycles/m", &grid.rho),
+            axis("*ν*", self.per_angle, &grid.nu),
+        ]
+    }
+
+    pub(super) fn light_field_quantity(&self) -> Quantity {
+        let [a, b] = self.across;
+        Quantity::new(&format!("∬ *L W* d{a} d{b}"), "W m^{−2} sr^{−1} m")
+    }
+}
+
+/// The axes of the light field of a plane, (x, u) across its ray.
+pub fn light_field_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+    Words::of(plane).projection_axes(grid)
+}
+
+/// The axes of its spectrum, (ρ, ν).
+pub fn spectrum_axes(plane: &VirtualPlane) -> [Axis; 2] {
+    Words::of(plane).frequency_axes(&plane.grid)
+}
+
+/// The axes of its full radial spectrum, (|Ωxy|, |Ωuv|). The first ring of each is that of zero, half as wide as the others; it is
+/// drawn alike.
+pub fn full_radial_axes(plane: &VirtualPlane, of: &FullRadial) -> [Axis; 2] {
+    let words = Words::of(plane);
+    let axis = |name, unit, edges: &[f64]| {
+        let rings = edges.len() - 1;
+        let width = edges[rings] / (rings as f64 - 0.5);
+        Axis::centers(name, unit, [0.0, edges[rings] - 0.5 * width], rings)
+    };
+    let [xy, uv] = words.rings;
+    [
+        axis(xy, "cycles/m", &of.rho_edges),
+        axis(uv, words.per_angle, &of.nu_edges),
+    ]
+}
+
+/// What a full radial spectrum holds.
+pub fn full_radial_quantity() -> Quantity {
+    Quantity::new("⟨|*ℓ̂*|^{2}⟩", "")
+}
+
+/// The axes of the light field across the other two coordinates, (y, v).
+pub fn across_axes(plane: &VirtualPlane, grid: &ProjectionGrid) -> [Axis; 2] {
+    let words = Words::of(plane);
+    Words {
+        along: words.across,
+        ..words
+    }
+    .projection_axes(grid)
+}
+
+/// What a light field across the ray holds.
+pub fn light_field_quantity() -> Quantity {
+    Words::ACROSS.light_field_quantity()
+}
+
+/// What a radial spectrum holds.
+pub fn spectrum_quantity() -> Quantity {
+    Quantity::new("⟨|*S*_{φ}|^{2}⟩", "")
+}

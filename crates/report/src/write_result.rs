@@ -1,0 +1,109 @@
+//! Writing the result of a run: arrays, pictures, the page, and the summary last.
+
+use crate::{explorer, page, pictures};
+use etendue_field::VirtualPlane;
+use etendue_pipeline::photons::Save;
+use etendue_pipeline::{Judged, MeasuredScene, Outcome, Stopwatch, field, photons};
+use etendue_scene::Scene;
+use etendue_store::stored::check_earlier;
+use etendue_store::{Failure, Finished, Plan, Results, SUMMARY, TIMING, arrays};
+use std::path::{Path, PathBuf};
+
+/// What a user wants of a result folder.
+#[derive(Debug)]
+pub struct OutputOptions<'a> {
+    /// What is kept beside the result.
+    pub save: &'a [Save],
+    /// Without the files that pictures and arrays already say.
+    pub compact: bool,
+}
+
+/// Ends of names of files that a compact result does without: `report.html` has what is drawn, arrays have the numbers.
+const NOT_COMPACT: &[&str] = &[".csv", ".svg"];
+
+/// What a comparison of a scene writes.
+pub fn plan(scene: &Scene, save: &[Save], inputs: Vec<PathBuf>, force: bool) -> Plan {
+    let of_plane = |plane: &VirtualPlane| {
+        let mut names = [arrays::NAMES.as_slice(), pictures::NAMES.as_slice()].concat();
+        names.extend(save.iter().flat_map(|save| photons::names(*save)));
+        if save.contains(&Save::Field) {
+            names.extend(field::NAMES);
+        }
+        let names = names.into_iter();
+        let names = names.map(|name| format!("{}/{name}", plane.name));
+        names.collect::<Vec<_>>()
+    };
+    let beside = pictures::PATH_NAMES
+        .into_iter()
+        .chain([TIMING, page::NAME])
+        .chain(explorer::fragment(&scene.file).map(|_| explorer::NAME));
+    Plan {
+        index: SUMMARY,
+        files: scene
+            .planes
+            .iter()
+            .flat_map(of_plane)
+            .chain(beside.map(str::to_owned))
+            .collect(),
+        inputs,
+        force,
+    }
+}
+
+/// Writes everything; the summary last.
+pub fn write_result(
+    case: &MeasuredScene,
+    options: &OutputOptions<'_>,
+    mut results: Results,
+    Judged { planes, summary }: &Judged,
+    mut watch: Stopwatch,
+) -> Result<Finished, Failure> {
+    if options.compact {
+        results.leave_out(NOT_COMPACT);
+    }
+    let each = case.predictions.iter().zip(planes);
+    for ((prediction, plane), at) in each.zip(&case.scene.planes) {
+        arrays::write(&mut results, summary.made_from(), plane)?;
+        pictures::plane(
+            &mut results,
+            &pictures::made_from(summary),
+            prediction,
+            at,
+            plane,
+        )?;
+    }
+    let path = pictures::path(&mut results, case, planes)?;
+    let explorer = explorer::fragment(&summary.scene_file).filter(|_| !options.compact);
+    let data = page::data(case, summary, planes, (&path, explorer.as_deref()));
+    results.write(
+        page::NAME,
+        page::page(&case.scene.name, &[(String::new(), data)]).as_bytes(),
+    )?;
+    if explorer.is_some() {
+        results.write(explorer::NAME, explorer::PAGE)?;
+    }
+    for save in options.save {
+        photons::save(&mut results, case, *save)?;
+    }
+    watch.lap("write");
+    results.write_unlisted(TIMING, &watch.json(summary.photons))?;
+    results.finish(|files| summary.json(files))
+}
+
+/// Writes what `etendue run` writes; returns the folder.
+///
+/// # Errors
+/// When the folder holds another scene's result and `force` is not set, or cannot be written.
+pub fn save(outcome: &Outcome, folder: &Path, force: bool) -> Result<PathBuf, Failure> {
+    let scene = &outcome.case().scene;
+    check_earlier(folder, SUMMARY, scene, force)?;
+    let plan = plan(scene, &[], outcome.inputs().to_vec(), force);
+    let results = Results::claim(folder, plan)?;
+    let options = OutputOptions {
+        save: &[],
+        compact: false,
+    };
+    let watch = Stopwatch::start();
+    let finished = write_result(outcome.case(), &options, results, outcome.judged(), watch)?;
+    Ok(finished.folder)
+}

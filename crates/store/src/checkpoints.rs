@@ -1,0 +1,291 @@
+//! Batches of a run, kept as they are measured, so that a run that ends early goes on from them.
+//!
+//! Each is a file below `batches/` and the key of the run, in the folder of its results. It comes there whole, by one move, and its name has
+//! the hash of its content. A batch has the same bytes whoever measures it: processes need no lock to share the work, and one that
+//! dies holds nothing up. A batch on the way is a file too, the sum of its first parts: the next one replaces it.
+
+use crate::Failure;
+use crate::Method;
+use crate::batches::{Held, files, read_files};
+use crate::machine::available_memory;
+use crate::npz::NpzFile;
+use crate::stored::VERSION;
+use crate::{LINKED, inside};
+use etendue_field::VirtualPlane;
+use etendue_scene::{Scene, read_file};
+use etendue_spectrum::{Batch, Measurement, PartialBatch};
+use std::collections::BTreeMap;
+use std::io::{Cursor, ErrorKind, Read, Write};
+use std::path::{Path, PathBuf};
+use std::{fmt, fs};
+use zip::write::SimpleFileOptions;
+use zip::{CompressionMethod, ZipArchive, ZipWriter};
+
+/// Where the runs of a folder keep their batches.
+const FOLDER: &str = "batches";
+
+/// The batches of one run.
+#[derive(Debug)]
+pub struct CheckpointStore {
+    /// The folder of the results.
+    out: PathBuf,
+    folder: PathBuf,
+    planes: Vec<VirtualPlane>,
+    seed: u64,
+    method: Method,
+}
+
+impl CheckpointStore {
+    /// Those of a run into `out`: of this scene, measured in this way by this version.
+    pub fn of(out: &Path, scene: &Scene, method: Method) -> Self {
+        let what = format!("{VERSION} {} {}", scene.hash(), method.words());
+        let key = &blake3::hash(what.as_bytes()).to_hex()[..16];
+        Self {
+            out: out.to_owned(),
+            folder: out.join(FOLDER).join(key),
+            planes: scene.planes.clone(),
+            seed: scene.run.seed,
+            method,
+        }
+    }
+
+    /// Where they are, for messages.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// How many batches are done, and how many are begun.
+    pub fn count(&self) -> [usize; 2] {
+        let found = self.furthest();
+        let done = found.values().filter(|name| name.parts.is_none()).count();
+        [done, found.len() - done]
+    }
+
+    /// How far a batch is; `None` if it is not begun.
+    pub fn progress(&self, batch: u32) -> Option<BatchProgress> {
+        let furthest = self.furthest().remove(&batch)?;
+        Some(
+            furthest
+                .parts
+                .map_or(BatchProgress::Done, BatchProgress::Parts),
+        )
+    }
+
+    /// Of each batch the file with the most parts.
+    fn furthest(&self) -> BTreeMap<u32, Name> {
+        let mut furthest = BTreeMap::new();
+        for name in self.names() {
+            let of_batch = furthest.entry(name.batch).or_insert_with(|| name.clone());
+            if name.is_beyond(of_batch) {
+                *of_batch = name;
+            }
+        }
+        furthest
+    }
+
+    /// Whether no link leads out of the folder of the results.
+    fn is_inside(&self) -> bool {
+        let below = self.folder.strip_prefix(&self.out).ok();
+        let name = below.and_then(|below| below.join("batch").to_str().map(str::to_owned));
+        name.is_some_and(|name| inside(&self.out, &name).is_some())
+    }
+
+    fn names(&self) -> impl Iterator<Item = Name> {
+        let entries = self.is_inside().then(|| fs::read_dir(&self.folder).ok());
+        let entries = entries.flatten().into_iter().flatten().flatten();
+        entries.filter_map(|entry| Name::parse(entry.file_name().to_str()?))
+    }
+
+    /// Keeps a batch.
+    pub fn write(&self, batch: &Batch) -> Result<(), Failure> {
+        self.put(batch, None)
+    }
+
+    /// Keeps the first parts of a batch, unless more of them are kept.
+    pub fn write_partial(&self, batch: &PartialBatch) -> Result<(), Failure> {
+        let is_new = match self.progress(batch.index) {
+            None => true,
+            Some(BatchProgress::Parts(parts)) => parts < batch.parts,
+            Some(BatchProgress::Done) => false,
+        };
+        match batch.sum.as_ref().filter(|_| is_new) {
+            Some(sum) => self.put(sum, Some(batch.parts)),
+            None => Ok(()),
+        }
+    }
+
+    /// Writes a file, and removes those of the same batch that hold less.
+    fn put(&self, batch: &Batch, parts: Option<u32>) -> Result<(), Failure> {
+        if !self.is_inside() {
+            return Err(Failure::write(&self.folder, LINKED));
+        }
+        let bytes = packed(&self.planes, batch)?;
+        let name = Name::new(batch.index, parts, &bytes);
+        let put = || {
+            fs::create_dir_all(&self.folder)?;
+            let mut file = tempfile::NamedTempFile::new_in(&self.folder)?;
+            file.write_all(&bytes)?;
+            file.as_file().sync_all()?;
+            let path = self.folder.join(name.to_string());
+            file.persist(path).map_err(|error| error.error)
+        };
+        put().map_err(|e| Failure::write(&self.folder, e))?;
+        for other in self.names() {
+            if other.batch == name.batch && name.is_beyond(&other) {
+                // What stays is harmless, and another process may have removed it.
+                let _ = fs::remove_file(self.folder.join(other.to_string()));
+            }
+        }
+        Ok(())
+    }
+
+    /// Adds the batches that are done and not yet in a measurement. Returns those that are begun, and the paths of damaged files, which
+    /// were removed: what they held is measured again. `emitted` says how many photons a batch has.
+    pub fn read(
+        &self,
+        all: &mut Measurement,
+        emitted: &dyn Fn(u32) -> u64,
+    ) -> Result<(BTreeMap<u32, PartialBatch>, Vec<PathBuf>), Failure> {
+        let mut begun = BTreeMap::new();
+        let mut damaged = Vec::new();
+        for (index, name) in self.furthest() {
+            if all.contains(index) {
+                continue;
+            }
+            let path = self.folder.join(name.to_string());
+            match (self.batch(&name, emitted(index), &path), name.parts) {
+                (Ok(batch), None) => all.insert(batch).map_err(Failure::cannot_run)?,
+                (Ok(batch), Some(parts)) => {
+                    let sum = Some(batch);
+                    begun.insert(index, PartialBatch { index, parts, sum });
+                }
+                (Err(_), _) => match fs::remove_file(&path) {
+                    Ok(()) => damaged.push(path),
+                    // Another process has removed it.
+                    Err(e) if e.kind() == ErrorKind::NotFound => {}
+                    Err(e) => return Err(Failure::write(&path, e)),
+                },
+            }
+        }
+        Ok((begun, damaged))
+    }
+
+    fn batch(&self, name: &Name, photons: u64, path: &Path) -> Result<Batch, Failure> {
+        let bytes = read_file(path, available_memory()).map_err(Failure::bad_input)?;
+        if *name != Name::new(name.batch, name.parts, &bytes) {
+            return Err(Failure::bad_input("its name has another hash"));
+        }
+        let held = Held {
+            seed: self.seed,
+            method: self.method,
+            photons,
+            batches: name.batch..name.batch.saturating_add(1),
+        };
+        unpacked(&bytes, &held, &self.planes)
+    }
+
+    /// Removes them, and what a process that died has left unfinished.
+    pub fn remove(&self) {
+        if !self.is_inside() {
+            return;
+        }
+        // What stays is harmless.
+        let _ = fs::remove_dir_all(&self.folder);
+        if let Some(above) = self.folder.parent() {
+            let _ = fs::remove_dir(above);
+        }
+    }
+}
+
+/// A batch as the bytes of its file.
+pub fn packed(planes: &[VirtualPlane], batch: &Batch) -> Result<Vec<u8>, Failure> {
+    let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
+    let stored = SimpleFileOptions::default().compression_method(CompressionMethod::Stored);
+    for (name, bytes) in files(planes, &[batch])? {
+        archive
+            .start_file(name, stored)
+            .map_err(Failure::cannot_run)?;
+        archive.write_all(&bytes).map_err(Failure::cannot_run)?;
+    }
+    Ok(archive.finish().map_err(Failure::cannot_run)?.into_inner())
+}
+
+/// The batch that `held` names, from the bytes of its file.
+pub fn unpacked(bytes: &[u8], held: &Held, planes: &[VirtualPlane]) -> Result<Batch, Failure> {
+    let open = |name: &str| {
+        let mut archive = ZipArchive::new(Cursor::new(bytes)).map_err(Failure::bad_input)?;
+        let mut content = Vec::new();
+        let file = archive.by_name(name).map_err(Failure::bad_input)?;
+        // What is inside is stored as it is.
+        let most = bytes.len() as u64;
+        file.take(most)
+            .read_to_end(&mut content)
+            .map_err(Failure::bad_input)?;
+        NpzFile::new(PathBuf::from(name), content)
+    };
+    let found = read_files(&open, held, planes)?;
+    let batch = found.batches().next().cloned();
+    batch.ok_or_else(|| Failure::bad_input("no batch is in it"))
+}
+
+/// How far a batch is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BatchProgress {
+    /// So many of its first parts are summed.
+    Parts(u32),
+    /// It is whole.
+    Done,
+}
+
+/// The name of a file: `NUMBER-HASH.batch` of a whole batch, `NUMBER-PARTS-HASH.begun` of its first parts.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Name {
+    batch: u32,
+    /// How many parts it holds; `None` of a whole batch.
+    parts: Option<u32>,
+    /// Of the parts and the bytes.
+    hash: String,
+}
+
+impl Name {
+    fn new(batch: u32, parts: Option<u32>, bytes: &[u8]) -> Self {
+        let mut hasher = blake3::Hasher::new();
+        if let Some(parts) = parts {
+            hasher.update(&parts.to_le_bytes());
+        }
+        let hash = hasher.update(bytes).finalize().to_hex()[..32].to_owned();
+        Self { batch, parts, hash }
+    }
+
+    fn parse(name: &str) -> Option<Self> {
+        let (stem, is_whole) = match name.strip_suffix(".batch") {
+            Some(stem) => (stem, true),
+            None => (name.strip_suffix(".begun")?, false),
+        };
+        let (batch, mut hash) = stem.split_once('-')?;
+        let mut parts = None;
+        if !is_whole {
+            let (number, rest) = hash.split_once('-')?;
+            parts = Some(number.parse().ok()?);
+            hash = rest;
+        }
+        let (batch, hash) = (batch.parse().ok()?, hash.to_owned());
+        Some(Self { batch, parts, hash })
+    }
+
+    /// Whether this file holds more of its batch than another one of it.
+    fn is_beyond(&self, other: &Self) -> bool {
+        let rank = |name: &Self| name.parts.map_or(u64::MAX, u64::from);
+        rank(self) > rank(other)
+    }
+}
+
+impl fmt::Display for Name {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { batch, parts, hash } = self;
+        match parts {
+            None => write!(f, "{batch:08}-{hash}.batch"),
+            Some(parts) => write!(f, "{batch:08}-{parts:08}-{hash}.begun"),
+        }
+    }
+}
