@@ -1,12 +1,12 @@
-use crate::figure::Quality;
-use crate::values::{Setting, Sweep, setting, sweep};
+use crate::values::{Point, Setting, Sweep, said_at, setting, sweep};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use etendue_field::tidy;
-use etendue_pipeline::load::SceneSource;
+use etendue_paper::Quality;
+use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::photons::Save;
-use etendue_scene::RunFile;
-use etendue_store::Method;
+use etendue_scene::{RunFile, Scene};
+use etendue_store::{Failure, Method};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -322,24 +322,43 @@ pub(crate) struct PhotonArgs {
     pub(crate) method: Method,
 }
 
+/// Takes one of some values by its name; each has a line of help.
+fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [(T, &'static str, &'static str); N],
+) -> impl TypedValueParser<Value = T> {
+    let names = all.map(|(_, name, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(names).try_map(move |text| {
+        let mut all = all.iter();
+        let found = all.find(|(_, name, _)| *name == text);
+        found.map(|(value, ..)| *value).ok_or("no such value")
+    })
+}
+
 /// The methods that a user may name.
 fn methods() -> impl TypedValueParser<Value = Method> {
-    let named = |method: Method, help: &'static str| PossibleValue::new(method.name()).help(help);
-    PossibleValuesParser::new([
+    let named = |method: Method, help| (method, method.name(), help);
+    one_of([
         named(Method::Photons, "Photons from the light, forward"),
         named(
             Method::Backward,
             "Rays drawn in the window of each plane, traced back to the light",
         ),
     ])
-    .map(|name| {
-        let backward = name == Method::Backward.name();
-        if backward {
-            Method::Backward
-        } else {
-            Method::Photons
-        }
-    })
+}
+
+/// How much work may go into a figure.
+fn qualities() -> impl TypedValueParser<Value = Quality> {
+    let named = |quality: Quality, help| (quality, quality.name(), help);
+    one_of([
+        named(
+            Quality::Draft,
+            "An eighth of the photons of the scenes, twice as many frequencies as they ask for along each axis",
+        ),
+        named(
+            Quality::Print,
+            "The photons of the scenes, four times as many frequencies",
+        ),
+    ])
 }
 
 impl PhotonArgs {
@@ -389,6 +408,22 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
+    /// The scene with some fields set to numbers besides; `options` are overrides of the command line's own.
+    pub(crate) fn at(
+        &self,
+        point: &Point,
+        options: impl FnOnce(&mut RunFile),
+    ) -> Result<Scene, Failure> {
+        let mut source = self.source();
+        let numbers = point.iter();
+        let numbers = numbers.map(|(path, value)| (path.clone(), format!("{value:?}")));
+        source.set.extend(numbers);
+        load::scene(&source, options).map_err(|failure| Failure {
+            message: said_at(point, failure.message),
+            ..failure
+        })
+    }
+
     /// The scene, for the pipeline.
     pub(crate) fn source(&self) -> SceneSource {
         SceneSource {
@@ -465,7 +500,7 @@ pub(crate) struct FigureArgs {
     pub(crate) plane: Option<String>,
 
     /// Folder of the figures
-    #[arg(long, value_name = "DIR", default_value = crate::figure::FOLDER)]
+    #[arg(long, value_name = "DIR", default_value = "results/figures")]
     pub(crate) out: PathBuf,
 
     /// Looks, in RON; each field may be left out: (titles: false, scene: false, verdicts: false, width: 3.33,
@@ -475,7 +510,7 @@ pub(crate) struct FigureArgs {
     pub(crate) style: Option<PathBuf>,
 
     /// How much work goes into it
-    #[arg(long, value_name = "QUALITY", default_value = "print")]
+    #[arg(long, value_name = "QUALITY", default_value = "print", value_parser = qualities())]
     pub(crate) quality: Quality,
 
     #[command(flatten)]
@@ -644,18 +679,25 @@ pub(crate) enum Program {
 
 /// What `--save` keeps.
 fn saves() -> impl TypedValueParser<Value = Save> {
-    let named = |save: Save, help: &'static str| PossibleValue::new(save.name()).help(help);
-    PossibleValuesParser::new([
-        named(Save::Photons, "Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each"),
-        named(Save::Mcpl, "The same photons as rays of the world with their power in W, photons.mcpl: 64 bytes for each"),
-        named(Save::Tm25, "The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each"),
-        named(Save::Field, "The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz, which is predicted and compared too; takes another pass over the photons for each plane, or two where memory is short"),
+    let named = |save: Save, help| (save, save.name(), help);
+    one_of([
+        named(
+            Save::Photons,
+            "Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each",
+        ),
+        named(
+            Save::Mcpl,
+            "The same photons as rays of the world with their power in W, photons.mcpl: 64 bytes for each",
+        ),
+        named(
+            Save::Tm25,
+            "The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each",
+        ),
+        named(
+            Save::Field,
+            "The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz, which is predicted and compared too; takes another pass over the photons for each plane, or two where memory is short",
+        ),
     ])
-    .map(|name| {
-        let all = [Save::Photons, Save::Mcpl, Save::Tm25];
-        let saved = all.into_iter().find(|save| save.name() == name);
-        saved.unwrap_or(Save::Field)
-    })
 }
 
 /// What `--expect` may expect.

@@ -1,9 +1,9 @@
 use crate::args::BandwidthArgs;
+use crate::print::{deliver, say};
+use crate::progress;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
-use crate::values::scene_at;
 use crate::values::{Point, points, said_at, shown};
-use crate::{deliver, progress, say};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_field::{Term, VirtualPlane};
 use etendue_pipeline::measured;
@@ -18,7 +18,7 @@ use std::path::PathBuf;
 /// `etendue bandwidth`: returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
-    let at = |point| scene_at(&args.scene, point, |run| args.photons.set(run));
+    let at = |point| args.scene.at(point, |run| args.photons.set(run));
     let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
     if args.measure {
         for scene in &scenes {

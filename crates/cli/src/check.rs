@@ -1,5 +1,6 @@
 use crate::args::CheckArgs;
-use crate::{deliver, say, warnings};
+use crate::print::{deliver, say};
+use crate::warnings;
 use etendue_compare::{Applicability, Class, Memory, seconds};
 use etendue_field::{Orientation, tidy};
 use etendue_pipeline::{limits, load, method};

@@ -1,7 +1,8 @@
 use crate::args::CompareArgs;
 use crate::conclude::{Ending, conclude};
+use crate::print::say;
+use crate::progress;
 use crate::threads::on_threads;
-use crate::{progress, say};
 use etendue_compare::Applicability;
 use etendue_pipeline::MeasuredScene;
 use etendue_pipeline::Stopwatch;

@@ -1,8 +1,9 @@
 //! The end of a command that compares: writes the result, prints it, and has the exit code.
 
 use crate::args::Expect;
+use crate::print::{say, say_replaced};
 use crate::progress::Terminal;
-use crate::{say, say_replaced};
+
 use etendue_compare::{PlaneReport, Verdict};
 use etendue_pipeline::photons::Save;
 use etendue_pipeline::{Judged, MeasuredScene, Reporter, Stopwatch, Summary, Work, table, target};

@@ -1,6 +1,7 @@
 use crate::args::ConvergeArgs;
+use crate::print::{deliver, say};
+use crate::progress;
 use crate::threads::on_threads;
-use crate::{deliver, progress, say};
 use etendue_compare::{Applicability, Convergence, converge as shrink};
 use etendue_pipeline::table::aligned;
 use etendue_pipeline::{limits, load};

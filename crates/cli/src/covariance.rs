@@ -3,10 +3,10 @@
 mod said;
 
 use crate::args::CovarianceArgs;
+use crate::print::{deliver, say_replaced};
+use crate::progress;
 use crate::progress::Terminal;
-use crate::say_replaced;
 use crate::threads::on_threads;
-use crate::{deliver, progress};
 use etendue_compare::{Applicability, CovarianceReport, Prediction, SliceMoment};
 use etendue_field::{PhotonSource, VirtualPlane};
 use etendue_figures::{Ellipse, Ellipses, Picture, Quantity, ellipses};

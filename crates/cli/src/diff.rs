@@ -6,7 +6,7 @@ mod text;
 
 use crate::args::DiffArgs;
 use crate::conclude::code_of;
-use crate::deliver;
+use crate::print::deliver;
 use etendue_compare::{Verdict, sidak};
 use etendue_store::Failure;
 use etendue_store::fields::{FieldChange, differences};

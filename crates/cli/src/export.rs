@@ -1,6 +1,5 @@
 use crate::args::ExportArgs;
-use crate::say;
-use crate::say_replaced;
+use crate::print::{say, say_replaced};
 use etendue_pipeline::load;
 use etendue_store::Failure;
 use etendue_store::sealed::json;

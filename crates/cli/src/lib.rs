@@ -11,11 +11,13 @@ mod conclude;
 mod converge;
 mod covariance;
 mod diff;
+mod exit;
 mod export;
 mod figure;
 mod interrupt;
 mod measure;
 mod predict;
+mod print;
 mod probe;
 mod progress;
 mod rays;
@@ -33,12 +35,8 @@ mod world;
 
 use args::{Cli, Command};
 use clap::Parser;
-use etendue_scene::shown;
-use etendue_store::Failure;
-use etendue_store::Finished;
+use exit::{ended, not_parsed};
 use std::ffi::OsString;
-use std::io::{ErrorKind, Write};
-use std::path::Path;
 use std::process::ExitCode;
 pub use workers::command_of_workers;
 
@@ -78,73 +76,4 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Schema(args) => schema::schema(&args),
     });
     ended(outcome, false)
-}
-
-/// Prints the fault of a command line, or the help or the version that it asks for; returns the exit code.
-fn not_parsed(error: &clap::Error) -> u8 {
-    match error.print() {
-        Err(e) if !error.use_stderr() && e.kind() != ErrorKind::BrokenPipe => ended(
-            Err(Failure::write(Path::new("to standard output"), e)),
-            false,
-        ),
-        _ => u8::try_from(error.exit_code()).unwrap_or(2),
-    }
-}
-
-/// The exit code of what a command came to; a failure is told, unless somebody else tells it.
-fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
-    match outcome {
-        Ok(code) => code,
-        Err(failure) => {
-            if !quiet {
-                // A reader that has gone does not change the exit code.
-                let message = printable(&failure.message, MOST_LINES);
-                let _ = writeln!(std::io::stderr(), "error: {message}");
-            }
-            failure.code
-        }
-    }
-}
-
-/// Prints to standard output. A reader that has gone, or a full disk behind it, changes nothing that was
-/// done: the result and the exit code stand.
-pub(crate) fn say(text: &str) {
-    let _ = deliver(text);
-}
-
-/// Prints what a command is for: that it cannot be written is a failure, unless the reader has gone.
-pub(crate) fn deliver(text: &str) -> Result<(), Failure> {
-    let text = printable(text, usize::MAX);
-    match writeln!(std::io::stdout(), "{text}") {
-        Err(e) if e.kind() != ErrorKind::BrokenPipe => {
-            Err(Failure::write(Path::new("to standard output"), e))
-        }
-        _ => Ok(()),
-    }
-}
-
-/// Says which files of somebody else are no more, since `--force` was there.
-pub(crate) fn say_replaced(finished: &Finished, quiet: bool) {
-    if let Some(message) = finished.replaced_message().filter(|_| !quiet) {
-        say(&message);
-    }
-}
-
-/// Lines of an error, and characters of a line.
-const MOST_LINES: usize = 20;
-const LONGEST_LINE: usize = 2000;
-
-/// Text of at most so many lines, in characters that a terminal takes as they are: names of files and what
-/// stands in them come from anywhere.
-fn printable(text: &str, lines: usize) -> String {
-    let mut all = text.split('\n');
-    let shown = all
-        .by_ref()
-        .take(lines)
-        .map(|line| shown(line, LONGEST_LINE));
-    let mut shown: Vec<String> = shown.collect();
-    if all.next().is_some() {
-        shown.push("…".to_owned());
-    }
-    shown.join("\n")
 }

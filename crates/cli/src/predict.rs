@@ -1,8 +1,8 @@
 use crate::args::PredictArgs;
+use crate::print::{say, say_replaced};
 use crate::progress::Terminal;
-use crate::say_replaced;
 use crate::threads::on_threads;
-use crate::{say, warnings};
+use crate::warnings;
 use etendue_compare::Applicability;
 use etendue_pipeline::Leader;
 use etendue_pipeline::predicted;

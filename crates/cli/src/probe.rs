@@ -5,9 +5,9 @@ mod map;
 mod said;
 
 use crate::args::ProbeArgs;
-use crate::say_replaced;
+use crate::print::{deliver, say_replaced};
 use crate::threads::on_threads;
-use crate::{deliver, progress, world};
+use crate::{progress, world};
 use covariance::FoundCovariance;
 use etendue_compare::{PlaneComparison, Prediction, Test, Verdict, compare, sidak};
 use etendue_field::PhotonSource;

@@ -1,6 +1,7 @@
 //! Progress bars on a terminal; nothing elsewhere.
 
-use crate::{say, warnings};
+use crate::print::say;
+use crate::warnings;
 use etendue_pipeline::{Progress, Reporter, Work};
 use indicatif::{MultiProgress, ProgressBar, ProgressStyle};
 

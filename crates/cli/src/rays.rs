@@ -1,7 +1,8 @@
 //! `etendue rays`: what a ray file holds, and the same rays in another format.
 
 use crate::args::RaysArgs;
-use crate::{deliver, say};
+use crate::print::{deliver, say};
+
 use etendue_field::tidy;
 use etendue_rays::mcpl::{McplFile, PHOTON};
 use etendue_rays::tm25::{Header, Tm25File};

@@ -3,9 +3,9 @@
 mod adaptive;
 
 use crate::args::{RenderArgs, RenderMethod};
-use crate::say_replaced;
+use crate::print::{say, say_replaced};
 use crate::threads::on_threads;
-use crate::{progress, say, world};
+use crate::{progress, world};
 use etendue_paths::{Paths, Picture};
 use etendue_store::Failure;
 use etendue_store::exr::{Part, exr};

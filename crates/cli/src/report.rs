@@ -1,7 +1,7 @@
 //! `etendue report`: the pages of several results side by side.
 
 use crate::args::ReportArgs;
-use crate::say;
+use crate::print::say;
 use etendue_report::page::{NAME, page, stored_data};
 use etendue_store::output::OutputFile;
 use etendue_store::{Failure, SUMMARY};

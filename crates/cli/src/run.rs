@@ -1,8 +1,9 @@
 use crate::args::RunArgs;
 use crate::conclude::{Ending, code_of, conclude};
+use crate::print::say;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
-use crate::{say, warnings};
+use crate::warnings;
 use etendue_compare::{Applicability, Verdict};
 use etendue_pipeline::Leader;
 use etendue_pipeline::MeasuredScene;

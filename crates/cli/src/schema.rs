@@ -1,7 +1,7 @@
 //! `etendue schema`: what a scene file may hold, for editors and as a page of the book.
 
 use crate::args::SchemaArgs;
-use crate::deliver;
+use crate::print::deliver;
 use etendue_store::Failure;
 use serde_json::{Map, Value};
 

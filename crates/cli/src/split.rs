@@ -1,7 +1,7 @@
 //! `etendue split`: the commands that measure a scene in parts, on as many machines, and put them together.
 
 use crate::args::SplitArgs;
-use crate::deliver;
+use crate::print::deliver;
 use etendue_pipeline::{load, method};
 use etendue_report::shell_word;
 use etendue_store::Failure;

@@ -7,11 +7,10 @@ mod pictures;
 mod table;
 
 use crate::args::{SceneArgs, SweepArgs};
-use crate::say_replaced;
+use crate::print::{say, say_replaced};
 use crate::threads::on_threads;
-use crate::values::scene_at;
 use crate::values::{Point, Setting, Sweep, points, shown};
-use crate::{progress, say, warnings};
+use crate::{progress, warnings};
 use etendue_compare::{Applicability, Test};
 use etendue_field::{decimals, fixed, uncertain};
 use etendue_pipeline::Leader;
@@ -97,7 +96,7 @@ impl Points {
         let points = points(&sweeps, args.together)?;
         let has_own_seed = !args.common_seed && sweeps.iter().all(|s| s.path != "run.seed");
         let at = |point| {
-            let mut at = scene_at(&scene, point, |run| args.photons.set(run))?;
+            let mut at = scene.at(point, |run| args.photons.set(run))?;
             if has_own_seed {
                 at.run.seed = seed_of(&at);
                 at.file.run.seed = at.run.seed;

@@ -1,9 +1,6 @@
 //! The values that fields of a scene take in a sweep.
 
-use crate::args::SceneArgs;
 use etendue_field::tidy;
-use etendue_pipeline::load;
-use etendue_scene::{RunFile, Scene};
 use etendue_store::Failure;
 
 /// A field of the scene and its values.
@@ -174,22 +171,6 @@ pub(crate) fn short(path: &str) -> &str {
         .unwrap_or(0);
     let mut dots = path.rmatch_indices('.').map(|(at, _)| at + 1);
     dots.nth(name).map_or(path, |at| &path[at..])
-}
-
-/// The scene with some fields set to numbers besides.
-pub(crate) fn scene_at(
-    args: &SceneArgs,
-    point: &Point,
-    options: impl FnOnce(&mut RunFile),
-) -> Result<Scene, Failure> {
-    let mut source = args.source();
-    let numbers = point.iter();
-    let numbers = numbers.map(|(path, value)| (path.clone(), format!("{value:?}")));
-    source.set.extend(numbers);
-    load::scene(&source, options).map_err(|failure| Failure {
-        message: said_at(point, failure.message),
-        ..failure
-    })
 }
 
 #[cfg(test)]

@@ -1,9 +1,10 @@
 //! Commands whose work several processes share.
 
 use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
+use crate::exit::{ended, not_parsed};
 use crate::sweep::Points;
 use crate::threads::on_threads;
-use crate::{ended, interrupt, not_parsed, predict, run, sweep};
+use crate::{interrupt, predict, run, sweep};
 use clap::Parser;
 use etendue_pipeline::{Job, Leader, Options, Workers, follow_job, follow_points, report_failure};
 use etendue_store::Failure;

@@ -1,7 +1,7 @@
 //! Scenes of other programs, as commands take them.
 
 use crate::args::{CameraArgs, ImportArgs, ViewArgs, WorldArgs};
-use crate::deliver;
+use crate::print::deliver;
 use etendue_import::{Imported, import};
 use etendue_pipeline::table::aligned;
 use etendue_store::Failure;

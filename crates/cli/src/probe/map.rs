@@ -2,9 +2,9 @@
 
 use super::said::{ON_GRID, criterion};
 use super::{BATCHES, Case};
-use crate::say_replaced;
+use crate::print::{deliver, say_replaced};
+use crate::progress;
 use crate::threads::on_threads;
-use crate::{deliver, progress};
 use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
 use etendue_paths::{BackwardProbe, Budget, Probe};
 use etendue_report::pictures;

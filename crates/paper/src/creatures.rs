@@ -1,14 +1,14 @@
 //! Figs. 16 and 17: a picture of few shading samples, and the criteria that put them where they are.
 
-use crate::figure::Quality;
-use crate::figure::recipe::Taken;
-use crate::progress;
+use crate::quality::Quality;
+use crate::subject::FigureData;
 use etendue_adaptive::{BLOCKER_RAYS, Method, Plan, Rendered, render};
 use etendue_figures::{
     Axis, Figure, Palette, Picture, Plate, PlateRow, Quantity, Scale, Style, plate, stacked,
 };
 use etendue_import::{Options, import};
 use etendue_paths::Paths;
+use etendue_pipeline::Work;
 use etendue_store::Failure;
 use etendue_world::Camera;
 use ndarray::{Array2, Axis as Along};
@@ -18,19 +18,19 @@ use std::fs;
 const FILES: [(&str, &[u8]); 4] = [
     (
         "creatures.xml",
-        include_bytes!("../../../../scenes/worlds/creatures.xml"),
+        include_bytes!("../../../scenes/worlds/creatures.xml"),
     ),
     (
         "hall.exr",
-        include_bytes!("../../../../scenes/worlds/hall.exr"),
+        include_bytes!("../../../scenes/worlds/hall.exr"),
     ),
     (
         "hunter.ply",
-        include_bytes!("../../../../scenes/worlds/hunter.ply"),
+        include_bytes!("../../../scenes/worlds/hunter.ply"),
     ),
     (
         "grazer.ply",
-        include_bytes!("../../../../scenes/worlds/grazer.ply"),
+        include_bytes!("../../../scenes/worlds/grazer.ply"),
     ),
 ];
 
@@ -142,7 +142,7 @@ impl Pair<'_> {
 }
 
 /// Fig. 16.
-pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let scene = Scene::new(taken.quality)?;
     let layers = scene.rendered(Method::Predicted, false).layers;
     let squares = |values: &[f64]| scene.picture(values.iter().map(|x| x * x).collect());
@@ -174,9 +174,9 @@ pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
 }
 
 /// Fig. 17.
-pub(super) fn pictures(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let scene = Scene::new(taken.quality)?;
-    let bar = progress::stage("rendering", taken.quiet);
+    let stage = taken.reporter.begin(Work::Stage("rendering"));
     let ways = [
         (Method::Uniform, true),
         (Method::Predicted, true),
@@ -184,7 +184,7 @@ pub(super) fn pictures(taken: &Taken<'_>) -> Result<Figure, Failure> {
     ];
     let few = ways.map(|(method, is_even)| scene.rendered(method, is_even).radiance);
     let reference = scene.paths.picture(&scene.camera, REFERENCE, 2, &|_| {});
-    bar.finish_and_clear();
+    drop(stage);
     let reference = reference.mean;
     let white = bright(&reference);
     let foot = |radiance: &Vec<f64>| vec![format!("relMSE {:.4}", error(radiance, &reference))];

@@ -1,8 +1,9 @@
 //! Figs. 3 and 13: coordinates of rays, and what it costs to take them for each other.
 
-use crate::figure::recipe::{TWIST, Taken, Text};
-use crate::figure::rows::{Seen, compared, feet, row};
-use crate::figure::shot::resolved;
+use crate::rows::{Seen, compared, feet, row};
+use crate::scenes::TWIST;
+use crate::shot::resolved;
+use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, Convergence, converge};
 use etendue_field::percent;
 use etendue_figures::{
@@ -13,7 +14,7 @@ use etendue_store::Failure;
 use ndarray::Array2;
 
 /// Fig. 3: stripes at equal angles, by slopes and by angles, and after travel.
-pub(crate) fn coordinates(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["two_plane", "travel", "plane_sphere"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
@@ -43,7 +44,7 @@ pub(crate) fn coordinates(taken: &Taken<'_>) -> Result<Figure, Failure> {
 }
 
 /// Fig. 13: directions by longitude and latitude about three equators.
-pub(crate) fn directions(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn directions(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let [mirror, copper] = [&taken.shots[0], &taken.shots[1]];
     let seen = [
         Seen::at(mirror, "curvature")?,
@@ -118,7 +119,7 @@ fn shrunk((name, text): &Text, planes: &[&str]) -> Result<Vec<Convergence>, Fail
 
 /// First-order errors, and lines of an order.
 fn orders(
-    taken: &Taken<'_>,
+    taken: &FigureData<'_>,
     title: &str,
     note: &str,
     planes: &[Convergence],

@@ -1,6 +1,6 @@
 //! Curves of kernels that the paper draws: cosines and Fresnel factors, and their transforms.
 
-use crate::figure::recipe::Taken;
+use crate::subject::FigureData;
 use etendue_field::gauss_legendre;
 use etendue_figures::{
     Axis, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow, Quantity, Scale,
@@ -44,7 +44,7 @@ fn values(title: &str, note: &str, panels: Vec<CurvePanel>) -> Curves {
 }
 
 /// g(v) and G(u, v), and their transforms (docs/theory.md (6) and (7)).
-pub(crate) fn slopes(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let slope = || Quantity::new("*v*", "slope");
     let frequency = || Quantity::new("*Ω*", "cycles/slope");
     let g = |v: f64| libm::pow(1.0 + v * v, -1.5);
@@ -76,7 +76,7 @@ pub(crate) fn slopes(taken: &Taken<'_>) -> Result<Figure, Failure> {
 }
 
 /// G(u, v) and its transform over both slopes and both frequencies (Fig. 5c).
-fn solid_slopes(taken: &Taken<'_>) -> Result<Figure, Failure> {
+fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let at = |i: usize, end: f64| end * (2.0 * i as f64 / (CELLS - 1) as f64 - 1.0);
     let map = |end: f64, f: &dyn Fn(f64, f64) -> f64| {
         Array2::from_shape_fn((CELLS, CELLS), |(i, j)| f(at(i, end), at(j, end)))
@@ -143,7 +143,7 @@ impl Material {
 }
 
 /// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the frequencies below which their energy lies.
-pub(crate) fn fresnel(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let material = |name, fresnel| Material { name, fresnel };
     let dielectric = |index| Some(Fresnel::Dielectric { index });
     // Aluminium at 650 nm, as in the figures of microfacet papers.

@@ -1,6 +1,6 @@
 //! What figures show of the planes of their scenes, row by row.
 
-use crate::figure::shot::Shot;
+use crate::shot::Shot;
 use etendue_compare::PlaneComparison;
 use etendue_field::{Complex, Slices, VirtualPlane};
 use etendue_figures::{Picture, PlateRow, Quantity, Scale};
@@ -12,57 +12,57 @@ use etendue_store::Failure;
 use ndarray::{Array2, ArrayView2, Axis as Along};
 
 /// Lowest level of a spectrum's colors, in decibels below its peak.
-pub(super) const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
+pub(crate) const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
 /// Powers below this share of the largest have no phase worth showing.
-pub(super) const LEAST: f64 = 1e-5;
+pub(crate) const LEAST: f64 = 1e-5;
 
 /// A plane of a scene with what was found there.
 #[derive(Clone, Copy)]
-pub(super) struct Seen<'a> {
-    pub(super) plane: &'a VirtualPlane,
-    pub(super) found: &'a PlaneComparison,
+pub(crate) struct Seen<'a> {
+    pub(crate) plane: &'a VirtualPlane,
+    pub(crate) found: &'a PlaneComparison,
 }
 
 impl<'a> Seen<'a> {
-    pub(super) fn all(shot: &'a Shot) -> impl Iterator<Item = Self> {
+    pub(crate) fn all(shot: &'a Shot) -> impl Iterator<Item = Self> {
         let both = shot.scene.planes.iter().zip(&shot.planes);
         both.map(|(plane, found)| Self { plane, found })
     }
 
     /// The plane of this name.
-    pub(super) fn at(shot: &'a Shot, name: &str) -> Result<Self, Failure> {
+    pub(crate) fn at(shot: &'a Shot, name: &str) -> Result<Self, Failure> {
         let missing = || Failure::cannot_run(format!("{} has no plane {name}", shot.scene.name));
         Self::all(shot)
             .find(|seen| seen.plane.name == name)
             .ok_or_else(missing)
     }
 
-    pub(super) fn light_field(&self) -> Picture<'a> {
+    pub(crate) fn light_field(&self) -> Picture<'a> {
         let values = self.found.projection.mean.values.view();
         let [x, y] = light_field_axes(self.plane, &self.found.projection.mean.grid);
         Picture { x, y, values }
     }
 
-    pub(super) fn spectrum<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
+    pub(crate) fn spectrum<'b>(&self, values: ArrayView2<'b, f64>) -> Picture<'b> {
         let [x, y] = spectrum_axes(self.plane);
         Picture { x, y, values }
     }
 }
 
 /// The plane at azimuth 0 of a spectrum, [ρ, ν]: by its power, or its phase.
-pub(super) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
+pub(crate) fn slice(slices: &Slices, of: &dyn Fn(Complex, f64) -> f64) -> Array2<f64> {
     let full = slices.full();
     let slice = full.index_axis(Along(0), 0);
     let most = slice.iter().map(|s| s.norm_sqr()).fold(0.0, f64::max);
     slice.map(|s| of(*s, most))
 }
 
-pub(super) fn power(slices: &Slices) -> Array2<f64> {
+pub(crate) fn power(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, _| s.norm_sqr())
 }
 
 /// In degrees.
-pub(super) fn phase(slices: &Slices) -> Array2<f64> {
+pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, most| {
         if s.norm_sqr() > LEAST * most {
             libm::atan2(s.im, s.re).to_degrees()
@@ -72,7 +72,7 @@ pub(super) fn phase(slices: &Slices) -> Array2<f64> {
     })
 }
 
-pub(super) fn row<'a>(
+pub(crate) fn row<'a>(
     name: &'a str,
     quantity: Quantity,
     scale: Scale,
@@ -89,7 +89,7 @@ pub(super) fn row<'a>(
 }
 
 /// Light fields, measured and predicted spectra of some planes, and their full radial spectra where there are.
-pub(super) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
+pub(crate) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>> {
     let pictures = |of: &dyn Fn(&Seen<'a>) -> Picture<'a>| seen.iter().map(of).collect();
     let measured = pictures(&|seen| seen.spectrum(seen.found.radial.power.view()));
     let predicted = pictures(&|seen| seen.spectrum(seen.found.predicted_radial.view()));
@@ -118,6 +118,6 @@ pub(super) fn compared<'a>(seen: &[Seen<'a>], shared: bool) -> Vec<PlateRow<'a>>
     rows
 }
 
-pub(super) fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {
+pub(crate) fn feet(seen: &[Seen<'_>]) -> Vec<Vec<String>> {
     seen.iter().map(|seen| verdict_lines(seen.found)).collect()
 }

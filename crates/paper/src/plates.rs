@@ -1,9 +1,9 @@
 //! Figures of several scenes, or several kinds of spectra, side by side.
 
-use crate::figure::flat::Flat;
-use crate::figure::recipe::Taken;
-use crate::figure::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
-use crate::figure::shot::Shot;
+use crate::flat::Flat;
+use crate::rows::{DECIBEL, Seen, compared, feet, phase, power, row};
+use crate::shot::Shot;
+use crate::subject::FigureData;
 use etendue_compare::{Bandwidth, Theory};
 use etendue_field::{Orientation, VirtualPlane, percent, uncertain};
 use etendue_figures::{Bars, Figure, Plate, Quantity, Scale};
@@ -13,7 +13,7 @@ use etendue_theory::Operator;
 use ndarray::Array2;
 
 /// Fig. 4: light of a point and of a spot, where it begins and after travel.
-pub(crate) fn lights(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn lights(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = [
         Seen::at(&taken.shots[0], "light")?,
         Seen::at(&taken.shots[1], "receiver")?,
@@ -32,7 +32,7 @@ pub(crate) fn lights(taken: &Taken<'_>) -> Result<Figure, Failure> {
 }
 
 /// Fig. 6: a scene by its steps.
-pub(crate) fn steps(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn steps(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = [
         "light",
         "before_blockers",
@@ -73,7 +73,7 @@ pub(crate) fn steps(taken: &Taken<'_>) -> Result<Figure, Failure> {
 }
 
 /// Fig. 7: occluders that together leave nothing.
-pub(crate) fn occluders(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn occluders(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken
         .shots
         .iter()
@@ -120,7 +120,7 @@ pub(crate) fn occluders(taken: &Taken<'_>) -> Result<Figure, Failure> {
 
 /// Fig. 8: slopes and angles at the receiver. The chain takes one for the other, and its error is what the paper calls
 /// not significant.
-pub(crate) fn parameterisations(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn parameterisations(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = [
         Seen::at(&taken.shots[0], "slopes")?,
         Seen::at(&taken.shots[0], "angles")?,
@@ -176,7 +176,7 @@ fn unblocked(shot: &Shot, plane: &VirtualPlane) -> Option<f64> {
 }
 
 /// Fig. 9: blockers of three sizes.
-pub(crate) fn blockers(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn blockers(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().map(|shot| Seen::at(shot, "receiver"));
     let seen: Vec<Seen<'_>> = seen.collect::<Result<_, _>>()?;
     let leaving = taken.shots.iter().map(|shot| Seen::at(shot, "leaving"));

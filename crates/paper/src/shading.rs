@@ -1,8 +1,8 @@
 //! Figs. 14 and 15: diffuse shading under an environment, and the bandwidth of glossy reflections.
 
-use crate::figure::criteria::criteria;
-use crate::figure::recipe::Taken;
-use crate::figure::rows::{Seen, compared, feet};
+use crate::criteria::criteria;
+use crate::rows::{Seen, compared, feet};
+use crate::subject::FigureData;
 use etendue_field::{
     Complex, EnvironmentMap, Light, Profile, Slices, SphericalGaussian, cis, modulus,
 };
@@ -12,7 +12,7 @@ use etendue_theory::shading::environment::{Glow, irradiance};
 use std::f64::consts::TAU;
 
 /// Fig. 14: a diffuse sphere in an environment.
-pub(crate) fn environment(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["environment", "curvature", "cosine", "reflection"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
@@ -29,7 +29,7 @@ pub(crate) fn environment(taken: &Taken<'_>) -> Result<Figure, Failure> {
 }
 
 /// What is left at ν = 0, beside the product of the spectra of environment and cosine.
-fn product(taken: &Taken<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure> {
+fn product(taken: &FigureData<'_>, shaded: &Seen<'_>) -> Result<Figure, Failure> {
     let scene = &taken.shots[0].scene;
     let k = scene
         .patches
@@ -123,7 +123,7 @@ fn at_zero_nu(slices: &Slices) -> Vec<[f64; 3]> {
 }
 
 /// Fig. 15: the steps of section 6.2, and its criteria beside photons.
-pub(crate) fn adaptive(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn adaptive(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen: Vec<Seen<'_>> = Seen::all(&taken.shots[0]).collect();
     let heads = [
         "a incidence",

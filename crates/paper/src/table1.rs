@@ -1,7 +1,7 @@
 //! Table 1: each operator by the light before and after it.
 
-use crate::figure::recipe::Taken;
-use crate::figure::rows::{DECIBEL, Seen, feet, row};
+use crate::rows::{DECIBEL, Seen, feet, row};
+use crate::subject::FigureData;
 use etendue_figures::{Figure, Picture, Plate, PlateRow, Scale, stacked};
 use etendue_report::pictures::{light_field_quantity, spectrum_quantity};
 use etendue_store::Failure;
@@ -60,7 +60,7 @@ const PARTS: [(&str, [Step; 5]); 2] = [
 const NOTE: &str = "Measured. A map moves light and spectrum, a mask blurs the spectrum, a convolution cuts it off. Below: whether theory holds after the operator.";
 
 /// Light fields and spectra before and after each operator.
-pub(crate) fn operators(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn operators(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let parts = PARTS.iter().enumerate().map(|(i, (title, steps))| {
         let sides = [0, 1].map(|side| {
             let seen = steps.iter().map(|(_, planes)| {

@@ -7,11 +7,11 @@ use etendue_theory::shading::{DiffuseStep, Flatland};
 use ndarray::Array2;
 
 /// A light, a row of blockers without jitter and a receiver.
-pub(super) struct Flat(Flatland);
+pub(crate) struct Flat(Flatland);
 
 impl Flat {
     /// The steps of Fig. 6.
-    pub(super) const STEPS: [DiffuseStep; 6] = [
+    pub(crate) const STEPS: [DiffuseStep; 6] = [
         DiffuseStep::Emission,
         DiffuseStep::Travel,
         DiffuseStep::Visibility,
@@ -21,7 +21,7 @@ impl Flat {
     ];
 
     /// Widths along X, and distances along the central ray, of a scene with a rectangular light, one array of squares and a floor.
-    pub(super) fn of(scene: &Scene) -> Result<Self, Failure> {
+    pub(crate) fn of(scene: &Scene) -> Result<Self, Failure> {
         let missing = || Failure::cannot_run(format!("{} has no flatland", scene.name));
         let Light::Area {
             shape: Shape::Rectangle(light),
@@ -53,7 +53,7 @@ impl Flat {
     }
 
     /// |S|² of a step in the window and at the frequencies of a plane, [ρ, ν].
-    pub(super) fn power(&self, step: DiffuseStep, plane: &VirtualPlane) -> Array2<f64> {
+    pub(crate) fn power(&self, step: DiffuseStep, plane: &VirtualPlane) -> Array2<f64> {
         let window = [&plane.window.x, &plane.window.u];
         let spectrum = self
             .0

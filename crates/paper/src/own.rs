@@ -1,12 +1,11 @@
 //! Figures of the user's scenes: one along its path, or several side by side at a plane.
 
-use crate::args::{FigureArgs, SceneArgs};
-use crate::figure::Subject;
-use crate::figure::recipe::Taken;
-use crate::figure::rows::{Seen, compared, feet};
-use crate::warnings;
+use crate::request::Request;
+use crate::rows::{Seen, compared, feet};
+use crate::subject::FigureData;
+use crate::subject::Subject;
 use etendue_figures::{Figure, Plate};
-use etendue_pipeline::load;
+use etendue_pipeline::load::{self, SceneSource};
 use etendue_pipeline::table::{grouped, spaced};
 use etendue_report::pictures::spectra_are;
 use etendue_report::shell_word;
@@ -15,14 +14,14 @@ use etendue_store::Failure;
 use std::path::{Path, PathBuf};
 
 /// Whether a name on the command line is that of a scene file.
-pub(super) fn is_scene(name: &str) -> bool {
+pub(crate) fn is_scene(name: &str) -> bool {
     let ending = Path::new(name).extension();
     ending.is_some_and(|ending| ending == "ron" || ending == "json")
 }
 
 /// The figure of the scenes named on the command line.
-pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
-    if let Some(name) = args.names.iter().find(|name| !is_scene(name)) {
+pub(crate) fn subject(request: &Request) -> Result<Subject, Failure> {
+    if let Some(name) = request.names.iter().find(|name| !is_scene(name)) {
         let message = format!(
             "{name} is no scene file, and beside scene files there is nothing else: they are one figure"
         );
@@ -30,12 +29,13 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
     }
     let mut scenes: Vec<Scene> = Vec::new();
     let mut inputs: Vec<PathBuf> = Vec::new();
-    for name in &args.names {
-        let scene = SceneArgs {
+    let mut warnings: Vec<String> = Vec::new();
+    for name in &request.names {
+        let scene = SceneSource {
             path: PathBuf::from(name),
-            set: args.set.clone(),
+            set: request.set.clone(),
         };
-        let found = load::scene(&scene.source(), |_| ())?;
+        let found = load::scene(&scene, |_| ())?;
         if scenes.iter().any(|scene| scene.name == found.name) {
             let message = format!(
                 "two scenes are named {}: give one file another name",
@@ -43,13 +43,13 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
             );
             return Err(Failure::bad_input(message));
         }
-        warnings::tell(&found, args.quiet);
-        inputs.extend(load::inputs(&scene.source(), &found));
+        warnings.extend(found.warnings());
+        inputs.extend(load::inputs(&scene, &found));
         scenes.push(found);
     }
-    let planes = planes(&scenes, args.plane.as_deref())?;
+    let planes = planes(&scenes, request.plane.as_deref())?;
     let names: Vec<&str> = scenes.iter().map(|scene| scene.name.as_str()).collect();
-    let at = args
+    let at = request
         .plane
         .as_ref()
         .map_or(String::new(), |plane| format!("-{plane}"));
@@ -62,11 +62,12 @@ pub(super) fn subject(args: &FigureArgs) -> Result<Subject, Failure> {
     Ok(Subject {
         name,
         about,
-        arguments: arguments(args),
+        arguments: arguments(request),
         scenes,
         is_own: true,
         texts: Vec::new(),
         inputs,
+        warnings,
         has_table: false,
         full_radial: false,
         also: &[],
@@ -105,19 +106,19 @@ fn planes(scenes: &[Scene], asked: Option<&str>) -> Result<Vec<String>, Failure>
 }
 
 /// What stands behind `etendue figure` to make it again.
-fn arguments(args: &FigureArgs) -> String {
-    let mut words: Vec<String> = args.names.iter().map(|name| shell_word(name)).collect();
-    for (path, value) in &args.set {
+fn arguments(request: &Request) -> String {
+    let mut words: Vec<String> = request.names.iter().map(|name| shell_word(name)).collect();
+    for (path, value) in &request.set {
         words.extend(["--set".to_owned(), shell_word(&format!("{path}={value}"))]);
     }
-    if let Some(plane) = &args.plane {
+    if let Some(plane) = &request.plane {
         words.extend(["--plane".to_owned(), shell_word(plane)]);
     }
     words.join(" ")
 }
 
 /// A plane of each scene, in one range of colors.
-fn side_by_side(taken: &Taken<'_>) -> Result<Figure, Failure> {
+fn side_by_side(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let seen = taken.shots.iter().zip(taken.planes);
     let seen: Vec<Seen<'_>> = seen
         .map(|(shot, plane)| Seen::at(shot, plane))

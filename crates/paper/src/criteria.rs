@@ -1,9 +1,8 @@
 //! The sampling criteria of Durand et al. 2005, section 6.2, as printed and corrected, beside photons.
 
-use crate::figure::Quality;
-use crate::figure::recipe::{Taken, Text};
-use crate::figure::shot::resolved;
-use crate::progress::Terminal;
+use crate::quality::Quality;
+use crate::shot::resolved;
+use crate::subject::{FigureData, Text};
 use etendue_compare::{Applicability, criterion, measured_bandwidth};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity};
 use etendue_pipeline::measured;
@@ -27,7 +26,7 @@ struct Sweep {
 const POINTS: u32 = 40;
 
 /// Curves over curvature and distance without a blocker, and over curvature behind an edge.
-pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
+pub(crate) fn criteria(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let curvature = |title, values| Sweep {
         title,
         quantity: Quantity::new("*k*", "1/m"),
@@ -66,7 +65,7 @@ pub(super) fn criteria(taken: &Taken<'_>) -> Result<Figure, Failure> {
     })
 }
 
-fn panel(taken: &Taken<'_>, text: &Text, sweep: &Sweep) -> Result<CurvePanel, Failure> {
+fn panel(taken: &FigureData<'_>, text: &Text, sweep: &Sweep) -> Result<CurvePanel, Failure> {
     let [from, to] = sweep.ends;
     let along = (0..=POINTS).map(|i| from + (to - from) * f64::from(i) / f64::from(POINTS));
     let lines = along.map(|value| {
@@ -115,7 +114,7 @@ fn at((name, text): &Text, sweep: &Sweep, value: f64) -> Result<Criterion, Failu
 
 /// What photons say: the value on the axis, the bandwidth and its standard error.
 fn counted(
-    taken: &Taken<'_>,
+    taken: &FigureData<'_>,
     (name, text): &Text,
     sweep: &Sweep,
     value: f64,
@@ -123,12 +122,7 @@ fn counted(
     let quality: Quality = taken.quality;
     let scene = resolved(name, text, &set(sweep, value), |n| quality.photons(n))?;
     let batches = 0..scene.run.batches;
-    let measurement = measured(
-        &scene,
-        Method::Photons,
-        batches,
-        &Terminal::new(taken.quiet),
-    )?;
+    let measurement = measured(&scene, Method::Photons, batches, taken.reporter)?;
     let found = measured_bandwidth(&measurement, 0).map_err(Failure::cannot_run)?;
     let dark = || Failure::cannot_run(format!("no light comes to the eye of {name}"));
     let found = found.ok_or_else(dark)?;

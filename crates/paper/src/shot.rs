@@ -1,11 +1,10 @@
 //! A scene that is run for a figure.
 
-use crate::figure::Quality;
-use crate::progress::Terminal;
+use crate::quality::Quality;
 use etendue_compare::{Applicability, PlaneComparison, Test};
 use etendue_field::{FrequencyAxis, ProjectionGrid, Slices};
 use etendue_pipeline::MeasuredScene;
-use etendue_pipeline::judged;
+use etendue_pipeline::{Reporter, judged};
 use etendue_pipeline::{field, limits};
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::Failure;
@@ -31,7 +30,7 @@ impl Shot {
         mut scene: Scene,
         quality: Quality,
         full_radial: bool,
-        quiet: bool,
+        reporter: &dyn Reporter,
     ) -> Result<Self, Failure> {
         scene.run.photons = quality.photons(scene.run.photons);
         scene.file.run.photons = scene.run.photons;
@@ -45,11 +44,11 @@ impl Shot {
         }
         let theories = Applicability::of_planes(&scene);
         limits::check(&scene, &theories, rayon::current_num_threads())?;
-        let case = MeasuredScene::of(scene, theories, Method::Photons, &Terminal::new(quiet))?;
+        let case = MeasuredScene::of(scene, theories, Method::Photons, reporter)?;
         let tests = if full_radial { field::TESTS } else { 1 };
         let mut planes = judged(&case, &Test::each(&case.scene, tests))?;
         if full_radial {
-            field::compare(None, &case, &mut planes, &Terminal::new(quiet))?;
+            field::compare(None, &case, &mut planes, reporter)?;
         }
         Ok(Self {
             photons: case.measurement.emitted(),

@@ -1,13 +1,14 @@
 //! What each figure of the paper is made of.
 
-use crate::figure::plates::{blockers, lights, occluders, parameterisations, steps};
-use crate::figure::shading::{adaptive, environment};
-use crate::figure::shot::{Shot, resolved};
-use crate::figure::spaces::{coordinates, directions};
-use crate::figure::table1::operators;
-use crate::figure::{Quality, Subject, creatures, kernels};
-use etendue_figures::{Curves, Figure, Plate, Style, curves, plate};
-use etendue_report::pictures;
+use crate::plates::{blockers, lights, occluders, parameterisations, steps};
+use crate::scenes::{TWIST, scene};
+use crate::shading::{adaptive, environment};
+use crate::shot::resolved;
+use crate::spaces::{coordinates, directions};
+use crate::subject::{FigureData, Subject, Text};
+use crate::table1::operators;
+use crate::{creatures, kernels};
+use etendue_figures::Figure;
 use etendue_store::Failure;
 use std::path::Path;
 
@@ -26,11 +27,8 @@ pub(crate) struct Recipe {
     pub(crate) has_table: bool,
     /// Whether it shows full radial spectra.
     pub(crate) full_radial: bool,
-    pub(crate) draw: fn(&Taken<'_>) -> Result<Figure, Failure>,
+    pub(crate) draw: fn(&FigureData<'_>) -> Result<Figure, Failure>,
 }
-
-/// Name and text of a scene file.
-pub(crate) type Text = (&'static str, &'static str);
 
 impl Recipe {
     /// The figure to be made.
@@ -45,6 +43,7 @@ impl Recipe {
             is_own: false,
             texts: self.scenes.iter().chain(self.also).copied().collect(),
             inputs: Vec::new(),
+            warnings: Vec::new(),
             has_table: self.has_table,
             full_radial: self.full_radial,
             also: self.also,
@@ -53,53 +52,6 @@ impl Recipe {
         })
     }
 }
-
-/// What a figure is drawn from.
-#[derive(Debug)]
-pub(crate) struct Taken<'a> {
-    /// Its scenes, run.
-    pub(crate) shots: &'a [Shot],
-    /// The other scene files.
-    pub(crate) also: &'static [Text],
-    /// The plane of each scene that is shown, where not all are.
-    pub(crate) planes: &'a [String],
-    pub(crate) quality: Quality,
-    pub(crate) style: Style,
-    pub(crate) quiet: bool,
-}
-
-impl Taken<'_> {
-    /// Draws pictures in rows and columns.
-    pub(super) fn plate(&self, of: &Plate<'_>) -> Result<Figure, Failure> {
-        plate(of, &self.style).map_err(Failure::cannot_run)
-    }
-
-    /// Draws curves.
-    pub(super) fn curves(&self, of: &Curves) -> Result<Figure, Failure> {
-        curves(of, &self.style).map_err(Failure::cannot_run)
-    }
-
-    /// The planes of the first scene along its path, measured and predicted.
-    pub(super) fn strip(&self) -> Result<Figure, Failure> {
-        let Shot {
-            scene,
-            photons,
-            theories,
-            planes,
-        } = &self.shots[0];
-        pictures::strip_of(scene, *photons, theories, planes, Some(&self.style))
-    }
-}
-
-/// The scene files of the repository that figures use.
-macro_rules! scene {
-    ($path:literal) => {
-        include_str!(concat!("../../../../scenes/", $path, ".ron"))
-    };
-}
-
-/// A mirror whose axes lie out of the plane of incidence.
-pub(super) const TWIST: Text = ("twist", scene!("table1/twist"));
 
 /// In the order of the paper.
 pub(crate) const RECIPES: &[Recipe] = &[
@@ -304,6 +256,10 @@ pub(crate) fn named(name: &str) -> Result<&'static Recipe, Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::quality::Quality;
+    use crate::shot::Shot;
+    use etendue_figures::Style;
+    use etendue_pipeline::Silent;
 
     /// Pages are seven inches wide at most, of 96 units of the drawing each, and texts, indices among them, have 6 points at
     /// least.
@@ -314,15 +270,15 @@ mod tests {
             let quality = Quality::Sketch;
             let subject = recipe.subject().unwrap();
             let shots = subject.scenes.iter().cloned();
-            let shots = shots.map(|scene| Shot::take(scene, quality, recipe.full_radial, true));
+            let shots = shots.map(|scene| Shot::take(scene, quality, recipe.full_radial, &Silent));
             let shots: Vec<Shot> = shots.collect::<Result<_, _>>().unwrap();
-            let taken = Taken {
+            let taken = FigureData {
                 shots: &shots,
                 also: recipe.also,
                 planes: &[],
                 quality,
                 style: Style::default(),
-                quiet: true,
+                reporter: &Silent,
             };
             let figure = (subject.draw)(&taken).unwrap();
             let numbers = |name: &str| -> Vec<f64> {

@@ -6,7 +6,7 @@ use etendue_store::Failure;
 use std::path::Path;
 
 /// Reads a style.
-pub(super) fn read(path: &Path) -> Result<Style, Failure> {
+pub(crate) fn read(path: &Path) -> Result<Style, Failure> {
     let fault =
         |why: &dyn std::fmt::Display| Failure::bad_input(format!("{}: {why}", path.display()));
     let bytes =

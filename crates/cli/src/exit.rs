@@ -1,0 +1,32 @@
+//! How a command ends: its message and its exit code.
+
+use crate::print::{MAX_ERROR_LINES, printable};
+use etendue_store::Failure;
+use std::io::{ErrorKind, Write};
+use std::path::Path;
+
+/// Prints the fault of a command line, or the help or the version that it asks for; returns the exit code.
+pub(crate) fn not_parsed(error: &clap::Error) -> u8 {
+    match error.print() {
+        Err(e) if !error.use_stderr() && e.kind() != ErrorKind::BrokenPipe => ended(
+            Err(Failure::write(Path::new("to standard output"), e)),
+            false,
+        ),
+        _ => u8::try_from(error.exit_code()).unwrap_or(2),
+    }
+}
+
+/// The exit code of what a command came to; a failure is told, unless somebody else tells it.
+pub(crate) fn ended(outcome: Result<u8, Failure>, quiet: bool) -> u8 {
+    match outcome {
+        Ok(code) => code,
+        Err(failure) => {
+            if !quiet {
+                // A reader that has gone does not change the exit code.
+                let message = printable(&failure.message, MAX_ERROR_LINES);
+                let _ = writeln!(std::io::stderr(), "error: {message}");
+            }
+            failure.code
+        }
+    }
+}

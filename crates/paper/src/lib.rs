@@ -1,0 +1,33 @@
+//! The figures of Durand et al. 2005, measured and predicted, and figures of a user's scenes.
+//!
+//! [`subjects`] says what a [`Request`] comes to; [`make`] runs the scenes of one, draws it and writes it with its data
+//! and recipe. What each figure of the paper is made of stands in `recipe.rs`.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a Failure carries the whole message for the user, written where it occurs"
+)]
+
+mod creatures;
+mod criteria;
+mod flat;
+mod kernels;
+mod make;
+mod own;
+mod plates;
+mod quality;
+mod recipe;
+mod request;
+mod rows;
+mod scenes;
+mod shading;
+mod shot;
+mod spaces;
+mod style;
+mod subject;
+mod table1;
+
+pub use make::{make, subjects};
+pub use quality::Quality;
+pub use request::Request;
+pub use subject::Subject;

@@ -1,0 +1,204 @@
+//! Making a figure: its scenes run, drawn, and written with data and recipe.
+
+use crate::own;
+use crate::quality::Quality;
+use crate::recipe::{RECIPES, Recipe, named};
+use crate::request::Request;
+use crate::shot::{self, Shot};
+use crate::style;
+use crate::subject::{FigureData, Subject};
+use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
+use etendue_figures::Style;
+use etendue_pipeline::Reporter;
+use etendue_report::shell_word;
+use etendue_scene::{Scene, SceneFile};
+use etendue_store::sealed::json;
+use etendue_store::stored::VERSION;
+use etendue_store::{FIGURE, Failure, Plan, Results};
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The figures that are asked for: those of the paper, or one of scene files.
+pub fn subjects(request: &Request) -> Result<Vec<Subject>, Failure> {
+    if request.names.iter().any(|name| own::is_scene(name)) {
+        Ok(vec![own::subject(request)?])
+    } else {
+        of_paper(request)
+    }
+}
+
+/// The figures of the paper that are asked for.
+fn of_paper(request: &Request) -> Result<Vec<Subject>, Failure> {
+    let of_scenes = [
+        ("--set", !request.set.is_empty()),
+        ("--plane", request.plane.is_some()),
+    ];
+    if let Some((option, _)) = of_scenes.iter().find(|(_, given)| *given) {
+        let message = format!("{option} is for figures of scene files: etendue figure SCENE.ron");
+        return Err(Failure::bad_input(message));
+    }
+    let is_all = request.names.iter().any(|name| name == "all");
+    let recipes: Vec<&'static Recipe> = if is_all {
+        RECIPES.iter().collect()
+    } else {
+        let recipes = request.names.iter().map(|name| named(name));
+        recipes.collect::<Result<_, _>>()?
+    };
+    let subjects = recipes.into_iter();
+    subjects.map(|recipe| recipe.subject()).collect()
+}
+
+/// `figure.json`, all but the hashes of the files.
+#[derive(Debug, Serialize)]
+struct Index<'a> {
+    figure: &'a str,
+    about: &'a str,
+    /// What makes it again.
+    command: String,
+    version: &'a str,
+    quality: Quality,
+    /// What was chosen of its looks, where that was something.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    style: Option<Style>,
+    /// Frequencies along each axis for one of the scene.
+    finer: usize,
+    /// The hash of each scene with the photons of this quality, at its own frequencies.
+    scenes: BTreeMap<&'a str, String>,
+    photons: BTreeMap<&'a str, u64>,
+    /// The user's scenes, as they were run but for the frequencies.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    scene_files: &'a BTreeMap<String, SceneFile>,
+    planes: Vec<Judged<'a>>,
+    files: &'a BTreeMap<String, String>,
+}
+
+#[derive(Debug, Serialize)]
+struct Judged<'a> {
+    scene: &'a str,
+    plane: &'a str,
+    verdict: Verdict,
+    p_value: Option<f64>,
+    chi2_per_dof: Option<f64>,
+    high_frequency_share: &'a [HighFrequencyShare],
+    /// Where the figure shows full radial spectra.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    full_radial: Option<FullRadialReport>,
+}
+
+/// Makes a figure; returns the verdict on all planes of its scenes. What was replaced and what is undecided is noted.
+pub fn make(
+    request: &Request,
+    subject: &Subject,
+    reporter: &dyn Reporter,
+) -> Result<Verdict, Failure> {
+    let style = request.style.as_deref().map(style::read).transpose()?;
+    let endings = ["png", "svg", "pdf", "csv", "npz"].map(|end| format!("figure.{end}"));
+    let texts = subject.texts.iter().map(|(name, _)| format!("{name}.ron"));
+    let plan = Plan {
+        index: FIGURE,
+        files: endings.into_iter().chain(texts).collect(),
+        inputs: subject.inputs.clone(),
+        force: request.force,
+    };
+    let mut results = Results::claim_below(&request.out, &subject.name, plan)?;
+    let files = subject.scenes.iter().filter(|_| subject.is_own);
+    let files: BTreeMap<String, SceneFile> = files
+        .map(|scene| (scene.name.clone(), scene.file.clone()))
+        .collect();
+    let shots = subject.scenes.iter();
+    let take = |scene: &Scene| {
+        let full_radial = subject.full_radial;
+        Shot::take(scene.clone(), request.quality, full_radial, reporter)
+    };
+    let shots = shots.map(take);
+    let shots: Vec<Shot> = shots.collect::<Result<_, _>>()?;
+    let taken = FigureData {
+        shots: &shots,
+        also: subject.also,
+        planes: &subject.planes,
+        quality: request.quality,
+        style: style.unwrap_or_default(),
+        reporter,
+    };
+    write(&mut results, subject, &taken)?;
+    let all = shots.iter().enumerate().flat_map(|(i, shot)| {
+        // Of a user's scenes those planes count that are shown.
+        let shown = subject.planes.get(i);
+        let reports = shot.planes.iter().map(|plane| &plane.report);
+        let reports = reports.filter(move |report| shown.is_none_or(|name| *name == report.name));
+        reports.map(move |report| (shot, report))
+    });
+    let all: Vec<_> = all.collect();
+    let of_scenes = shots.iter().map(|shot| (shot.scene.name.as_str(), shot));
+    let styled = request.style.iter();
+    let styled = styled.map(|path| format!(" --style {}", shell_word(&path.to_string_lossy())));
+    let styled: String = styled.collect();
+    let finished = results.finish(|written| {
+        let quality = request.quality.name();
+        let judged = all.iter().map(|(shot, report)| Judged {
+            scene: &shot.scene.name,
+            plane: &report.name,
+            verdict: report.verdict,
+            p_value: report.p_value,
+            chi2_per_dof: report.chi2_per_dof,
+            high_frequency_share: &report.high_frequency_share,
+            full_radial: report.full_radial,
+        });
+        json(&Index {
+            figure: &subject.name,
+            about: &subject.about,
+            command: format!(
+                "etendue figure {}{styled} --quality {quality}",
+                subject.arguments
+            ),
+            version: VERSION,
+            quality: request.quality,
+            style,
+            finer: request.quality.finer(),
+            photons: of_scenes
+                .clone()
+                .map(|(name, shot)| (name, shot.photons))
+                .collect(),
+            scenes: of_scenes
+                .map(|(name, shot)| (name, shot.scene.hash()))
+                .collect(),
+            scene_files: &files,
+            planes: judged.collect(),
+            files: written,
+        })
+    })?;
+    if let Some(message) = finished.replaced_message() {
+        reporter.note(&message);
+    }
+    for (shot, report) in &all {
+        if let Some(reason) = &report.undecided {
+            reporter.note(&format!(
+                "{}, {}: undecided: {reason}",
+                shot.scene.name, report.name
+            ));
+        }
+    }
+    let verdicts = all.iter().map(|(_, report)| report.verdict);
+    Ok(verdicts.fold(Verdict::Pass, Verdict::and))
+}
+
+/// The picture of a figure, what is behind it, and its scenes.
+fn write(results: &mut Results, subject: &Subject, taken: &FigureData<'_>) -> Result<(), Failure> {
+    let figure = (subject.draw)(taken)?;
+    let pdf = figure.pdf().map_err(Failure::cannot_run)?;
+    let png = figure.png().map_err(Failure::cannot_run)?;
+    results.write("figure.pdf", &pdf)?;
+    results.write("figure.png", &png)?;
+    results.write("figure.svg", figure.svg.as_bytes())?;
+    // Strips have a row for each cell there, which the arrays hold in less.
+    if subject.has_table {
+        results.write("figure.csv", figure.csv.as_bytes())?;
+    }
+    if !taken.shots.is_empty() {
+        results.write("figure.npz", &shot::arrays(taken.shots)?)?;
+    }
+    for (name, text) in &subject.texts {
+        results.write(&format!("{name}.ron"), text.as_bytes())?;
+    }
+    Ok(())
+}
