@@ -1,12 +1,13 @@
-use crate::values::{Point, Setting, Sweep, said_at, setting, sweep};
 use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use etendue_field::tidy;
 use etendue_paper::Quality;
-use etendue_pipeline::load::{self, SceneSource};
+use etendue_pipeline::load::SceneSource;
 use etendue_pipeline::photons::Save;
-use etendue_scene::{RunFile, Scene};
-use etendue_store::{Failure, Method};
+use etendue_scene::RunFile;
+use etendue_store::Method;
+use etendue_sweep::Request;
+use etendue_sweep::values::{Setting, Sweep, setting, sweep};
 use std::ops::Range;
 use std::path::PathBuf;
 use std::time::Duration;
@@ -408,22 +409,6 @@ pub(crate) struct SceneArgs {
 }
 
 impl SceneArgs {
-    /// The scene with some fields set to numbers besides; `options` are overrides of the command line's own.
-    pub(crate) fn at(
-        &self,
-        point: &Point,
-        options: impl FnOnce(&mut RunFile),
-    ) -> Result<Scene, Failure> {
-        let mut source = self.source();
-        let numbers = point.iter();
-        let numbers = numbers.map(|(path, value)| (path.clone(), format!("{value:?}")));
-        source.set.extend(numbers);
-        load::scene(&source, options).map_err(|failure| Failure {
-            message: said_at(point, failure.message),
-            ..failure
-        })
-    }
-
     /// The scene, for the pipeline.
     pub(crate) fn source(&self) -> SceneSource {
         SceneSource {
@@ -531,7 +516,7 @@ pub(crate) struct FigureArgs {
   etendue sweep scenes/fig9b.ron --together --set surfaces.0.center.2=1.5,2,3 --set surfaces.0.albedo=0.2,0.5,0.8
 
 Leaves in its folder
-  sweep.csv, sweep.parquet             a row for each plane at each point and each number: the frequencies that hold 95 % of the power,
+  sweep.csv                            a row for each plane at each point and each number: the frequencies that hold 95 % of the power,
                                        the shear slope, and each parameter, measured with its standard error and predicted
   bandwidth_rho, bandwidth_nu, slope   curves over the field that is named first, as PNG, SVG and CSV; a grid with more than 24
                                        panels has none
@@ -573,6 +558,22 @@ pub(crate) struct SweepArgs {
     /// Print nothing but errors
     #[arg(long)]
     pub(crate) quiet: bool,
+}
+
+impl SweepArgs {
+    /// The sweep that is asked for.
+    pub(crate) fn request(&self) -> Request {
+        Request {
+            path: self.path.clone(),
+            set: self.set.clone(),
+            common_seed: self.common_seed,
+            together: self.together,
+            photons: self.photons.photons,
+            seed: self.photons.seed,
+            method: self.photons.method,
+            force: self.force.force,
+        }
+    }
 }
 
 #[derive(Debug, Args)]

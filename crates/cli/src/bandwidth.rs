@@ -3,7 +3,6 @@ use crate::print::{deliver, say};
 use crate::progress;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
-use crate::values::{Point, points, said_at, shown};
 use etendue_compare::{Applicability, Theory, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_field::{Term, VirtualPlane};
 use etendue_pipeline::measured;
@@ -12,13 +11,15 @@ use etendue_pipeline::{limits, load, method};
 use etendue_scene::Scene;
 use etendue_store::Failure;
 use etendue_store::output::OutputFile;
+use etendue_sweep::scene_at;
+use etendue_sweep::values::{Point, message_at, points, shown};
 use etendue_theory::shading::Criterion;
 use std::path::PathBuf;
 
 /// `etendue bandwidth`: returns the exit code.
 pub(crate) fn bandwidth(args: &BandwidthArgs) -> Result<u8, Failure> {
     let points = points(&args.sweep, true)?;
-    let at = |point| args.scene.at(point, |run| args.photons.set(run));
+    let at = |point| scene_at(&args.scene.source(), point, |run| args.photons.set(run));
     let scenes: Vec<Scene> = points.iter().map(at).collect::<Result<_, _>>()?;
     if args.measure {
         for scene in &scenes {
@@ -185,7 +186,7 @@ fn of(
             row.numbers.extend([exact, value, error]);
             let most = exact.into_iter().chain(value).fold(0.0, f64::max);
             row.warnings
-                .extend(warning(plane, most).map(|text| said_at(point, text)));
+                .extend(warning(plane, most).map(|text| message_at(point, text)));
         }
         Ok(row)
     };

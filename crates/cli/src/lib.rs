@@ -28,7 +28,6 @@ mod schema;
 mod split;
 mod sweep;
 mod threads;
-mod values;
 mod warnings;
 mod workers;
 mod world;

@@ -2,12 +2,12 @@
 
 use crate::args::{Cli, Command, PhotonArgs, RunArgs, SceneArgs, ThreadArgs};
 use crate::exit::{ended, not_parsed};
-use crate::sweep::Points;
 use crate::threads::on_threads;
 use crate::{interrupt, predict, run, sweep};
 use clap::Parser;
 use etendue_pipeline::{Job, Leader, Options, Workers, follow_job, follow_points, report_failure};
 use etendue_store::Failure;
+use etendue_sweep::Points;
 use std::ffi::OsString;
 
 /// What a command line comes to in a workers; returns the exit code. `run`, `predict` and `sweep` are for many.
@@ -57,8 +57,8 @@ fn follow(command: &Command, workers: &dyn Workers) {
         Command::Run(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
         Command::Predict(args) => with_job(&args.scene, &args.photons, &args.threads, workers),
         Command::Sweep(args) => on_threads(&args.threads, || {
-            let points = Points::read(args)?;
-            follow_points(workers, &points.scenes, &|number| points.summary(number))
+            let points = Points::read(&args.request())?;
+            follow_points(workers, points.scenes(), &|number| points.summary(number))
         }),
         _ => Ok(()),
     };

@@ -5,8 +5,6 @@
 mod common;
 
 use common::{SCENE, call, files, json, refused};
-use parquet::file::reader::SerializedFileReader;
-use parquet::record::Field;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::os::unix::fs::MetadataExt;
@@ -24,25 +22,6 @@ fn folder() -> tempfile::TempDir {
 fn rows(file: &Path) -> Vec<BTreeMap<String, String>> {
     let mut reader = csv::Reader::from_path(file).unwrap();
     reader.deserialize().map(Result::unwrap).collect()
-}
-
-/// The same of a table in the other format.
-fn parquet_rows(file: &Path) -> Vec<BTreeMap<String, String>> {
-    let reader = SerializedFileReader::new(fs::File::open(file).unwrap()).unwrap();
-    let cell = |field: &Field| match field {
-        Field::Str(text) => text.clone(),
-        Field::Double(number) => format!("{number:?}"),
-        Field::Null => String::new(),
-        other => panic!("{other}"),
-    };
-    let rows = reader.into_iter().map(|row| {
-        let row = row.unwrap();
-        let cells = row.get_column_iter();
-        cells
-            .map(|(name, field)| (name.clone(), cell(field)))
-            .collect()
-    });
-    rows.collect()
 }
 
 #[test]
@@ -77,7 +56,6 @@ fn the_table_has_what_a_run_says_of_each_point() {
         }
         assert_eq!(nu["p_value"].parse::<f64>().ok(), plane["p_value"].as_f64());
     }
-    assert_eq!(rows, parquet_rows(&path.join("s/sweep.parquet")));
     let points: Vec<&String> = rows.iter().map(|row| &row["blockers.0.pitch"]).collect();
     let mut distinct = points.clone();
     distinct.dedup();

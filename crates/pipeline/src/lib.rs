@@ -11,6 +11,7 @@
 mod aimed;
 mod case;
 pub mod checkpoint;
+pub mod diff;
 pub mod field;
 mod follow;
 mod inquiry;

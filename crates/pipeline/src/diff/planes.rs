@@ -10,12 +10,14 @@ use serde_json::{Value, json};
 use std::f64::consts::SQRT_2;
 
 /// A plane of either result.
+#[derive(Debug)]
 pub(super) struct PlaneDiff {
     pub(super) name: String,
     pub(super) found: Found,
 }
 
 /// What there is to say of a plane.
+#[derive(Debug)]
 pub(super) enum Found {
     /// This result does not have it: 0 for the first, 1 for the second.
     Missing(usize),
@@ -26,6 +28,7 @@ pub(super) enum Found {
 }
 
 /// A plane that both results have.
+#[derive(Debug)]
 pub(super) struct Compared {
     pub(super) test: TwoSamples,
     pub(super) parameters: Vec<ParameterDiff>,
@@ -40,6 +43,7 @@ pub(super) struct Compared {
 }
 
 /// A parameter that both measure.
+#[derive(Debug)]
 pub(super) struct ParameterDiff {
     pub(super) name: String,
     pub(super) unit: String,
@@ -49,6 +53,7 @@ pub(super) struct ParameterDiff {
 }
 
 /// How far two predictions are apart.
+#[derive(Debug)]
 pub(super) struct PredictionDiff {
     /// ‖F_A − F_B‖ over the larger norm.
     pub(super) difference: f64,

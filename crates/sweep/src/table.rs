@@ -1,15 +1,8 @@
-//! The numbers of a sweep as one table, a row for each number of each plane at each point.
+//! The numbers of a sweep as one table in CSV, a row for each number of each plane at each point.
 
 use crate::values::Point;
 use etendue_store::Failure;
-use parquet::basic::{LogicalType, Repetition, Type as Physical};
-use parquet::data_type::{ByteArray, ByteArrayType, DoubleType};
-use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
-use parquet::file::writer::SerializedFileWriter;
-use parquet::schema::types::Type;
 use serde_json::Value;
-use std::sync::Arc;
 
 /// A number of a plane that is measured and predicted.
 #[derive(Clone, Debug, PartialEq)]
@@ -137,51 +130,4 @@ pub(crate) fn csv(paths: &[String], found: &[Found]) -> Result<Vec<u8>, Failure>
         writer.write_record(cells).map_err(Failure::cannot_run)?;
     }
     writer.into_inner().map_err(Failure::cannot_run)
-}
-
-/// The same as Parquet: strings, and doubles that are null where there is no number.
-pub(crate) fn parquet(paths: &[String], found: &[Found]) -> Result<Vec<u8>, Failure> {
-    written(&columns(paths, found)).map_err(Failure::cannot_run)
-}
-
-fn written(columns: &[(String, Column)]) -> Result<Vec<u8>, ParquetError> {
-    let field = |(name, column): &(String, Column)| {
-        let field = match column {
-            Column::Words(_) => Type::primitive_type_builder(name, Physical::BYTE_ARRAY)
-                .with_logical_type(Some(LogicalType::String))
-                .with_repetition(Repetition::REQUIRED),
-            Column::Numbers(_) => Type::primitive_type_builder(name, Physical::DOUBLE)
-                .with_repetition(Repetition::OPTIONAL),
-        };
-        field.build().map(Arc::new)
-    };
-    let fields = columns.iter().map(field).collect::<Result<_, _>>()?;
-    let schema = Type::group_type_builder("sweep")
-        .with_fields(fields)
-        .build()?;
-    let properties = WriterProperties::builder().set_created_by("etendue".to_owned());
-    let mut writer =
-        SerializedFileWriter::new(Vec::new(), Arc::new(schema), Arc::new(properties.build()))?;
-    let mut group = writer.next_row_group()?;
-    for (_, column) in columns {
-        let Some(mut to) = group.next_column()? else {
-            break;
-        };
-        match column {
-            Column::Words(words) => {
-                let words: Vec<ByteArray> = words.iter().map(|word| word.as_str().into()).collect();
-                to.typed::<ByteArrayType>()
-                    .write_batch(&words, None, None)?;
-            }
-            Column::Numbers(numbers) => {
-                let values: Vec<f64> = numbers.iter().flatten().copied().collect();
-                let levels: Vec<i16> = numbers.iter().map(|x| i16::from(x.is_some())).collect();
-                to.typed::<DoubleType>()
-                    .write_batch(&values, Some(&levels), None)?;
-            }
-        }
-        to.close()?;
-    }
-    group.close()?;
-    writer.into_inner()
 }

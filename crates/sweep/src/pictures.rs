@@ -1,6 +1,6 @@
 //! Curves of a sweep: what each plane's numbers do along its first field.
 
-use crate::sweep::table::{BANDWIDTHS, Found, Number, SLOPE, numbers};
+use crate::table::{BANDWIDTHS, Found, Number, SLOPE, numbers};
 use crate::values::{Point, short, shown};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Style};
 use etendue_pipeline::table::spaced;

@@ -5,26 +5,30 @@ use etendue_store::Failure;
 
 /// A field of the scene and its values.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Sweep {
-    pub(crate) path: String,
-    pub(crate) values: Vec<f64>,
+pub struct Sweep {
+    /// Path of the field.
+    pub path: String,
+    /// Its values, in order.
+    pub values: Vec<f64>,
 }
 
 /// A field set to one value, or swept.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) enum Setting {
+pub enum Setting {
+    /// Path and value.
     Value(String, String),
+    /// A field and its values.
     Sweep(Sweep),
 }
 
 /// The value of each field that is swept.
-pub(crate) type Point = Vec<(String, f64)>;
+pub type Point = Vec<(String, f64)>;
 
 /// Values of one sweep, and points of all together.
-const MOST: usize = 1000;
+const MAX_POINTS: usize = 1000;
 
 /// What `--set` of a sweep takes.
-pub(crate) fn setting(text: &str) -> Result<Setting, String> {
+pub fn setting(text: &str) -> Result<Setting, String> {
     let (path, values) = text.split_once('=').ok_or("must be PATH=VALUE")?;
     let [path, values] = [path, values].map(|part| part.trim().to_owned());
     let is_plain = !values.contains(['(', '[', '"']);
@@ -53,7 +57,7 @@ fn is_list(text: &str) -> bool {
 }
 
 /// `PATH=A..B:N`, evenly spaced, `PATH=A..B:Nlog`, by equal factors, or `PATH=A,B,C`.
-pub(crate) fn sweep(text: &str) -> Result<Sweep, String> {
+pub fn sweep(text: &str) -> Result<Sweep, String> {
     let (path, values) = text
         .split_once('=')
         .ok_or_else(|| allowed("no field is named"))?;
@@ -69,7 +73,7 @@ pub(crate) fn sweep(text: &str) -> Result<Sweep, String> {
 
 fn allowed(why: &str) -> String {
     format!(
-        "{why}; allowed: PATH=A..B:N, PATH=A..B:Nlog by equal factors, or PATH=A,B,C, numbers and at most {MOST} of them"
+        "{why}; allowed: PATH=A..B:N, PATH=A..B:Nlog by equal factors, or PATH=A,B,C, numbers and at most {MAX_POINTS} of them"
     )
 }
 
@@ -88,9 +92,13 @@ fn range(from: &str, rest: &str) -> Result<Vec<f64>, String> {
         Some(count) => (count, true),
         None => (count.trim(), false),
     };
-    let wanted = count.trim().parse().ok().filter(|n| (2..=MOST).contains(n));
+    let wanted = count
+        .trim()
+        .parse()
+        .ok()
+        .filter(|n| (2..=MAX_POINTS).contains(n));
     let count =
-        wanted.ok_or_else(|| format!("`{count}` is no number of values from 2 to {MOST}"))?;
+        wanted.ok_or_else(|| format!("`{count}` is no number of values from 2 to {MAX_POINTS}"))?;
     if is_log && ends[0] * ends[1] <= 0.0 {
         return Err("equal factors do not lead from one sign to another, or to zero".to_owned());
     }
@@ -114,7 +122,7 @@ fn between([from, to]: [f64; 2], i: usize, count: usize, is_log: bool) -> f64 {
 }
 
 /// The points of all sweeps: in step, or all combinations, the last field fastest.
-pub(crate) fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Failure> {
+pub fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Failure> {
     let counts: Vec<usize> = sweeps.iter().map(|sweep| sweep.values.len()).collect();
     let at = |sweep: &Sweep, i: usize| (sweep.path.clone(), sweep.values[i]);
     if together {
@@ -132,8 +140,8 @@ pub(crate) fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Fai
     let all = counts
         .iter()
         .try_fold(1, |all: usize, n| all.checked_mul(*n));
-    if all.is_none_or(|all| all > MOST) {
-        let message = format!("a sweep has at most {MOST} points in all");
+    if all.is_none_or(|all| all > MAX_POINTS) {
+        let message = format!("a sweep has at most {MAX_POINTS} points in all");
         return Err(Failure::bad_input(message));
     }
     let one = vec![Point::new()];
@@ -148,7 +156,7 @@ pub(crate) fn points(sweeps: &[Sweep], together: bool) -> Result<Vec<Point>, Fai
 }
 
 /// A text about a point, which it then names.
-pub(crate) fn said_at(point: &Point, text: String) -> String {
+pub fn message_at(point: &Point, text: String) -> String {
     if point.is_empty() || text.contains(&shown(point)) {
         text
     } else {
@@ -157,13 +165,13 @@ pub(crate) fn said_at(point: &Point, text: String) -> String {
 }
 
 /// A point, for texts.
-pub(crate) fn shown(point: &Point) -> String {
+pub fn shown(point: &Point) -> String {
     let parts = point.iter().map(|(path, x)| format!("{path}={}", tidy(*x)));
     parts.collect::<Vec<_>>().join(", ")
 }
 
 /// The end of a path, by which its field is known: `Ggx` of `surfaces.0.event.Reflects.brdf.lobe.Ggx`, and `center.0` of `light.center.0`.
-pub(crate) fn short(path: &str) -> &str {
+pub fn short(path: &str) -> &str {
     let is_number = |part: &str| part.bytes().all(|c| c.is_ascii_digit());
     let name = path
         .rsplit('.')

@@ -14,13 +14,14 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// A folder of `run` or `compare`, by any version of this program.
+#[derive(Debug)]
 pub(super) struct StoredResult {
     pub(super) folder: PathBuf,
     pub(super) index: ResultIndex,
 }
 
 /// What `diff` needs of a `summary.json`.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 pub(super) struct ResultIndex {
     pub(super) scene: String,
     pub(super) scene_hash: String,
@@ -35,7 +36,7 @@ pub(super) struct ResultIndex {
 }
 
 /// What it needs of a plane there. Numbers that do not exist are null.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 pub(super) struct StoredPlane {
     pub(super) name: String,
     pub(super) class: String,
@@ -49,14 +50,14 @@ pub(super) struct StoredPlane {
 }
 
 /// A measured number with its standard error.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 pub(super) struct StoredNumber {
     measured: Option<f64>,
     error: Option<f64>,
 }
 
 /// A parameter of the chain.
-#[derive(Deserialize)]
+#[derive(Debug, Deserialize)]
 pub(super) struct StoredParameter {
     pub(super) name: String,
     pub(super) unit: String,
@@ -87,6 +88,7 @@ impl StoredParameter {
 }
 
 /// The arrays of a plane.
+#[derive(Debug)]
 pub(super) struct StoredSlices {
     pub(super) axes: [Array1<f64>; 3],
     pub(super) grid: SliceGrid,

@@ -1,17 +1,19 @@
 //! What `etendue diff` prints.
 
+use super::difference::{Diff, has_other_inputs, is_of_run};
 use super::planes::{Compared, Found, PlaneDiff, ROUNDING};
 use super::stored::{ResultIndex, StoredResult};
-use super::{Diff, has_other_inputs, is_of_run};
+use crate::table::{aligned, grouped, number, percent, with_unit};
 use etendue_compare::{Estimate, Verdict};
 use etendue_field::{percent as percent_of, tidy, uncertain};
-use etendue_pipeline::table::{aligned, grouped, number, percent, with_unit};
 use etendue_store::fields::FieldChange;
 
 /// Most fields of the scene that are listed.
 const MOST_FIELDS: usize = 20;
 
-pub(super) fn text(diff: &Diff) -> String {
+/// What `etendue diff` prints.
+#[must_use]
+pub fn text(diff: &Diff) -> String {
     let mut lines = vec![header('A', &diff.results[0]), header('B', &diff.results[1])];
     lines.extend(scene(diff));
     lines.push(String::new());

@@ -1,0 +1,85 @@
+//! Two results of one scene held against each other.
+
+use super::planes::{self, Found, PlaneDiff};
+use super::stored::StoredResult;
+use etendue_compare::{Verdict, sidak};
+use etendue_store::Failure;
+use etendue_store::fields::{FieldChange, differences};
+use std::path::Path;
+
+/// Two results, and what differs.
+#[derive(Debug)]
+pub struct Diff {
+    pub(super) results: [StoredResult; 2],
+    pub(super) alpha: f64,
+    /// The fields of the scene in which they differ.
+    pub(super) scene: Vec<FieldChange>,
+    pub(super) planes: Vec<PlaneDiff>,
+}
+
+impl Diff {
+    /// Holds the results in two folders against each other; `alpha` is the probability of finding a difference where there is none.
+    ///
+    /// # Errors
+    /// When one of them is no whole result, or they have no plane in common.
+    pub fn read(folders: [&Path; 2], alpha: f64) -> Result<Self, Failure> {
+        let [a, b] = folders.map(StoredResult::read);
+        Self::of([a?, b?], alpha)
+    }
+
+    fn of(results: [StoredResult; 2], alpha: f64) -> Result<Self, Failure> {
+        let [a, b] = &results;
+        let scene = differences(&a.index.scene_file, &b.index.scene_file);
+        let is_one_scene = scene.iter().all(is_of_run) && !has_other_inputs(a, b, &scene);
+        let planes = planes::of_results(a, b, is_one_scene)?;
+        if planes
+            .iter()
+            .all(|plane| matches!(plane.found, Found::Missing(_)))
+        {
+            let [a, b] = [a, b].map(|result| result.folder.display());
+            return Err(Failure::bad_input(format!(
+                "{a} and {b} have no plane in common: they are results of different scenes"
+            )));
+        }
+        Ok(Self {
+            results,
+            alpha,
+            scene,
+            planes,
+        })
+    }
+
+    /// Tests of slices and of parameters.
+    pub(super) fn tests(&self) -> [usize; 2] {
+        let compared = || self.planes.iter().filter_map(PlaneDiff::compared);
+        let slices = compared().filter(|plane| plane.test.p_value.is_some());
+        let parameters = compared().map(|plane| plane.pulls().count());
+        [slices.count(), parameters.sum()]
+    }
+
+    /// The level of each test, so that all of them together find a difference where there is none with probability α.
+    pub(super) fn level(&self) -> f64 {
+        let [slices, parameters] = self.tests();
+        sidak(self.alpha, (slices + parameters).max(1))
+    }
+
+    /// The verdict of all tests together.
+    #[must_use]
+    pub fn verdict(&self) -> Verdict {
+        let level = self.level();
+        let each = self.planes.iter().map(|plane| plane.verdict(level));
+        each.fold(Verdict::Pass, Verdict::and)
+    }
+}
+
+/// Whether a field says how a scene is run, not what it is.
+pub(super) fn is_of_run(change: &FieldChange) -> bool {
+    change.field.starts_with("run.")
+}
+
+/// Whether scenes that read alike name meshes or pictures that are not.
+pub(super) fn has_other_inputs(a: &StoredResult, b: &StoredResult, scene: &[FieldChange]) -> bool {
+    let [a, b] = [a, b].map(|result| &result.index);
+    // A name counts in no hash; another version may have other defaults.
+    scene.is_empty() && a.version == b.version && a.scene_hash != b.scene_hash
+}

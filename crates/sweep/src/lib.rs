@@ -1,0 +1,20 @@
+//! A scene with fields that take several values: every plane's numbers as one table, and curves.
+//!
+//! Each point is a run of its own, kept below `points` in a folder named by the hash of its scene. A
+//! sweep that was stopped, or that has other values now, goes on from what is there.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a Failure carries the whole message for the user, written where it occurs"
+)]
+
+mod pictures;
+mod points;
+mod request;
+mod run;
+mod table;
+pub mod values;
+
+pub use points::{Points, scene_at};
+pub use request::Request;
+pub use run::{Finished, run};

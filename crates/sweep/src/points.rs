@@ -1,0 +1,172 @@
+//! The points of a sweep: a scene at each.
+
+use crate::request::Request;
+use crate::values::{Point, Setting, Sweep, message_at, points, shown};
+use etendue_compare::{Applicability, Test};
+use etendue_pipeline::load::{self, SceneSource};
+use etendue_pipeline::{MeasuredScene, Silent, Summary, judged};
+use etendue_scene::{RunFile, Scene};
+use etendue_store::{Failure, Method};
+use std::collections::BTreeMap;
+
+/// What is asked for: a scene at each point of a sweep.
+#[derive(Debug)]
+pub struct Points {
+    pub(crate) source: SceneSource,
+    pub(crate) base: Scene,
+    pub(crate) sweeps: Vec<Sweep>,
+    pub(crate) method: Method,
+    pub(crate) points: Vec<Point>,
+    /// One for each point.
+    pub(crate) scenes: Vec<Scene>,
+}
+
+impl Points {
+    /// Reads the scene at all points.
+    pub fn read(request: &Request) -> Result<Self, Failure> {
+        let (set, sweeps) = settings(&request.set);
+        check(request, &set, &sweeps)?;
+        let source = SceneSource {
+            path: request.path.clone(),
+            set,
+        };
+        let options = |run: &mut RunFile| {
+            run.photons = request.photons.unwrap_or(run.photons);
+            run.seed = request.seed.unwrap_or(run.seed);
+        };
+        let base = load::scene(&source, options)?;
+        let points = points(&sweeps, request.together)?;
+        let has_own_seed = !request.common_seed && sweeps.iter().all(|s| s.path != "run.seed");
+        let at = |point| {
+            let mut at = scene_at(&source, point, options)?;
+            if has_own_seed {
+                at.run.seed = seed_of(&at);
+                at.file.run.seed = at.run.seed;
+            }
+            Ok(at)
+        };
+        let scenes = points.iter().map(at).collect::<Result<_, _>>()?;
+        Ok(Self {
+            source,
+            base,
+            sweeps,
+            method: request.method,
+            points,
+            scenes,
+        })
+    }
+
+    /// The name of the scene.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.base.name
+    }
+
+    /// The scene at each point.
+    #[must_use]
+    pub fn scenes(&self) -> &[Scene] {
+        &self.scenes
+    }
+
+    /// What the user should know of the scenes, each once, with the first point it is about.
+    #[must_use]
+    pub fn warnings(&self) -> Vec<String> {
+        let mut told: Vec<String> = Vec::new();
+        let mut warnings = Vec::new();
+        for (point, scene) in self.points.iter().zip(&self.scenes) {
+            for warning in scene.warnings() {
+                // The same words with other numbers are told once.
+                let words: String = warning
+                    .chars()
+                    .filter(|c| !c.is_ascii_digit() && *c != '.')
+                    .collect();
+                if !told.contains(&words) {
+                    warnings.push(format!("at {}: {warning}", shown(point)));
+                    told.push(words);
+                }
+            }
+        }
+        warnings
+    }
+
+    /// Runs a point; returns its `summary.json`.
+    pub fn summary(&self, point: u32) -> Result<Vec<u8>, Failure> {
+        let scene = self.scenes.get(point as usize);
+        let scene = scene.ok_or_else(|| Failure::cannot_run("no such point"))?;
+        let theories = Applicability::of_planes(scene);
+        let case = MeasuredScene::of(scene.clone(), theories, self.method, &Silent)?;
+        let summary = Summary::new(&case, &judged(&case, &Test::of(&case.scene))?, Vec::new());
+        Ok(summary.json(&BTreeMap::new()))
+    }
+}
+
+/// The seed of a point, told by its scene and the seed of the sweep, whatever other points there are. A number that every reader of JSON
+/// holds exactly.
+fn seed_of(scene: &Scene) -> u64 {
+    let hash = blake3::hash(scene.hash().as_bytes());
+    let mut words = hash.as_bytes().chunks_exact(8).map(|word| {
+        let word: [u8; 8] = word.try_into().unwrap_or_default();
+        u64::from_le_bytes(word)
+    });
+    words.next().unwrap_or(0) >> 24
+}
+
+/// Fails where nothing is swept, or a field is given its values twice.
+fn check(request: &Request, set: &[(String, String)], sweeps: &[Sweep]) -> Result<(), Failure> {
+    if sweeps.is_empty() {
+        let given: Vec<String> = set
+            .iter()
+            .map(|(path, value)| format!("{path}={value} is one value; "))
+            .collect();
+        let message = format!(
+            "nothing is swept: {}--set PATH=A..B:N or PATH=A,B,C gives a field several, such as --set blockers.0.pitch=0.05..0.4:8",
+            given.concat()
+        );
+        return Err(Failure::bad_input(message));
+    }
+    let options = [
+        ("run.photons", request.photons.is_some()),
+        ("run.seed", request.seed.is_some()),
+    ];
+    let options = options
+        .iter()
+        .filter(|(_, given)| *given)
+        .map(|(path, _)| *path);
+    let fixed = set.iter().map(|(path, _)| path.as_str()).chain(options);
+    let mut given: Vec<&str> = fixed
+        .chain(sweeps.iter().map(|sweep| sweep.path.as_str()))
+        .collect();
+    given.sort_unstable();
+    match given.windows(2).find(|pair| pair[0] == pair[1]) {
+        Some(pair) => Err(Failure::bad_input(format!("{} is given twice", pair[0]))),
+        None => Ok(()),
+    }
+}
+
+/// What is set to one value, and what is swept.
+fn settings(all: &[Setting]) -> (Vec<(String, String)>, Vec<Sweep>) {
+    let (mut set, mut sweeps) = (Vec::new(), Vec::new());
+    for setting in all {
+        match setting {
+            Setting::Value(path, value) => set.push((path.clone(), value.clone())),
+            Setting::Sweep(sweep) => sweeps.push(sweep.clone()),
+        }
+    }
+    (set, sweeps)
+}
+
+/// The scene with some fields set to numbers besides; `options` are overrides of all points.
+pub fn scene_at(
+    source: &SceneSource,
+    point: &Point,
+    options: impl FnOnce(&mut RunFile),
+) -> Result<Scene, Failure> {
+    let mut source = source.clone();
+    let numbers = point.iter();
+    let numbers = numbers.map(|(path, value)| (path.clone(), format!("{value:?}")));
+    source.set.extend(numbers);
+    load::scene(&source, options).map_err(|failure| Failure {
+        message: message_at(point, failure.message),
+        ..failure
+    })
+}

@@ -1,0 +1,26 @@
+//! What a sweep is asked for.
+
+use crate::values::Setting;
+use etendue_store::Method;
+use std::path::PathBuf;
+
+/// A scene with fields that take several values.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// The scene file.
+    pub path: PathBuf,
+    /// Fields set to a value, or to several.
+    pub set: Vec<Setting>,
+    /// Whether all points have one seed; otherwise each has its own.
+    pub common_seed: bool,
+    /// Whether several fields take their values in step, instead of in all combinations.
+    pub together: bool,
+    /// Photons of each point, instead of the scene's.
+    pub photons: Option<u64>,
+    /// Seed, instead of the scene's.
+    pub seed: Option<u64>,
+    /// How light is measured.
+    pub method: Method,
+    /// Whether files that Étendue did not write are replaced.
+    pub force: bool,
+}

@@ -1,0 +1,287 @@
+//! Running a sweep: points that are not done yet, then the table and curves.
+
+use crate::pictures;
+use crate::points::Points;
+use crate::request::Request;
+use crate::table::{self, BANDWIDTHS, Found, SLOPE};
+use crate::values::{Sweep, shown};
+use etendue_compare::Applicability;
+use etendue_field::{decimals, fixed, uncertain};
+use etendue_pipeline::{Leader, Reporter, Work, limits, load, method};
+use etendue_scene::{Scene, SceneFile, read_file};
+use etendue_store::sealed::json;
+use etendue_store::stored::{VERSION, check_earlier, summary_of};
+use etendue_store::{
+    Failure, LINKED, MAX_INDEX_BYTES, Plan, Results, SUMMARY, SWEEP, inside, unfinished,
+};
+use serde::Serialize;
+use serde_json::Value;
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// The table.
+const TABLE: &str = "sweep.csv";
+
+/// A sweep that is done.
+#[derive(Debug)]
+pub struct Finished {
+    /// The folder of its results.
+    pub folder: PathBuf,
+    /// The table for a terminal: a row for each plane at each point, and a header.
+    pub rows: Vec<Vec<String>>,
+    /// Whether there are curves: not where they would have more than 24 panels.
+    pub has_curves: bool,
+    /// How many points pass, fail, and are undecided.
+    pub verdicts: [usize; 3],
+}
+
+/// Runs the points that are not done yet, and writes the table and the pictures. `folder` keeps each point.
+pub fn run(
+    request: &Request,
+    all: &Points,
+    folder: &Path,
+    workers: Option<&Leader<'_>>,
+    reporter: &dyn Reporter,
+) -> Result<Finished, Failure> {
+    let checked = |scene| {
+        let theories = Applicability::of_planes(scene);
+        method::check(scene, request.method)?;
+        limits::check(scene, &theories, rayon::current_num_threads())
+    };
+    all.scenes.iter().try_for_each(checked)?;
+    let Points { base, sweeps, .. } = all;
+    check_earlier(folder, SWEEP, base, request.force)?;
+    check_fields(folder, sweeps, request.force)?;
+    let inputs = load::inputs(&all.source, base);
+    // Before the work, and once more for the table: each point claims a folder of its own.
+    drop(Results::claim(folder, plan(&inputs, request.force))?);
+    unfinished::keeps(
+        "interrupted: the points that are done are kept, and the same command goes on from them",
+    );
+    let found = run_all(request, folder, &inputs, all, workers, reporter)?;
+    let results = Results::claim(folder, plan(&inputs, request.force))?;
+    finish(request, all, &found, results, reporter)
+}
+
+/// Fails where the folder holds a sweep of other fields.
+fn check_fields(folder: &Path, sweeps: &[Sweep], force: bool) -> Result<(), Failure> {
+    let earlier = read_file(&folder.join(SWEEP), MAX_INDEX_BYTES).ok();
+    let earlier: Option<Value> = earlier.and_then(|bytes| serde_json::from_slice(&bytes).ok());
+    let Some(fields) = earlier
+        .as_ref()
+        .and_then(|index| index["sweeps"].as_object())
+    else {
+        return Ok(());
+    };
+    let now: BTreeSet<&str> = sweeps.iter().map(|sweep| sweep.path.as_str()).collect();
+    let earlier: BTreeSet<&str> = fields.keys().map(String::as_str).collect();
+    if force || now == earlier {
+        return Ok(());
+    }
+    let earlier: Vec<&str> = earlier.into_iter().collect();
+    Err(Failure::cannot_run(format!(
+        "{} holds a sweep of {}: choose another folder with --out, or replace it with --force",
+        folder.display(),
+        earlier.join(", ")
+    )))
+}
+
+fn plan(inputs: &[PathBuf], force: bool) -> Plan {
+    let pictures = pictures::NAMES.iter();
+    let pictures =
+        pictures.flat_map(|name| ["png", "svg", "csv"].map(|end| format!("{name}.{end}")));
+    Plan {
+        index: SWEEP,
+        files: pictures.chain([TABLE.to_owned()]).collect(),
+        inputs: inputs.to_vec(),
+        force,
+    }
+}
+
+/// What each point gives, run now or before.
+fn run_all(
+    request: &Request,
+    folder: &Path,
+    inputs: &[PathBuf],
+    all: &Points,
+    workers: Option<&Leader<'_>>,
+    reporter: &dyn Reporter,
+) -> Result<Vec<Found>, Failure> {
+    let bar = reporter.begin(Work::Steps {
+        verb: "running",
+        total: all.points.len(),
+        things: "points",
+    });
+    let names = folders(request, folder, all)?;
+    let earlier = |point: usize| {
+        let there = folder.join(&names[point]);
+        summary_of(&there, &all.scenes[point], request.method)
+    };
+    let claimed = |point: u32| {
+        let plan = Plan {
+            index: SUMMARY,
+            files: Vec::new(),
+            inputs: inputs.to_vec(),
+            force: request.force,
+        };
+        Results::claim_below(folder, &names[point as usize], plan)
+    };
+    let kept = |results: Results, summary: &[u8]| -> Result<Value, Failure> {
+        results.finish(|_| summary.to_vec())?;
+        bar.advance(1);
+        serde_json::from_slice(summary).map_err(Failure::cannot_run)
+    };
+    let own = |point: u32| {
+        bar.name(&shown(&all.points[point as usize]));
+        let results = claimed(point)?;
+        kept(results, &all.summary(point)?)
+    };
+    let mut summaries: Vec<Option<Value>> = (0..names.len()).map(earlier).collect();
+    let missing = (0..).zip(&summaries);
+    let missing = missing.filter(|(_, summary)| summary.is_none());
+    let missing: Vec<u32> = missing.map(|(point, _)| point).collect();
+    bar.set((names.len() - missing.len()) as u64);
+    let found: BTreeMap<u32, Value> = match workers {
+        None => missing
+            .iter()
+            .map(|i| Ok((*i, own(*i)?)))
+            .collect::<Result<_, Failure>>()?,
+        Some(workers) => workers.run(&all.scenes, &missing, &own, &|point, summary| {
+            kept(claimed(point)?, summary)
+        })?,
+    };
+    drop(bar);
+    for (point, summary) in found {
+        summaries[point as usize] = Some(summary);
+    }
+    let points = all.points.iter().zip(names).zip(summaries);
+    let found = points.map(|((point, folder), summary)| {
+        let summary = summary.ok_or_else(|| Failure::cannot_run("a point was not run"))?;
+        Ok(Found {
+            point: point.clone(),
+            folder,
+            summary,
+        })
+    });
+    found.collect()
+}
+
+/// The folders of the points, none of which leads out of that of the sweep.
+fn folders(request: &Request, folder: &Path, all: &Points) -> Result<Vec<String>, Failure> {
+    let name = |scene: &Scene| {
+        let name = format!("points/{}", name_of(scene, request));
+        match inside(folder, &format!("{name}/{SUMMARY}")) {
+            Some(_) => Ok(name),
+            None => Err(Failure::write(&folder.join(name), LINKED)),
+        }
+    };
+    all.scenes.iter().map(name).collect()
+}
+
+/// The name of a point: the same for the same scene and method.
+fn name_of(scene: &Scene, request: &Request) -> String {
+    let what = format!("{} {}", scene.hash(), request.method.words());
+    blake3::hash(what.as_bytes()).to_hex()[..16].to_owned()
+}
+
+/// `sweep.json`, all but the hashes of the files.
+#[derive(Debug, Serialize)]
+struct Index<'a> {
+    scene: &'a str,
+    version: &'a str,
+    /// The scene without the fields that are swept.
+    scene_file: &'a SceneFile,
+    /// Whether the fields go in step.
+    together: bool,
+    sweeps: BTreeMap<&'a str, &'a [f64]>,
+    /// Folders of the points, in the order of the table.
+    points: Vec<&'a str>,
+    files: &'a BTreeMap<String, String>,
+}
+
+/// Writes the table and the pictures.
+fn finish(
+    request: &Request,
+    all: &Points,
+    found: &[Found],
+    mut results: Results,
+    reporter: &dyn Reporter,
+) -> Result<Finished, Failure> {
+    let Points { base, sweeps, .. } = all;
+    let paths: Vec<String> = sweeps.iter().map(|sweep| sweep.path.clone()).collect();
+    results.write(TABLE, &table::csv(&paths, found)?)?;
+    let figures = pictures::drawn(&base.name, found, request.together)?;
+    for (name, figure) in pictures::NAMES.iter().zip(&figures) {
+        etendue_report::pictures::write(&mut results, name, figure)?;
+    }
+    let finished = results.finish(|files| {
+        json(&Index {
+            scene: &base.name,
+            version: VERSION,
+            scene_file: &base.file,
+            together: request.together,
+            sweeps: sweeps
+                .iter()
+                .map(|s| (s.path.as_str(), s.values.as_slice()))
+                .collect(),
+            points: found.iter().map(|at| at.folder.as_str()).collect(),
+            files,
+        })
+    })?;
+    if let Some(message) = finished.replaced_message() {
+        reporter.note(&message);
+    }
+    let count = |verdict: &str| {
+        found
+            .iter()
+            .filter(|at| at.summary["verdict"] == verdict)
+            .count()
+    };
+    Ok(Finished {
+        folder: finished.folder,
+        rows: rows(&paths, found),
+        has_curves: !figures.is_empty(),
+        verdicts: ["pass", "fail", "undecided"].map(count),
+    })
+}
+
+/// The table for the terminal: a row for each plane at each point.
+fn rows(paths: &[String], found: &[Found]) -> Vec<Vec<String>> {
+    let shown = [
+        (BANDWIDTHS[0], "ρ of 95 % [cycles/m]"),
+        (BANDWIDTHS[1], "ν of 95 % [cycles/slope]"),
+        (SLOPE, "shear slope [m]"),
+    ];
+    let mut header = paths.to_vec();
+    header.extend(["plane", "verdict", "p"].map(str::to_owned));
+    header.extend(
+        shown
+            .iter()
+            .flat_map(|(_, name)| [(*name).to_owned(), "predicted".to_owned()]),
+    );
+    let row = |at: &Found, plane: &Value| {
+        let mut row: Vec<String> = at.point.iter().map(|(_, x)| x.to_string()).collect();
+        let words = ["name", "verdict"].map(|key| plane[key].as_str().unwrap_or_default());
+        row.extend(words.map(str::to_owned));
+        row.push(
+            plane["p_value"]
+                .as_f64()
+                .map_or("–".to_owned(), |p| format!("{p:.4}")),
+        );
+        let numbers = table::numbers(plane);
+        for (quantity, _) in shown {
+            let number = numbers.iter().find(|number| number.quantity == quantity);
+            let measured = number.and_then(|n| Some(uncertain(n.measured?, n.error?)));
+            let predicted = number.and_then(|n| {
+                let places = n.error.filter(|e| *e > 0.0).map_or(4, decimals);
+                Some(fixed(n.predicted?, places))
+            });
+            row.extend([measured, predicted].map(|cell| cell.unwrap_or("–".to_owned())));
+        }
+        row
+    };
+    let rows = found
+        .iter()
+        .flat_map(|at| at.planes().map(move |plane| row(at, plane)));
+    std::iter::once(header).chain(rows).collect()
+}
