@@ -16,9 +16,7 @@ mod rays;
 mod world;
 
 pub(crate) use rays::RaysArgs;
-pub(crate) use world::{
-    CameraArgs, ImportArgs, ProbeArgs, RenderArgs, RenderMethod, ViewArgs, WorldArgs,
-};
+pub(crate) use world::{ImportArgs, ProbeArgs, RenderArgs};
 
 /// Measures the space-angle frequency content of light and compares it with theory.
 #[derive(Debug, Parser)]

@@ -8,19 +8,19 @@ use crate::progress;
 use crate::progress::Terminal;
 use crate::threads::on_threads;
 use etendue_compare::{Applicability, CovarianceReport, Prediction, SliceMoment};
-use etendue_field::{PhotonSource, VirtualPlane};
+use etendue_field::PhotonSource;
 use etendue_figures::{Ellipse, Ellipses, Picture, Quantity, ellipses};
 use etendue_pipeline::measured;
 use etendue_pipeline::method::source;
+use etendue_pipeline::moments::{check_memory, fitting};
 use etendue_pipeline::predicted;
 use etendue_pipeline::table::{grouped, spaced};
 use etendue_pipeline::{limits, load, method};
 use etendue_report::pictures;
 use etendue_scene::Scene;
-use etendue_spectrum::field::{FieldOptions, measure_field};
+use etendue_spectrum::field::measure_field;
 use etendue_spectrum::{CrossPower, Measurement};
 use etendue_store::Failure;
-use etendue_store::machine;
 use etendue_store::sealed::json;
 use etendue_store::stored::VERSION;
 use etendue_store::{COVARIANCE, Plan, Results};
@@ -109,46 +109,6 @@ fn choose(scene: &mut Scene, names: &[String]) -> Result<(), Failure> {
     }
     if !names.is_empty() {
         scene.planes.retain(|plane| names.contains(&plane.name));
-    }
-    Ok(())
-}
-
-/// Groups of batches that errors come from, and the covariance.
-fn options() -> FieldOptions {
-    FieldOptions {
-        covariance: true,
-        ..FieldOptions::default()
-    }
-}
-
-/// How a plane is put on its grid: all groups are kept where half of the memory holds them, which saves a pass.
-pub(crate) fn fitting(plane: &VirtualPlane) -> FieldOptions {
-    let kept = FieldOptions {
-        keep: true,
-        ..options()
-    };
-    let threads = rayon::current_num_threads();
-    if kept.bytes(&kept.grid(plane), threads) <= machine::available_memory() / 2 {
-        kept
-    } else {
-        options()
-    }
-}
-
-/// Fails, before anything is traced, when the grid of a plane is larger than memory.
-pub(crate) fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
-    let memory = machine::available_memory();
-    for plane in planes {
-        let grid = options().grid(plane);
-        let bytes = options().bytes(&grid, rayon::current_num_threads());
-        if bytes > memory {
-            let [nx, ny, nu, nv] = grid.cells;
-            let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
-            let name = &plane.name;
-            return Err(Failure::cannot_run(format!(
-                "covariance: the grid of {name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; memory holds {memory:.1} GB here"
-            )));
-        }
     }
     Ok(())
 }

@@ -14,6 +14,7 @@ mod diff;
 mod exit;
 mod export;
 mod figure;
+mod import;
 mod interrupt;
 mod measure;
 mod predict;
@@ -30,7 +31,6 @@ mod sweep;
 mod threads;
 mod warnings;
 mod workers;
-mod world;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -68,7 +68,7 @@ pub fn command(line: impl IntoIterator<Item = impl Into<OsString> + Clone>) -> u
         Command::Bandwidth(args) => bandwidth::bandwidth(&args),
         Command::Covariance(args) => covariance::covariance(&args),
         Command::Export(args) => export::export(&args),
-        Command::Import(args) => world::report(&args),
+        Command::Import(args) => import::import(&args),
         Command::Render(args) => render::render(&args),
         Command::Probe(args) => probe::probe(&args),
         Command::Rays(args) => rays::rays(&args),

@@ -22,6 +22,7 @@ pub mod limits;
 pub mod load;
 mod measure;
 pub mod method;
+pub mod moments;
 pub mod photons;
 mod predict;
 mod reporter;

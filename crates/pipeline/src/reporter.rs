@@ -31,7 +31,7 @@ pub enum Work {
 }
 
 /// Work that goes on. It ends when this is dropped.
-pub trait Progress: Sync {
+pub trait Progress: Send + Sync {
     /// So many photons or things more are done.
     fn advance(&self, steps: u64);
 

@@ -2,8 +2,9 @@
 
 use super::{ForceArgs, ThreadArgs, assignment, whole_number};
 use clap::{Args, ValueEnum};
-use etendue_adaptive::BLOCKER_RAYS;
+use etendue_adaptive::{BLOCKER_RAYS, Method};
 use etendue_import::{Color, Options};
+use etendue_view::{CameraChoice, PictureRequest, ProbeRequest, Viewpoint, WorldSource};
 use glam::DVec3;
 use std::path::PathBuf;
 
@@ -81,16 +82,65 @@ fn radiance(text: &str) -> Result<f64, String> {
 }
 
 impl WorldArgs {
-    pub(crate) fn options(&self) -> Options {
-        Options {
-            root: self.root.clone(),
-            color: match self.color {
-                Channel::Luminance => Color::Luminance,
-                Channel::Red => Color::Red,
-                Channel::Green => Color::Green,
-                Channel::Blue => Color::Blue,
+    /// The scene that is named.
+    pub(crate) fn source(&self) -> WorldSource {
+        let ViewArgs { up, fov, .. } = self.view;
+        let ends = self.view.look_from.zip(self.view.look_at);
+        WorldSource {
+            path: self.path.clone(),
+            options: Options {
+                root: self.root.clone(),
+                color: match self.color {
+                    Channel::Luminance => Color::Luminance,
+                    Channel::Red => Color::Red,
+                    Channel::Green => Color::Green,
+                    Channel::Blue => Color::Blue,
+                },
+                set: self.set.clone(),
             },
-            set: self.set.clone(),
+            bounces: self.bounces,
+            sky: self.sky,
+            viewpoint: ends.map(|(from, at)| Viewpoint { from, at, up, fov }),
+        }
+    }
+}
+
+impl CameraArgs {
+    /// The camera that is asked for.
+    pub(crate) fn choice(&self) -> CameraChoice {
+        CameraChoice {
+            name: self.name.clone(),
+            size: self.size,
+        }
+    }
+}
+
+impl RenderArgs {
+    /// The picture that is asked for.
+    pub(crate) fn request(&self) -> PictureRequest {
+        PictureRequest {
+            source: self.scene.source(),
+            camera: self.camera.choice(),
+            method: self.few_samples(),
+            samples: self.samples,
+            shading_samples: self.shading_samples,
+            paths: self.paths,
+            blocker_rays: self.blocker_rays,
+            isotropic: self.isotropic,
+            seed: self.seed,
+            force: self.force.force,
+        }
+    }
+
+    /// How few shading samples are spent; `None` for a reference.
+    fn few_samples(&self) -> Option<Method> {
+        match (self.method, self.shading_samples) {
+            (Some(RenderMethod::Reference), _) | (None, None) => None,
+            (Some(RenderMethod::Predicted) | None, _) => Some(Method::Predicted),
+            (Some(RenderMethod::Uniform), _) => Some(Method::Uniform),
+            (Some(RenderMethod::Printed), _) => Some(Method::Printed),
+            (Some(RenderMethod::Weighted), _) => Some(Method::Weighted),
+            (Some(RenderMethod::Variance), _) => Some(Method::Variance),
         }
     }
 }
@@ -268,10 +318,21 @@ pub(crate) struct ProbeArgs {
 }
 
 impl ProbeArgs {
-    /// Rays traced back for each plane.
-    pub(crate) fn rays(&self) -> u64 {
+    /// What is asked for.
+    pub(crate) fn request(&self) -> ProbeRequest {
         let default = if self.map.is_some() { 1 << 15 } else { 1 << 20 };
-        self.rays.unwrap_or(default)
+        ProbeRequest {
+            source: self.scene.source(),
+            camera: self.camera.choice(),
+            surfaces: self.surfaces,
+            window: self.window,
+            rays: self.rays.unwrap_or(default),
+            photons: self.photons,
+            seed: self.seed,
+            covariance: self.covariance,
+            out: self.out.clone(),
+            force: self.force.force,
+        }
     }
 }
 

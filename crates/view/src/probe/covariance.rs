@@ -1,13 +1,11 @@
 //! Covariances of the spectra along the ray of a pixel: as measured, and from the first surface to the camera by
 //! covariance tracing.
 
-use super::{BATCHES, Found};
-use crate::covariance::{check_memory, fitting};
-use crate::progress;
+use super::scene::{BATCHES, FREQUENCIES};
 use etendue_compare::AXES;
-use etendue_field::uncertain;
 use etendue_paths::{BackwardProbe, Budget, Probe};
-use etendue_pipeline::table::aligned;
+use etendue_pipeline::moments::{check_memory, fitting};
+use etendue_pipeline::{Reporter, Work};
 use etendue_spectrum::field::{FieldCovariance, MatrixEstimate, measure_field};
 use etendue_store::Failure;
 use etendue_theory::covariance::{SpectralCovariance, window};
@@ -16,17 +14,17 @@ use serde_json::{Value, json as tree_of};
 
 /// Frequencies on either side of zero that covariances are over: the noise of a second moment grows as the fourth power
 /// of its band, and half of the plane's own holds the spectra of its windows.
-const BAND: usize = super::FREQUENCIES / 2;
+const BAND: usize = FREQUENCIES / 2;
 
 /// The covariance of the spectrum of a plane.
 #[derive(Clone, Debug)]
 pub(super) struct FoundCovariance {
     /// The largest frequency along each axis.
     band: [f64; 4],
-    measured: Option<MatrixEstimate>,
+    pub(super) measured: Option<MatrixEstimate>,
     growth: Option<[f64; 4]>,
     /// At the camera: what covariance tracing makes of that of light which leaves the first surface.
-    propagated: Option<MatrixEstimate>,
+    pub(super) propagated: Option<MatrixEstimate>,
 }
 
 impl FoundCovariance {
@@ -57,7 +55,7 @@ impl FoundCovariance {
 pub(super) fn measured(
     probe: &Probe<'_>,
     budget: Budget,
-    quiet: bool,
+    reporter: &dyn Reporter,
 ) -> Result<Vec<FoundCovariance>, Failure> {
     let mut planes = probe.planes.clone();
     for plane in &mut planes {
@@ -70,11 +68,12 @@ pub(super) fn measured(
     for (index, plane) in planes.iter().enumerate() {
         let source = BackwardProbe::new(probe, budget).at_plane(index);
         let options = fitting(plane);
-        let bar = progress::photons(if options.keep { rays } else { 2 * rays }, quiet);
+        let photons = if options.keep { rays } else { 2 * rays };
+        let bar = reporter.begin(Work::Photons(photons));
         let field = measure_field(&source, index, plane, 0..BATCHES, &options, &|done| {
-            bar.inc(done);
+            bar.advance(done);
         });
-        bar.finish_and_clear();
+        drop(bar);
         all.extend(field.map_err(Failure::cannot_run)?.covariance);
     }
     let mut found: Vec<FoundCovariance> = all.iter().map(FoundCovariance::new).collect();
@@ -94,28 +93,4 @@ fn propagated(probe: &Probe<'_>, leaving: &FieldCovariance) -> Option<MatrixEsti
         let light = SpectralCovariance::of(measured).multiplied(&less);
         light.mapped(&travel)?.multiplied(&camera).matrix()
     })
-}
-
-/// The entries along x, which lies in the plane of incidence, at each plane, and at the camera as propagated.
-pub(super) fn said(found: &[&Found]) -> Vec<String> {
-    let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);
-    let row = |name: String, of: &MatrixEstimate| {
-        let entry = |i: usize, j: usize| uncertain(of.value[i][j], of.error[i][j]);
-        vec![name, entry(0, 0), entry(0, 2), entry(2, 2)]
-    };
-    let mut rows = Vec::new();
-    for found in found {
-        let Some(covariance) = &found.covariance else {
-            continue;
-        };
-        let name = &found.comparison.report.name;
-        rows.extend(covariance.measured.as_ref().map(|of| row(name.clone(), of)));
-        let traced = covariance.propagated.as_ref();
-        rows.extend(traced.map(|of| row(format!("{name}, traced from leaving_1"), of)));
-    }
-    if rows.is_empty() {
-        return Vec::new();
-    }
-    let table = aligned(std::iter::once(head.to_vec()).chain(rows).collect());
-    std::iter::once(String::new()).chain(table).collect()
 }

@@ -1,12 +1,13 @@
 //! What a probe comes to, in words and in JSON.
 
-use super::{Found, covariance, verdict};
+use super::found::{Found, verdict};
 use etendue_compare::{Verdict, lobe_cutoff};
 use etendue_field::{Lobe, percent, uncertain};
 use etendue_paths::{Probe, Reflects, Stop};
 use etendue_pipeline::table::aligned;
 use etendue_spectrum::Uncertain;
 use etendue_spectrum::bandwidth::Widest;
+use etendue_spectrum::field::MatrixEstimate;
 use etendue_theory::shading::Criterion;
 use etendue_world::World;
 use serde_json::{Value, json as tree_of};
@@ -79,7 +80,7 @@ fn word(reflects: Reflects) -> String {
 }
 
 /// The surfaces, the planes, and how densely the picture is to be sampled.
-pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16) -> Vec<String> {
+pub(super) fn lines(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16) -> Vec<String> {
     let mut lines = surfaces(world, probe);
     lines.push(String::new());
     lines.extend(planes(found));
@@ -98,7 +99,7 @@ pub(super) fn said(world: &World, probe: &Probe<'_>, found: &[&Found], most: u16
     if let Some(nu) = found.first().and_then(|camera| camera.nu) {
         lines.extend(bandwidths(probe, nu.value));
     }
-    lines.extend(covariance::said(found));
+    lines.extend(covariances(found));
     lines
 }
 
@@ -203,10 +204,34 @@ fn bandwidths(probe: &Probe<'_>, measured: Uncertain) -> Vec<String> {
     lines
 }
 
+/// The entries along x, which lies in the plane of incidence, at each plane, and at the camera as propagated.
+fn covariances(found: &[&Found]) -> Vec<String> {
+    let head = ["covariance", "ρx ρx", "ρx νu", "νu νu"].map(str::to_owned);
+    let row = |name: String, of: &MatrixEstimate| {
+        let entry = |i: usize, j: usize| uncertain(of.value[i][j], of.error[i][j]);
+        vec![name, entry(0, 0), entry(0, 2), entry(2, 2)]
+    };
+    let mut rows = Vec::new();
+    for found in found {
+        let Some(covariance) = &found.covariance else {
+            continue;
+        };
+        let name = &found.comparison.report.name;
+        rows.extend(covariance.measured.as_ref().map(|of| row(name.clone(), of)));
+        let traced = covariance.propagated.as_ref();
+        rows.extend(traced.map(|of| row(format!("{name}, traced from leaving_1"), of)));
+    }
+    if rows.is_empty() {
+        return Vec::new();
+    }
+    let table = aligned(std::iter::once(head.to_vec()).chain(rows).collect());
+    std::iter::once(String::new()).chain(table).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::probe::FREQUENCIES;
+    use crate::probe::scene::FREQUENCIES;
     use etendue_field::{FrequencyAxis, Profile, SliceGrid};
     use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth, bandwidth_nu, widest};
     use ndarray::{Array1, Array3};

@@ -1,32 +1,33 @@
 //! Pictures with few shading samples, their maps, and how long each stage took.
 
-use crate::args::RenderArgs;
-use crate::progress;
+use crate::finite::require_finite;
+use crate::picture_request::PictureRequest;
 use etendue_adaptive::{Layers, Method, Plan, Rendered, Stage};
 use etendue_paths::Paths;
+use etendue_pipeline::{Progress, Reporter, Work};
 use etendue_store::Failure;
 use etendue_store::exr::{Part, exr};
 use etendue_store::npz::Npz;
 use etendue_store::sealed::json;
 use etendue_store::{Results, TIMING};
 use etendue_world::{Camera, Projection};
-use indicatif::ProgressBar;
 use ndarray::Array2;
 use serde_json::{Value, json as tree_of};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
 /// Files beside those of a reference.
-pub(super) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
+pub(crate) const FILES: &[&str] = &["bandwidth.png", "samples.png", TIMING];
 
 /// Renders and writes; returns what is to be said of it.
-pub(super) fn render(
-    args: &RenderArgs,
+pub(crate) fn render(
+    request: &PictureRequest,
     method: Method,
     (paths, camera): (&Paths, &Camera),
-    results: &mut Results,
-    made_from: &mut Value,
+    (results, made_from): (&mut Results, &mut Value),
+    reporter: &dyn Reporter,
 ) -> Result<String, Failure> {
     if let Projection::Perspective { lens: Some(_), .. } = camera.projection {
         return Err(Failure::bad_input(
@@ -34,32 +35,33 @@ pub(super) fn render(
         ));
     }
     let pixels = camera.size[0] * camera.size[1];
-    let samples = args
+    let samples = request
         .shading_samples
         .map_or(pixels.div_ceil(20), |n| n as usize);
     let plan = Plan {
         method,
         samples,
-        each: args.paths,
-        blocker_rays: args.blocker_rays,
-        is_even: args.isotropic,
-        seed: args.seed,
+        each: request.paths,
+        blocker_rays: request.blocker_rays,
+        is_even: request.isotropic,
+        seed: request.seed,
     };
-    let watch = Watch::new(args.quiet);
+    let watch = Watch::new(reporter);
+    let bar = &watch.bar;
     let rendered = etendue_adaptive::render(
         paths,
         camera,
         &plan,
         &|stage, steps| watch.begin(stage, steps),
-        &|done| watch.bar.inc(done),
+        &|done| advance(bar, done),
     );
     let seconds = watch.end();
     made_from["method"] = tree_of!(format!("{method:?}").to_lowercase());
     made_from["shading_samples"] = tree_of!(samples);
     made_from["shading_samples_added"] = tree_of!(rendered.added);
-    made_from["paths"] = tree_of!(args.paths);
-    made_from["blocker_rays"] = tree_of!(args.blocker_rays);
-    made_from["isotropic"] = tree_of!(args.isotropic);
+    made_from["paths"] = tree_of!(request.paths);
+    made_from["blocker_rays"] = tree_of!(request.blocker_rays);
+    made_from["isotropic"] = tree_of!(request.isotropic);
     write(results, &rendered, made_from)?;
     let total: f64 = seconds.values().sum();
     results.write_unlisted(
@@ -75,17 +77,27 @@ pub(super) fn render(
     ))
 }
 
+/// So many steps more are done.
+fn advance(bar: &Mutex<Option<Box<dyn Progress + '_>>>, steps: u64) {
+    let bar = bar.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some(bar) = bar.as_ref() {
+        bar.advance(steps);
+    }
+}
+
 /// What is being done, and for how long each stage was.
-struct Watch {
-    bar: ProgressBar,
+struct Watch<'a> {
+    reporter: &'a dyn Reporter,
+    bar: Mutex<Option<Box<dyn Progress + 'a>>>,
     now: RefCell<Option<(&'static str, Instant)>>,
     seconds: RefCell<BTreeMap<&'static str, f64>>,
 }
 
-impl Watch {
-    fn new(quiet: bool) -> Self {
+impl<'a> Watch<'a> {
+    fn new(reporter: &'a dyn Reporter) -> Self {
         Self {
-            bar: progress::steps("rendering", 1, "steps", quiet),
+            reporter,
+            bar: Mutex::new(None),
             now: RefCell::new(None),
             seconds: RefCell::new(BTreeMap::new()),
         }
@@ -102,10 +114,17 @@ impl Watch {
             Stage::Reconstruction => "reconstruction",
         };
         *self.now.borrow_mut() = Some((name, Instant::now()));
-        self.bar.set_message(name);
-        self.bar.set_position(0);
-        self.bar.set_length(steps as u64);
-        self.bar.reset_eta();
+        let bar = self.reporter.begin(Work::Steps {
+            verb: "rendering",
+            total: steps,
+            things: "steps",
+        });
+        bar.name(name);
+        *self.bar() = Some(bar);
+    }
+
+    fn bar(&self) -> MutexGuard<'_, Option<Box<dyn Progress + 'a>>> {
+        self.bar.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
     fn lap(&self) {
@@ -116,14 +135,14 @@ impl Watch {
 
     fn end(self) -> BTreeMap<&'static str, f64> {
         self.lap();
-        self.bar.finish_and_clear();
+        self.bar().take();
         self.seconds.into_inner()
     }
 }
 
 fn write(results: &mut Results, rendered: &Rendered, made_from: &Value) -> Result<(), Failure> {
     let [w, h] = rendered.size;
-    super::require_finite(rendered.size, &rendered.radiance)?;
+    require_finite(rendered.size, &rendered.radiance)?;
     let Layers {
         bandwidth,
         curvature,

@@ -1,12 +1,10 @@
 //! How fast light changes with angle at the camera, over a picture: measured, and by the criterion of Durand et al. 2005.
 
-use super::said::{ON_GRID, criterion};
-use super::{BATCHES, Case};
-use crate::print::{deliver, say_replaced};
-use crate::progress;
-use crate::threads::on_threads;
+use super::scene::{BATCHES, ProbeRequest, ProbedScene};
+use super::words::{ON_GRID, criterion};
 use etendue_figures::{Axis, Comparison, Quantity, Scale, comparison};
 use etendue_paths::{BackwardProbe, Budget, Probe};
+use etendue_pipeline::{Reporter, Work};
 use etendue_report::pictures;
 use etendue_spectrum::bandwidth::bandwidth_nu;
 use etendue_spectrum::{CrossPower, estimate, measure};
@@ -18,6 +16,7 @@ use etendue_store::sealed::json;
 use ndarray::{Array2, Axis as ArrayAxis};
 use rayon::prelude::*;
 use serde_json::json as tree_of;
+use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
 /// Nor is one of a spectrum with more noise than this share.
@@ -53,32 +52,44 @@ impl Point {
 /// A number of each pixel.
 type Layer = fn(&Point) -> f64;
 
-/// `etendue probe --map`: returns the exit code.
-pub(super) fn map(case: &Case<'_>, [w, h]: [usize; 2]) -> Result<u8, Failure> {
+/// What a map of bandwidths comes to.
+#[derive(Debug)]
+pub struct BandwidthMap {
+    /// The folder of its results.
+    pub folder: PathBuf,
+    /// How measured and predicted bandwidths are to each other, in words.
+    pub words: String,
+}
+
+/// Bandwidths at the camera for `w` × `h` pixels, evenly over the picture.
+pub fn map_bandwidths(
+    request: &ProbeRequest,
+    [w, h]: [usize; 2],
+    reporter: &dyn Reporter,
+) -> Result<BandwidthMap, Failure> {
+    let case = &ProbedScene::read(request)?;
     let name = format!("{}-map", case.name());
     let (results, folder) = case.claim(name, FILES.map(str::to_owned).to_vec())?;
-    let points = on_threads(&case.args.threads, || {
-        let bar = progress::steps("probing", w * h, "pixels", case.args.quiet);
-        let points = (0..w * h).into_par_iter().map(|i| {
-            let point = point(case, [i % w, i / w], [w, h]);
-            bar.inc(1);
-            point
-        });
-        let points: Result<Vec<Point>, Failure> = points.collect();
-        bar.finish_and_clear();
-        points
-    })?;
+    let bar = reporter.begin(Work::Steps {
+        verb: "probing",
+        total: w * h,
+        things: "pixels",
+    });
+    let points = (0..w * h).into_par_iter().map(|i| {
+        let point = point(case, [i % w, i / w], [w, h]);
+        bar.advance(1);
+        point
+    });
+    let points: Vec<Point> = points.collect::<Result<_, Failure>>()?;
+    drop(bar);
     let map = Array2::from_shape_vec((h, w), points).map_err(Failure::cannot_run)?;
-    write(case, results, &map)?;
-    if !case.args.quiet {
-        deliver(&said(&map))?;
-        deliver(&format!("results: {}", folder.display()))?;
-    }
-    Ok(0)
+    write(case, results, &map, reporter)?;
+    let words = words(&map);
+    Ok(BandwidthMap { folder, words })
 }
 
 /// The bandwidths behind one pixel of the lattice.
-fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, Failure> {
+fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, Failure> {
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
     let question = case.question(pixel, 4);
     let Some(mut probe) = Probe::new(&case.paths, &case.camera, &question) else {
@@ -87,8 +98,8 @@ fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, 
     probe.planes.truncate(1);
     let number = (at[1] * lattice[0] + at[0]) as u64;
     let budget = Budget {
-        each: case.args.rays().div_ceil(u64::from(BATCHES)),
-        seed: case.args.seed.wrapping_add(number << 32),
+        each: case.request.rays.div_ceil(u64::from(BATCHES)),
+        seed: case.request.seed.wrapping_add(number << 32),
     };
     let rays = BackwardProbe::new(&probe, budget);
     let found = measure(&rays, &probe.planes, 0..BATCHES, &|_| {});
@@ -106,7 +117,12 @@ fn point(case: &Case<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<Point, 
     })
 }
 
-fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(), Failure> {
+fn write(
+    case: &ProbedScene<'_>,
+    mut results: Results,
+    map: &Array2<Point>,
+    reporter: &dyn Reporter,
+) -> Result<(), Failure> {
     let (h, w) = map.dim();
     let layers: [(&'static str, Layer); 5] = [
         ("measured", |point| point.measured),
@@ -117,7 +133,7 @@ fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(
     ];
     let mut made_from = case.made_from();
     made_from["map"] = tree_of!([w, h]);
-    made_from["rays"] = tree_of!(case.args.rays());
+    made_from["rays"] = tree_of!(case.request.rays);
     let mut npz = Npz::new();
     let mut parts = Vec::new();
     for (name, of) in layers {
@@ -133,11 +149,13 @@ fn write(case: &Case<'_>, mut results: Results, map: &Array2<Point>) -> Result<(
         made_from["files"] = tree_of!(files);
         json(&made_from)
     })?;
-    say_replaced(&finished, case.args.quiet);
+    if let Some(message) = finished.replaced_message() {
+        reporter.note(&message);
+    }
     Ok(())
 }
 
-fn drawn(case: &Case<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure, Failure> {
+fn drawn(case: &ProbedScene<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure, Failure> {
     // Pictures have y upwards.
     let of = |value: Layer| {
         let mut rows = map.map(value);
@@ -150,7 +168,7 @@ fn drawn(case: &Case<'_>, map: &Array2<Point>) -> Result<etendue_figures::Figure
         title: &format!("{name}: bandwidth at the camera"),
         note: &format!(
             "95 % of the power in windows {} pixels wide; predicted: Eq. 20, corrected, for light of all frequencies, or what the window has alone",
-            case.args.window
+            case.request.window
         ),
         x: Axis::edges("column", "pixels", [0.0, w]),
         y: Axis::edges("row from below", "pixels", [0.0, h]),
@@ -175,7 +193,7 @@ fn expected(point: &Point) -> f64 {
 }
 
 /// How measured and predicted bandwidths are to each other.
-fn said(map: &Array2<Point>) -> String {
+fn words(map: &Array2<Point>) -> String {
     let seen = map
         .iter()
         .filter(|point| point.measured.is_finite())

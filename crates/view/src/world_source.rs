@@ -1,28 +1,64 @@
-//! Scenes of other programs, as commands take them.
+//! Scenes of other programs, as they are read for pictures and probes.
 
-use crate::args::{CameraArgs, ImportArgs, ViewArgs, WorldArgs};
-use crate::print::deliver;
-use etendue_import::{Imported, import};
+use etendue_import::{Imported, Options, import};
 use etendue_pipeline::table::aligned;
 use etendue_store::Failure;
 use etendue_world::{Camera, Geometry, Light, Projection, World};
-use glam::{DAffine3, DMat3};
+use glam::{DAffine3, DMat3, DVec3};
+use std::path::PathBuf;
+
+/// A scene file of another program, and what is changed in it.
+#[derive(Clone, Debug)]
+pub struct WorldSource {
+    /// Mitsuba 3, pbrt-v4, glTF 2.0, OBJ or PLY.
+    pub path: PathBuf,
+    /// How it is read.
+    pub options: Options,
+    /// Most surfaces that light meets between a source and the camera, instead of the file's.
+    pub bounces: Option<u32>,
+    /// Radiance that comes from everywhere, W/(m² sr).
+    pub sky: Option<f64>,
+    /// A camera that the scene need not have: the first, named `command`.
+    pub viewpoint: Option<Viewpoint>,
+}
+
+/// Where a camera of 512 × 512 pixels stands, and where it looks, in coordinates of the scene.
+#[derive(Clone, Copy, Debug)]
+pub struct Viewpoint {
+    /// Its place.
+    pub from: DVec3,
+    /// What is in the middle of its picture.
+    pub at: DVec3,
+    /// What is up in its picture.
+    pub up: DVec3,
+    /// Its angle from side to side, degrees.
+    pub fov: f64,
+}
+
+/// Which camera looks.
+#[derive(Clone, Debug, Default)]
+pub struct CameraChoice {
+    /// Its name; otherwise the first.
+    pub name: Option<String>,
+    /// Pixels across and down, instead of the camera's.
+    pub size: Option<[usize; 2]>,
+}
 
 /// What commands say.
 const NO_CAMERA: &str = "the scene has no camera: --look-from and --look-at add one";
 const NO_LIGHT: &str = "the scene has no light: --sky adds one";
 
-/// Reads the scene named on the command line; causes for which it is refused come all together.
-pub(crate) fn load(args: &WorldArgs) -> Result<Imported, Failure> {
-    let mut imported = import(&args.path, &args.options()).map_err(Failure::bad_input)?;
-    if args.bounces.is_some() {
-        imported.world.depth = args.bounces;
+/// Reads a scene; causes for which it is refused come all together.
+pub fn load(source: &WorldSource) -> Result<Imported, Failure> {
+    let mut imported = import(&source.path, &source.options).map_err(Failure::bad_input)?;
+    if source.bounces.is_some() {
+        imported.world.depth = source.bounces;
     }
-    if let Some(radiance) = args.sky {
+    if let Some(radiance) = source.sky {
         imported.world.lights.push(Light::Constant { radiance });
     }
-    if let Some(camera) = of_command(&args.view)? {
-        imported.world.cameras.insert(0, camera);
+    if let Some(viewpoint) = &source.viewpoint {
+        imported.world.cameras.insert(0, camera_at(viewpoint)?);
     }
     Ok(imported)
 }
@@ -33,13 +69,10 @@ pub(crate) fn notes(imported: &Imported) -> Vec<String> {
 }
 
 /// The camera that the command line puts into the scene.
-fn of_command(view: &ViewArgs) -> Result<Option<Camera>, Failure> {
-    let (Some(from), Some(at)) = (view.look_from, view.look_at) else {
-        return Ok(None);
-    };
-    let ahead = (at - from).try_normalize();
+fn camera_at(viewpoint: &Viewpoint) -> Result<Camera, Failure> {
+    let ahead = (viewpoint.at - viewpoint.from).try_normalize();
     let frame = ahead.and_then(|ahead| {
-        let left = view.up.cross(ahead).try_normalize()?;
+        let left = viewpoint.up.cross(ahead).try_normalize()?;
         Some(DMat3::from_cols(left, ahead.cross(left), ahead))
     });
     let frame = frame.ok_or_else(|| {
@@ -47,17 +80,17 @@ fn of_command(view: &ViewArgs) -> Result<Option<Camera>, Failure> {
             "--look-from and --look-at are one place, or --up goes along the line between them";
         Failure::bad_input(message)
     })?;
-    Ok(Some(Camera {
+    Ok(Camera {
         name: "command".to_owned(),
-        to_world: DAffine3::from_mat3_translation(frame, from),
+        to_world: DAffine3::from_mat3_translation(frame, viewpoint.from),
         size: [512; 2],
         projection: Projection::Perspective {
-            half_width: libm::tan(view.fov.to_radians() / 2.0),
+            half_width: libm::tan(viewpoint.fov.to_radians() / 2.0),
             shift: [0.0; 2],
             lens: None,
         },
         clip: [0.0, f64::MAX],
-    }))
+    })
 }
 
 /// Requires something that shines.
@@ -70,15 +103,15 @@ pub(crate) fn require_light(world: &World) -> Result<(), Failure> {
 }
 
 /// The camera that is asked for, or the first, with the size that is asked for.
-pub(crate) fn camera(world: &World, args: &CameraArgs) -> Result<Camera, Failure> {
-    let is_meant = |camera: &&Camera| args.name.as_ref().is_none_or(|name| *name == camera.name);
+pub(crate) fn camera(world: &World, choice: &CameraChoice) -> Result<Camera, Failure> {
+    let is_meant = |camera: &&Camera| choice.name.as_ref().is_none_or(|name| *name == camera.name);
     let camera = world.cameras.iter().find(is_meant).ok_or_else(|| {
         let names: Vec<&str> = world
             .cameras
             .iter()
             .map(|camera| camera.name.as_str())
             .collect();
-        Failure::bad_input(match &args.name {
+        Failure::bad_input(match &choice.name {
             Some(name) if !names.is_empty() => {
                 format!("--camera {name}; allowed: {}", names.join(", "))
             }
@@ -86,14 +119,14 @@ pub(crate) fn camera(world: &World, args: &CameraArgs) -> Result<Camera, Failure
         })
     })?;
     Ok(Camera {
-        size: args.size.unwrap_or(camera.size),
+        size: choice.size.unwrap_or(camera.size),
         ..camera.clone()
     })
 }
 
-/// `etendue import`: returns the exit code.
-pub(crate) fn report(args: &ImportArgs) -> Result<u8, Failure> {
-    let imported = load(&args.scene)?;
+/// What a scene holds, line by line, and a note for all that was left out or approximated.
+#[must_use]
+pub fn contents(imported: &Imported) -> Vec<String> {
     let world = &imported.world;
     let mut lines = aligned(rows(world));
     lines.extend(world.cameras.iter().map(of_camera));
@@ -107,9 +140,8 @@ pub(crate) fn report(args: &ImportArgs) -> Result<u8, Failure> {
         Some(depth) => format!("light meets at most {depth} surfaces"),
         None => "light meets any number of surfaces".to_owned(),
     });
-    lines.extend(notes(&imported).iter().map(|note| format!("note: {note}")));
-    deliver(&lines.join("\n"))?;
-    Ok(0)
+    lines.extend(notes(imported).iter().map(|note| format!("note: {note}")));
+    lines
 }
 
 /// What there is of each kind, and how many.

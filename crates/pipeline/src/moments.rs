@@ -1,0 +1,45 @@
+//! The 4D grid that covariances of spectra are measured on.
+
+use etendue_field::VirtualPlane;
+use etendue_spectrum::field::FieldOptions;
+use etendue_store::{Failure, machine};
+
+/// Groups of batches that errors come from, and the covariance.
+fn options() -> FieldOptions {
+    FieldOptions {
+        covariance: true,
+        ..FieldOptions::default()
+    }
+}
+
+/// How a plane is put on its grid: all groups are kept where half of the memory holds them, which saves a pass.
+pub fn fitting(plane: &VirtualPlane) -> FieldOptions {
+    let kept = FieldOptions {
+        keep: true,
+        ..options()
+    };
+    let threads = rayon::current_num_threads();
+    if kept.bytes(&kept.grid(plane), threads) <= machine::available_memory() / 2 {
+        kept
+    } else {
+        options()
+    }
+}
+
+/// Fails, before anything is traced, when the grid of a plane is larger than memory.
+pub fn check_memory(planes: &[VirtualPlane]) -> Result<(), Failure> {
+    let memory = machine::available_memory();
+    for plane in planes {
+        let grid = options().grid(plane);
+        let bytes = options().bytes(&grid, rayon::current_num_threads());
+        if bytes > memory {
+            let [nx, ny, nu, nv] = grid.cells;
+            let [needed, memory] = [bytes, memory].map(|bytes| bytes as f64 / 1e9);
+            let name = &plane.name;
+            return Err(Failure::cannot_run(format!(
+                "covariance: the grid of {name} has {nx} x {ny} x {nu} x {nv} cells and needs {needed:.1} GB; memory holds {memory:.1} GB here"
+            )));
+        }
+    }
+    Ok(())
+}

@@ -1,0 +1,18 @@
+//! What a camera of a scene of another program sees: pictures, with many samples or few, and the light field behind a pixel.
+
+#![allow(
+    clippy::missing_errors_doc,
+    reason = "a Failure carries the whole message for the user, written where it occurs"
+)]
+
+mod adaptive;
+mod finite;
+mod picture;
+mod picture_request;
+mod probe;
+mod world_source;
+
+pub use picture::{RenderedPicture, render};
+pub use picture_request::PictureRequest;
+pub use probe::{BandwidthMap, ProbeRequest, ProbedPixel, map_bandwidths, probe_pixel};
+pub use world_source::{CameraChoice, Viewpoint, WorldSource, contents, load};

@@ -1,0 +1,12 @@
+//! The light field behind a pixel, and how fast it changes over a picture.
+
+mod covariance;
+mod found;
+mod map;
+mod pixel;
+mod scene;
+mod words;
+
+pub use map::{BandwidthMap, map_bandwidths};
+pub use pixel::{ProbedPixel, probe_pixel};
+pub use scene::ProbeRequest;
