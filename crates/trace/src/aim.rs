@@ -1,42 +1,42 @@
 //! How light from far away is sent at what planes look at.
 
-use crate::ground::Ground;
-use crate::proposal::{Follower, Proposal};
+use crate::footprint_sampler::FootprintSampler;
+use crate::plane_on_leg::PlaneOnLeg;
+use crate::proposal::{ProfileDensity, Proposal};
 use crate::sky::Sky;
-use crate::station::Station;
 use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane, random};
 use etendue_scene::{Emission, Scene};
 
-/// A mixture, with equal shares, of ways in which rays of an environment are drawn: a density over (x, y, u, v) at the beginning of the first leg.
+/// A mixture, with equal shares, of strategies in which rays of an environment are drawn: a density over (x, y, u, v) at the beginning of the first leg.
 ///
 /// Emission, aimed or plain, is that of rays which some plane may look at: an environment's whole flux through all space has no end.
 #[derive(Debug)]
 pub(crate) struct FromSky {
     sky: Sky,
-    ways: Vec<Way>,
+    strategies: Vec<SkyStrategy>,
 }
 
 #[derive(Debug)]
-enum Way {
+enum SkyStrategy {
     /// Positions and slopes by the profiles of a plane's window.
     Window([Proposal; 2]),
     /// Positions in a plane's window, directions by the environment.
     Across {
         distance: f64,
-        position: [Follower; 2],
+        position: [ProfileDensity; 2],
     },
     /// Positions and angles by the profiles of a plane on the first surface.
     Facing(Box<Facing>),
     /// Points of the first surface, directions by the environment.
-    Onto(Ground),
+    Onto(FootprintSampler),
 }
 
 /// A plane that looks at light which arrives on a surface.
 #[derive(Debug)]
 struct Facing {
-    station: Station,
-    position: [Follower; 2],
-    angle: [Follower; 2],
+    plane_on_leg: PlaneOnLeg,
+    position: [ProfileDensity; 2],
+    angle: [ProfileDensity; 2],
 }
 
 impl Facing {
@@ -44,13 +44,13 @@ impl Facing {
         let w = &plane.window;
         let follow = |profile: &Profile| {
             if aimed {
-                Follower::new(profile)
+                ProfileDensity::new(profile)
             } else {
-                Follower::constant(profile.half_width())
+                ProfileDensity::constant(profile.half_width())
             }
         };
         Self {
-            station: Station::new(scene, index, plane),
+            plane_on_leg: PlaneOnLeg::new(scene, index, plane),
             position: [&w.x, &w.y].map(follow),
             angle: [&w.u, &w.v].map(follow),
         }
@@ -64,15 +64,15 @@ impl Facing {
             u: self.angle[0].quantile(r[2]),
             v: self.angle[1].quantile(r[3]),
         };
-        let (ray, _) = self.station.leg_ray(&seen)?;
+        let (ray, _) = self.plane_on_leg.leg_ray(&seen)?;
         Some(ray)
     }
 
     /// The density of [`Self::sample`] with respect to dx dy du dv at the beginning of the leg.
     fn density(&self, ray: &TwoPlane) -> f64 {
         let seen = || {
-            let (seen, per_ray) = self.station.look(ray, 1.0)?;
-            let (_, area) = self.station.leg_ray(&seen)?;
+            let (seen, per_ray) = self.plane_on_leg.at_plane(ray, 1.0)?;
+            let (_, area) = self.plane_on_leg.leg_ray(&seen)?;
             let place = self.position[0].density(seen.x) * self.position[1].density(seen.y);
             let angle = self.angle[0].density(seen.u) * self.angle[1].density(seen.v);
             Some(place * angle * per_ray / area)
@@ -82,31 +82,31 @@ impl Facing {
 }
 
 impl FromSky {
-    /// Aimed emission has a way for the window of each plane on the first leg, by its profiles and by the environment, and one for the part of the
+    /// Aimed emission has a strategy for the window of each plane on the first leg, by its profiles and by the environment, and one for the part of the
     /// first surface that each other plane looks at, and one more by the profiles of a plane on that surface. Plain emission is uniform over the windows of the former and over the first surface, always
     /// by the environment, and over the windows of planes on that surface.
     pub(crate) fn new(scene: &Scene, environment: &Environment) -> Self {
         let aimed = scene.run.emission == Emission::Aimed;
-        let mut ways = Vec::new();
+        let mut strategies = Vec::new();
         for (index, plane) in scene.planes.iter().enumerate() {
             if looks_across(plane) {
-                ways.extend(across(plane, aimed));
+                strategies.extend(across(plane, aimed));
                 continue;
             }
             if plane.leg == 0 {
                 let facing = Facing::new(scene, index, plane, aimed);
-                ways.push(Way::Facing(Box::new(facing)));
+                strategies.push(SkyStrategy::Facing(Box::new(facing)));
             }
             if aimed {
-                ways.extend(Ground::new(scene, Some(plane)).map(Way::Onto));
+                strategies.extend(FootprintSampler::new(scene, Some(plane)).map(SkyStrategy::Onto));
             }
         }
         if !aimed && scene.planes.iter().any(|plane| !looks_across(plane)) {
-            ways.extend(Ground::new(scene, None).map(Way::Onto));
+            strategies.extend(FootprintSampler::new(scene, None).map(SkyStrategy::Onto));
         }
         Self {
             sky: Sky::new(environment),
-            ways,
+            strategies,
         }
     }
 
@@ -115,21 +115,21 @@ impl FromSky {
         let [r, s] = words.map(|words| words.map(random::unit));
         // Whatever else there is, a direction takes four numbers.
         match self
-            .ways
-            .get(random::index(words[1][3], self.ways.len().max(1)))?
+            .strategies
+            .get(random::index(words[1][3], self.strategies.len().max(1)))?
         {
-            Way::Window([along_x, along_y]) => {
+            SkyStrategy::Window([along_x, along_y]) => {
                 let [[x], [u]] = along_x.samples([[r[0]], [r[1]]]);
                 let [[y], [v]] = along_y.samples([[r[2]], [r[3]]]);
                 Some(TwoPlane { x, y, u, v })
             }
-            Way::Across { distance, position } => {
+            SkyStrategy::Across { distance, position } => {
                 let [u, v] = self.sky.slopes(r)?;
                 let [x, y] = [0, 1].map(|axis| position[axis].quantile(s[axis]));
                 Some(TwoPlane { x, y, u, v }.travelled(-distance))
             }
-            Way::Facing(facing) => facing.sample(r),
-            Way::Onto(ground) => {
+            SkyStrategy::Facing(facing) => facing.sample(r),
+            SkyStrategy::Onto(ground) => {
                 let [u, v] = self.sky.slopes(r)?;
                 let point = ground.sample([s[0], s[1], s[2]]);
                 let [x, y] = [point.x - point.z * u, point.y - point.z * v];
@@ -141,22 +141,22 @@ impl FromSky {
     /// The density of [`Self::sample`] with respect to dx dy du dv.
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let by_sky = self.sky.slope_density(ray);
-        let densities = self.ways.iter().map(|way| match way {
-            Way::Window([along_x, along_y]) => {
+        let densities = self.strategies.iter().map(|strategy| match strategy {
+            SkyStrategy::Window([along_x, along_y]) => {
                 let [x] = along_x.densities([&[ray.x], &[ray.u]]);
                 let [y] = along_y.densities([&[ray.y], &[ray.v]]);
                 x * y
             }
-            Way::Across { distance, position } => {
+            SkyStrategy::Across { distance, position } => {
                 let TwoPlane { x, y, .. } = ray.travelled(*distance);
                 by_sky * position[0].density(x) * position[1].density(y)
             }
-            Way::Facing(facing) => facing.density(ray),
+            SkyStrategy::Facing(facing) => facing.density(ray),
             // Where no light comes from none was aimed.
-            Way::Onto(_) if by_sky <= 0.0 => 0.0,
-            Way::Onto(ground) => by_sky * ground.density(ray),
+            SkyStrategy::Onto(_) if by_sky <= 0.0 => 0.0,
+            SkyStrategy::Onto(ground) => by_sky * ground.density(ray),
         });
-        densities.sum::<f64>() / self.ways.len() as f64
+        densities.sum::<f64>() / self.strategies.len() as f64
     }
 }
 
@@ -165,25 +165,28 @@ pub(crate) fn looks_across(plane: &VirtualPlane) -> bool {
     plane.leg == 0 && plane.orientation == Orientation::Orthogonal
 }
 
-/// The ways through the window of a plane across the first leg.
-fn across(plane: &VirtualPlane, aimed: bool) -> Vec<Way> {
+/// The strategies through the window of a plane across the first leg.
+fn across(plane: &VirtualPlane, aimed: bool) -> Vec<SkyStrategy> {
     let (w, distance) = (&plane.window, plane.distance);
     let space = [&w.x, &w.y];
     if !aimed {
-        let position = space.map(|profile| Follower::constant(profile.half_width()));
-        return vec![Way::Across { distance, position }];
+        let position = space.map(|profile| ProfileDensity::constant(profile.half_width()));
+        return vec![SkyStrategy::Across { distance, position }];
     }
     let endless = [f64::NEG_INFINITY, f64::INFINITY];
     let slope = [&w.u, &w.v];
     let along = |axis: usize| {
-        let (space, slope) = (Follower::new(space[axis]), Follower::new(slope[axis]));
+        let (space, slope) = (
+            ProfileDensity::new(space[axis]),
+            ProfileDensity::new(slope[axis]),
+        );
         Proposal::new(distance, endless, space, slope)
     };
     let window = along(0).zip(along(1));
-    let position = space.map(Follower::new);
+    let position = space.map(ProfileDensity::new);
     window
-        .map(|(x, y)| Way::Window([x, y]))
+        .map(|(x, y)| SkyStrategy::Window([x, y]))
         .into_iter()
-        .chain([Way::Across { distance, position }])
+        .chain([SkyStrategy::Across { distance, position }])
         .collect()
 }

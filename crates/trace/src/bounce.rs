@@ -1,6 +1,8 @@
-use crate::emit::LAMBERTIAN;
+//! How light leaves the surface at the beginning of a leg.
+
+use crate::arrival::Arrival;
+use crate::sampling::LAMBERTIAN;
 use crate::scatter::{Scatterer, Spread};
-use crate::tracer::Arrival;
 use etendue_field::{Frame, Mixture, Patch, Reflectance, Specular};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;

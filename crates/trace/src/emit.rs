@@ -1,29 +1,30 @@
+//! Photons leave the light, eight at a time.
+
 mod plain;
 
 use crate::aim::{FromSky, looks_across};
-use crate::proposal::{Follower, Proposal, lanes};
+use crate::plane_on_leg::PlaneOnLeg;
+use crate::proposal::{ProfileDensity, Proposal, lanes};
+use crate::radiance::radiance;
 use crate::reach::{looks_at_surface, outline, reach};
-use crate::sky;
-use crate::station::Station;
-use etendue_field::{Light, Profile, Shape, TwoPlane, VirtualPlane, Window, power, random};
+use etendue_field::{Light, Profile, TwoPlane, VirtualPlane, Window, random};
 use etendue_scene::{Emission, Scene};
 use fearless_simd::{Level, dispatch};
 use glam::DVec3;
 use plain::Plain;
-use std::f64::consts::{PI, TAU};
 
-/// How rays leave the light: a density over (x, y, u, v) at the light, and a way to sample it. That of a point
+/// How rays leave the light: a density over (x, y, u, v) at the light, and a strategy to sample it. That of a point
 /// is over (u, v) alone, that of a beam over (x, y).
 #[derive(Debug)]
 pub struct Emitter {
     light: Light,
-    way: Way,
+    strategy: EmissionStrategy,
     level: Level,
 }
 
 /// What rays are drawn by.
 #[derive(Debug)]
-enum Way {
+enum EmissionStrategy {
     /// One proposal for each plane, as factors over (x, u) and (y, v).
     Aimed(Vec<[Proposal; 2]>),
     /// Light from far away.
@@ -65,11 +66,11 @@ impl Emitter {
                 .then(|| reach(scene, plane, 0, &corners))
                 .flatten();
             // A plane on what ends the leg looks at some slopes, a plane beyond at any.
-            let slopes = Station::new(scene, i, plane).slopes(w);
+            let slopes = PlaneOnLeg::new(scene, i, plane).slopes(w);
             let slopes = slopes.filter(|_| plane.leg == 0);
             let along = |axis: usize, space: &Profile, slope: &Profile| {
                 if is_window {
-                    let (space, slope) = (Follower::new(space), Follower::new(slope));
+                    let (space, slope) = (ProfileDensity::new(space), ProfileDensity::new(slope));
                     return Proposal::new(plane.distance, extent[axis], space, slope);
                 }
                 let (length, half) = (scene.path.first_hit(), half?[axis]);
@@ -77,8 +78,8 @@ impl Emitter {
                 let [low, high] = extent[axis].map(f64::abs);
                 let steepest = (half + low.max(high)) / length;
                 let seen = slopes.map_or(f64::INFINITY, |slopes| slopes[axis]);
-                let slope = Follower::cosine(steepest.min(seen));
-                let space = Follower::new(&Profile::Box(half));
+                let slope = ProfileDensity::cosine(steepest.min(seen));
+                let space = ProfileDensity::new(&Profile::Box(half));
                 Proposal::new(length, extent[axis], space, slope)
             };
             Some([along(0, &w.x, &w.u)?, along(1, &w.y, &w.v)?])
@@ -90,26 +91,28 @@ impl Emitter {
                 Emission::Plain => Vec::new(),
             };
             if proposals.is_empty() {
-                Way::Plain(plain)
+                EmissionStrategy::Plain(plain)
             } else {
-                Way::Aimed(proposals)
+                EmissionStrategy::Aimed(proposals)
             }
         };
-        let way = match light {
+        let strategy = match light {
             Light::Area {
                 shape, exponent, ..
             } => aimed_or(Plain::Area(shape, exponent)),
             Light::Point { .. } => aimed_or(Plain::Point),
             // Pictures have their own proposal.
-            Light::Projector { image, .. } => Way::Plain(Plain::Slopes(image)),
-            Light::Beam { image, .. } => Way::Plain(Plain::Positions(image)),
+            Light::Projector { image, .. } => EmissionStrategy::Plain(Plain::Slopes(image)),
+            Light::Beam { image, .. } => EmissionStrategy::Plain(Plain::Positions(image)),
             // Rays have their own proposal too: none of them has another ray beside it to be aimed at.
-            Light::Rays { ref rays } => Way::Plain(Plain::Rays(rays.clone())),
-            Light::Environment { ref environment } => Way::Sky(FromSky::new(scene, environment)),
+            Light::Rays { ref rays } => EmissionStrategy::Plain(Plain::Rays(rays.clone())),
+            Light::Environment { ref environment } => {
+                EmissionStrategy::Sky(FromSky::new(scene, environment))
+            }
         };
         Self {
             light,
-            way,
+            strategy,
             level: Level::new(),
         }
     }
@@ -124,7 +127,7 @@ impl Emitter {
         match even(scene) {
             even if even.is_empty() => plain,
             even => Self {
-                way: Way::Even(even),
+                strategy: EmissionStrategy::Even(even),
                 ..plain
             },
         }
@@ -133,7 +136,11 @@ impl Emitter {
     /// The block of words from which on a photon's bounces take theirs. Of block 1 the emission takes
     /// the last word, which says at which plane a ray is aimed; light from far away takes them all.
     pub(crate) fn bounces_from(&self) -> u32 {
-        if let Way::Sky(_) = self.way { 2 } else { 1 }
+        if let EmissionStrategy::Sky(_) = self.strategy {
+            2
+        } else {
+            1
+        }
     }
 
     /// Rays of photons side by side and their weights: what each stands for in radiance space, zero
@@ -152,17 +159,17 @@ impl Emitter {
                 }
             }
         };
-        match &self.way {
-            Way::Sky(sky) => one_by_one(&|words| {
+        match &self.strategy {
+            EmissionStrategy::Sky(sky) => one_by_one(&|words| {
                 let ray = sky.sample(words)?;
                 Some((ray, sky.density(&ray)))
             }),
-            Way::Even(all) => one_by_one(&|words| Some(self.even(all, words))),
-            Way::Plain(plain) => one_by_one(&|[words, _]| {
+            EmissionStrategy::Even(all) => one_by_one(&|words| Some(self.even(all, words))),
+            EmissionStrategy::Plain(plain) => one_by_one(&|[words, _]| {
                 let ray = plain.sample(words.map(random::unit));
                 Some((ray, plain.density(&ray)))
             }),
-            Way::Aimed(proposals) => {
+            EmissionStrategy::Aimed(proposals) => {
                 let [x, y, u, v] = self.aimed(proposals, words);
                 let densities = dispatch!(self.level, _simd => densities(proposals, &[x, y, u, v]));
                 for (i, ray) in rays.iter_mut().enumerate() {
@@ -252,42 +259,6 @@ fn densities(proposals: &[[Proposal; 2]], [x, y, u, v]: &Columns) -> [f64; ABREA
     lanes(|i| sums[i] / proposals.len() as f64)
 }
 
-/// Radiance on a ray given at the light; for a point, with respect to du dv alone, for a beam to dx dy, for rays of a file over the share of flux: dω is
-/// du dv / (1 + u² + v²)^(3/2), and a ray of flux Φ adds Φ (1 + u² + v²)² to radiance space.
-#[inline]
-pub(crate) fn radiance(light: &Light, ray: &TwoPlane) -> f64 {
-    match light {
-        Light::Area {
-            shape,
-            radiance,
-            exponent,
-        } => {
-            if !shape.contains(ray.x, ray.y) {
-                0.0
-            } else if *exponent == 0.0 {
-                *radiance
-            } else {
-                radiance * power(ray.secant_squared(), -0.5 * exponent)
-            }
-        }
-        Light::Point { intensity } => intensity * ray.secant_squared().sqrt(),
-        Light::Projector { intensity, image } => {
-            intensity * image.value(ray.u, ray.v) * ray.secant_squared().sqrt()
-        }
-        Light::Beam { irradiance, image } => irradiance * image.value(ray.x, ray.y),
-        Light::Environment { environment } => sky::radiance(environment, ray),
-        // By the share of the flux that a ray is drawn with.
-        Light::Rays { rays } => rays.flux() * ray.secant_squared() * ray.secant_squared(),
-    }
-}
-
-/// A direction about Z with a density in proportion to its cosine, from two numbers in (0, 1).
-pub(crate) fn by_cosine([a, b]: [f64; 2]) -> DVec3 {
-    let (sin, cos) = libm::sincos(TAU * b);
-    let [across, up] = [a.sqrt(), (1.0 - a).sqrt()];
-    DVec3::new(across * cos, across * sin, up)
-}
-
 /// Lowest and highest coordinate along two axes.
 type Bounds = [[f64; 2]; 2];
 
@@ -342,21 +313,3 @@ fn evenly_over([[left, right], [low, high]]: &Bounds, [a, b]: [f64; 2]) -> f64 {
         0.0
     }
 }
-
-/// A uniform point of a shape, from two numbers in (0, 1).
-pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {
-    match shape {
-        Shape::Rectangle(rectangle) => [0, 1].map(|axis| {
-            let [low, high] = rectangle.extent(axis);
-            low + r[axis] * (high - low)
-        }),
-        Shape::Disc(disc) => {
-            let (sin, cos) = libm::sincos(TAU * r[1]);
-            let radius = disc.radius * r[0].sqrt();
-            [disc.center[0] + radius * cos, disc.center[1] + radius * sin]
-        }
-    }
-}
-
-/// π: the flux a Lambertian surface sends out per radiance and area.
-pub(crate) const LAMBERTIAN: f64 = PI;

@@ -9,25 +9,30 @@
 //! life does not depend on who traces it.
 
 mod aim;
+mod area_sampler;
+mod arrival;
 mod backward;
+mod batch_ranges;
 mod bounce;
 pub mod brdf;
+mod courses;
 mod emit;
-mod form;
+mod footprint_sampler;
 mod grid;
-mod ground;
 mod heading;
+mod line;
 mod mesh;
 mod numbers;
 mod obstacles;
-mod pieces;
+mod plane_on_leg;
+mod primitive;
+mod primitive_set;
 mod proposal;
+mod radiance;
 mod reach;
+mod sampling;
 mod scatter;
-mod shares;
 mod sky;
-mod station;
-mod targets;
 mod tracer;
 mod world;
 

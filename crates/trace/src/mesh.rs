@@ -4,7 +4,7 @@
 //! to it. Whether it hits is decided in the frame of the leg, where a direction is (u, v, 1) and
 //! triangles that share an edge share the arithmetic.
 
-use crate::obstacles::{direction, start};
+use crate::line::{direction, start};
 use etendue_field::triangle_distance;
 use etendue_field::{Frame, TwoPlane, box_corners, enclosing, interpolated_normal};
 use etendue_scene::Triangles;
@@ -37,7 +37,12 @@ impl Mesh {
 
     /// The first triangle that a ray meets beyond `from`, and at what distance; of several there,
     /// that with the lowest number. What is beyond `until` does not matter.
-    pub(crate) fn first(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
+    pub(crate) fn closest_hit(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        until: f64,
+    ) -> Option<(f64, usize)> {
         let mut first: Option<(f64, usize)> = None;
         self.along(ray, 1.0, [from, until], |at, i| {
             if at > from && first.is_none_or(|first| (at, i) < first) {
@@ -63,7 +68,7 @@ impl Mesh {
 
     /// Whether a triangle is met at a distance between `from` and `distance` that will `do`; looked
     /// for backwards.
-    pub(crate) fn blocks(
+    pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
         [from, distance]: [f64; 2],
@@ -222,10 +227,10 @@ mod tests {
                     let half = 0.5 * (leg.to_local(r(0)).z + leg.to_local(r(1)).z);
                     let beyond = all.iter().copied().filter(|(at, _)| *at > half);
                     let expected = beyond.min_by(by);
-                    let first = mesh.first(&ray, half, f64::INFINITY);
+                    let first = mesh.closest_hit(&ray, half, f64::INFINITY);
                     assert_eq!(first, expected, "{ray:?}");
                     let end = half + 0.2;
-                    let blocks = mesh.blocks(&ray, [half, end], |at| at > half && at < end);
+                    let blocks = mesh.is_occluded(&ray, [half, end], |at| at > half && at < end);
                     assert_eq!(blocks, expected.is_some_and(|(at, _)| at < end), "{ray:?}");
                     hits += u64::from(expected.is_some());
                     misses += u64::from(all.is_empty());
@@ -250,7 +255,7 @@ mod tests {
                     let [p, _, end] = triangles[(2 * (i * N + j)) as usize];
                     for t in [0.0, 0.3, 0.5, 1.0] {
                         let ray = ray(&leg, DVec3::new(x, y, 0.0), p.lerp(end, t));
-                        let first = mesh.first(&ray, f64::NEG_INFINITY, f64::INFINITY);
+                        let first = mesh.closest_hit(&ray, f64::NEG_INFINITY, f64::INFINITY);
                         assert!(first.is_some(), "{ray:?}");
                     }
                 }

@@ -6,7 +6,7 @@ use etendue_scene::{Run, Sampling};
 
 /// Which numbers, and for what they are.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Source {
+pub(crate) struct PhotonNumbers {
     sampling: Sampling,
     seed: u64,
     /// Of random numbers, and of nets.
@@ -29,7 +29,7 @@ pub(crate) enum Numbers {
 /// Points of a net: as many as there are numbers of 32 bits.
 const POINTS: u64 = 1 << 32;
 
-impl Source {
+impl PhotonNumbers {
     pub(crate) fn new(run: &Run, streams: [Stream; 2], legs: usize) -> Self {
         Self {
             sampling: run.sampling,

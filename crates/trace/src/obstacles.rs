@@ -1,14 +1,17 @@
-use crate::form::Form;
+//! Everything that stands in the way of light on a leg.
+
 use crate::grid::Grid;
+use crate::line::{direction, start};
 use crate::mesh::Mesh;
-use crate::targets::{Met, Target, Targets};
+use crate::primitive::Primitive;
+use crate::primitive_set::{PrimitiveHit, PrimitiveSet, TaggedPrimitive};
 use etendue_field::{Frame, HalfPlane, Mask, Rectangle, Shape, Side, Specular, TwoPlane};
 use etendue_scene::{Event, Leg, MeshObject, Object, Scene, Surface};
 use glam::DVec3;
 
 /// What a photon meets.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Meeting {
+pub(crate) enum HitKind {
     Blocker,
     Surface { object: Object, material: Material },
 }
@@ -24,7 +27,7 @@ pub(crate) enum Material {
     Reflects,
 }
 
-impl Meeting {
+impl HitKind {
     /// What it is, if it reflects.
     pub(crate) fn object(&self) -> Option<Object> {
         match self {
@@ -44,7 +47,7 @@ impl Meeting {
 /// Rays are given by where they cross the plane at the beginning of the leg, distances are along it.
 #[derive(Debug)]
 pub(crate) struct Obstacles {
-    targets: Targets<Meeting>,
+    primitives: PrimitiveSet<HitKind>,
     /// What has no end.
     half_planes: Vec<Layer<HalfPlane>>,
     semi_transparent: Vec<Layer<Mask>>,
@@ -80,7 +83,7 @@ impl<T> Layer<T> {
 impl Obstacles {
     /// What stands around a leg of the path.
     pub(crate) fn new(scene: &Scene, leg: &Leg) -> Self {
-        let mut targets = Vec::new();
+        let mut primitives = Vec::new();
         let (mut half_planes, mut semi_transparent) = (Vec::new(), Vec::new());
         let around = Around(leg.frame);
         let later = leg.leaves.map(|_| leg.frame);
@@ -91,10 +94,12 @@ impl Obstacles {
                     shapes,
                     half_planes: halves,
                 } => {
-                    targets.extend(around.layer(distance, shapes).into_iter().map(|form| {
-                        let tag = Meeting::Blocker;
-                        Target { form, tag }
-                    }));
+                    primitives.extend(around.layer(distance, shapes).into_iter().map(
+                        |primitive| {
+                            let tag = HitKind::Blocker;
+                            TaggedPrimitive { primitive, tag }
+                        },
+                    ));
                     half_planes.extend(halves.iter().map(|half| Layer {
                         distance,
                         leg: later,
@@ -112,9 +117,9 @@ impl Obstacles {
             let object = Object::Surface(i);
             let albedo = surface.albedo;
             let material = Material::Lambertian { albedo };
-            targets.push(Target {
-                form: around.surface(surface),
-                tag: Meeting::Surface { object, material },
+            primitives.push(TaggedPrimitive {
+                primitive: around.surface(surface),
+                tag: HitKind::Surface { object, material },
             });
         }
         for (i, object) in scene.patches.iter().enumerate() {
@@ -122,9 +127,9 @@ impl Obstacles {
                 Event::Specular(event) => Material::Specular(event),
                 Event::Reflects(_) => Material::Reflects,
             };
-            targets.push(Target {
-                form: Form::Smooth(Box::new(object.patch.seen_from(&leg.frame))),
-                tag: Meeting::Surface {
+            primitives.push(TaggedPrimitive {
+                primitive: Primitive::Smooth(Box::new(object.patch.seen_from(&leg.frame))),
+                tag: HitKind::Surface {
                     object: Object::Patch(i),
                     material,
                 },
@@ -136,10 +141,10 @@ impl Obstacles {
                 (Some(smooth), _) => Some(Material::Specular(smooth.event)),
                 (None, albedo) => albedo.map(|albedo| Material::Lambertian { albedo }),
             };
-            let surface = |material| Meeting::Surface { object, material };
-            let tag = material.map_or(Meeting::Blocker, surface);
-            targets.push(Target {
-                form: around.mesh(mesh),
+            let surface = |material| HitKind::Surface { object, material };
+            let tag = material.map_or(HitKind::Blocker, surface);
+            primitives.push(TaggedPrimitive {
+                primitive: around.mesh(mesh),
                 tag,
             });
         }
@@ -148,7 +153,7 @@ impl Obstacles {
         // What starts far to the side is looked for from nearer.
         let origins = ends.filter(|end| end.is_finite()).fold(0.0, f64::max);
         Self {
-            targets: Targets::new(&targets, origins),
+            primitives: PrimitiveSet::new(&primitives, origins),
             half_planes,
             semi_transparent,
         }
@@ -156,8 +161,12 @@ impl Obstacles {
 
     /// What a ray meets first beyond `from`, and at what distance.
     #[inline]
-    pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, Met<'_, Meeting>)> {
-        let first = self.targets.first(ray, from);
+    pub(crate) fn closest_hit(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+    ) -> Option<(f64, PrimitiveHit<'_, HitKind>)> {
+        let first = self.primitives.closest_hit(ray, from);
         let mut nearest = first.map_or(f64::INFINITY, |(distance, _)| distance);
         let mut blocked = false;
         for half_plane in &self.half_planes {
@@ -194,8 +203,9 @@ impl Obstacles {
 
     /// Whether a ray meets an object anywhere beyond `from`, whatever it meets first.
     pub(crate) fn meets(&self, object: Option<Object>, ray: &TwoPlane, from: f64) -> bool {
-        let other = |what: &Meeting| !what.is(object);
-        self.targets.blocks(ray, from, f64::INFINITY, false, other)
+        let other = |what: &HitKind| !what.is(object);
+        self.primitives
+            .is_occluded(ray, from, f64::INFINITY, false, other)
     }
 
     /// Whether a point at a distance on a ray has another point of its own object before it, beyond `from`.
@@ -206,10 +216,11 @@ impl Obstacles {
         from: f64,
         distance: f64,
     ) -> bool {
-        let other = |what: &Meeting| !what.is(own);
+        let other = |what: &HitKind| !what.is(own);
         // The point itself is as far, but for rounding.
         let distance = distance - ROUNDING * distance.abs();
-        self.targets.blocks(ray, from, distance, false, other)
+        self.primitives
+            .is_occluded(ray, from, distance, false, other)
     }
 
     /// The share of light on a ray that reaches a plane from `from`, looked for from the plane back; what `ignored` says
@@ -220,7 +231,7 @@ impl Obstacles {
         from: f64,
         distance: f64,
         side: Side,
-        ignored: impl Fn(&Meeting) -> bool,
+        ignored: impl Fn(&HitKind) -> bool,
     ) -> f64 {
         let halves = || {
             self.half_planes.iter().any(|half_plane| {
@@ -229,7 +240,11 @@ impl Obstacles {
             })
         };
         let inclusive = side == Side::After;
-        if self.targets.blocks(ray, from, distance, inclusive, ignored) || halves() {
+        if self
+            .primitives
+            .is_occluded(ray, from, distance, inclusive, ignored)
+            || halves()
+        {
             return 0.0;
         }
         self.transmittance(ray, from, distance, side)
@@ -240,15 +255,15 @@ impl Obstacles {
 const ROUNDING: f64 = 1e-9;
 
 /// What a ray meets in a half-plane.
-static HALF_PLANE: Target<Meeting> = Target {
-    form: Form::Flat {
+static HALF_PLANE: TaggedPrimitive<HitKind> = TaggedPrimitive {
+    primitive: Primitive::Flat {
         distance: 0.0,
         shape: Shape::Rectangle(Rectangle {
             center: [0.0; 2],
             size: [0.0; 2],
         }),
     },
-    tag: Meeting::Blocker,
+    tag: HitKind::Blocker,
 };
 
 /// Whether light passes what stands at `obstacle` on its way to a plane at `distance`.
@@ -259,41 +274,20 @@ fn is_passed(obstacle: f64, distance: f64, side: Side) -> bool {
     }
 }
 
-/// Where a ray begins, in the frame it is given in.
-pub(crate) fn start(ray: &TwoPlane) -> DVec3 {
-    DVec3::new(ray.x, ray.y, 0.0)
-}
-
-/// Where it goes: a step of 1 along D.
-pub(crate) fn direction(ray: &TwoPlane) -> DVec3 {
-    DVec3::new(ray.u, ray.v, 1.0)
-}
-
-/// The ray through a point along a direction, both in the frame it is wanted in; `None` when it does not go forward along D.
-pub(crate) fn ray_through(point: DVec3, direction: DVec3) -> Option<TwoPlane> {
-    let [u, v] = [direction.x / direction.z, direction.y / direction.z];
-    (direction.z > 0.0).then_some(TwoPlane {
-        x: point.x - point.z * u,
-        y: point.y - point.z * v,
-        u,
-        v,
-    })
-}
-
 /// A leg's view of what is given in the frame at the light.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Around(pub(crate) Frame);
 
 impl Around {
     /// The shapes in a plane of blockers.
-    fn layer(&self, distance: f64, shapes: &[Shape]) -> Vec<Form> {
+    fn layer(&self, distance: f64, shapes: &[Shape]) -> Vec<Primitive> {
         let plane = self.0.decompose(&Frame::IDENTITY.travelled(distance));
-        let forms: Vec<Form> = shapes
+        let forms: Vec<Primitive> = shapes
             .iter()
             .map(|shape| Self::flat(&plane, shape))
             .collect();
-        let flat = forms.iter().map_while(|form| match form {
-            Form::Flat { distance, shape } => Some((*distance, *shape)),
+        let flat = forms.iter().map_while(|primitive| match primitive {
+            Primitive::Flat { distance, shape } => Some((*distance, *shape)),
             _ => None,
         });
         let (distances, flat): (Vec<f64>, Vec<Shape>) = flat.unzip();
@@ -301,12 +295,12 @@ impl Around {
             .first()
             .and_then(|distance| Grid::new(*distance, &flat))
         {
-            Some(grid) if flat.len() == forms.len() => vec![Form::Grid(Box::new(grid))],
+            Some(grid) if flat.len() == forms.len() => vec![Primitive::Grid(Box::new(grid))],
             _ => forms,
         }
     }
 
-    pub(crate) fn surface(&self, surface: &Surface) -> Form {
+    pub(crate) fn surface(&self, surface: &Surface) -> Primitive {
         let shape = Shape::Rectangle(Rectangle {
             center: [0.0; 2],
             size: surface.size,
@@ -314,9 +308,9 @@ impl Around {
         Self::flat(&self.0.decompose(&surface.frame), &shape)
     }
 
-    pub(crate) fn mesh(&self, mesh: &MeshObject) -> Form {
+    pub(crate) fn mesh(&self, mesh: &MeshObject) -> Primitive {
         let normals = mesh.smooth.as_ref().map(|smooth| &smooth.normals);
-        Form::Mesh(Box::new(Mesh::new(&mesh.triangles, normals, self.0)))
+        Primitive::Mesh(Box::new(Mesh::new(&mesh.triangles, normals, self.0)))
     }
 
     /// A shape in the plane of a frame; across the leg, with axes along its own, distances are exact.
@@ -324,10 +318,10 @@ impl Around {
         clippy::float_cmp,
         reason = "rounding would only take the exact way from it"
     )]
-    fn flat(frame: &Frame, shape: &Shape) -> Form {
+    fn flat(frame: &Frame, shape: &Shape) -> Primitive {
         let across = frame.d.z.abs() == 1.0 && frame.x.x.abs() == 1.0;
         if !across {
-            return Form::Oblique {
+            return Primitive::Oblique {
                 frame: Box::new(*frame),
                 shape: *shape,
             };
@@ -346,7 +340,7 @@ impl Around {
                 ..disc
             }),
         };
-        Form::Flat {
+        Primitive::Flat {
             distance: frame.origin.z,
             shape,
         }

@@ -1,3 +1,5 @@
+//! Densities that rays are drawn from, so that they pass a window.
+
 use etendue_field::Profile;
 
 /// A density on |t| < half that follows a window's profile and can be sampled on any interval.
@@ -6,7 +8,7 @@ use etendue_field::Profile;
 /// so the weights are bounded. Other profiles do not vanish at their edge: they get a constant.
 /// The light that a surface receives is followed by its cosine.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Follower {
+pub(crate) struct ProfileDensity {
     half: f64,
     kind: Kind,
 }
@@ -19,7 +21,7 @@ enum Kind {
     Cosine,
 }
 
-impl Follower {
+impl ProfileDensity {
     pub(crate) fn new(profile: &Profile) -> Self {
         Self {
             half: profile.half_width(),
@@ -128,11 +130,11 @@ pub(crate) fn lanes<const N: usize>(f: impl Fn(usize) -> f64) -> [f64; N] {
 pub(crate) struct Aim {
     distance: f64,
     half: f64,
-    slope: Follower,
+    slope: ProfileDensity,
 }
 
 impl Aim {
-    pub(crate) fn new(distance: f64, space: &Profile, slope: Follower) -> Self {
+    pub(crate) fn new(distance: f64, space: &Profile, slope: ProfileDensity) -> Self {
         Self {
             distance,
             half: space.half_width(),
@@ -185,8 +187,8 @@ pub(crate) struct Proposal {
     distance: f64,
     /// Extent of the light.
     light: [f64; 2],
-    space: Follower,
-    slope: Follower,
+    space: ProfileDensity,
+    slope: ProfileDensity,
     /// Cumulative of the slope at the ends of its range.
     range: [f64; 2],
 }
@@ -198,8 +200,8 @@ impl Proposal {
     pub(crate) fn new(
         distance: f64,
         extent: [f64; 2],
-        space: Follower,
-        slope: Follower,
+        space: ProfileDensity,
+        slope: ProfileDensity,
     ) -> Option<Self> {
         // A ray from x in the light is in the window when |x + distance·u| < half-width.
         let reachable = [
@@ -232,7 +234,7 @@ impl Proposal {
     fn images<const N: usize>(&self, u: &[f64; N]) -> [[f64; N]; 2] {
         let at = |x: f64| {
             let positions: [f64; N] = lanes(|i| x + self.distance * u[i]);
-            self.space.each(positions, Follower::cumulative)
+            self.space.each(positions, ProfileDensity::cumulative)
         };
         [at(self.light[0]), at(self.light[1])]
     }
@@ -243,13 +245,13 @@ impl Proposal {
         let between = |low: f64, high: f64, r: f64| low + r * (high - low);
         let [low, high] = self.range;
         let shares: [f64; N] = lanes(|i| between(low, high, a[i]));
-        let u = self.slope.each(shares, Follower::quantile);
+        let u = self.slope.each(shares, ProfileDensity::quantile);
         if self.is_point() {
             return [[self.light[0]; N], u];
         }
         let [low, high] = self.images(&u);
         let shares: [f64; N] = lanes(|i| between(low[i], high[i], b[i]));
-        let x = self.space.each(shares, Follower::quantile);
+        let x = self.space.each(shares, ProfileDensity::quantile);
         [lanes(|i| x[i] - self.distance * u[i]), u]
     }
 
@@ -258,7 +260,7 @@ impl Proposal {
     pub(crate) fn densities<const N: usize>(&self, [x, u]: [&[f64; N]; 2]) -> [f64; N] {
         let [left, right] = self.light;
         let share = self.range[1] - self.range[0];
-        let slope = self.slope.each(*u, Follower::density);
+        let slope = self.slope.each(*u, ProfileDensity::density);
         let seen: [f64; N] = lanes(|i| x[i] + self.distance * u[i]);
         if self.is_point() {
             return lanes(|i| {
@@ -267,7 +269,7 @@ impl Proposal {
             });
         }
         let [low, high] = self.images(u);
-        let space = self.space.each(seen, Follower::density);
+        let space = self.space.each(seen, ProfileDensity::density);
         lanes(|i| {
             let density = slope[i] / share * space[i] / (high[i] - low[i]);
             let is_lit = x[i] >= left && x[i] <= right && high[i] > low[i];
@@ -293,7 +295,7 @@ mod tests {
         const SAMPLES: u32 = 400_000;
         const SUB: usize = 64;
         let hann = Profile::Hann;
-        let tent = |half| Follower::new(&Profile::Hann(half));
+        let tent = |half| ProfileDensity::new(&Profile::Hann(half));
         for (distance, light, space, slope) in [
             (0.0, [-0.1, 0.1], hann(0.5), tent(0.5)),
             (0.0, [-0.7, 0.2], hann(0.5), tent(0.3)),
@@ -302,12 +304,18 @@ mod tests {
                 2.0,
                 [-0.5, 0.5],
                 hann(0.25),
-                Follower::new(&Profile::Box(0.5)),
+                ProfileDensity::new(&Profile::Box(0.5)),
             ),
             (2.0, [0.3, 0.4], Profile::Box(0.25), tent(0.5)),
-            (0.5, [-1.0, 1.0], Profile::Box(0.5), Follower::cosine(3.0)),
+            (
+                0.5,
+                [-1.0, 1.0],
+                Profile::Box(0.5),
+                ProfileDensity::cosine(3.0),
+            ),
         ] {
-            let proposal = Proposal::new(distance, light, Follower::new(&space), slope).unwrap();
+            let proposal =
+                Proposal::new(distance, light, ProfileDensity::new(&space), slope).unwrap();
 
             // Cells over the light and over the slopes; cells cut by the window's edge are integrated finely.
             let half = slope.half;
@@ -353,7 +361,7 @@ mod tests {
 
     #[test]
     fn out_of_reach_is_none() {
-        let hann = Follower::new(&Profile::Hann(0.1));
+        let hann = ProfileDensity::new(&Profile::Hann(0.1));
         assert!(Proposal::new(0.0, [0.2, 0.3], hann, hann).is_none());
         assert!(Proposal::new(1.0, [0.3, 0.4], hann, hann).is_none());
         assert!(Proposal::new(1.0, [0.15, 0.4], hann, hann).is_some());

@@ -1,7 +1,7 @@
 //! Where light that a plane looks at can come from: what emission and scattering are aimed at.
 
-use crate::obstacles::{direction, start};
-use crate::station::Station;
+use crate::line::{direction, start};
+use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{
     Frame, Orientation, Patch, Profile, Side, TwoPlane, VirtualPlane, box_corners, enclosing,
 };
@@ -166,7 +166,7 @@ fn seen_of_patch(
         return None;
     }
     let leg = &scene.path.legs[plane.leg];
-    let station = Station::new(scene, 0, plane);
+    let plane_on_leg = PlaneOnLeg::new(scene, 0, plane);
     let at = Frame {
         origin: hit.point,
         ..match plane.orientation {
@@ -186,7 +186,7 @@ fn seen_of_patch(
             }
             for u in ends(&w.u) {
                 for v in ends(&w.v) {
-                    let ray = station.leg_ray(&TwoPlane { x, y, u, v })?.0;
+                    let ray = plane_on_leg.leg_ray(&TwoPlane { x, y, u, v })?.0;
                     let from = leg.frame.to_world(start(&ray));
                     let along = leg.frame.vector_to_world(direction(&ray));
                     rays.push([at.to_local(from), at.vector_to_local(along)]);

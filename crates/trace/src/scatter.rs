@@ -1,24 +1,26 @@
+//! Directions in which a surface scatters light, aimed at windows.
+
 use crate::brdf;
-use crate::emit::LAMBERTIAN;
-use crate::proposal::{Aim, Follower};
+use crate::plane_on_leg::{PlaneOnLeg, SurfaceCoordinates};
+use crate::proposal::{Aim, ProfileDensity};
 use crate::reach::{looks_at_surface, outline, reach, reflects};
-use crate::station::{Station, View};
+use crate::sampling::LAMBERTIAN;
 use etendue_field::{Frame, Mixture, Profile, random};
 use etendue_scene::{Emission, Scene};
 use glam::DVec3;
 use std::f64::consts::TAU;
 
 /// How light leaves the surface at the beginning of a leg: a density over slopes at each of its
-/// points, and a way to sample it. Directions are in the frame of the leg, 1 along D or against it: (u, v, ±1).
+/// points, and a strategy to sample it. Directions are in the frame of the leg, 1 along D or against it: (u, v, ±1).
 #[derive(Clone, Debug)]
 pub(crate) struct Scatterer {
     /// Ways to draw a ray, with equal shares.
-    ways: Vec<Way>,
+    strategies: Vec<SamplingStrategy>,
 }
 
-/// One way to draw a ray.
+/// One strategy to draw a ray.
 #[derive(Clone, Debug)]
-enum Way {
+enum SamplingStrategy {
     /// Towards a window, along X and along Y.
     Window([Aim; 2]),
     /// In the directions that a plane on the surface looks at.
@@ -30,8 +32,8 @@ enum Way {
 /// What a plane on the surface looks at.
 #[derive(Clone, Copy, Debug)]
 struct Angles {
-    view: View,
-    across: [Follower; 2],
+    view: SurfaceCoordinates,
+    across: [ProfileDensity; 2],
 }
 
 /// How a surface sends light on from one of its points.
@@ -130,23 +132,23 @@ impl Scatterer {
             if scene.run.emission == Emission::Plain {
                 return None;
             }
-            let station = Station::new(scene, index, plane);
-            let view = station.view();
+            let plane_on_leg = PlaneOnLeg::new(scene, index, plane);
+            let view = plane_on_leg.view();
             if let Some(view) = view.filter(|view| plane.leg == leg && !view.is_arriving()) {
-                let across = [Follower::new(&w.u), Follower::new(&w.v)];
-                Some(Way::Angles(Box::new(Angles { view, across })))
+                let across = [ProfileDensity::new(&w.u), ProfileDensity::new(&w.v)];
+                Some(SamplingStrategy::Angles(Box::new(Angles { view, across })))
             } else if plane.leg == leg && !looks_at_surface(plane) {
                 let d = scene.path.along(plane);
-                Some(Way::Window([
-                    Aim::new(d, &w.x, Follower::new(&w.u)),
-                    Aim::new(d, &w.y, Follower::new(&w.v)),
+                Some(SamplingStrategy::Window([
+                    Aim::new(d, &w.x, ProfileDensity::new(&w.u)),
+                    Aim::new(d, &w.y, ProfileDensity::new(&w.v)),
                 ]))
             } else {
                 let half = reach(scene, plane, leg, &origins).filter(|_| is_ahead)?;
                 // A plane on what ends the leg looks at some slopes, a plane beyond at any.
-                let slopes = station.slopes(w).filter(|_| plane.leg == leg);
-                let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(Follower::cosine);
-                Some(Way::Window([0, 1].map(|axis| {
+                let slopes = plane_on_leg.slopes(w).filter(|_| plane.leg == leg);
+                let slopes = slopes.unwrap_or([ANY_SLOPE; 2]).map(ProfileDensity::cosine);
+                Some(SamplingStrategy::Window([0, 1].map(|axis| {
                     let space = Profile::Box(half[axis]);
                     Aim::new(this.length, &space, slopes[axis])
                 })))
@@ -156,16 +158,17 @@ impl Scatterer {
         let mut looking = planes.filter(|(_, p)| p.leg >= leg).peekable();
         looking.peek()?;
         let aims = looking.map(aim);
-        let ways: Vec<Way> = if by_brdf {
+        let strategies: Vec<SamplingStrategy> = if by_brdf {
             // A lobe may be narrower than any window, or wider than all: it has half of the shares.
-            let mut ways: Vec<Way> = aims.flatten().collect();
-            let lobes = ways.len().max(1);
-            ways.extend((0..lobes).map(|_| Way::Lobe));
-            ways
+            let mut strategies: Vec<SamplingStrategy> = aims.flatten().collect();
+            let lobes = strategies.len().max(1);
+            strategies.extend((0..lobes).map(|_| SamplingStrategy::Lobe));
+            strategies
         } else {
-            aims.map(|aim| aim.unwrap_or(Way::Lobe)).collect()
+            aims.map(|aim| aim.unwrap_or(SamplingStrategy::Lobe))
+                .collect()
         };
-        Some(Self { ways })
+        Some(Self { strategies })
     }
 
     /// A direction in which light leaves a point, where the surface has this normal, and its density with respect to du dv over n · (u, v, ±1);
@@ -180,14 +183,14 @@ impl Scatterer {
     ) -> Option<(DVec3, f64)> {
         let r = words.map(random::unit);
         let from = point.z;
-        let drawn = match &self.ways[random::index(words[2], self.ways.len())] {
-            Way::Window([along_x, along_y]) => DVec3::new(
+        let drawn = match &self.strategies[random::index(words[2], self.strategies.len())] {
+            SamplingStrategy::Window([along_x, along_y]) => DVec3::new(
                 along_x.sample(point.x, from, r[0])?,
                 along_y.sample(point.y, from, r[1])?,
                 1.0,
             ),
-            Way::Angles(angles) => angles.sample(point, [r[0], r[1]])?,
-            Way::Lobe => spread.sample(normal, [r[0], r[1]]),
+            SamplingStrategy::Angles(angles) => angles.sample(point, [r[0], r[1]])?,
+            SamplingStrategy::Lobe => spread.sample(normal, [r[0], r[1]]),
         };
         let towards = drawn / drawn.z.abs();
         let cosine = normal.dot(towards);
@@ -195,19 +198,19 @@ impl Scatterer {
             return None;
         }
         let plain = spread.density(towards, cosine);
-        let densities = self.ways.iter().map(|way| match way {
-            Way::Window(_) if towards.z < 0.0 => 0.0,
-            Way::Window([a, b]) => {
+        let densities = self.strategies.iter().map(|strategy| match strategy {
+            SamplingStrategy::Window(_) if towards.z < 0.0 => 0.0,
+            SamplingStrategy::Window([a, b]) => {
                 let [x, y] = [(a, point.x, towards.x), (b, point.y, towards.y)]
                     .map(|(aim, at, slope)| aim.density(at, from, slope));
                 x * y / cosine
             }
-            Way::Angles(angles) => {
+            SamplingStrategy::Angles(angles) => {
                 angles.density(point, towards) * per_slope(towards.length_squared(), cosine)
             }
-            Way::Lobe => plain,
+            SamplingStrategy::Lobe => plain,
         });
-        let density = densities.sum::<f64>() / self.ways.len() as f64;
+        let density = densities.sum::<f64>() / self.strategies.len() as f64;
         (density > 0.0).then_some((towards, density))
     }
 }

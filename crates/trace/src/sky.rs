@@ -1,7 +1,7 @@
 //! Directions in proportion to the radiance of an environment.
 
-use crate::emit::{LAMBERTIAN, by_cosine};
-use crate::obstacles::{direction, ray_through};
+use crate::line::{direction, ray_through};
+use crate::sampling::{LAMBERTIAN, by_cosine};
 use etendue_field::random::{self, Stream};
 use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian, TwoPlane};
 use glam::{DVec2, DVec3};

@@ -1,15 +1,18 @@
+//! The forward tracer: photons from the light, leg by leg.
+
+use crate::arrival::{Arrival, radiance_per_flux};
+use crate::batch_ranges::{BLOCK, BatchRanges};
 use crate::bounce::Bounce;
+use crate::courses::{Both, rounding};
 use crate::emit::{ABREAST, Emitter};
-use crate::heading::{Both, Heading};
-use crate::numbers::{Numbers, Source};
-use crate::obstacles::{Material, Meeting, Obstacles, direction, start};
-use crate::shares::{BLOCK, Shares};
-use crate::station::Station;
-use crate::targets::Met;
+use crate::heading::Heading;
+use crate::numbers::{Numbers, PhotonNumbers};
+use crate::obstacles::{HitKind, Material, Obstacles};
+use crate::plane_on_leg::PlaneOnLeg;
+use crate::primitive_set::PrimitiveHit;
 use etendue_field::random::Stream;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
-use glam::DVec3;
 use std::ops::Range;
 
 /// The forward tracer of a scene.
@@ -25,8 +28,8 @@ pub struct Tracer {
     emitter: Emitter,
     legs: Vec<Leg>,
     planes: usize,
-    shares: Shares,
-    numbers: Source,
+    shares: BatchRanges,
+    numbers: PhotonNumbers,
 }
 
 /// A leg of the path, as photons see it.
@@ -50,7 +53,7 @@ struct Course {
     /// In the frame at the light.
     frame: Frame,
     obstacles: Obstacles,
-    stations: Vec<Station>,
+    planes_on_leg: Vec<PlaneOnLeg>,
 }
 
 /// A photon on a leg.
@@ -73,19 +76,6 @@ struct Photon {
     counts: bool,
 }
 
-/// A photon at a point of a surface, in the frame of a leg.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Arrival {
-    pub(crate) point: DVec3,
-    /// The normal on the side it came from.
-    pub(crate) normal: DVec3,
-    /// The normal on the side that the surface faces.
-    pub(crate) facing: DVec3,
-    /// Where it was going, 1 along D.
-    pub(crate) direction: DVec3,
-    pub(crate) flux: f64,
-}
-
 impl Tracer {
     /// The tracer of a scene.
     #[must_use]
@@ -97,8 +87,8 @@ impl Tracer {
         Self {
             emitter: Emitter::new(scene),
             planes: scene.planes.len(),
-            shares: Shares::new(&scene.run),
-            numbers: Source::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
+            shares: BatchRanges::new(&scene.run),
+            numbers: PhotonNumbers::new(&scene.run, [Stream::Photon, Stream::Net], legs.len()),
             legs,
         }
     }
@@ -113,7 +103,7 @@ impl Tracer {
         let plain = Self::new(scene);
         Self {
             emitter: Emitter::evenly(scene),
-            numbers: Source::new(
+            numbers: PhotonNumbers::new(
                 &scene.run,
                 [Stream::Even, Stream::EvenNet],
                 plain.legs.len(),
@@ -138,7 +128,7 @@ impl Tracer {
             for ((index, ray), weight) in (first..range.end).zip(rays).zip(weights) {
                 // Drawn in the bounds of a disc, but beside it: it is counted, and carries nothing anywhere.
                 if weight > 0.0 {
-                    ledger.emitted += weight / cosines(&ray);
+                    ledger.emitted += weight / radiance_per_flux(&ray);
                     photons.push(Photon {
                         index,
                         flight: Flight {
@@ -178,8 +168,8 @@ impl Tracer {
         let Some(course) = this.courses.of(heading) else {
             return false;
         };
-        let flux = weight / cosines(&ray);
-        let met = course.obstacles.first(&ray, from);
+        let flux = weight / radiance_per_flux(&ray);
+        let met = course.obstacles.closest_hit(&ray, from);
         if met.is_some_and(|(_, target)| target.tag.is(this.leaves)) {
             account.stopped += flux;
             return false;
@@ -195,7 +185,7 @@ impl Tracer {
             account.escaped += arrives;
             return false;
         };
-        let Meeting::Surface { material, .. } = *target.tag else {
+        let HitKind::Surface { material, .. } = *target.tag else {
             account.absorbed += arrives;
             return false;
         };
@@ -223,58 +213,20 @@ impl Tracer {
     }
 }
 
-/// (1 + u² + v²)² = 1/cos⁴θ: radiance space over flux.
-pub(crate) fn cosines(ray: &TwoPlane) -> f64 {
-    let secant_squared = ray.secant_squared();
-    secant_squared * secant_squared
-}
-
-impl Arrival {
-    fn new(ray: &TwoPlane, distance: f64, target: Met<'_, Meeting>, flux: f64) -> Self {
-        let direction = direction(ray);
-        let point = start(ray) + distance * direction;
-        let facing = target.normal(point);
-        Self {
-            point,
-            normal: -facing.dot(direction).signum() * facing,
-            facing,
-            direction,
-            flux,
-        }
-    }
-
-    /// Whether it has come to the side that the surface faces.
-    pub(crate) fn is_on_front(&self) -> bool {
-        self.facing.dot(self.direction) < 0.0
-    }
-
-    /// In the frame of another leg; both frames are in the frame at the light.
-    fn moved(&self, from: &Frame, to: &Frame) -> Self {
-        let vector = |v: DVec3| to.vector_to_local(from.vector_to_world(v));
-        Self {
-            point: to.to_local(from.to_world(self.point)),
-            normal: vector(self.normal),
-            facing: vector(self.facing),
-            direction: vector(self.direction),
-            flux: self.flux,
-        }
-    }
-}
-
 impl Leg {
     fn new(scene: &Scene, leg: usize) -> Self {
         let this = &scene.path.legs[leg];
         let planes = scene.planes.iter().enumerate();
-        let stations = planes.filter(|(_, plane)| plane.leg == leg);
+        let planes_on_leg = planes.filter(|(_, plane)| plane.leg == leg);
         let leaves = this.leaves.map(|hit| hit.object);
-        let stations: Vec<(usize, &VirtualPlane)> = stations.collect();
+        let planes_on_leg: Vec<(usize, &VirtualPlane)> = planes_on_leg.collect();
         Self {
             courses: Both::new(scene, leg, |heading, leg| Course {
                 frame: leg.frame,
                 obstacles: Obstacles::new(scene, leg),
-                stations: stations
+                planes_on_leg: planes_on_leg
                     .iter()
-                    .map(|(i, plane)| Station::of(heading, leg, scene, *i, plane))
+                    .map(|(i, plane)| PlaneOnLeg::of(heading, leg, scene, *i, plane))
                     .collect(),
             }),
             bounce: Bounce::new(scene, leg),
@@ -306,7 +258,7 @@ impl Leg {
         &self,
         course: &Course,
         flight: &Flight,
-        met: Option<(f64, Met<'_, Meeting>)>,
+        met: Option<(f64, PrimitiveHit<'_, HitKind>)>,
         crossings: &mut [Vec<Crossing>],
     ) {
         let Flight {
@@ -314,7 +266,7 @@ impl Leg {
         } = *flight;
         let Course {
             obstacles,
-            stations,
+            planes_on_leg,
             ..
         } = course;
         // What would meet again what it has left is gone, even where something stops it before: no
@@ -325,9 +277,9 @@ impl Leg {
         }
         let end = met.map_or(f64::INFINITY, |(distance, _)| distance);
         let on_path = met.is_some_and(|(_, target)| target.tag.is(self.ends));
-        for station in stations {
-            let side = station.side;
-            let Some(distance) = station.crossing(&ray, from) else {
+        for plane_on_leg in planes_on_leg {
+            let side = plane_on_leg.side;
+            let Some(distance) = plane_on_leg.crossing(&ray, from) else {
                 continue;
             };
             // A plane beside something is at the very same distance: no rounding can come between.
@@ -336,29 +288,20 @@ impl Leg {
                 Side::After => distance < end,
             };
             // A surface that is not flat, or not across the leg, begins before the plane that looks at what it receives.
-            let ends = |what: &Meeting| what.is(self.ends);
+            let ends = |what: &HitKind| what.is(self.ends);
             let crossed =
                 crossed || on_path && obstacles.visibility(&ray, from, distance, side, ends) > 0.0;
             if crossed
-                && let Some((ray, weight)) = station.look(&ray, weight)
-                && (self.leaves.is_some() || station.is_ahead([ray.x, ray.y]))
+                && let Some((ray, weight)) = plane_on_leg.at_plane(&ray, weight)
+                && (self.leaves.is_some() || plane_on_leg.is_ahead([ray.x, ray.y]))
             {
                 let passes = obstacles.transmittance(&flight.ray, from, distance, side);
-                crossings[station.plane].push(Crossing {
+                crossings[plane_on_leg.plane].push(Crossing {
                     ray,
                     weight: weight * passes,
                 });
             }
         }
-    }
-}
-
-/// How far a leg's beginning is left behind before something can be met.
-pub(crate) fn rounding(leg: &etendue_scene::Leg) -> f64 {
-    const SHARE: f64 = 1e-9;
-    match leg.leaves {
-        None => 0.0,
-        Some(hit) => SHARE * (hit.point.length() + leg.start),
     }
 }
 

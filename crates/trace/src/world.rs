@@ -1,6 +1,6 @@
 //! Crossings of a plane as rays of the world.
 
-use crate::station::Station;
+use crate::plane_on_leg::PlaneOnLeg;
 use etendue_field::{Crossing, Frame, TwoPlane};
 use etendue_scene::Scene;
 use glam::DVec3;
@@ -8,7 +8,7 @@ use glam::DVec3;
 /// Turns crossings of a plane into rays of the world with their power.
 #[derive(Debug)]
 pub struct PlaneInWorld {
-    station: Station,
+    plane_on_leg: PlaneOnLeg,
     /// The frame of the leg, in the world.
     leg: Frame,
 }
@@ -20,7 +20,7 @@ impl PlaneInWorld {
         let at = scene.planes.get(plane)?;
         let leg = &scene.path.legs[at.leg];
         Some(Self {
-            station: Station::new(scene, plane, at),
+            plane_on_leg: PlaneOnLeg::new(scene, plane, at),
             leg: scene.path.frame.compose(&leg.frame),
         })
     }
@@ -29,8 +29,8 @@ impl PlaneInWorld {
     /// one of the surface. `None` for coordinates that no ray has.
     #[must_use]
     pub fn ray(&self, seen: &TwoPlane) -> Option<[DVec3; 2]> {
-        let (point, ..) = self.station.point([seen.x, seen.y])?;
-        let along = match self.station.view() {
+        let (point, ..) = self.plane_on_leg.point([seen.x, seen.y])?;
+        let along = match self.plane_on_leg.view() {
             None => DVec3::new(seen.u, seen.v, 1.0),
             Some(view) => {
                 let away = view.direction(point, [seen.u, seen.v])?;
@@ -45,6 +45,6 @@ impl PlaneInWorld {
     /// 1 over cos θ dω / du dv (docs/conventions.md).
     #[must_use]
     pub fn flux(&self, crossing: &Crossing) -> f64 {
-        crossing.weight * self.station.flux_per_radiance(&crossing.ray)
+        crossing.weight * self.plane_on_leg.flux_per_radiance(&crossing.ray)
     }
 }

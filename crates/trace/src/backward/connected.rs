@@ -2,8 +2,7 @@
 //!
 //! From a point the way to such a light is known, so it is looked for there and nowhere else.
 
-use super::{Backward, End, Incoming, Looker};
-use etendue_field::{Crossing, Light, TwoPlane, VirtualPlane};
+use etendue_field::{Light, TwoPlane, VirtualPlane};
 use etendue_scene::{Event, Object, Scene};
 use glam::DVec3;
 
@@ -46,35 +45,4 @@ pub(super) fn connection(light: &Light, point: DVec3) -> Option<(TwoPlane, f64)>
     let secant_squared = ray.secant_squared();
     let spread = point.z * point.z * secant_squared * secant_squared.sqrt();
     Some((ray, 1.0 / spread))
-}
-
-impl Backward {
-    /// What a plane on the first leg sees of a light without extent: from a point drawn in its
-    /// window, where the light comes from is known.
-    pub(super) fn look_at_light(
-        &self,
-        looker: &Looker,
-        light: &Light,
-        [x, y]: [f64; 2],
-        density: f64,
-    ) -> Option<Crossing> {
-        let station = &looker.stations.along;
-        let (point, normal, area) = station.point([x, y])?;
-        let (at_light, _) = connection(light, point)?;
-        let along = DVec3::new(at_light.u, at_light.v, 1.0);
-        // dA over du dv of the light, or over its dx dy.
-        let cosine = along.dot(normal).abs();
-        let per_ray = if light.is_distant() {
-            cosine
-        } else {
-            cosine / (point.z * point.z)
-        };
-        let nothing = |_| [0.0; 4];
-        // A plane on a surface looks at all that arrives there, as photons are counted.
-        let end = End::Plane(station.distance, station.side);
-        let found = self.incident(&Incoming::from_light(at_light), end, 1, &nothing);
-        let weight = found * per_ray * area / density;
-        let (ray, weight) = station.look(&at_light, weight)?;
-        Some(Crossing { ray, weight })
-    }
 }

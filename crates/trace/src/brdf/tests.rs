@@ -1,3 +1,5 @@
+//! BRDFs: reciprocity, albedo, and samples against densities.
+
 use super::{densities, density, sample, towards, value};
 use etendue_field::random::{self, Stream};
 use etendue_field::{Brdf, Frame, Fresnel, Lobe, Mixture, Reflectance, Term, Weight};

@@ -1,6 +1,6 @@
 //! Rays drawn as a light shines, wherever planes are.
 
-use super::point;
+use crate::sampling::point;
 use etendue_field::{Image, RayLight, Shape, TwoPlane, power};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;

@@ -1,87 +1,101 @@
 //! What ends rays on a leg.
 
-use crate::form::Form;
-use crate::obstacles::{direction, start};
+use crate::line::{direction, start};
+use crate::primitive::Primitive;
 use etendue_field::TwoPlane;
 use etendue_scene::Hierarchy;
 use glam::DVec3;
 
 /// Something that ends a ray, and what it is.
 #[derive(Clone, Debug)]
-pub(crate) struct Target<T> {
-    pub(crate) form: Form,
+pub(crate) struct TaggedPrimitive<T> {
+    pub(crate) primitive: Primitive,
     pub(crate) tag: T,
 }
 
-/// A target that a ray meets, and which part of it.
+/// A primitive that a ray meets, and which part of it.
 #[derive(Debug)]
-pub(crate) struct Met<'a, T> {
-    form: &'a Form,
+pub(crate) struct PrimitiveHit<'a, T> {
+    primitive: &'a Primitive,
     part: usize,
     pub(crate) tag: &'a T,
 }
 
-/// Targets, and the hierarchy that finds the first one hit.
+/// Primitives, and the hierarchy that finds the first one hit.
 #[derive(Debug)]
-pub(crate) struct Targets<T> {
+pub(crate) struct PrimitiveSet<T> {
     hierarchy: Hierarchy,
     /// In the order of the hierarchy's leaves.
-    targets: Vec<Target<T>>,
+    primitives: Vec<TaggedPrimitive<T>>,
 }
 
-/// Targets that are tried in turn: as fast as a hierarchy takes to begin.
-const FEW: usize = 4;
+/// Primitives that are tried in turn: as fast as a hierarchy takes to begin.
+const MAX_TRIED_IN_TURN: usize = 4;
 
-impl<T> Target<T> {
-    pub(crate) fn met(&self, part: usize) -> Met<'_, T> {
-        let Self { form, tag } = self;
-        Met { form, part, tag }
+impl<T> TaggedPrimitive<T> {
+    pub(crate) fn met(&self, part: usize) -> PrimitiveHit<'_, T> {
+        let Self { primitive, tag } = self;
+        PrimitiveHit {
+            primitive,
+            part,
+            tag,
+        }
     }
 }
 
-impl<T> Clone for Met<'_, T> {
+impl<T> Clone for PrimitiveHit<'_, T> {
     fn clone(&self) -> Self {
         *self
     }
 }
 
-impl<T> Copy for Met<'_, T> {}
+impl<T> Copy for PrimitiveHit<'_, T> {}
 
-impl<T> Met<'_, T> {
+impl<T> PrimitiveHit<'_, T> {
     /// A normal at the point that is met, of unit length.
     pub(crate) fn normal(&self, point: DVec3) -> DVec3 {
-        self.form.normal(self.part, point)
+        self.primitive.normal(self.part, point)
     }
 }
 
-impl<T: Clone> Targets<T> {
+impl<T: Clone> PrimitiveSet<T> {
     /// `origins` is the largest coordinate a ray starts from.
-    pub(crate) fn new(targets: &[Target<T>], origins: f64) -> Self {
-        let bounds: Vec<_> = targets.iter().map(|target| target.form.bounds()).collect();
+    pub(crate) fn new(primitives: &[TaggedPrimitive<T>], origins: f64) -> Self {
+        let bounds: Vec<_> = primitives
+            .iter()
+            .map(|primitive| primitive.primitive.bounds())
+            .collect();
         let hierarchy = Hierarchy::new(bounds.len(), origins, |i| bounds[i]);
         let order = hierarchy.order().iter();
-        let targets = order.map(|i| targets[*i as usize].clone()).collect();
-        Self { hierarchy, targets }
+        let primitives = order.map(|i| primitives[*i as usize].clone()).collect();
+        Self {
+            hierarchy,
+            primitives,
+        }
     }
 
-    /// The first target that a ray meets beyond `from`, and at what distance.
+    /// The first primitive that a ray meets beyond `from`, and at what distance.
     #[inline]
-    pub(crate) fn first(&self, ray: &TwoPlane, from: f64) -> Option<(f64, Met<'_, T>)> {
+    pub(crate) fn closest_hit(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+    ) -> Option<(f64, PrimitiveHit<'_, T>)> {
         let mut first = None;
         let mut nearest = f64::INFINITY;
         let mut try_one = |i: usize| {
-            let target: &Target<T> = &self.targets[i];
-            if let Some((distance, part)) = target.form.first(ray, from, nearest)
+            let primitive: &TaggedPrimitive<T> = &self.primitives[i];
+            if let Some((distance, part)) = primitive.primitive.closest_hit(ray, from, nearest)
                 && distance < nearest
                 && distance > from
             {
                 nearest = distance;
-                first = Some((target, part));
+                first = Some((primitive, part));
             }
             nearest
         };
-        if self.targets.len() <= FEW {
-            (0..self.targets.len()).for_each(|i| {
+        if self.primitives.len() <= MAX_TRIED_IN_TURN {
+            (0..self.primitives.len()).for_each(|i| {
                 try_one(i);
             });
         } else {
@@ -89,44 +103,44 @@ impl<T: Clone> Targets<T> {
             self.hierarchy
                 .along(start, direction, [from, f64::INFINITY], try_one);
         }
-        first.map(|(target, part)| (nearest, target.met(part)))
+        first.map(|(primitive, part)| (nearest, primitive.met(part)))
     }
 
-    /// The last target on the line of a ray before `until`, and at what distance; looked for
+    /// The last primitive on the line of a ray before `until`, and at what distance; looked for
     /// backwards from there.
-    pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, Met<'_, T>)> {
+    pub(crate) fn last(&self, ray: &TwoPlane, until: f64) -> Option<(f64, PrimitiveHit<'_, T>)> {
         let mut last = None;
         let mut farthest = f64::NEG_INFINITY;
         let range = [-until, f64::INFINITY];
         let (start, back) = (start(ray), -direction(ray));
         self.hierarchy.along(start, back, range, |i| {
-            let target = &self.targets[i];
-            if let Some((distance, part)) = target.form.last(ray, until)
+            let primitive = &self.primitives[i];
+            if let Some((distance, part)) = primitive.primitive.last(ray, until)
                 && distance > farthest
             {
                 farthest = distance;
-                last = Some((target, part));
+                last = Some((primitive, part));
             }
             -farthest
         });
-        last.map(|(target, part)| (farthest, target.met(part)))
+        last.map(|(primitive, part)| (farthest, primitive.met(part)))
     }
 
-    /// Tells every target on the line of a ray, and at what distance.
-    pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, Met<'_, T>)) {
+    /// Tells every primitive on the line of a ray, and at what distance.
+    pub(crate) fn each(&self, ray: &TwoPlane, mut tell: impl FnMut(f64, PrimitiveHit<'_, T>)) {
         let range = [f64::NEG_INFINITY, f64::INFINITY];
         let (start, direction) = (start(ray), direction(ray));
         self.hierarchy.along(start, direction, range, |i| {
-            let target = &self.targets[i];
-            let form = &target.form;
-            form.each(ray, |distance, part| tell(distance, target.met(part)));
+            let tagged = &self.primitives[i];
+            let primitive = &tagged.primitive;
+            primitive.each(ray, |distance, part| tell(distance, tagged.met(part)));
             f64::INFINITY
         });
     }
 
-    /// Whether light on a ray meets a target between `from` and `distance`; at that very distance
+    /// Whether light on a ray meets a primitive between `from` and `distance`; at that very distance
     /// when `inclusive`. Looked for backwards, from there; what `ignored` says does not count.
-    pub(crate) fn blocks(
+    pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
         from: f64,
@@ -138,8 +152,8 @@ impl<T: Clone> Targets<T> {
         let mut blocked = false;
         let (start, back) = (start(ray), -direction(ray));
         self.hierarchy.along(start, back, [-distance, -from], |i| {
-            let Target { form, tag } = &self.targets[i];
-            blocked |= !ignored(tag) && form.blocks(ray, [from, distance], does);
+            let TaggedPrimitive { primitive, tag } = &self.primitives[i];
+            blocked |= !ignored(tag) && primitive.is_occluded(ray, [from, distance], does);
             // Then nothing matters any more.
             if blocked { f64::NEG_INFINITY } else { -from }
         });
@@ -155,14 +169,14 @@ mod tests {
     use etendue_field::{Disc, Frame, Rectangle, Shape};
     use etendue_scene::Triangles;
 
-    fn mesh(triangles: Vec<[DVec3; 3]>) -> Form {
+    fn mesh(triangles: Vec<[DVec3; 3]>) -> Primitive {
         let triangles = Triangles::new(triangles, 0.0);
-        Form::Mesh(Box::new(Mesh::new(&triangles, None, Frame::IDENTITY)))
+        Primitive::Mesh(Box::new(Mesh::new(&triangles, None, Frame::IDENTITY)))
     }
 
     /// Squares that share edges, discs and triangles: the cases in which rounding would leak.
-    fn targets(scale: f64) -> Vec<Target<u32>> {
-        let mut targets = Vec::new();
+    fn primitives(scale: f64) -> Vec<TaggedPrimitive<u32>> {
+        let mut primitives = Vec::new();
         for layer in 1..4u32 {
             for i in 0..20u32 {
                 for j in (layer % 2..20).step_by(2) {
@@ -175,7 +189,7 @@ mod tests {
                         Shape::Rectangle(Rectangle { center, size })
                     };
                     let distance = f64::from(layer) * scale;
-                    targets.push(Form::Flat { distance, shape });
+                    primitives.push(Primitive::Flat { distance, shape });
                 }
             }
         }
@@ -189,9 +203,9 @@ mod tests {
                 )
         };
         let triangle = |i| [corner(i), corner(i + 1), corner(i + 2)];
-        targets.extend((0..30).map(|i| mesh(vec![triangle(i)])));
-        targets.push(mesh((30..60).map(triangle).collect()));
-        targets.extend((0..40).map(|i| {
+        primitives.extend((0..30).map(|i| mesh(vec![triangle(i)])));
+        primitives.push(mesh((30..60).map(triangle).collect()));
+        primitives.extend((0..40).map(|i| {
             let d = corner(i) - DVec3::new(0.0, 0.0, scale);
             let shape = Shape::Disc(Disc {
                 center: [0.02 * scale, -0.01 * scale],
@@ -199,18 +213,23 @@ mod tests {
             });
             let frame = Frame::new(corner(i + 3), d, DVec3::X).unwrap_or(Frame::IDENTITY);
             let frame = Box::new(frame);
-            Form::Oblique { frame, shape }
+            Primitive::Oblique { frame, shape }
         }));
         let tags = 0u32..;
-        let tagged = targets.into_iter().zip(tags);
-        tagged.map(|(form, tag)| Target { form, tag }).collect()
+        let tagged = primitives.into_iter().zip(tags);
+        tagged
+            .map(|(primitive, tag)| TaggedPrimitive { primitive, tag })
+            .collect()
     }
 
-    /// Where a ray meets targets beyond its beginning, found without any hierarchy.
-    fn in_turn(all: &[Target<u32>], ray: &TwoPlane) -> Vec<f64> {
-        let met = all.iter().flat_map(|target| match &target.form {
-            Form::Mesh(mesh) => mesh.in_turn(ray),
-            form => form.first(ray, 0.0, f64::INFINITY).into_iter().collect(),
+    /// Where a ray meets primitives beyond its beginning, found without any hierarchy.
+    fn in_turn(all: &[TaggedPrimitive<u32>], ray: &TwoPlane) -> Vec<f64> {
+        let met = all.iter().flat_map(|primitive| match &primitive.primitive {
+            Primitive::Mesh(mesh) => mesh.in_turn(ray),
+            primitive => primitive
+                .closest_hit(ray, 0.0, f64::INFINITY)
+                .into_iter()
+                .collect(),
         });
         met.map(|(at, _)| at).collect()
     }
@@ -218,8 +237,8 @@ mod tests {
     #[test]
     fn agrees_with_every_target_tried_in_turn() {
         for scale in [1e-30, 1e-3, 1.0, 1e3, 1e30] {
-            let all = targets(scale);
-            let found = Targets::new(&all, 0.5 * scale);
+            let all = primitives(scale);
+            let found = PrimitiveSet::new(&all, 0.5 * scale);
             let (mut hits, mut blocked) = (0, 0);
             for index in 0..20_000 {
                 let w = random::words(3, Stream::Photon, index, 0).map(|w| random::unit(w) - 0.5);
@@ -231,7 +250,9 @@ mod tests {
                 };
                 let met = in_turn(&all, &ray);
                 let expected = met.iter().copied().fold(f64::INFINITY, f64::min);
-                let first = found.first(&ray, 0.0).map_or(f64::INFINITY, |(at, _)| at);
+                let first = found
+                    .closest_hit(&ray, 0.0)
+                    .map_or(f64::INFINITY, |(at, _)| at);
                 assert!(
                     first.total_cmp(&expected).is_eq(),
                     "{ray:?} at scale {scale}"
@@ -246,7 +267,7 @@ mod tests {
                 {
                     let distance = distance * scale;
                     let expected = expected < distance || inclusive && expected <= distance;
-                    let blocks = found.blocks(&ray, 0.0, distance, inclusive, |_| false);
+                    let blocks = found.is_occluded(&ray, 0.0, distance, inclusive, |_| false);
                     assert_eq!(blocks, expected, "{ray:?} to {distance}");
                     blocked += u32::from(blocks);
                 }
@@ -260,15 +281,15 @@ mod tests {
     #[test]
     fn forms_without_a_box_are_candidates_everywhere() {
         for bad in [f64::NAN, f64::INFINITY, 1e300] {
-            let mut all = targets(1.0);
+            let mut all = primitives(1.0);
             let strange = mesh(vec![[DVec3::splat(bad); 3]]);
-            all.extend((0..50).map(|tag| Target {
-                form: strange.clone(),
+            all.extend((0..50).map(|tag| TaggedPrimitive {
+                primitive: strange.clone(),
                 tag,
             }));
-            let found = Targets::new(&all, 0.5);
+            let found = PrimitiveSet::new(&all, 0.5);
             let straight = TwoPlane::default();
-            assert!(found.first(&straight, 0.0).is_some(), "{bad}");
+            assert!(found.closest_hit(&straight, 0.0).is_some(), "{bad}");
         }
     }
 }

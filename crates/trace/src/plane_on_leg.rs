@@ -1,5 +1,7 @@
+//! Virtual planes, as rays of a leg cross them.
+
 use crate::heading::Heading;
-use crate::obstacles::{direction, ray_through, start};
+use crate::line::{direction, ray_through, start};
 use etendue_field::{Frame, Orientation, Patch, Side, TwoPlane, VirtualPlane, Window};
 use etendue_scene::{Leg, Object, Scene};
 use glam::DVec3;
@@ -7,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// Where a plane stands on its leg, and how it looks at rays of the leg.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Station {
+pub(crate) struct PlaneOnLeg {
     pub(crate) plane: usize,
     /// Along the leg.
     pub(crate) distance: f64,
@@ -15,12 +17,12 @@ pub(crate) struct Station {
     heading: Heading,
     pub(crate) side: Side,
     /// `None` across the leg.
-    surface: Option<View>,
+    surface: Option<SurfaceCoordinates>,
 }
 
 /// How a plane on a surface looks at it.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct View {
+pub(crate) struct SurfaceCoordinates {
     /// (T, B, N) at the central hit, in the frame of the leg.
     frame: Frame,
     longitude: f64,
@@ -49,7 +51,7 @@ fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVe
     met.map(move |t| start + t * along)
 }
 
-impl Station {
+impl PlaneOnLeg {
     /// The ray of the leg, where it begins, that the plane has as `seen`, and dA over dx dy there; `None` if there is none.
     ///
     /// On a surface itself, light is counted per area of it (docs/theory.md, section 8); everywhere else dA is dx dy.
@@ -78,7 +80,7 @@ impl Station {
     }
 
     /// How it looks at the surface it is on; `None` across the leg.
-    pub(crate) fn view(&self) -> Option<View> {
+    pub(crate) fn view(&self) -> Option<SurfaceCoordinates> {
         self.surface
     }
 
@@ -108,7 +110,7 @@ impl Station {
             }
             _ => None,
         };
-        let surface = (plane.orientation != Orientation::Orthogonal).then(|| View {
+        let surface = (plane.orientation != Orientation::Orthogonal).then(|| SurfaceCoordinates {
             frame: leg.frame.decompose(&path.frame.decompose(&plane.frame)),
             longitude: plane.longitude,
             arriving,
@@ -147,7 +149,7 @@ impl Station {
         match &self.surface {
             None => 1.0 / (seen.secant_squared() * seen.secant_squared()),
             Some(view) => {
-                // As in `View::seen`: cos θ is cos(u) cos(v), and dω is cos(v) du dv.
+                // As in `SurfaceCoordinates::seen`: cos θ is cos(u) cos(v), and dω is cos(v) du dv.
                 let latitude = libm::cos(seen.v);
                 libm::cos(seen.u + view.longitude) * latitude * latitude
             }
@@ -156,15 +158,15 @@ impl Station {
 
     /// A ray of the leg as the plane has it, with what it adds there; `None` when it does not meet the surface.
     #[inline]
-    pub(crate) fn look(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
+    pub(crate) fn at_plane(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
         match &self.surface {
             None => Some((ray.travelled(self.distance), weight)),
-            Some(surface) => surface.look(ray, weight),
+            Some(surface) => surface.at_plane(ray, weight),
         }
     }
 }
 
-impl View {
+impl SurfaceCoordinates {
     /// The frame of the local normal at a point, on the side of the one at the central hit; `None` where the surface has
     /// turned by a right angle or more. So of two points over the same coordinates one is left: a line meets the surface from
     /// one side and then from the other.
@@ -198,7 +200,7 @@ impl View {
         points(patch, start, along).find_map(|point| Some((point, frame(point)?)))
     }
 
-    /// The inverse of [`Self::look`].
+    /// The inverse of [`Self::at_plane`].
     fn leg_ray(&self, seen: &TwoPlane) -> Option<(TwoPlane, f64)> {
         let (point, frame) = self.point([seen.x, seen.y])?;
         let away = self.away(&frame, [seen.u, seen.v])?;
@@ -206,7 +208,7 @@ impl View {
         Some((ray, 1.0 / frame.d.dot(self.frame.d)))
     }
 
-    fn look(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
+    fn at_plane(&self, ray: &TwoPlane, weight: f64) -> Option<(TwoPlane, f64)> {
         let along = direction(ray);
         let (point, frame) = self.met(start(ray), along)?;
         let away = if self.arriving { -along } else { along };

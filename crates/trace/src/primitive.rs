@@ -1,15 +1,15 @@
 //! The forms of what ends a ray.
 
 use crate::grid::Grid;
+use crate::line::{direction, start};
 use crate::mesh::Mesh;
-use crate::obstacles::{direction, start};
 use etendue_field::{Frame, Patch, Shape, TwoPlane, enclosing};
 use glam::DVec3;
 
 /// The form of a target, in the frame of a leg. What is large is elsewhere: flat shapes, by far the
 /// most, are to stay in the processor's cache.
 #[derive(Clone, Debug)]
-pub(crate) enum Form {
+pub(crate) enum Primitive {
     /// A flat shape across the central ray.
     Flat { distance: f64, shape: Shape },
     /// Many of these at one distance.
@@ -22,12 +22,17 @@ pub(crate) enum Form {
     Smooth(Box<Patch>),
 }
 
-impl Form {
+impl Primitive {
     /// The distance, along the central ray, at which a ray meets it, and the part that it meets;
     /// where it can meet it several times, the first beyond `from`, and of a mesh, none beyond
     /// `until`.
     #[inline]
-    pub(crate) fn first(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
+    pub(crate) fn closest_hit(
+        &self,
+        ray: &TwoPlane,
+        from: f64,
+        until: f64,
+    ) -> Option<(f64, usize)> {
         if let Self::Flat { distance, shape } = self {
             let at = ray.travelled(*distance);
             return shape.contains(at.x, at.y).then_some((*distance, 0));
@@ -36,12 +41,12 @@ impl Form {
             let at = ray.travelled(grid.distance);
             return grid.contains(at.x, at.y).then_some((grid.distance, 0));
         }
-        self.first_elsewhere(ray, from, until)
+        self.closest_hit_elsewhere(ray, from, until)
     }
 
     /// [`Self::first`] of what is not flat: kept out of the loops that mostly meet flat shapes.
     #[inline(never)]
-    fn first_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
+    fn closest_hit_elsewhere(&self, ray: &TwoPlane, from: f64, until: f64) -> Option<(f64, usize)> {
         let whole = |distance| (distance, 0);
         match self {
             Self::Flat { .. } | Self::Grid(_) => None,
@@ -51,7 +56,7 @@ impl Form {
                 let at = frame.to_local(start + distance * direction);
                 (distance.is_finite() && shape.contains(at.x, at.y)).then_some(whole(distance))
             }
-            Self::Mesh(mesh) => mesh.first(ray, from, until),
+            Self::Mesh(mesh) => mesh.closest_hit(ray, from, until),
             Self::Smooth(patch) => {
                 let hits = smooth_hits(patch, ray);
                 hits.into_iter().find(|at| *at > from).map(whole)
@@ -69,7 +74,7 @@ impl Form {
                 hits.filter(|at| *at < until).map(|at| (at, 0)).next()
             }
             _ => {
-                let met = self.first(ray, f64::NEG_INFINITY, until);
+                let met = self.closest_hit(ray, f64::NEG_INFINITY, until);
                 met.filter(|(at, _)| *at < until)
             }
         }
@@ -77,16 +82,16 @@ impl Form {
 
     /// Whether it is met at a distance between `from` and `until` that `does`.
     #[inline]
-    pub(crate) fn blocks(
+    pub(crate) fn is_occluded(
         &self,
         ray: &TwoPlane,
         [from, until]: [f64; 2],
         does: impl Fn(f64) -> bool,
     ) -> bool {
         if let Self::Mesh(mesh) = self {
-            return mesh.blocks(ray, [from, until], does);
+            return mesh.is_occluded(ray, [from, until], does);
         }
-        let first = self.first(ray, from, until);
+        let first = self.closest_hit(ray, from, until);
         first.is_some_and(|(at, _)| does(at))
     }
 
@@ -102,7 +107,7 @@ impl Form {
                 hits.into_iter().flatten().for_each(|at| tell(at, 0));
             }
             _ => {
-                if let Some((at, part)) = self.first(ray, f64::NEG_INFINITY, f64::INFINITY) {
+                if let Some((at, part)) = self.closest_hit(ray, f64::NEG_INFINITY, f64::INFINITY) {
                     tell(at, part);
                 }
             }

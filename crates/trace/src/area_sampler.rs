@@ -5,14 +5,14 @@ use glam::DVec3;
 
 /// A surface in flat pieces.
 #[derive(Debug)]
-pub(crate) enum Pieces {
+pub(crate) enum AreaSampler {
     /// A parallelogram, by a corner and those beside it.
     One([DVec3; 3]),
     /// Triangles, and the area up to each and with it.
     Many(Triangles, Vec<f64>),
 }
 
-impl Pieces {
+impl AreaSampler {
     pub(crate) fn triangles(triangles: &Triangles) -> Self {
         let mut area = 0.0;
         let upto = triangles.iter().map(|corners| {

@@ -1,11 +1,12 @@
 //! Points of the first surface that light meets, for light from far away to be aimed at.
 
-use crate::form::Form;
+use crate::area_sampler::AreaSampler;
+use crate::line::{direction, start};
 use crate::mesh::Mesh;
-use crate::obstacles::{Around, direction, start};
-use crate::pieces::Pieces;
+use crate::obstacles::Around;
+use crate::primitive::Primitive;
+use crate::primitive_set::{PrimitiveSet, TaggedPrimitive};
 use crate::reach::footprint;
-use crate::targets::{Target, Targets};
 use etendue_field::{Frame, Patch, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
 use glam::DVec3;
@@ -13,25 +14,25 @@ use std::f64::consts::{PI, TAU};
 
 /// A surface, and a density over its points; in the frame at the light.
 #[derive(Debug)]
-pub(crate) struct Ground {
-    targets: Targets<()>,
+pub(crate) struct FootprintSampler {
+    primitives: PrimitiveSet<()>,
     points: Points,
 }
 
 #[derive(Debug)]
 enum Points {
     /// Uniform over an area.
-    Flat(Pieces),
+    Flat(AreaSampler),
     /// Uniform over the disc in the tangent plane at the vertex.
     Smooth(Patch),
 }
 
-impl Ground {
+impl FootprintSampler {
     /// Of the whole first surface, or of the part of it that matters for a plane; `None` if none does.
     pub(crate) fn new(scene: &Scene, plane: Option<&VirtualPlane>) -> Option<Self> {
         let around = Around(Frame::IDENTITY);
-        let target = |form| Target { form, tag: () };
-        let (targets, points) = match scene.path.ends_at(0)?.object {
+        let tagged = |primitive| TaggedPrimitive { primitive, tag: () };
+        let (primitives, points) = match scene.path.ends_at(0)?.object {
             Object::Surface(i) => {
                 let mut surface = scene.surfaces[i].clone();
                 if let Some(plane) = plane {
@@ -42,28 +43,28 @@ impl Ground {
                 }
                 let [a, b, _, d] = surface.corners();
                 (
-                    vec![target(around.surface(&surface))],
-                    Points::Flat(Pieces::One([a, b, d])),
+                    vec![tagged(around.surface(&surface))],
+                    Points::Flat(AreaSampler::One([a, b, d])),
                 )
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
-                let pieces = Pieces::triangles(&mesh.triangles);
+                let pieces = AreaSampler::triangles(&mesh.triangles);
                 // As they are, whatever normals they have between them.
                 let mesh = Mesh::new(&mesh.triangles, None, Frame::IDENTITY);
-                let form = Form::Mesh(Box::new(mesh));
-                (vec![target(form)], Points::Flat(pieces))
+                let form = Primitive::Mesh(Box::new(mesh));
+                (vec![tagged(form)], Points::Flat(pieces))
             }
             Object::Patch(i) => {
                 let patch = scene.patches[i].patch;
                 (
-                    vec![target(Form::Smooth(Box::new(patch)))],
+                    vec![tagged(Primitive::Smooth(Box::new(patch)))],
                     Points::Smooth(patch),
                 )
             }
         };
         Some(Self {
-            targets: Targets::new(&targets, 0.0),
+            primitives: PrimitiveSet::new(&primitives, 0.0),
             points,
         })
     }
@@ -85,9 +86,9 @@ impl Ground {
     pub(crate) fn density(&self, ray: &TwoPlane) -> f64 {
         let along = direction(ray);
         let mut sum = 0.0;
-        self.targets.each(ray, |at, target| {
+        self.primitives.each(ray, |at, primitive| {
             let point = start(ray) + at * along;
-            let normal = target.normal(point);
+            let normal = primitive.normal(point);
             // Per area of the surface.
             let density = match &self.points {
                 Points::Flat(pieces) => 1.0 / pieces.area(),
@@ -151,7 +152,7 @@ mod tests {
             ),
         ] {
             let scene = scene(surface);
-            let ground = Ground::new(&scene, None).unwrap();
+            let ground = FootprintSampler::new(&scene, None).unwrap();
             let [u, v] = slopes;
             let line = |point: DVec3| TwoPlane {
                 x: point.x - point.z * u,

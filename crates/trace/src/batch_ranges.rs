@@ -1,3 +1,5 @@
+//! Which photons a batch has, and which of them a thread takes at a time.
+
 use etendue_scene::Run;
 use std::ops::Range;
 
@@ -9,12 +11,12 @@ const PART: u64 = 1 << 20;
 
 /// How the photons of a run are shared out: evenly over batches, in order.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Shares {
+pub(crate) struct BatchRanges {
     photons: u64,
     batches: u32,
 }
 
-impl Shares {
+impl BatchRanges {
     pub(crate) fn new(run: &Run) -> Self {
         Self {
             photons: run.photons,
@@ -69,8 +71,8 @@ impl Shares {
 mod tests {
     use super::*;
 
-    fn two(photons: u64) -> Shares {
-        Shares {
+    fn two(photons: u64) -> BatchRanges {
+        BatchRanges {
             photons,
             batches: 2,
         }

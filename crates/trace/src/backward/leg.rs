@@ -1,0 +1,134 @@
+//! A leg of the path as a ray that is traced back sees it.
+
+use crate::area_sampler::AreaSampler;
+use crate::courses::{Both, rounding};
+use crate::heading::Heading;
+use crate::obstacles::{Around, Obstacles};
+use crate::primitive::Primitive;
+use crate::primitive_set::{PrimitiveSet, TaggedPrimitive};
+use etendue_field::{Frame, Patch, Reflectance, Specular, TwoPlane};
+use etendue_scene::{Event, Object, PatchObject, Scene};
+
+/// A leg of the path, looked along from its end.
+#[derive(Debug)]
+pub(super) struct Leg {
+    pub(super) courses: Both<Course>,
+    /// What it ends on.
+    pub(super) ends: Option<Object>,
+}
+
+/// What light meets that goes one way on a leg.
+#[derive(Debug)]
+pub(super) struct Course {
+    /// In the frame at the light.
+    pub(super) frame: Frame,
+    pub(super) obstacles: Obstacles,
+    /// The surface at its beginning; `None` for the first.
+    pub(super) leaves: Option<Leaves>,
+}
+
+/// A ray along which light of a leg may come, in the frame of its way.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Incoming {
+    pub(super) leg: usize,
+    pub(super) heading: Heading,
+    pub(super) ray: TwoPlane,
+}
+
+/// The surface that light leaves at the beginning of a leg.
+#[derive(Debug)]
+pub(super) struct Leaves {
+    pub(super) object: Object,
+    /// In the frame of the course.
+    pub(super) primitives: PrimitiveSet<()>,
+    pub(super) how: Scattering,
+    pub(super) rounding: f64,
+}
+
+/// Scattering light leaves a surface.
+#[derive(Debug)]
+pub(super) enum Scattering {
+    /// Diffusely, from pieces of which points can be drawn.
+    Diffuse { albedo: f64, pieces: AreaSampler },
+    /// By a BRDF that may vary over a patch, in the frame of the course.
+    Reflects {
+        patch: Patch,
+        reflectance: Box<Reflectance>,
+    },
+    /// Turned; the lens's frame, in the frame of the course.
+    Turned { lens: Frame, event: Specular },
+}
+
+impl Incoming {
+    /// A ray of the light.
+    pub(super) fn from_light(ray: TwoPlane) -> Self {
+        Self {
+            leg: 0,
+            heading: Heading::Along,
+            ray,
+        }
+    }
+}
+
+impl Leg {
+    pub(super) fn new(scene: &Scene, leg: usize) -> Self {
+        Self {
+            courses: Both::new(scene, leg, |_, this| Course {
+                frame: this.frame,
+                obstacles: Obstacles::new(scene, this),
+                leaves: this.leaves.map(|hit| Leaves::new(scene, this, hit.object)),
+            }),
+            ends: scene.path.ends_at(leg).map(|hit| hit.object),
+        }
+    }
+}
+
+impl Leaves {
+    pub(super) fn new(scene: &Scene, leg: &etendue_scene::Leg, object: Object) -> Self {
+        let around = Around(leg.frame);
+        let tagged = |primitive| TaggedPrimitive { primitive, tag: () };
+        let diffuse = |albedo, pieces| Scattering::Diffuse { albedo, pieces };
+        let (primitives, how) = match object {
+            Object::Surface(i) => {
+                let surface = &scene.surfaces[i];
+                let [a, b, _, d] = surface.corners();
+                (
+                    vec![tagged(around.surface(surface))],
+                    diffuse(surface.albedo, AreaSampler::One([a, b, d])),
+                )
+            }
+            Object::Mesh(i) => {
+                let mesh = &scene.meshes[i];
+                let how = if let Some(smooth) = &mesh.smooth {
+                    let (lens, event) = (Frame::IDENTITY, smooth.event);
+                    Scattering::Turned { lens, event }
+                } else {
+                    let pieces = AreaSampler::triangles(&mesh.triangles);
+                    diffuse(mesh.albedo.unwrap_or(0.0), pieces)
+                };
+                (vec![tagged(around.mesh(mesh))], how)
+            }
+            Object::Patch(i) => {
+                let PatchObject { patch, event, .. } = &scene.patches[i];
+                let patch = patch.seen_from(&leg.frame);
+                let how = match event {
+                    Event::Specular(event) => Scattering::Turned {
+                        lens: patch.frame,
+                        event: *event,
+                    },
+                    Event::Reflects(reflectance) => Scattering::Reflects {
+                        patch,
+                        reflectance: Box::new(reflectance.clone()),
+                    },
+                };
+                (vec![tagged(Primitive::Smooth(Box::new(patch)))], how)
+            }
+        };
+        Self {
+            object,
+            primitives: PrimitiveSet::new(&primitives, 0.0),
+            how,
+            rounding: rounding(leg),
+        }
+    }
+}

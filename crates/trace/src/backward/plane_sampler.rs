@@ -1,0 +1,64 @@
+//! Scattering rays of one plane are drawn.
+
+use super::end::End;
+use super::leg::Incoming;
+use super::source::TracedLight;
+use crate::courses::Both;
+use crate::heading::Heading;
+use crate::plane_on_leg::PlaneOnLeg;
+use crate::proposal::ProfileDensity;
+use etendue_field::{Orientation, TwoPlane, VirtualPlane};
+use etendue_scene::Scene;
+
+/// Scattering rays of one plane are drawn.
+#[derive(Debug)]
+pub(super) struct PlaneSampler {
+    pub(super) leg: usize,
+    pub(super) planes_on_leg: Both<PlaneOnLeg>,
+    pub(super) position: [ProfileDensity; 2],
+    pub(super) slope: [ProfileDensity; 2],
+    /// Whether slopes are drawn towards points of the light: where they are the narrower choice.
+    pub(super) to_light: bool,
+}
+
+impl PlaneSampler {
+    pub(super) fn new(
+        scene: &Scene,
+        index: usize,
+        plane: &VirtualPlane,
+        light: &TracedLight,
+    ) -> Self {
+        let w = &plane.window;
+        let narrower = match light {
+            TracedLight::Area { shape, .. } => {
+                let bounds = shape.bounds();
+                let slopes = |axis: usize| bounds.size[axis] / plane.distance;
+                slopes(0) * slopes(1) < 4.0 * w.u.half_width() * w.v.half_width()
+            }
+            TracedLight::Sky(_) => true,
+            TracedLight::Narrow(_) => false,
+        };
+        Self {
+            leg: plane.leg,
+            planes_on_leg: Both::new(scene, plane.leg, |heading, leg| {
+                PlaneOnLeg::of(heading, leg, scene, index, plane)
+            }),
+            position: [ProfileDensity::new(&w.x), ProfileDensity::new(&w.y)],
+            slope: [ProfileDensity::new(&w.u), ProfileDensity::new(&w.v)],
+            to_light: plane.leg == 0 && narrower && plane.orientation == Orientation::Orthogonal,
+        }
+    }
+
+    /// The ray of the leg that the plane has as `seen`, where it is looked at, and dA over dx dy there; `None` if there is none.
+    pub(super) fn leg_ray(&self, seen: &TwoPlane) -> Option<(Incoming, End, f64)> {
+        let headings = [Heading::Along, Heading::Against];
+        headings.into_iter().find_map(|heading| {
+            let plane_on_leg = self.planes_on_leg.of(heading)?;
+            let (ray, area) = plane_on_leg.leg_ray(seen)?;
+            let end = plane_on_leg.crossing(&ray, f64::NEG_INFINITY)?;
+            let leg = self.leg;
+            let incoming = Incoming { leg, heading, ray };
+            Some((incoming, End::Plane(end, plane_on_leg.side), area))
+        })
+    }
+}

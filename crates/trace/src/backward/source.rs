@@ -1,0 +1,46 @@
+//! What a ray that is traced back can find where the path begins.
+
+use crate::radiance::radiance;
+use crate::sky::Sky;
+use etendue_field::{Light, Shape, TwoPlane};
+use glam::DVec3;
+
+/// What a ray can find where the path begins.
+#[derive(Debug)]
+pub(super) enum TracedLight {
+    /// A light that it hits.
+    Area { light: Light, shape: Shape },
+    /// Light from far away.
+    Sky(Sky),
+    /// A point, a projector or a beam, towards which rays are drawn.
+    Narrow(Light),
+}
+
+impl TracedLight {
+    /// Radiance along a ray that nothing stands in the way of; of light without extent per du dv or
+    /// dx dy.
+    pub(super) fn radiance(&self, ray: &TwoPlane) -> f64 {
+        match self {
+            Self::Area { light, .. } | Self::Narrow(light) => radiance(light, ray),
+            Self::Sky(sky) => sky.radiance(ray),
+        }
+    }
+
+    /// The density per solid angle, at a point, of directions drawn towards the light.
+    pub(super) fn density_towards(&self, point: DVec3, towards: DVec3) -> f64 {
+        let shape = match self {
+            Self::Sky(sky) => return sky.density(-towards),
+            Self::Area { shape, .. } => shape,
+            Self::Narrow(_) => return 0.0,
+        };
+        let way = -point.z / towards.z;
+        let on = point + way * towards;
+        let is_on = way > 0.0 && shape.contains(on.x, on.y);
+        // r² dω = cos θ dA.
+        if is_on {
+            way * way / (towards.z.abs() * shape.area())
+        } else {
+            0.0
+        }
+    }
+}

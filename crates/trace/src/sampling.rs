@@ -1,0 +1,30 @@
+//! Points and directions from even random numbers.
+
+use etendue_field::Shape;
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// π: the flux a Lambertian surface sends out per radiance and area.
+pub(crate) const LAMBERTIAN: f64 = PI;
+
+/// A direction about Z with a density in proportion to its cosine, from two numbers in (0, 1).
+pub(crate) fn by_cosine([a, b]: [f64; 2]) -> DVec3 {
+    let (sin, cos) = libm::sincos(TAU * b);
+    let [across, up] = [a.sqrt(), (1.0 - a).sqrt()];
+    DVec3::new(across * cos, across * sin, up)
+}
+
+/// A uniform point of a shape, from two numbers in (0, 1).
+pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {
+    match shape {
+        Shape::Rectangle(rectangle) => [0, 1].map(|axis| {
+            let [low, high] = rectangle.extent(axis);
+            low + r[axis] * (high - low)
+        }),
+        Shape::Disc(disc) => {
+            let (sin, cos) = libm::sincos(TAU * r[1]);
+            let radius = disc.radius * r[0].sqrt();
+            [disc.center[0] + radius * cos, disc.center[1] + radius * sin]
+        }
+    }
+}
