@@ -1,6 +1,7 @@
 //! How near blockers are, at sparse points of the picture and reconstructed between them.
 
-use crate::criterion::{Cutoffs, shaded};
+use crate::criterion::shaded;
+use crate::cutoffs::Cutoffs;
 use crate::metric::Metric;
 use crate::reconstruct::{Fit, Sample, reconstruct};
 use crate::visible::{Surface, Visible};

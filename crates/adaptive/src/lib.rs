@@ -8,6 +8,7 @@
 mod blockers;
 mod blue_noise;
 mod criterion;
+mod cutoffs;
 mod density;
 mod method;
 mod metric;

@@ -2,7 +2,8 @@
 
 use crate::blockers::nearness;
 use crate::blue_noise::{Point, blue_noise};
-use crate::criterion::{Cutoffs, criterion, curvature, printed, shaded};
+use crate::criterion::{criterion, curvature, printed, shaded};
+use crate::cutoffs::Cutoffs;
 use crate::density::{scaled, to_power, wanted};
 use crate::metric::Metric;
 use crate::reconstruct::{Fit, Sample, reconstruct};

@@ -1,5 +1,5 @@
 use crate::blue_noise::Point;
-use crate::criterion::Cutoffs;
+use crate::cutoffs::Cutoffs;
 use crate::reconstruct::Sample;
 use crate::visible::Surface;
 use etendue_paths::Paths;

@@ -1,4 +1,4 @@
-use crate::criterion::Cutoffs;
+use crate::cutoffs::Cutoffs;
 use etendue_paths::{Paths, Reflects, Seen};
 use etendue_world::Camera;
 use glam::DVec3;

@@ -10,11 +10,14 @@
 
 #[cfg(target_family = "wasm")]
 mod page;
+mod parts;
+mod plane;
 mod planes;
 mod rays;
 mod ron;
 mod setup;
 
-pub use planes::{CELLS, Plane, grid, lobe};
+pub use parts::{CELLS, grid, lobe};
+pub use plane::Plane;
 pub use ron::scene;
 pub use setup::{Entry, Key, Setup, TABLE};

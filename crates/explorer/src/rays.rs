@@ -1,6 +1,7 @@
 //! The curved glossy receiver as it is: rays followed off a sphere, as `etendue predict` does it.
 
-use crate::planes::{CELLS, Plane, grid, shapes, square, window};
+use crate::parts::{CELLS, grid, shapes, square, window};
+use crate::plane::Plane;
 use crate::setup::{Key, Setup};
 use etendue_field::{
     Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,

@@ -1,6 +1,7 @@
 //! The scene as a file for `etendue run`.
 
-use crate::planes::{Plane, SLAT, count, grid, place, seed};
+use crate::parts::{SLAT, count, grid, place, seed};
+use crate::plane::Plane;
 use crate::rays::{APERTURE, AZIMUTHS};
 use crate::setup::{Key, Setup};
 use etendue_field::FrequencyAxis;

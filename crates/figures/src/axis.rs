@@ -1,4 +1,4 @@
-use crate::style::{LEAST_TEXT, TICK_TEXT};
+use crate::sizes::{LEAST_TEXT, TICK_TEXT};
 use crate::text::width;
 
 /// A named quantity and its unit.

@@ -3,7 +3,7 @@
 use crate::color::{NO_VALUE, Shading, hex};
 use crate::figure::Error;
 use crate::image::color_strip;
-use crate::style::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
+use crate::sizes::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 

@@ -1,7 +1,7 @@
 //! From values to colors.
 
 use crate::axis::Axis;
-use crate::image::level;
+use crate::grey::level;
 use etendue_field::whole;
 use ndarray::ArrayView2;
 use serde::{Deserialize, Serialize};

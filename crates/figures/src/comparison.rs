@@ -5,7 +5,7 @@ use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::panel::Panel;
-use crate::style::{HEAD_TEXT, LABEL_BASELINE};
+use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::svg::{Anchor, Area, Svg, Text};
 use ndarray::ArrayView2;
 

@@ -4,9 +4,8 @@ use crate::axis::{Axis, Quantity, upright_ticks};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::LEFT;
 use crate::panel::Panel;
-use crate::style::{
-    FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, Style, THEORY_COLOR, TICK_TEXT,
-};
+use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, THEORY_COLOR, TICK_TEXT};
+use crate::style::Style;
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::{plain, width};
 use etendue_field::whole;

@@ -3,28 +3,22 @@
 mod place;
 
 use crate::axis::{Axis, upright_ticks};
+use crate::marks::{BADGE, HATCH, Hatching, LIGHT, PLANE, badge, line_of};
 use crate::section::{PlaneMark, Section, Segment, SegmentKind};
-use crate::style::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
+use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 use etendue_field::Side;
 use place::{Name, names, number_places};
 
-pub(crate) const LIGHT: &str = "#f0a000";
-const GLASS: &str = "#3a9bb0";
 const BODY: &str = "#b9b9b9";
-pub(crate) const PLANE: &str = "#1f5fa8";
 
 /// Space left and right of the central ray's ends.
 const MARGIN: f64 = 36.0;
-/// Radius of a plane's number.
-pub(crate) const BADGE: f64 = 8.0;
 /// Height of the lines from planes to their numbers.
 const FEET: f64 = 10.0;
 /// Height of a row of segment names.
 const NAME_ROW: f64 = 17.0;
-/// Depth of the hatching behind surfaces.
-const HATCH: f64 = 9.0;
 
 /// A section laid out in an area of the drawing.
 #[derive(Debug)]
@@ -321,60 +315,5 @@ impl<'a> Cut<'a> {
         let at = [left - TICK - 11.0 - widest, self.plot.middle()[1]];
         let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
         svg.markup(style, &self.x.quantity.label(self.x.exponent()));
-    }
-}
-
-/// A plane's number, from 1, on a disk.
-pub(crate) fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
-    svg.circle([x, y], BADGE, PLANE);
-    let style = Text::new([x, y + 3.8], 10.5, Anchor::Middle)
-        .bold()
-        .fill("white");
-    svg.text(style, &(plane + 1).to_string());
-}
-
-/// Color and width of a segment.
-pub(crate) fn line_of(kind: SegmentKind) -> (&'static str, f64) {
-    match kind {
-        SegmentKind::Light => (LIGHT, 6.0),
-        SegmentKind::Blocker => (INK, 4.5),
-        SegmentKind::Surface => (INK, 1.6),
-        SegmentKind::Glass => (GLASS, 1.8),
-        SegmentKind::Sky => (LIGHT, 0.0),
-    }
-}
-
-/// Short slanted strokes behind a surface, evenly along all its pieces.
-#[derive(Debug, Default)]
-pub(crate) struct Hatching {
-    /// Where the last piece ended, and how far behind its last stroke.
-    last: Option<([f64; 2], f64)>,
-}
-
-impl Hatching {
-    /// Hatches a piece on the side to which light goes.
-    pub(crate) fn draw(&mut self, svg: &mut Svg, [start, end]: [[f64; 2]; 2], light: [f64; 2]) {
-        const STEP: f64 = 6.0;
-        let along = [end[0] - start[0], end[1] - start[1]];
-        let length = libm::hypot(along[0], along[1]);
-        if length == 0.0 {
-            return;
-        }
-        let mut normal = [along[1] / length, -along[0] / length];
-        if normal[0] * light[0] + normal[1] * light[1] < 0.0 {
-            normal = normal.map(|n| -n);
-        }
-        let stroke = Stroke::solid(FAINT, 1.0);
-        let near = |a: [f64; 2]| libm::hypot(a[0] - start[0], a[1] - start[1]) < 0.1;
-        let behind = self.last.filter(|(point, _)| near(*point));
-        let mut at = behind.map_or(HATCH, |(_, behind)| STEP - behind);
-        // The cap bounds the work on absurd lengths.
-        while at < length.min(20_000.0) {
-            let [x, y] = [0, 1].map(|i| start[i] + along[i] * at / length);
-            let back = [0, 1].map(|i| [x, y][i] + HATCH * normal[i] - HATCH * along[i] / length);
-            svg.line([x, y], back, stroke);
-            at += STEP;
-        }
-        self.last = Some((end, length + STEP - at));
     }
 }

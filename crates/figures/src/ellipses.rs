@@ -6,7 +6,7 @@ use crate::color::{Colors, Shading, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::Picture;
 use crate::panel::Panel;
-use crate::style::{INK, LABEL_BASELINE, TICK_TEXT};
+use crate::sizes::{INK, LABEL_BASELINE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use std::f64::consts::TAU;
 

@@ -5,7 +5,8 @@ use crate::bar;
 use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::Error;
 use crate::panel::Panel;
-use crate::style::{HEAD_TEXT, LABEL_BASELINE, Style};
+use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
+use crate::style::Style;
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use ndarray::ArrayView2;
 

@@ -2,6 +2,7 @@
 
 use crate::color::{Rgb, Shading};
 use crate::figure::Error;
+use crate::grey::level;
 use base64::Engine;
 use ndarray::ArrayView2;
 
@@ -81,20 +82,4 @@ pub fn photograph([width, height]: [usize; 2], radiance: &[f64]) -> Result<Vec<u
     let white = white.filter(|white| *white > 0.0).unwrap_or(1.0);
     let grey: Vec<u8> = radiance.iter().map(|x| level(x / white)).collect();
     encoded(w, h, png::ColorType::Grayscale, &grey)
-}
-
-/// The level of a share of white, 0 to 255.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "clamped to 0..=255"
-)]
-pub(crate) fn level(linear: f64) -> u8 {
-    let linear = linear.clamp(0.0, 1.0);
-    let curved = if linear <= 0.003_130_8 {
-        12.92 * linear
-    } else {
-        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
-    };
-    (255.0 * curved).round() as u8
 }

@@ -4,7 +4,7 @@ use crate::axis::{Axis, spaced_ticks, upright_ticks};
 use crate::color::Shading;
 use crate::figure::Error;
 use crate::image::heat_map;
-use crate::style::{LABEL_BASELINE, LABEL_TEXT, TICK, TICK_BASELINE, TICK_TEXT};
+use crate::sizes::{LABEL_BASELINE, LABEL_TEXT, TICK, TICK_BASELINE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use crate::text::width;
 use ndarray::ArrayView2;

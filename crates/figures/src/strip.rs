@@ -8,7 +8,8 @@ use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::{GAPS, GUIDE, Grid, Guide, LEFT, Picture, RIGHT, inner};
 use crate::plate::feet;
 use crate::section::Section;
-use crate::style::{SOFT, Style, TICK_TEXT};
+use crate::sizes::{SOFT, TICK_TEXT};
+use crate::style::Style;
 use crate::svg::{Anchor, Area, Svg, Text};
 
 /// What is shown under a virtual plane.

@@ -1,6 +1,6 @@
 //! A small SVG writer: the few elements the figures are made of.
 
-use crate::style::{INK, SOFT, STROKE, TICK_TEXT, TITLE_TEXT};
+use crate::sizes::{INK, SOFT, STROKE, TICK_TEXT, TITLE_TEXT};
 use crate::text::{escape, fit, lines, plain, spans};
 use std::fmt::Write;
 

@@ -1,6 +1,6 @@
 //! Markup: `*italic*`, `_{subscript}`, `^{superscript}`.
 
-use crate::style::LEAST_TEXT;
+use crate::sizes::LEAST_TEXT;
 
 /// A stretch of text in one style.
 #[derive(Clone, Debug, PartialEq)]

@@ -1,30 +1,10 @@
 //! The scene to scale, seen along Y of its light: where the central ray turns, and where things stand.
 
-use crate::cut::{BADGE, Hatching, PLANE, badge, line_of};
-use crate::section::{Segment, SegmentKind};
-use crate::style::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
+use crate::marks::{BADGE, Hatching, PLANE, badge, line_of};
+use crate::section::{Object, SegmentKind, World};
+use crate::sizes::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
 use crate::svg::{Anchor, Area, Stroke, Svg, Text};
 use etendue_field::tidy;
-
-/// Something in the scene.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Object {
-    /// What it is; points are (z, x).
-    pub segment: Segment,
-    /// Where light goes that arrives at it, (z, x).
-    pub light: [f64; 2],
-}
-
-/// The plane of D and X at the light; points are (z, x), metres.
-#[derive(Clone, Debug, PartialEq)]
-pub struct World {
-    /// Corners and ends of the central ray.
-    pub path: Vec<[f64; 2]>,
-    /// Lights, blockers and surfaces.
-    pub objects: Vec<Object>,
-    /// The virtual planes, as wide as their windows.
-    pub planes: Vec<[[f64; 2]; 2]>,
-}
 
 /// Height of the drawing, and of what is written above it.
 const DRAWING: f64 = 170.0;

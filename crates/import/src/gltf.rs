@@ -18,13 +18,16 @@ mod container;
 mod glass;
 mod image;
 mod leftover;
+mod level;
 mod light;
 mod material;
 mod mesh;
 mod metallic;
 mod node;
+mod raster_key;
 mod reader;
 mod shape;
+mod surface;
 mod texture;
 mod uri;
 

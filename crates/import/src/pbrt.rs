@@ -33,6 +33,7 @@ mod directive;
 mod entity;
 mod imagemap;
 mod include;
+mod keys;
 mod leftover;
 mod light;
 mod material;
@@ -47,6 +48,7 @@ mod spectrum;
 mod texture;
 mod token;
 mod transform;
+mod words;
 
 use crate::files::Files;
 use crate::report::{Place, Report};

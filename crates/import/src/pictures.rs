@@ -2,6 +2,7 @@
 
 mod hdr;
 mod jpeg;
+mod size;
 
 use crate::range::MAX_NUMBER;
 use crate::{Color, files::Files};
@@ -10,12 +11,6 @@ use etendue_scene::{Channels, read_channels};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// Most numbers in a picture, as in those of the scene crate.
-const MOST: usize = 1 << 27;
-
-/// Most numbers in a byte of a file; a block of 64 numbers takes more than half a bit in any JPEG file that shows something.
-const MOST_PER_BYTE: usize = 1032;
 
 /// Pictures that have been read, each once.
 #[derive(Debug, Default)]
@@ -117,17 +112,5 @@ pub(crate) fn linear(level: f64) -> f64 {
         level / 12.92
     } else {
         libm::pow((level + 0.055) / 1.055, 2.4)
-    }
-}
-
-/// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.
-fn check_size(width: usize, height: usize, length: usize) -> Result<(), String> {
-    let most = MOST.min(length.saturating_mul(MOST_PER_BYTE));
-    let numbers = width.checked_mul(height).and_then(|n| n.checked_mul(3));
-    match numbers {
-        Some(1..) if numbers <= Some(most) => Ok(()),
-        _ => Err(format!(
-            "has {width} × {height} pixels; allowed: as many as {length} bytes can hold, and at most {MOST} numbers"
-        )),
     }
 }

@@ -9,7 +9,7 @@ pub use surface::{
     TermFile,
 };
 
-use crate::overrides::whole;
+use crate::whole::whole;
 use etendue_field::{Orientation, Profile, Quantity};
 use schemars::JsonSchema;
 use serde::de::{Error, Unexpected, Visitor};

@@ -25,6 +25,7 @@ mod hierarchy;
 mod likely;
 pub mod limits;
 mod mesh;
+mod messages;
 mod nearest;
 mod overrides;
 mod parse;
@@ -37,6 +38,7 @@ mod schema;
 mod shown;
 mod triangles;
 mod warnings;
+mod whole;
 
 pub use fault::{Fault, SceneError};
 pub use file::{

@@ -1,9 +1,9 @@
 //! Fields set on the command line.
 
-use crate::examples::wanted;
+use crate::messages::unfit;
 use crate::nearest::did_you_mean;
-use crate::parse::path_of;
 use crate::shown::shown;
+use crate::whole::whole;
 use crate::{SceneError, SceneFile, limits};
 use serde_json::Value;
 
@@ -51,21 +51,6 @@ impl SceneFile {
         }
         serde_json::from_value(tree).ok()
     }
-}
-
-/// Why a value does not fit the field at which it is, or below.
-pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
-    let field = path_of(error.path());
-    let told = error.inner().to_string();
-    // The place is told beside it.
-    let told = told.split(" at line ").next().unwrap_or_default();
-    // Of an unknown name: itself, and those that are known.
-    let mut names = told.split('`').skip(1).step_by(2);
-    let meant = match names.next() {
-        Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),
-        _ => String::new(),
-    };
-    format!("{field}: {told}{meant}; allowed: {}", wanted(&field))
 }
 
 /// Sets what is at `path` below a node.
@@ -181,15 +166,4 @@ fn separated(text: &str) -> Vec<&str> {
     })
     .filter(|part| !part.trim().is_empty())
     .collect()
-}
-
-/// A number as a whole one, where it is one.
-#[expect(
-    clippy::cast_possible_truncation,
-    clippy::cast_sign_loss,
-    reason = "checked to be a whole number below 2^53"
-)]
-pub(crate) fn whole(x: f64) -> Option<u64> {
-    let small = (0.0..9_007_199_254_740_992.0).contains(&x);
-    (small && x.fract() == 0.0).then_some(x as u64)
 }

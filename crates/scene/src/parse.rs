@@ -1,14 +1,14 @@
 //! Reads scene files, and says of one that cannot be read which field is at fault.
 
 use crate::examples::{example, has_fields, wanted};
+use crate::messages::{path_of, unfit};
 use crate::nearest::did_you_mean;
-use crate::overrides::unfit;
 use crate::place::{Place, find, word};
 use crate::shown::shown;
 use crate::{SceneError, SceneFile, limits};
 use ron::error::{Error, SpannedError};
 use serde::Deserialize;
-use serde_path_to_error::{Path, Segment, Track};
+use serde_path_to_error::Track;
 
 impl SceneFile {
     /// Reads a scene file, in RON or, if it begins with a brace, in JSON.
@@ -52,20 +52,6 @@ fn json(text: &str) -> Result<SceneFile, SceneError> {
             message: "allowed: nothing after the last bracket".to_owned(),
         }),
     })
-}
-
-/// A path as messages have it, without names of variants.
-pub(crate) fn path_of(path: &Path) -> String {
-    let mut written = String::new();
-    for segment in path.iter() {
-        match segment {
-            Segment::Seq { index } => written.push_str(&format!("[{index}]")),
-            Segment::Map { key } if written.is_empty() => written.push_str(key),
-            Segment::Map { key } => written.extend([".", key]),
-            Segment::Enum { .. } | Segment::Unknown => {}
-        }
-    }
-    written
 }
 
 /// A field of what is at a path.

@@ -14,6 +14,7 @@ mod planes;
 mod rays;
 mod reflectance;
 mod surfaces;
+mod things;
 mod triangles;
 
 use crate::fault::SceneError;
@@ -24,9 +25,9 @@ use crate::scene::{CentralRay, Object, Run, Scene};
 use etendue_field::{Frame, tidy};
 use faults::{Faults, number, show, vector};
 use glam::DVec3;
-use path::Things;
 use std::collections::BTreeMap;
 use std::path::Path;
+use things::Things;
 
 /// Checks a scene file and resolves it to a scene; paths of meshes and pictures are relative to `folder`, `memory` is what
 /// this machine can hold, in bytes.

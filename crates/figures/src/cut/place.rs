@@ -1,7 +1,7 @@
 //! Where things of a cut go.
 
 use crate::section::{PlaneMark, Section, Segment};
-use crate::style::TICK_TEXT;
+use crate::sizes::TICK_TEXT;
 use crate::svg::Area;
 use crate::text::width;
 use etendue_field::Side;

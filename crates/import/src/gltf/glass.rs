@@ -1,8 +1,8 @@
 //! `KHR_materials_transmission`, as interfaces that light goes through.
 
-use super::material::Draft;
 use super::metallic::roughness;
 use super::reader::Reader;
+use super::surface::Draft;
 use etendue_world::{Dielectric, Material, Texture};
 
 impl Reader<'_> {

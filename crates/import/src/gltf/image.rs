@@ -1,36 +1,13 @@
 //! Images, as numbers.
 
+use super::level::{Level, cut};
+use super::raster_key::RasterKey;
 use super::reader::Reader;
-use super::texture::{Level, cut};
 use crate::pictures;
 use etendue_field::Raster;
 use etendue_scene::Channels;
 use std::path::Path;
 use std::sync::Arc;
-
-/// An image, and which numbers are taken from it.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(super) struct RasterKey {
-    image: usize,
-    kind: u8,
-    numbers: [u64; 3],
-}
-
-impl RasterKey {
-    fn new(image: usize, level: Level) -> Self {
-        let (kind, numbers) = match level {
-            Level::Color(factor) => (0, factor),
-            Level::GreenSquared(factor) => (1, [factor, 0.0, 0.0]),
-            Level::Blue(factor) => (2, [factor, 0.0, 0.0]),
-            Level::Alpha { factor, cutoff } => (3, [factor, cutoff.unwrap_or(-1.0), 0.0]),
-        };
-        Self {
-            image,
-            kind,
-            numbers: numbers.map(f64::to_bits),
-        }
-    }
-}
 
 /// What an image begins with, as the extension of a file.
 fn extension(bytes: &[u8]) -> Option<&'static str> {

@@ -1,33 +1,15 @@
 //! Materials.
 
+use super::level::Level;
 use super::reader::Reader;
-use super::texture::Level;
+use super::surface::{Draft, Surface};
 use crate::range::MAX_NUMBER;
 use crate::report::quoted;
 use ::gltf::json::Material as Source;
 use ::gltf::json::material::AlphaMode;
 use ::gltf::json::validation::Checked;
-use etendue_world::{Emission, Material, Texture};
+use etendue_world::{Material, Texture};
 use std::collections::BTreeSet;
-
-/// What a surface is made of.
-#[derive(Clone, Debug)]
-pub(super) struct Surface {
-    /// The number of its material.
-    pub(super) material: usize,
-    pub(super) emission: Option<Emission>,
-    pub(super) is_double_sided: bool,
-    /// The texture coordinates that its pictures go by.
-    pub(super) set: Option<u32>,
-}
-
-/// A material while it is read.
-pub(super) struct Draft<'a> {
-    pub(super) source: &'a Source,
-    pub(super) path: String,
-    /// Texture coordinates that pictures ask for.
-    pub(super) sets: BTreeSet<u32>,
-}
 
 impl<'a> Reader<'a> {
     /// A material by its number; without one that of the specification. `None` after a cause.

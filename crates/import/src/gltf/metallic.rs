@@ -1,8 +1,8 @@
 //! Metallic roughness, as plastic and metal.
 
-use super::material::Draft;
+use super::level::Level;
 use super::reader::Reader;
-use super::texture::Level;
+use super::surface::Draft;
 use etendue_world::{Conductor, Distribution, Material, Plastic, Roughness, Texture};
 
 /// Index of refraction, if nothing is said.

@@ -1,6 +1,6 @@
 use super::container::Document;
-use super::image::RasterKey;
-use super::material::Surface;
+use super::raster_key::RasterKey;
+use super::surface::Surface;
 use crate::Color;
 use crate::files::Files;
 use crate::report::{Place, Report};

@@ -1,9 +1,9 @@
 //! Meshes of nodes, as shapes.
 
-use super::material::Surface;
 use super::mesh::back_of;
 use super::node::Placed;
 use super::reader::{MOST, Reader};
+use super::surface::Surface;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::mesh::{Mode, Primitive};
 use ::gltf::json::validation::Checked;

@@ -1,26 +1,14 @@
 //! Textures, with how they are placed.
 
-use super::material::Draft;
+use super::level::{Level, cut};
 use super::reader::Reader;
+use super::surface::Draft;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::extensions::texture::TextureTransform;
 use ::gltf::json::texture::{Info, MagFilter, Sampler, WrappingMode};
 use ::gltf::json::validation::Checked;
 use etendue_world::{Bitmap, Filter, Texture, Wrap};
 use glam::{DAffine2, DMat2, DVec2};
-
-/// The number that is taken from a pixel.
-#[derive(Clone, Copy, Debug)]
-pub(super) enum Level {
-    /// An sRGB colour, made linear, times these factors.
-    Color([f64; 3]),
-    /// The square of the second channel times a factor.
-    GreenSquared(f64),
-    /// The third channel times a factor.
-    Blue(f64),
-    /// Alpha times a factor; 0 or 1 with a cutoff.
-    Alpha { factor: f64, cutoff: Option<f64> },
-}
 
 impl Reader<'_> {
     /// The number of a pixel that is white and opaque.
@@ -103,14 +91,5 @@ impl Reader<'_> {
             self.cause(path, message);
         }
         is_in_range.then_some(map)
-    }
-}
-
-/// Alpha, or whether it reaches the cutoff.
-pub(super) fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
-    match cutoff {
-        Some(cutoff) if alpha >= cutoff => 1.0,
-        Some(_) => 0.0,
-        None => alpha.clamp(0.0, 1.0),
     }
 }

@@ -1,5 +1,6 @@
 //! Shapes that are meshes.
 
+use super::mesh_key::MeshKey;
 use super::object::Object;
 use super::reader::Reader;
 use super::{cube, serialized};
@@ -10,17 +11,6 @@ use etendue_world::Triangles;
 use glam::{DAffine3, DMat3, DVec3};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-
-/// What a mesh is read from and how, so that shapes may share it.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
-pub(super) struct MeshKey {
-    path: PathBuf,
-    number: u32,
-    is_flat: bool,
-    is_flipped: bool,
-    /// Smooth normals are made for the shape as placed.
-    linear: Option<[u64; 9]>,
-}
 
 /// A mesh of a shape.
 pub(super) struct Mesh {

@@ -10,19 +10,6 @@ use crate::report::quoted;
 use glam::DAffine3;
 use roxmltree::Node;
 
-/// Their names.
-pub(super) const VALUES: [&str; 9] = [
-    "boolean",
-    "float",
-    "integer",
-    "point",
-    "rgb",
-    "spectrum",
-    "string",
-    "transform",
-    "vector",
-];
-
 impl Tree<'_> {
     /// The value of a property.
     pub(super) fn value(

@@ -1,4 +1,4 @@
-use super::mesh::MeshKey;
+use super::mesh_key::MeshKey;
 use super::object::{Kind, Object};
 use crate::Color;
 use crate::files::Files;

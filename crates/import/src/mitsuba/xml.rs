@@ -2,7 +2,7 @@
 
 use super::object::{Kind, Object, Property, Value};
 use super::parameters::Parameters;
-use super::property::VALUES;
+use super::property_names::VALUES;
 use super::source::{Cursor, Source};
 use super::transform::{Attributes, allow, find, required};
 use super::upgrade;

@@ -4,6 +4,7 @@ use super::entry::Entry;
 use super::map::Map;
 use super::ply::diffuse;
 use super::reader::Reader;
+use super::surface::Surface;
 use crate::pictures::{decode, linear};
 use crate::range::{MAX_NUMBER, MAX_SHARE};
 use etendue_field::Raster;
@@ -12,15 +13,6 @@ use std::sync::Arc;
 
 /// Index of refraction, if nothing is said.
 const INDEX: f64 = 1.5;
-
-/// What a part is made of.
-#[derive(Clone, Debug)]
-pub(super) struct Surface {
-    pub(super) material: usize,
-    pub(super) emission: Option<Texture>,
-    /// A picture that needs texture coordinates.
-    pub(super) has_picture: bool,
-}
 
 impl Reader<'_> {
     /// The surface of parts without a material.

@@ -1,8 +1,8 @@
 //! Parts of OBJ files, as shapes.
 
 use super::entry::Entry;
-use super::material::Surface;
 use super::mtl;
+use super::surface::Surface;
 use crate::Color;
 use crate::files::Files;
 use crate::meshes::Parts;

@@ -2,7 +2,8 @@
 
 use super::entity::{Entity, Read};
 use super::imagemap::upside_down;
-use super::reader::{Reader, Uv};
+use super::keys::Uv;
+use super::reader::Reader;
 use super::scene::Shape;
 use super::shape::Surface;
 use crate::pictures::Curve;

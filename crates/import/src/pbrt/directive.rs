@@ -4,59 +4,10 @@ use super::build::Builder;
 use super::parameter::parameters;
 use super::token::{Token, Tokens, number};
 use super::transform::{look_at, matrix, rotation};
+use super::words::is_directive;
 use crate::range::{MAX_NUMBER, holds, in_range};
 use crate::report::{Place, quoted};
 use glam::{DAffine3, DVec3};
-
-/// All directives of pbrt-v4.
-const DIRECTIVES: [&str; 38] = [
-    "Accelerator",
-    "ActiveTransform",
-    "AreaLightSource",
-    "Attribute",
-    "AttributeBegin",
-    "AttributeEnd",
-    "Camera",
-    "ColorSpace",
-    "ConcatTransform",
-    "CoordSysTransform",
-    "CoordinateSystem",
-    "Film",
-    "Identity",
-    "Import",
-    "Include",
-    "Integrator",
-    "LightSource",
-    "LookAt",
-    "MakeNamedMaterial",
-    "MakeNamedMedium",
-    "Material",
-    "MediumInterface",
-    "NamedMaterial",
-    "ObjectBegin",
-    "ObjectEnd",
-    "ObjectInstance",
-    "Option",
-    "PixelFilter",
-    "ReverseOrientation",
-    "Rotate",
-    "Sampler",
-    "Scale",
-    "Shape",
-    "Texture",
-    "Transform",
-    "TransformTimes",
-    "Translate",
-    "WorldBegin",
-];
-
-/// Of pbrt-v3, for `AttributeBegin` and `AttributeEnd`.
-const LEGACY: [&str; 2] = ["TransformBegin", "TransformEnd"];
-
-/// Whether a word begins a directive.
-pub(super) fn is_directive(word: &str) -> bool {
-    DIRECTIVES.binary_search(&word).is_ok() || LEGACY.contains(&word)
-}
 
 impl Builder<'_> {
     /// Follows all directives of a text.
@@ -240,17 +191,5 @@ fn in_brackets(tokens: &mut Tokens<'_>) -> Result<[f64; 16], String> {
     match begins && bracket(tokens, Token::Close) {
         true => Ok(all),
         false => Err("allowed: 16 numbers in brackets".to_owned()),
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn directives_are_found() {
-        assert!(DIRECTIVES.is_sorted());
-        assert!(is_directive("Accelerator") && is_directive("WorldBegin"));
-        assert!(!is_directive("WorldEnd"));
     }
 }

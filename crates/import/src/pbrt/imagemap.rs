@@ -1,7 +1,8 @@
 //! Pictures on surfaces.
 
 use super::entity::{Entity, Read};
-use super::reader::{Reader, Uv};
+use super::keys::Uv;
+use super::reader::Reader;
 use super::texture::Ask;
 use crate::pictures::Curve;
 use crate::report::quoted;

@@ -1,7 +1,8 @@
 //! Materials. Those that do not let light through are the same on both sides.
 
 use super::entity::{Entity, Given, Read};
-use super::reader::{Reader, Uv};
+use super::keys::Uv;
+use super::reader::Reader;
 use super::scene::MaterialOf;
 use super::texture::Ask;
 use crate::report::quoted;

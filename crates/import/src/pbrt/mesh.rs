@@ -10,7 +10,7 @@ use crate::report::quoted;
 use etendue_scene::DetailedMesh;
 use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 
 /// By how much of its size a patch may be off a plane or a parallelogram.
@@ -21,9 +21,6 @@ const TRIANGLE: [DVec2; 3] = [DVec2::ZERO, DVec2::X, DVec2::ONE];
 
 /// (u, v) at the corners of patches without any.
 const PATCH: [DVec2; 4] = [DVec2::ZERO, DVec2::X, DVec2::Y, DVec2::ONE];
-
-/// The file of a mesh, and whether its texture coordinates are asked for.
-pub(super) type MeshKey = (PathBuf, bool);
 
 /// Triangles, with their area in the world if they are one triangle or one patch.
 pub(super) struct Mesh {

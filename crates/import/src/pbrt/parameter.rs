@@ -1,7 +1,7 @@
 //! Lists of parameters, such as `"float radius" 2`.
 
-use super::directive::is_directive;
 use super::token::{At, Token, Tokens, number};
+use super::words::is_directive;
 use crate::range::MAX_NUMBER;
 use crate::report::{Place, Report, quoted};
 use std::cell::Cell;

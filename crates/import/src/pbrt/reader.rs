@@ -1,7 +1,6 @@
 use super::entity::{Entity, Given, Read};
-use super::mesh::MeshKey;
+use super::keys::{MeshKey, TextureKey, Uv};
 use super::scene::Scene;
-use super::texture::Key;
 use crate::Color;
 use crate::files::Files;
 use crate::pictures::Pictures;
@@ -26,7 +25,7 @@ pub(super) struct Reader<'a> {
     pub(super) world: World,
     pub(super) pictures: Pictures,
     pub(super) meshes: HashMap<MeshKey, Result<Arc<Triangles>, String>>,
-    pub(super) textures: BTreeMap<Key, Read<Texture>>,
+    pub(super) textures: BTreeMap<TextureKey, Read<Texture>>,
     /// Materials that were made, by their number in the scene and what they are on; `None` for no surface at all.
     pub(super) materials: BTreeMap<(usize, Uv), Read<Option<usize>>>,
     /// Materials, with those within one another.
@@ -34,17 +33,6 @@ pub(super) struct Reader<'a> {
     /// Textures or materials within one another, now.
     pub(super) depth: usize,
     noted: RefCell<BTreeSet<(usize, usize, String)>>,
-}
-
-/// How (u, v) of a world's surface go with those of pbrt.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Uv {
-    /// They are the same.
-    Own,
-    /// On spheres pbrt's v goes up from the lower pole.
-    Ball,
-    /// On discs pbrt's u is the azimuth, and v goes in from the edge.
-    Disc,
 }
 
 impl Uv {

@@ -1,9 +1,10 @@
 //! Shapes, objects and instances.
 
 use super::entity::{Entity, Given, Read};
+use super::keys::Uv;
 use super::material::reads_uv;
 use super::mesh::Mesh;
-use super::reader::{MOST_SHAPES, Reader, Uv};
+use super::reader::{MOST_SHAPES, Reader};
 use super::scene::Shape;
 use super::texture::Ask;
 use crate::placement::fault;

@@ -1,8 +1,9 @@
 //! Numbers that may vary over a surface: values, spectra and textures.
 
 use super::entity::{Entity, Given, Read};
+use super::keys::Uv;
 use super::parameter::Kind;
-use super::reader::{Reader, Uv};
+use super::reader::Reader;
 use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::Role;
@@ -16,9 +17,6 @@ const DEEPEST: usize = 16;
 
 /// Plugins that textures may be.
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
-
-/// A texture once read, by its name and what it is asked for.
-pub(super) type Key = (bool, String, u8, Uv);
 
 /// What is asked for: floats are numbers of their own.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

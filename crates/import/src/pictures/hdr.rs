@@ -1,6 +1,6 @@
 //! Radiance pictures (Ward, Real pixels, Graphics Gems II, 1991): red, green and blue with one exponent.
 
-use super::check_size;
+use super::size::check_size;
 use etendue_scene::Channels;
 
 /// Most lines of a header.

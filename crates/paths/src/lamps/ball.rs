@@ -1,4 +1,4 @@
-use super::{Incoming, emitted, way};
+use super::incoming::{Incoming, emitted, way};
 use crate::space::{Hit, Ray, Space};
 use etendue_world::Texture;
 use glam::{DAffine3, DVec3};

@@ -2,6 +2,7 @@
 
 mod ball;
 mod emit;
+mod incoming;
 mod shape;
 mod sky;
 
@@ -9,22 +10,11 @@ use crate::space::{Hit, Space};
 use ball::Ball;
 pub(crate) use emit::{Emitted, Flash, Target, chosen, mixed};
 use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DAffine3, DVec3};
+pub(crate) use incoming::Incoming;
+use incoming::way;
 use shape::Surface;
 use sky::Sky;
-
-/// Light that comes to a place from one direction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Incoming {
-    /// Where it comes from, of unit length.
-    pub(crate) toward: DVec3,
-    /// How far the way must be clear; beyond all where light comes from far away.
-    pub(crate) distance: f64,
-    /// Radiance over the density; without a density, irradiance across `toward`.
-    pub(crate) weight: f64,
-    /// Density per solid angle; `None` where only this direction was possible.
-    pub(crate) density: Option<f64>,
-}
 
 /// All lights of a world, of which each is looked for alike.
 #[derive(Debug)]
@@ -227,21 +217,5 @@ impl Lamp {
         };
         let angle = libm::atan2(local.truncate().length(), local.z);
         intensity * falloff.share(angle, *beam, *cutoff)
-    }
-}
-
-/// The direction and the distance from one place to another.
-fn way(from: DVec3, to: DVec3) -> (DVec3, f64) {
-    let between = to - from;
-    let distance = between.length();
-    (between / distance, distance)
-}
-
-/// What a shape emits at texture coordinates to a direction from its surface: the same to all on its front.
-fn emitted(emission: &Texture, uv: DVec2, normal: DVec3, away: DVec3) -> f64 {
-    if normal.dot(away) > 0.0 {
-        emission.value(uv)
-    } else {
-        0.0
     }
 }

@@ -1,4 +1,4 @@
-use super::{Incoming, emitted, way};
+use super::incoming::{Incoming, emitted, way};
 use crate::space::{Hit, Space};
 use etendue_world::Texture;
 use glam::{DVec2, DVec3};

@@ -8,6 +8,7 @@ mod stop;
 pub use backward::BackwardProbe;
 pub use photons::PhotonProbe;
 pub use stop::Stop;
+use stop::across;
 
 use crate::paths::Paths;
 use etendue_field::{
@@ -153,12 +154,6 @@ impl<'a> Probe<'a> {
             },
         });
     }
-}
-
-/// A normal as far as it is across a direction; `None` where it is along it.
-fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
-    let across = normal - normal.dot(along) * along;
-    (across.length() > 1e-6).then(|| across.normalize())
 }
 
 /// Rays or photons of each batch, and how batches are keyed.

@@ -89,7 +89,7 @@ const HALVINGS: i32 = 16;
 
 /// Curvatures by the normals at a step to either side: at the largest step that is still on the surface.
 fn curvature(space: &Space, hit: &Hit, normal: DVec3, leaving: DVec3, largest: f64) -> [f64; 2] {
-    let tangent = super::across(leaving, normal).unwrap_or_else(|| normal.any_orthonormal_vector());
+    let tangent = across(leaving, normal).unwrap_or_else(|| normal.any_orthonormal_vector());
     [tangent, normal.cross(tangent)].map(|axis| {
         let steps = (0..HALVINGS).map(|i| largest * 0.5_f64.powi(i));
         let mut found = steps.filter_map(|step| between(space, hit, normal, step * axis));
@@ -111,4 +111,10 @@ fn between(space: &Space, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> 
     };
     let ((p, m), (q, n)) = (at(1.0)?, at(-1.0)?);
     Some((m - n).dot(step) / (p - q).dot(step))
+}
+
+/// A normal as far as it is across a direction; `None` where it is along it.
+pub(super) fn across(normal: DVec3, along: DVec3) -> Option<DVec3> {
+    let across = normal - normal.dot(along) * along;
+    (across.length() > 1e-6).then(|| across.normalize())
 }

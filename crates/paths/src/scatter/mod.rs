@@ -8,39 +8,19 @@ mod fresnel;
 mod microfacet;
 mod phong;
 mod plastic;
+mod reflects;
 
 pub(crate) use bounce::Bounce;
 use bounce::{by_cosine, cosine_density, mirrored};
 use etendue_field::{Fresnel, Lobe};
 use etendue_trace::brdf::reflected_share;
-use etendue_world::{Conductor, Dielectric, Distribution, Material, Roughness, Texture};
+use etendue_world::{Conductor, Dielectric, Material, Roughness, Texture};
 use fresnel::dielectric;
 use glam::{DVec2, DVec3};
 use microfacet::{Microfacets, RoughInterface};
 use plastic::Coated;
+pub use reflects::Reflects;
 use std::f64::consts::PI;
-
-/// What a surface does to light, in a word.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Reflects {
-    /// It is black from here.
-    Nothing,
-    /// It sends light alike to all directions.
-    Diffuse,
-    /// It sends light one way.
-    Mirror,
-    /// It has a lobe about the mirror direction, perhaps above a diffuse base.
-    Lobe(Lobe),
-}
-
-impl Reflects {
-    fn facets(distribution: Distribution, roughness: f64) -> Self {
-        Self::Lobe(match distribution {
-            Distribution::Beckmann => Lobe::Beckmann { roughness },
-            Distribution::Ggx => Lobe::Ggx { roughness },
-        })
-    }
-}
 
 /// A material, ready to scatter.
 #[derive(Clone, Debug)]

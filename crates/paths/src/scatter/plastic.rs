@@ -1,7 +1,7 @@
-use super::Reflects;
 use super::bounce::{Bounce, by_cosine, cosine_density};
 use super::fresnel::{dielectric, diffuse_reflectance};
 use super::microfacet::Microfacets;
+use super::reflects::Reflects;
 use etendue_world::{Distribution, Plastic, Texture};
 use glam::{DVec2, DVec3};
 use std::f64::consts::PI;

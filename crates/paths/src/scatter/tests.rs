@@ -3,7 +3,7 @@
 
 use super::*;
 use etendue_field::random::{Stream, unit, words};
-use etendue_world::Plastic;
+use etendue_world::{Distribution, Plastic};
 
 fn constant(value: f64) -> Texture {
     Texture::Constant(value)

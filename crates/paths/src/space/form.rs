@@ -1,5 +1,6 @@
 //! Geometries in coordinates of their own.
 
+use super::local::Local;
 use super::mesh::Mesh;
 use glam::{DAffine3, DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -13,18 +14,6 @@ pub(crate) enum Form {
     Sphere,
     Cylinder,
     Mesh(Arc<Mesh>),
-}
-
-/// A place of a geometry, in its coordinates.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Local {
-    /// Of any length.
-    pub(crate) normal: DVec3,
-    /// The normal for shading.
-    pub(crate) shading: DVec3,
-    pub(crate) uv: DVec2,
-    /// The way in which u grows.
-    pub(crate) along_u: DVec3,
 }
 
 impl Form {

@@ -1,6 +1,6 @@
 //! Triangles of a world as rays meet them.
 
-use super::form::Local;
+use super::local::Local;
 use super::tree::Hierarchy;
 use super::triangle::Sight;
 use etendue_world::Triangles;

@@ -1,13 +1,15 @@
 //! Surfaces in space: what a ray meets first, and whether a way is clear.
 
 mod form;
+mod local;
 mod mesh;
 mod tree;
 mod triangle;
 
 use etendue_world::{Geometry, Shape, Triangles, World};
-use form::{Form, Local};
+use form::Form;
 use glam::{DAffine3, DMat3, DVec2, DVec3};
+use local::Local;
 use mesh::Mesh;
 use std::sync::Arc;
 use tree::Hierarchy;

@@ -10,6 +10,7 @@
 
 mod collapse;
 mod leaf;
+mod single;
 mod wide;
 
 use fearless_simd::{Level, Simd, dispatch};
@@ -23,6 +24,7 @@ use obvhs::bvh2::node::Bvh2Node;
 use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
 use obvhs::ploc::morton::morton_encode_u64_unorm;
 use rayon::prelude::*;
+use single::single;
 use std::fmt;
 use std::time::Duration;
 use wide::{Ray, Visit, Wide};
@@ -345,13 +347,4 @@ fn number(count: usize) -> u32 {
 #[inline]
 fn vector(v: DVec3) -> Vec3A {
     Vec3A::new(single(v.x), single(v.y), single(v.z))
-}
-
-#[inline]
-#[expect(
-    clippy::cast_possible_truncation,
-    reason = "f32 only names candidates; padding covers its rounding"
-)]
-fn single(x: f64) -> f32 {
-    x as f32
 }

@@ -1,6 +1,6 @@
 //! The scene to scale, in the plane of D and X at the light: where its path turns.
 
-use super::Cut;
+use super::cut::Cut;
 use etendue_field::VirtualPlane;
 use etendue_figures::{Object, Segment, World};
 use etendue_scene::{Leg, Scene};

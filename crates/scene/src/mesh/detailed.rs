@@ -1,5 +1,6 @@
 use super::error::fault;
-use super::{check_coordinate, obj, ply, text};
+use super::shared::check_coordinate;
+use super::{obj, ply, text};
 use crate::fault::Fault;
 use glam::{DVec2, DVec3};
 use std::path::Path;

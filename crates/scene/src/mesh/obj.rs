@@ -4,8 +4,8 @@ pub(super) mod detailed;
 pub(super) mod parts;
 
 use super::error::fault;
+use super::shared::{Mesh, check_coordinate, check_corners, fan};
 use super::text::{Lines, Words, number, quoted};
-use super::{Mesh, check_coordinate, check_corners, fan};
 use crate::fault::Fault;
 use glam::DVec3;
 use std::borrow::Cow;

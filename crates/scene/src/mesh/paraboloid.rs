@@ -1,5 +1,5 @@
-use super::Mesh;
 use super::error::fault;
+use super::shared::Mesh;
 use crate::fault::Fault;
 use glam::DVec3;
 

@@ -5,7 +5,7 @@ pub(super) mod detailed;
 mod header;
 
 use super::error::fault;
-use super::{Mesh, check_coordinate, check_corners, fan};
+use super::shared::{Mesh, check_coordinate, check_corners, fan};
 use crate::fault::Fault;
 use body::{Body, Row};
 use glam::DVec3;

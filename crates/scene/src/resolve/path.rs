@@ -2,11 +2,10 @@
 
 use super::Resolver;
 use super::faults::{names, show, vector};
+use super::things::Things;
 use crate::file::{SceneFile, SurfaceFile};
 use crate::nearest::did_you_mean;
-use crate::scene::{
-    BlockerLayer, CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject, Surface,
-};
+use crate::scene::{CentralRay, Event, Hit, Leg, MeshObject, Object, PatchObject};
 use etendue_field::{Frame, Light, Specular, TwoPlane, interpolated_normal, triangle_distance};
 use glam::DVec3;
 
@@ -15,15 +14,6 @@ const LEFT: f64 = 1e-9;
 
 /// Cosine of an angle to the normal at which a surface is met edge-on.
 const GRAZING: f64 = 1.7e-3;
-
-/// What the central ray may meet.
-#[derive(Clone, Copy)]
-pub(super) struct Things<'a> {
-    pub(super) blockers: &'a [BlockerLayer],
-    pub(super) surfaces: &'a [Surface],
-    pub(super) meshes: &'a [MeshObject],
-    pub(super) patches: &'a [PatchObject],
-}
 
 impl Resolver<'_> {
     /// The legs as far as they can be followed; the length of one that is at fault is NaN.

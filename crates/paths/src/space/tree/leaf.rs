@@ -3,6 +3,7 @@
 //! Seen along the ray, a triangle is hit if the ray is on the same side of its three edges (Woop, Benthin and Wald 2013, *Watertight ray/triangle
 //! intersection*). Here a triangle is left out only if the ray is on different sides by more than all rounding.
 
+use super::single::single;
 use super::wide::Visit;
 use fearless_simd::{Simd, f32x4, prelude::*};
 use glam::{DVec3, Vec3A};
@@ -46,7 +47,7 @@ impl Sight {
         Self {
             origin: origin.to_array(),
             axes,
-            slopes: [super::single(x / z), super::single(y / z)],
+            slopes: [single(x / z), single(y / z)],
             tolerance,
         }
     }

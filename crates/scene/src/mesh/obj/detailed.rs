@@ -2,8 +2,8 @@
 
 use super::super::detailed::{DetailedMesh, check};
 use super::super::error::fault;
+use super::super::shared::{check_corners, fan};
 use super::super::text::{Words, number, quoted};
-use super::super::{check_corners, fan};
 use super::{corner, place, statements, vertices, without_mark};
 use crate::fault::Fault;
 use glam::{DVec2, DVec3};

@@ -1,7 +1,7 @@
 //! PLY files with the normals and texture coordinates of their vertices.
 
 use super::super::detailed::{DetailedMesh, check};
-use super::super::fan;
+use super::super::shared::fan;
 use super::body::Body;
 use super::header::{Element, Header};
 use super::{axes, face, list, vertex};

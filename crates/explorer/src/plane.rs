@@ -1,0 +1,61 @@
+//! Planes along the path.
+
+use crate::setup::{Key, Setup};
+
+/// A place on the path.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// At the light.
+    Light,
+    /// Before the blockers.
+    Travelled,
+    /// After them.
+    Blocked,
+    /// At the receiver.
+    Arrived,
+    /// There, times the factor of the cosine.
+    Irradiance,
+    /// Light that leaves the diffuse receiver.
+    Diffuse,
+    /// On the glossy receiver, in the frames of its local normals.
+    Curved,
+    /// There, after the lobe.
+    Blurred,
+    /// Light that leaves the glossy receiver.
+    Glossy,
+}
+
+impl Plane {
+    /// Those of a scene, in the order of light.
+    #[must_use]
+    pub fn all(setup: &Setup) -> Vec<Self> {
+        let mut all = vec![Self::Light, Self::Travelled, Self::Blocked, Self::Arrived];
+        all.extend(if setup.is(Key::Glossy) {
+            vec![Self::Curved, Self::Blurred, Self::Glossy]
+        } else {
+            vec![Self::Irradiance, Self::Diffuse]
+        });
+        all
+    }
+
+    /// Its name in the scene file.
+    #[must_use]
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Light => "light",
+            Self::Travelled => "before_blockers",
+            Self::Blocked => "after_blockers",
+            Self::Arrived => "receiver",
+            Self::Irradiance => "irradiance",
+            Self::Diffuse | Self::Glossy => "leaving",
+            Self::Curved => "curvature",
+            Self::Blurred => "reflection",
+        }
+    }
+
+    /// Whether it takes more time than a picture has, so that it is made in the background.
+    #[must_use]
+    pub fn is_slow(self) -> bool {
+        matches!(self, Self::Irradiance | Self::Diffuse)
+    }
+}

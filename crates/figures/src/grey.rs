@@ -1,0 +1,17 @@
+//! The grey of a linear intensity.
+
+/// The level of a share of white, 0 to 255.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "clamped to 0..=255"
+)]
+pub(crate) fn level(linear: f64) -> u8 {
+    let linear = linear.clamp(0.0, 1.0);
+    let curved = if linear <= 0.003_130_8 {
+        12.92 * linear
+    } else {
+        1.055 * libm::pow(linear, 1.0 / 2.4) - 0.055
+    };
+    (255.0 * curved).round() as u8
+}

@@ -1,0 +1,23 @@
+//! The number that is taken from a pixel.
+
+/// The number that is taken from a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Level {
+    /// An sRGB colour, made linear, times these factors.
+    Color([f64; 3]),
+    /// The square of the second channel times a factor.
+    GreenSquared(f64),
+    /// The third channel times a factor.
+    Blue(f64),
+    /// Alpha times a factor; 0 or 1 with a cutoff.
+    Alpha { factor: f64, cutoff: Option<f64> },
+}
+
+/// Alpha, or whether it reaches the cutoff.
+pub(super) fn cut(alpha: f64, cutoff: Option<f64>) -> f64 {
+    match cutoff {
+        Some(cutoff) if alpha >= cutoff => 1.0,
+        Some(_) => 0.0,
+        None => alpha.clamp(0.0, 1.0),
+    }
+}

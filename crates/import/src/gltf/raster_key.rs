@@ -1,0 +1,27 @@
+//! What tells rasters apart that are made once.
+
+use super::level::Level;
+
+/// An image, and which numbers are taken from it.
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+pub(super) struct RasterKey {
+    image: usize,
+    kind: u8,
+    numbers: [u64; 3],
+}
+
+impl RasterKey {
+    pub(super) fn new(image: usize, level: Level) -> Self {
+        let (kind, numbers) = match level {
+            Level::Color(factor) => (0, factor),
+            Level::GreenSquared(factor) => (1, [factor, 0.0, 0.0]),
+            Level::Blue(factor) => (2, [factor, 0.0, 0.0]),
+            Level::Alpha { factor, cutoff } => (3, [factor, cutoff.unwrap_or(-1.0), 0.0]),
+        };
+        Self {
+            image,
+            kind,
+            numbers: numbers.map(f64::to_bits),
+        }
+    }
+}

@@ -1,0 +1,10 @@
+//! Single precision, which names candidates.
+
+#[inline]
+#[expect(
+    clippy::cast_possible_truncation,
+    reason = "f32 only names candidates; padding covers its rounding"
+)]
+pub(super) fn single(x: f64) -> f32 {
+    x as f32
+}

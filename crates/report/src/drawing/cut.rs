@@ -1,0 +1,330 @@
+//! A plane that cuts the scene, and what it cuts.
+
+use etendue_field::{Light, Mask, Patch, Shape, Specular, VirtualPlane};
+use etendue_figures::{PlaneMark, Section, Segment, SegmentKind};
+use etendue_pipeline::table::spaced;
+use etendue_scene::{BlockerLayer, Event, Leg, MeshObject, Object, Scene};
+use glam::DVec3;
+use std::collections::HashMap;
+
+/// A plane that cuts the scene.
+#[derive(Clone, Copy)]
+pub(super) struct Cut<'a> {
+    pub(super) scene: &'a Scene,
+    /// 0: that of X, 1: that of Y.
+    pub(super) axis: usize,
+}
+
+impl Cut<'_> {
+    pub(super) fn section(&self, planes: &[&VirtualPlane]) -> Section {
+        let scene = self.scene;
+        let pieces = self.pieces(planes);
+        let last = scene.path.legs.last().map_or(0.0, |leg| leg.start);
+        let length = planes.iter().map(|p| p.distance).fold(last, f64::max);
+        let marks = planes.iter().map(|plane| PlaneMark {
+            name: spaced(&plane.name),
+            distance: plane.distance,
+            side: plane.side,
+        });
+        let meshes = scene.meshes.iter().enumerate().map(|(i, object)| {
+            let leg = &scene.path.legs[self.arriving(Object::Mesh(i))];
+            outlines(&self.mesh(object, leg))
+        });
+        Section {
+            across: ["*x*", "*y*"][self.axis].to_owned(),
+            length,
+            unfolded: length > scene.path.first_hit(),
+            half_width: self.half_width(planes),
+            segments: pieces.into_iter().map(|(_, segment)| segment).collect(),
+            planes: marks.collect(),
+            bodies: meshes.flatten().collect(),
+            other: None,
+            world: None,
+        }
+    }
+
+    /// All that is cut, each with the leg on which light arrives at it.
+    pub(super) fn pieces(&self, planes: &[&VirtualPlane]) -> Vec<(usize, Segment)> {
+        let scene = self.scene;
+        let half_width = self.half_width(planes);
+        let mut pieces = vec![(0, self.light())];
+        for layer in &scene.blockers {
+            let rows = self.layer_extents(layer, half_width);
+            let segments = labelled(SegmentKind::Blocker, &layer.name, rows, layer.distance);
+            pieces.extend(segments.map(|segment| (0, segment)));
+        }
+        for (i, surface) in scene.surfaces.iter().enumerate() {
+            let leg = self.arriving(Object::Surface(i));
+            let outline = self.cut(&surface.corners(), &scene.path.legs[leg]);
+            let segment = outline.map(|[start, end]| Segment {
+                kind: SegmentKind::Surface,
+                start,
+                end,
+                label: Some(spaced(&surface.name)),
+            });
+            pieces.extend(segment.map(|segment| (leg, segment)));
+        }
+        for (i, object) in scene.patches.iter().enumerate() {
+            let leg = self.arriving(Object::Patch(i));
+            let outline = self.profile(&object.patch, &scene.path.legs[leg]);
+            let middle = outline.len() / 2;
+            let kind = match &object.event {
+                Event::Specular(Specular::Mirror) | Event::Reflects(_) => SegmentKind::Surface,
+                Event::Specular(_) => SegmentKind::Glass,
+            };
+            pieces.extend(outline.windows(2).enumerate().map(|(i, ends)| {
+                let label = (i == middle).then(|| spaced(&object.name));
+                let [start, end] = [ends[0], ends[1]];
+                let segment = Segment {
+                    kind,
+                    start,
+                    end,
+                    label,
+                };
+                (leg, segment)
+            }));
+        }
+        for (i, object) in scene.meshes.iter().enumerate() {
+            let leg = self.arriving(Object::Mesh(i));
+            let segments = self.mesh(object, &scene.path.legs[leg]);
+            pieces.extend(segments.into_iter().map(|segment| (leg, segment)));
+        }
+        pieces
+    }
+
+    /// The coordinates of a point in a leg's frame: along it, in the cut, and across the cut.
+    fn local(&self, leg: &Leg, point: DVec3) -> [f64; 3] {
+        let local = leg.frame.to_local(point);
+        let [within, off] = if self.axis == 0 {
+            [local.x, local.y]
+        } else {
+            [local.y, local.x]
+        };
+        [leg.start + local.z, within, off]
+    }
+
+    /// Just beyond the light, the blockers as far as they have an end, and the windows.
+    fn half_width(&self, planes: &[&VirtualPlane]) -> f64 {
+        let (scene, axis) = (self.scene, self.axis);
+        let light = self.light();
+        let layers = scene.blockers.iter().filter_map(|layer| match &layer.mask {
+            Mask::Opaque {
+                shapes,
+                half_planes,
+            } => Some((shapes, half_planes)),
+            _ => None,
+        });
+        let ends = layers.flat_map(|(shapes, half_planes)| {
+            let shapes = shapes
+                .iter()
+                .flat_map(move |shape| shape.bounds().extent(axis));
+            let halves = half_planes.iter().filter(move |half| half.axis == axis);
+            shapes.chain(halves.map(|half| half.edge))
+        });
+        let black = scene.meshes.iter().filter(|mesh| mesh.is_black());
+        let corners = black.flat_map(|mesh| mesh.triangles.as_flattened());
+        let windows = planes.iter().map(|plane| {
+            let profile = [&plane.window.x, &plane.window.y][axis];
+            profile.half_width()
+        });
+        let reach = ends
+            .chain(corners.map(|p| p[axis]))
+            .chain(windows)
+            .chain([light.start[1], light.end[1]]);
+        1.12 * reach.map(f64::abs).fold(0.0, f64::max)
+    }
+
+    /// The leg on which light arrives at something; the first for what the path does not visit.
+    fn arriving(&self, object: Object) -> usize {
+        let path = &self.scene.path;
+        let ends = |leg: &usize| path.ends_at(*leg).is_some_and(|hit| hit.object == object);
+        (0..path.legs.len()).find(ends).unwrap_or(0)
+    }
+
+    /// The piece (z, x) in which the cut of a leg meets a flat outline; z is the distance along the path.
+    fn cut(&self, corners: &[DVec3], leg: &Leg) -> Option<[[f64; 2]; 2]> {
+        let corners: Vec<[f64; 3]> = corners.iter().map(|p| self.local(leg, *p)).collect();
+        let mut points = Vec::new();
+        for (i, a) in corners.iter().enumerate() {
+            let b = corners[(i + 1) % corners.len()];
+            if (a[2] < 0.0) != (b[2] < 0.0) {
+                // From below, so that two triangles have the same point on the edge they share.
+                let (a, b) = if a[2] < 0.0 { (*a, b) } else { (b, *a) };
+                let t = a[2] / (a[2] - b[2]);
+                points.push([0, 1].map(|i| a[i] + t * (b[i] - a[i])));
+            }
+        }
+        points.try_into().ok()
+    }
+
+    /// The curve (z, x) in which the cut of a leg meets a smooth surface through its vertex.
+    fn profile(&self, patch: &Patch, leg: &Leg) -> Vec<[f64; 2]> {
+        const STEPS: i32 = 24;
+        let off = [leg.frame.y, leg.frame.x][self.axis];
+        let across = off.cross(patch.frame.d).normalize();
+        let [s, t] = [across.dot(patch.frame.x), across.dot(patch.frame.y)];
+        let at = |i: i32| {
+            let r = patch.aperture * f64::from(i) / f64::from(STEPS);
+            let [z, x, _] = self.local(leg, patch.point(r * s, r * t));
+            [z, x]
+        };
+        (-STEPS..=STEPS).map(at).collect()
+    }
+
+    fn light(&self) -> Segment {
+        let scene = self.scene;
+        let dot = 0.005 * scene.path.first_hit();
+        let kind = match scene.light {
+            Light::Environment { .. } => SegmentKind::Sky,
+            _ => SegmentKind::Light,
+        };
+        let [low, high] = match scene.light.extent(self.axis) {
+            [low, high] if low < high && low.is_finite() => [low, high],
+            _ => [-dot, dot],
+        };
+        Segment {
+            kind,
+            start: [0.0, low],
+            end: [0.0, high],
+            label: Some(
+                if kind == SegmentKind::Sky {
+                    "sky"
+                } else {
+                    "light"
+                }
+                .to_owned(),
+            ),
+        }
+    }
+
+    /// Where a layer is opaque, or more opaque than open; gratings a little beyond what is shown.
+    fn layer_extents(&self, layer: &BlockerLayer, half_width: f64) -> Vec<[f64; 2]> {
+        let axis = self.axis;
+        match &layer.mask {
+            Mask::Opaque {
+                shapes,
+                half_planes,
+            } => {
+                // Jitter moves a row of blockers off the cut: the row nearest to it is shown.
+                let off = |shape: &Shape| shape.bounds().center[1 - axis].abs();
+                let nearest = shapes.iter().map(off).fold(f64::INFINITY, f64::min);
+                let row = shapes
+                    .iter()
+                    .map(Shape::bounds)
+                    .filter(|r| r.center[1 - axis].abs() <= nearest + 0.5 * r.size[1 - axis]);
+                let halves = half_planes.iter().filter_map(|half| {
+                    match (half.axis == axis, half.above) {
+                        (true, true) => Some([half.edge, f64::INFINITY]),
+                        (true, false) => Some([f64::NEG_INFINITY, half.edge]),
+                        // The other way it covers the cut, or is beside it.
+                        (false, above) => (above == (half.edge < 0.0)).then_some(ENDLESS),
+                    }
+                });
+                row.map(|r| r.extent(axis)).chain(halves).collect()
+            }
+            Mask::Grating(grating)
+                if grating.axis == axis && half_width * grating.frequency < MOST_PERIODS =>
+            {
+                // Half a period around each minimum, where 2πft + p = π (2n + 1).
+                let period = 1.0 / grating.frequency;
+                let first = (0.5 - grating.phase / std::f64::consts::TAU) * period;
+                let count = (half_width / period).ceil() + 1.0;
+                let start = first - ((first / period).round() + count) * period;
+                let mut dashes = Vec::new();
+                let mut n = 0.0;
+                while n <= 2.0 * count {
+                    let middle = start + n * period;
+                    dashes.push([middle - 0.25 * period, middle + 0.25 * period]);
+                    n += 1.0;
+                }
+                dashes
+            }
+            Mask::Grating(_) => vec![ENDLESS],
+        }
+    }
+
+    /// The outline in which the cut of a leg meets a mesh.
+    fn mesh(&self, mesh: &MeshObject, leg: &Leg) -> Vec<Segment> {
+        let kind = mesh
+            .albedo
+            .map_or(SegmentKind::Blocker, |_| SegmentKind::Surface);
+        let cuts = mesh.triangles.iter().filter_map(|corners| {
+            let [start, end] = self.cut(corners, leg)?;
+            (key(start) != key(end)).then_some(Segment {
+                kind,
+                start,
+                end,
+                label: None,
+            })
+        });
+        let mut pieces: Vec<Segment> = cuts.collect();
+        // The name goes to the middle.
+        let ends =
+            |least: fn(f64, f64) -> f64, from| pieces.iter().map(|p| p.start[0]).fold(from, least);
+        let middle = 0.5 * (ends(f64::min, f64::INFINITY) + ends(f64::max, f64::NEG_INFINITY));
+        let off = |piece: &&mut Segment| (piece.start[0] - middle).abs();
+        let nearest = pieces.iter_mut().min_by(|a, b| off(a).total_cmp(&off(b)));
+        if let Some(piece) = nearest {
+            piece.label = Some(spaced(&mesh.name));
+        }
+        pieces
+    }
+}
+
+/// Segments across the central ray; the first carries the name.
+fn labelled(
+    kind: SegmentKind,
+    name: &str,
+    extents: Vec<[f64; 2]>,
+    distance: f64,
+) -> impl Iterator<Item = Segment> {
+    let mut label = Some(spaced(name));
+    extents.into_iter().map(move |[low, high]| Segment {
+        kind,
+        start: [distance, low],
+        end: [distance, high],
+        label: label.take(),
+    })
+}
+
+/// Everywhere along X.
+const ENDLESS: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
+/// Periods of a grating on either side that can still be told apart.
+const MOST_PERIODS: f64 = 40.0;
+
+/// A point, told from others by every bit.
+fn key(point: [f64; 2]) -> [u64; 2] {
+    point.map(f64::to_bits)
+}
+
+/// The closed lines among pieces that share their ends.
+fn outlines(pieces: &[Segment]) -> Vec<Vec<[f64; 2]>> {
+    let mut at: HashMap<[u64; 2], Vec<usize>> = HashMap::new();
+    for (i, piece) in pieces.iter().enumerate() {
+        for end in [piece.start, piece.end] {
+            at.entry(key(end)).or_default().push(i);
+        }
+    }
+    let mut used = vec![false; pieces.len()];
+    let mut closed = Vec::new();
+    for first in 0..pieces.len() {
+        let mut line = vec![pieces[first].start];
+        let mut next = Some(first).filter(|i| !used[*i]);
+        while let Some(i) = next {
+            used[i] = true;
+            let Segment { start, end, .. } = &pieces[i];
+            let here = if line.last() == Some(start) {
+                *end
+            } else {
+                *start
+            };
+            line.push(here);
+            next = at[&key(here)].iter().copied().find(|i| !used[*i]);
+            next = next.filter(|_| key(here) != key(line[0]));
+        }
+        if line.len() > 3 && line.first() == line.last() {
+            closed.push(line);
+        }
+    }
+    closed
+}

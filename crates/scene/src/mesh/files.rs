@@ -1,0 +1,40 @@
+//! Meshes from files and to files.
+
+use super::error::fault;
+use super::shared::Mesh;
+use super::{obj, ply, text};
+use crate::fault::Fault;
+use std::path::Path;
+
+impl Mesh {
+    /// Reads the bytes of an OBJ or a PLY file, told apart by the extension of `file` in any case.
+    ///
+    /// OBJ: `v` and `f` make the mesh, all objects and groups together; normals, texture coordinates, colors,
+    /// weights, materials, points and lines are passed over, free-form surfaces are refused. PLY: ASCII and
+    /// binary of either byte order, coordinates and lists of any type; other elements and properties are
+    /// passed over. Faces of more than three corners become fans about their first corner, which is right
+    /// for convex ones, and have at most 4,096. Triangles of zero area are dropped where others remain.
+    ///
+    /// # Errors
+    /// The first fault found: the place in the file, the value and what is allowed. Elements are counted
+    /// as the format counts them, OBJ from 1 and PLY from 0; lines and corners from 1.
+    pub fn parse(file: &Path, bytes: &[u8]) -> Result<Self, Fault> {
+        let extension = file.extension().unwrap_or_default().to_string_lossy();
+        match extension.to_ascii_lowercase().as_str() {
+            "obj" | "ply" if bytes.is_empty() => Err(fault("the file", "empty", "a mesh")),
+            "obj" => obj::read(bytes),
+            "ply" => ply::read(bytes),
+            _ => Err(fault(
+                "the extension",
+                text::quoted(extension.as_bytes()),
+                "obj, ply",
+            )),
+        }
+    }
+
+    /// The mesh as a binary little-endian PLY file, exact: coordinates as `double`, indices as `uint`.
+    #[must_use]
+    pub fn ply(&self) -> Vec<u8> {
+        ply::write(&self.vertices, &self.triangles)
+    }
+}

@@ -1,0 +1,34 @@
+//! Why a value does not fit a field, in words.
+
+use crate::examples::wanted;
+use crate::nearest::did_you_mean;
+use serde_path_to_error::{Path, Segment};
+
+/// A path as messages have it, without names of variants.
+pub(crate) fn path_of(path: &Path) -> String {
+    let mut written = String::new();
+    for segment in path.iter() {
+        match segment {
+            Segment::Seq { index } => written.push_str(&format!("[{index}]")),
+            Segment::Map { key } if written.is_empty() => written.push_str(key),
+            Segment::Map { key } => written.extend([".", key]),
+            Segment::Enum { .. } | Segment::Unknown => {}
+        }
+    }
+    written
+}
+
+/// Why a value does not fit the field at which it is, or below.
+pub(crate) fn unfit(error: &serde_path_to_error::Error<serde_json::Error>) -> String {
+    let field = path_of(error.path());
+    let told = error.inner().to_string();
+    // The place is told beside it.
+    let told = told.split(" at line ").next().unwrap_or_default();
+    // Of an unknown name: itself, and those that are known.
+    let mut names = told.split('`').skip(1).step_by(2);
+    let meant = match names.next() {
+        Some(found) if told.starts_with("unknown ") => did_you_mean(found, names),
+        _ => String::new(),
+    };
+    format!("{field}: {told}{meant}; allowed: {}", wanted(&field))
+}
