@@ -1,3 +1,5 @@
+//! Symmetric matrices that say how fast light changes along each direction of the picture.
+
 /// A symmetric 2 × 2 matrix over the picture, columns to the right and rows down, per pixel².
 ///
 /// Of a criterion it is the square of a bandwidth in cycles per pixel along each direction; of samples it makes distances: neighbours are about 1 apart.

@@ -1,3 +1,5 @@
+//! Shading samples: paths from a point of a picture.
+
 use crate::blue_noise::Point;
 use crate::cutoffs::Cutoffs;
 use crate::reconstruct::Sample;

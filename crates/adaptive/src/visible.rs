@@ -1,3 +1,5 @@
+//! What the pixels of a picture see.
+
 use crate::cutoffs::Cutoffs;
 use etendue_paths::{Paths, Reflects, Seen};
 use etendue_world::Camera;

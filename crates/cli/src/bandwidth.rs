@@ -1,3 +1,5 @@
+//! `etendue bandwidth`: how finely a glossy reflection must be sampled.
+
 use crate::args::BandwidthArgs;
 use crate::print::{deliver, say};
 use crate::progress;

@@ -1,3 +1,5 @@
+//! `etendue check`: what a scene says, and which theory applies to each plane.
+
 use crate::args::CheckArgs;
 use crate::print::{deliver, say};
 use crate::warnings;

@@ -1,3 +1,5 @@
+//! `etendue compare`: what was measured against what was predicted, from files.
+
 use crate::args::CompareArgs;
 use crate::conclude::{Ending, conclude};
 use crate::print::say;

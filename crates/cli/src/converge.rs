@@ -1,3 +1,5 @@
+//! `etendue converge`: how fast the first-order chain comes to the exact prediction.
+
 use crate::args::ConvergeArgs;
 use crate::print::{deliver, say};
 use crate::progress;

@@ -1,3 +1,5 @@
+//! `etendue export`: a scene for another program.
+
 use crate::args::ExportArgs;
 use crate::print::{say, say_replaced};
 use etendue_pipeline::load;

@@ -1,3 +1,5 @@
+//! `etendue measure`: batches of a scene, for `etendue compare`.
+
 use crate::args::MeasureArgs;
 use crate::print::{say, say_replaced};
 use crate::progress::Terminal;

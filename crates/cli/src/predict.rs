@@ -1,3 +1,5 @@
+//! `etendue predict`: the prediction of a scene, for `etendue compare`.
+
 use crate::args::PredictArgs;
 use crate::print::{say, say_replaced};
 use crate::progress::Terminal;

@@ -1,3 +1,5 @@
+//! `etendue run`: measure, predict, compare and draw a scene.
+
 use crate::args::RunArgs;
 use crate::conclude::{Ending, code_of, conclude};
 use crate::print::say;

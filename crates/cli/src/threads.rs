@@ -1,3 +1,5 @@
+//! The threads of a command.
+
 use crate::args::ThreadArgs;
 use etendue_store::Failure;
 

@@ -1,3 +1,5 @@
+//! Photons that cross virtual planes, and the account of their flux.
+
 use crate::TwoPlane;
 use serde::Serialize;
 

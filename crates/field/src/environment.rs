@@ -1,3 +1,5 @@
+//! Light from far away.
+
 use crate::{Frame, Raster};
 use glam::DVec3;
 use serde::{Serialize, Serializer};

@@ -1,3 +1,5 @@
+//! The 4D grid of a light field.
+
 use crate::{SliceGrid, TwoPlane, Window};
 use serde::{Deserialize, Serialize};
 

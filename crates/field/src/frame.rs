@@ -1,3 +1,5 @@
+//! Frames, and rays in the two-plane parameterisation.
+
 use glam::{DQuat, DVec3};
 use serde::Serialize;
 

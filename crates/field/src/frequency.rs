@@ -1,3 +1,5 @@
+//! Frequency grids.
+
 use serde::Serialize;
 
 /// An odd number of evenly spaced frequencies with zero at the centre.

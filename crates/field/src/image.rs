@@ -1,3 +1,5 @@
+//! The smooth picture of a projector or a beam.
+
 use crate::Grating;
 use serde::Serialize;
 

@@ -1,3 +1,5 @@
+//! Smooth surfaces: pieces of quadrics.
+
 use crate::{Frame, box_corners};
 use glam::DVec3;
 use serde::Serialize;

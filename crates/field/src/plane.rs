@@ -1,3 +1,5 @@
+//! Virtual planes.
+
 use crate::{Frame, SliceGrid, TwoPlane, Window};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,3 +1,5 @@
+//! The light field summed over y and v, as it is drawn.
+
 use crate::Window;
 
 /// A grid of `bins` × `bins` cells over the (x, u) support of a window.

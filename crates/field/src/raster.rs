@@ -1,3 +1,5 @@
+//! Numbers on a grid of pixels.
+
 use serde::Serialize;
 
 /// Numbers on a grid of pixels, row by row from the top, each row from the left.

@@ -1,3 +1,5 @@
+//! Rectangles across the central ray.
+
 use serde::Serialize;
 
 /// A rectangle in a plane orthogonal to the central ray, edges along X and Y, coordinates relative to the ray.

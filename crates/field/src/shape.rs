@@ -1,3 +1,5 @@
+//! Flat shapes across the central ray.
+
 use crate::{Rectangle, TwoPlane};
 use glam::DVec3;
 use serde::Serialize;

@@ -1,3 +1,5 @@
+//! Slices of a spectrum.
+
 use crate::{Complex, SliceGrid};
 use ndarray::{Array2, Array3, ArrayView2, ArrayView3, Axis};
 

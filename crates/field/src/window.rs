@@ -1,3 +1,5 @@
+//! Windows and their profiles.
+
 use crate::TwoPlane;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,3 +1,5 @@
+//! Axes, quantities and ticks.
+
 use crate::sizes::{LEAST_TEXT, TICK_TEXT};
 use crate::text::width;
 

@@ -1,3 +1,5 @@
+//! A figure as SVG, PNG, PDF and CSV.
+
 use crate::svg::Svg;
 use krilla::Document;
 use krilla::geom::Size;

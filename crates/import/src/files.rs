@@ -1,3 +1,5 @@
+//! The files that a scene may name.
+
 use crate::{Options, Refused};
 use etendue_scene::read_file;
 use std::cell::Cell;

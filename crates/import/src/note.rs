@@ -1,3 +1,5 @@
+//! What was read, and notes on what was left out.
+
 use etendue_world::World;
 use std::fmt;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! How a scene is read.
+
 use std::path::PathBuf;
 
 /// How a scene is read.

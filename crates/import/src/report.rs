@@ -1,3 +1,5 @@
+//! Causes for which a scene is refused, and notes.
+
 use crate::note::{Imported, Note, Refused};
 use etendue_world::World;
 use std::cell::RefCell;

@@ -1,3 +1,5 @@
+//! Spectra as one number.
+
 use crate::cie::{COUNT, D65, FIRST, LAST, OBSERVER};
 
 /// Wavelengths at which a spectrum is summed.

@@ -1,3 +1,5 @@
+//! The random numbers of a path.
+
 use etendue_field::Net;
 use etendue_field::random::{Stream, unit, words};
 

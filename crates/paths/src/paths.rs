@@ -1,3 +1,5 @@
+//! Paths of light through a world.
+
 use crate::lamps::Lamps;
 use crate::numbers::Numbers;
 use crate::scatter::{Bounce, Scatter};

@@ -1,3 +1,5 @@
+//! Pictures, with the variance of each pixel.
+
 use crate::numbers::Numbers;
 use crate::paths::Paths;
 use crate::space::Ray;

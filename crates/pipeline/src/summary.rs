@@ -1,3 +1,5 @@
+//! `summary.json`, and seconds of each stage.
+
 use crate::case::MeasuredScene;
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict};
 use etendue_field::Ledger;

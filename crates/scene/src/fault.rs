@@ -1,3 +1,5 @@
+//! What is wrong with a scene file.
+
 use crate::limits;
 use crate::place::{find, steps};
 use std::fmt;

@@ -1,3 +1,5 @@
+//! Scene files as they are written.
+
 mod light;
 mod surface;
 

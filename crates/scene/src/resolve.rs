@@ -1,3 +1,5 @@
+//! From a scene file to a checked scene.
+
 mod apart;
 mod blockers;
 mod faults;

@@ -1,3 +1,5 @@
+//! The checked scene.
+
 use crate::{Emission, Sampling, SceneFile, Triangles};
 use etendue_field::{Frame, Light, Mask, Patch, Rectangle, Reflectance, Specular, VirtualPlane};
 use glam::DVec3;

@@ -1,3 +1,5 @@
+//! The light field in cells of x and u.
+
 use etendue_field::{Projection, ProjectionGrid, TwoPlane};
 use ndarray::Array2;
 

@@ -1,3 +1,5 @@
+//! Standard errors by leaving out one batch at a time.
+
 use ndarray::{Array, Dimension};
 
 /// A number with its standard error.

@@ -1,3 +1,5 @@
+//! Measurements: batches of photons at virtual planes.
+
 use crate::batch::{Batch, PlaneBatch};
 use etendue_field::{Ledger, PlaneTally, VirtualPlane};
 use std::collections::BTreeMap;

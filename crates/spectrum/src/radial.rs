@@ -1,3 +1,5 @@
+//! Power spectra over azimuths.
+
 use crate::bandwidth::{BANDWIDTH_FRACTION, SliceBandwidth, Widest, widest_slice};
 use crate::estimate::TooFewBatches;
 use crate::jackknife::{Jackknife, Uncertain};

@@ -1,3 +1,5 @@
+//! Moments of a light field over its rays.
+
 use crate::estimate::TooFewBatches;
 use crate::jackknife::Jackknife;
 use crate::measurement::Measurement;

@@ -1,3 +1,5 @@
+//! Why a command stops, and its exit code.
+
 use etendue_scene::SceneError;
 use std::fmt::Display;
 use std::path::Path;

@@ -1,3 +1,5 @@
+//! Cameras.
+
 use glam::{DAffine3, DVec3};
 
 /// What looks at a world. It looks along Z of `to_world`, Y is up in the picture and X to the left.

@@ -1,3 +1,5 @@
+//! Lights that are no surfaces.
+
 use crate::Texture;
 use etendue_field::Raster;
 use glam::{DAffine3, DMat3, DVec3};

@@ -1,3 +1,5 @@
+//! Materials.
+
 use crate::Texture;
 
 /// What a surface does to light.

@@ -1,3 +1,5 @@
+//! Shapes and their geometry.
+
 use crate::light::Emission;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;

@@ -1,3 +1,5 @@
+//! Numbers that vary over a surface.
+
 use etendue_field::Raster;
 use glam::{DAffine2, DVec2};
 use std::sync::Arc;

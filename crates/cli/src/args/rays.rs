@@ -1,6 +1,6 @@
 //! Arguments of `etendue rays`.
 
-use super::ForceArgs;
+use super::shared::ForceArgs;
 use clap::Args;
 use std::path::PathBuf;
 

@@ -1,6 +1,6 @@
 //! Arguments of commands that take scenes of other programs.
 
-use super::{ForceArgs, ThreadArgs, assignment, whole_number};
+use super::shared::{ForceArgs, ThreadArgs, assignment, whole_number};
 use clap::{Args, ValueEnum};
 use etendue_adaptive::{BLOCKER_RAYS, Method};
 use etendue_import::{Color, Options};

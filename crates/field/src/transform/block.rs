@@ -1,3 +1,5 @@
+//! Rays that are spread on the fine grid together.
+
 use crate::TwoPlane;
 
 /// Rays that are spread in one go: coordinates and positions are worked out for a group, then

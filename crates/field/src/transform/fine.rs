@@ -1,3 +1,5 @@
+//! From fine grids to slices.
+
 use super::kernel::{Kernel, WIDTH};
 use super::spread::Placement;
 use crate::fft::{COLUMNS, Fft, Row};

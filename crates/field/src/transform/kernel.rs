@@ -1,3 +1,5 @@
+//! The kernel that spreads a ray over cells of the fine grid.
+
 use crate::gauss_legendre;
 use fearless_simd::{Simd, f64x8, prelude::*};
 use std::f64::consts::{PI, TAU};

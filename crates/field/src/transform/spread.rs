@@ -1,3 +1,5 @@
+//! Where the rays of an azimuth fall on its fine grid.
+
 use super::block::{Block, GROUP};
 use super::kernel::{Kernel, WIDTH, transposed};
 use fearless_simd::{Simd, f64x8, prelude::*};

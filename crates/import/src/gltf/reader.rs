@@ -1,3 +1,5 @@
+//! Reads a glTF file into a world.
+
 use super::container::Document;
 use super::raster_key::RasterKey;
 use super::surface::Surface;

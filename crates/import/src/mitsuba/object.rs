@@ -1,3 +1,5 @@
+//! Objects, properties and values of a Mitsuba scene.
+
 use crate::report::Place;
 use glam::{DAffine3, DVec3};
 use std::cell::Cell;

@@ -1,3 +1,5 @@
+//! Reads the objects of a Mitsuba scene into a world.
+
 use super::mesh_key::MeshKey;
 use super::object::{Kind, Object};
 use crate::Color;

@@ -1,3 +1,5 @@
+//! A file that is being read, with lines and columns.
+
 use crate::report::Place;
 use std::path::PathBuf;
 use std::rc::Rc;

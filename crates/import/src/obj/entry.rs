@@ -1,3 +1,5 @@
+//! Entries of an MTL file.
+
 use super::map::Map;
 use crate::report::Place;
 

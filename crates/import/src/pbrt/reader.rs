@@ -1,3 +1,5 @@
+//! Reads a pbrt scene into a world.
+
 use super::entity::{Entity, Given, Read};
 use super::keys::{MeshKey, TextureKey, Uv};
 use super::scene::Scene;

@@ -1,3 +1,5 @@
+//! Spheres that shine.
+
 use super::incoming::{Incoming, emitted, way};
 use crate::space::{Hit, Ray, Space};
 use etendue_world::Texture;

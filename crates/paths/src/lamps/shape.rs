@@ -1,3 +1,5 @@
+//! Other shapes that shine.
+
 use super::incoming::{Incoming, emitted, way};
 use crate::space::{Hit, Space};
 use etendue_world::Texture;

@@ -1,3 +1,5 @@
+//! Light from far away.
+
 use etendue_field::Raster;
 use etendue_world::SkyMap;
 use glam::{DMat3, DVec3};

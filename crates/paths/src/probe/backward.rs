@@ -1,3 +1,5 @@
+//! Rays of a probe that are traced back.
+
 use super::{Budget, Probe};
 use crate::numbers::Numbers;
 use etendue_field::{Crossing, Ledger, PhotonSource, TwoPlane, VirtualPlane};

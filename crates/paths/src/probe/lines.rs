@@ -1,3 +1,5 @@
+//! Legs of the central ray of a probe, and lines in the coordinates of its planes.
+
 use crate::space::{Ray, Space};
 use etendue_field::{Frame, TwoPlane};
 use glam::DVec3;

@@ -1,3 +1,5 @@
+//! Photons of a probe.
+
 use super::lines::Leg;
 use super::lines::seen_by;
 use super::{Budget, Probe, Stop};

@@ -1,3 +1,5 @@
+//! Surfaces on the central ray of a pixel.
+
 use crate::paths::Paths;
 use crate::scatter::Reflects;
 use crate::space::{Hit, Ray, Space};

@@ -1,3 +1,5 @@
+//! Directions that a path goes on to.
+
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

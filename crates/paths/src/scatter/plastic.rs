@@ -1,3 +1,5 @@
+//! A diffuse base below a dielectric coat.
+
 use super::bounce::{Bounce, by_cosine, cosine_density};
 use super::fresnel::{dielectric, diffuse_reflectance};
 use super::microfacet::Microfacets;

@@ -1,3 +1,5 @@
+//! Meshes with normals and texture coordinates.
+
 use super::error::fault;
 use super::shared::check_coordinate;
 use super::{obj, ply, text};

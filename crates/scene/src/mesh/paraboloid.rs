@@ -1,3 +1,5 @@
+//! The mesh of a paraboloid.
+
 use super::error::fault;
 use super::shared::Mesh;
 use crate::fault::Fault;

@@ -1,3 +1,5 @@
+//! The mesh of a sphere with a relief.
+
 use super::error::fault;
 use super::shared::Mesh;
 use crate::fault::Fault;

@@ -1,3 +1,5 @@
+//! Jittered squares.
+
 use etendue_field::Rectangle;
 use etendue_field::random::{self, Stream};
 

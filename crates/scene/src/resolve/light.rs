@@ -1,3 +1,5 @@
+//! Lights of a scene file, checked.
+
 use super::Resolver;
 use crate::file::{BulbFile, ImageFile, LightFile};
 use etendue_field::{Disc, Frame, Image, Light, Rectangle, Shape};

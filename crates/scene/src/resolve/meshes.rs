@@ -1,3 +1,5 @@
+//! Meshes of a scene file, checked and placed.
+
 use super::Resolver;
 use super::faults::show;
 use super::triangles::Placement;

@@ -1,3 +1,5 @@
+//! Smooth surfaces of a scene file, checked.
+
 use super::Resolver;
 use super::faults::{number, show, vector};
 use crate::file::{EventFile, FormFile, SceneFile, SurfaceFile};

@@ -1,3 +1,5 @@
+//! Flat surfaces of a scene file, checked.
+
 use super::Resolver;
 use super::faults::vector;
 use crate::file::{SceneFile, SurfaceFile};

@@ -1,3 +1,5 @@
+//! How far a 4D spectrum is from alias-free slices.
+
 use super::spectrum::FieldSpectrum;
 use super::spline::mean_square_alias;
 use etendue_field::{Complex, FrequencyAxis, Slices};

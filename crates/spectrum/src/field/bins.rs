@@ -1,3 +1,5 @@
+//! The bins of a full radial spectrum.
+
 use super::spectrum::FieldSpectrum;
 use etendue_field::{Complex, FieldGrid};
 use ndarray::Array2;

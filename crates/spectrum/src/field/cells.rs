@@ -1,3 +1,5 @@
+//! Sums of weighted rays on a 4D grid.
+
 use super::fft::{RealFft4, real, real_mut};
 use super::spectrum::FieldSpectrum;
 use super::spline::{taps, transform};

@@ -1,3 +1,5 @@
+//! The full radial spectrum from products of groups.
+
 use super::bins::RadialBins;
 use super::spectrum::FieldSpectrum;
 use crate::jackknife::Jackknife;

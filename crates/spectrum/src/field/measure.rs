@@ -1,3 +1,5 @@
+//! Measuring a light field on a 4D grid.
+
 use super::bins::RadialBins;
 use super::cells::{FieldCells, FieldTransform};
 use super::covariance::{FieldCovariance, GroupMoments, Moments};

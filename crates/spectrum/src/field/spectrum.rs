@@ -1,3 +1,5 @@
+//! The spectrum of a 4D grid.
+
 use super::spline::worst_alias;
 use etendue_field::{Assignment, Complex, FieldGrid};
 use ndarray::Array4;

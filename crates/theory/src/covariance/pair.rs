@@ -1,3 +1,5 @@
+//! Pairs of matrices whose quotient is a covariance.
+
 use crate::geometry::{Map, Matrix, diagonal, from_fn, inverse, product, sum, times, transpose};
 use std::f64::consts::PI;
 

@@ -1,3 +1,5 @@
+//! Affine maps of rays.
+
 use super::SpectrumMap;
 use super::matrix::{self, Matrix, congruent, diagonal, plus, times, transpose};
 use etendue_field::Complex;

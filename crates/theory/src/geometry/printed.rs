@@ -1,3 +1,5 @@
+//! The geometric operators as the paper prints them.
+
 use super::{Map, Matrix, SpectrumMap};
 use std::f64::consts::TAU;
 

@@ -1,3 +1,5 @@
+//! Refraction at an interface.
+
 use super::Map;
 
 /// The refractive indices on both sides of an interface, positive.

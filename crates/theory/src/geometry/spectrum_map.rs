@@ -1,3 +1,5 @@
+//! What an affine step does to spectra.
+
 use super::Map;
 use super::matrix::{Matrix, dot, plus, product, sections, times, transpose};
 use etendue_field::{Complex, cis};

@@ -1,3 +1,5 @@
+//! The transform of the unit box.
+
 /// sin(πt)/(πt), 1 at zero: the transform of the unit box.
 pub(crate) fn sinc(t: f64) -> f64 {
     let angle = std::f64::consts::PI * t;

@@ -1,3 +1,5 @@
+//! The spectrum of a chain at one frequency.
+
 use super::expansion::Expansion;
 use crate::Chain;
 use crate::parallel::slope::Slope;

@@ -1,3 +1,5 @@
+//! Chains: a light, and what happens to its light field on the way.
+
 use etendue_field::{Light, Mask, Shape};
 
 /// The light, in a plane orthogonal to the central ray.

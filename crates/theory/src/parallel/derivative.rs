@@ -1,3 +1,5 @@
+//! Derivatives of slices by parameters of the chain.
+
 use crate::model::Model;
 use crate::parallel::slices::{fineness, slices_at_fineness};
 use crate::{Chain, Parameter};

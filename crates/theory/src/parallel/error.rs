@@ -1,3 +1,5 @@
+//! How far a prediction in closed form may be off.
+
 use crate::Chain;
 use crate::numerics::distance;
 use crate::parallel::slices::{fineness, slices_at_fineness};

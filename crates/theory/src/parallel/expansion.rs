@@ -1,3 +1,5 @@
+//! Light fields as sums of polygons times waves.
+
 use crate::parallel::chain::Path;
 use crate::parallel::disc::Discs;
 use crate::parallel::polygon::Polygon;

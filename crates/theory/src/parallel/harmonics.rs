@@ -1,3 +1,5 @@
+//! The spectrum of a chain on a 4D grid of frequencies.
+
 use super::wave::Wave;
 use crate::Chain;
 use crate::parallel::chain::Path;

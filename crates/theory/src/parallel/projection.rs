@@ -1,3 +1,5 @@
+//! The light field of a chain in cells of x and u.
+
 use super::expansion::Expansion;
 use crate::Chain;
 use crate::numerics::quadrature::gauss_legendre;

@@ -1,3 +1,5 @@
+//! Slices of a chain.
+
 use super::expansion::{Columns, Expansion, Sum};
 use crate::Chain;
 use crate::parallel::chain::Path;

@@ -1,3 +1,5 @@
+//! Cosine terms over a section of the light field.
+
 use etendue_field::{Complex, CosineTerm, Grating, cis};
 
 /// One term amplitude · cos(2π s·p + phase) of what multiplies a section inside its box,

@@ -1,3 +1,5 @@
+//! Rectangles with weights, as which discs are summed.
+
 use crate::parallel::chain::Path;
 use crate::parallel::disc::Discs;
 use crate::parallel::expansion::Expansion;

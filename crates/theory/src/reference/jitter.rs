@@ -1,3 +1,5 @@
+//! The expected power of jittered strips.
+
 use crate::numerics::sinc::sinc;
 
 /// Opaque strips in a row, each moved by an offset of its own, uniform in ± half the jitter.

@@ -1,3 +1,5 @@
+//! The data of a PLY file.
+
 use super::super::error::fault;
 use super::super::text::{Lines, Words, number, quoted};
 use super::header::{Element, Encoding, Property, Scalar};

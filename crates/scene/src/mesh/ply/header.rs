@@ -1,3 +1,5 @@
+//! The header of a PLY file.
+
 use super::super::error::fault;
 use super::super::text::{Lines, Words, number, quoted};
 use crate::fault::Fault;

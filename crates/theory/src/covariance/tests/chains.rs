@@ -1,3 +1,5 @@
+//! Covariance along chains, against quadrature.
+
 use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
 use crate::geometry::covariance::{gaussian_window, power_spectrum};

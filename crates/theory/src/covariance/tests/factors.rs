@@ -1,3 +1,5 @@
+//! Covariance of single factors, against differences.
+
 use crate::covariance::{cosine, grating, lobe, mask, profile, slope_cosine};
 use etendue_field::{Disc, Grating, HalfPlane, Lobe, Mask, Profile, Rectangle, Shape};
 use std::f64::consts::PI;

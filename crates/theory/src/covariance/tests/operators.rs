@@ -1,3 +1,5 @@
+//! Covariance operators on Gaussian light fields.
+
 use super::{apart, bent};
 use crate::covariance::{SpectralCovariance, power};
 use crate::geometry::covariance::{gaussian_spectrum, gaussian_window, power_spectrum};

@@ -1,3 +1,5 @@
+//! Chains walked by hand, and transforms by many rays.
+
 use crate::{Chain, Operator};
 use etendue_field::{Complex, Light, Mask, Shape, TwoPlane, Window};
 use std::f64::consts::TAU;

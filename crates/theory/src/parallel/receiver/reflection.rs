@@ -1,3 +1,5 @@
+//! Light that a diffuse receiver reflects.
+
 use crate::parallel::chain::Path;
 use crate::parallel::receiver::Receiver;
 

@@ -1,3 +1,5 @@
+//! Rays through smooth surfaces against closed forms and first-order maps.
+
 use super::*;
 use crate::geometry::{Edition, SpectrumMap};
 use crate::numerics::distance;

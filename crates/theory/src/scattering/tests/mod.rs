@@ -1,3 +1,5 @@
+//! Light that a BRDF scatters, against closed forms and quadrature.
+
 use super::*;
 use crate::Budget;
 use crate::geometry::Map;

@@ -1,0 +1,93 @@
+//! Arguments of commands that draw.
+
+use super::shared::{ForceArgs, ThreadArgs, assignment, one_of};
+use clap::Args;
+use clap::builder::TypedValueParser;
+use etendue_paper::Quality;
+use std::path::PathBuf;
+
+/// How much work may go into a figure.
+fn qualities() -> impl TypedValueParser<Value = Quality> {
+    let named = |quality: Quality, help| (quality, quality.name(), help);
+    one_of([
+        named(
+            Quality::Draft,
+            "An eighth of the photons of the scenes, twice as many frequencies as they ask for along each axis",
+        ),
+        named(
+            Quality::Print,
+            "The photons of the scenes, four times as many frequencies",
+        ),
+    ])
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  etendue report out/fig9a out/fig9b out/fig9c --out out/fig9.html
+
+Each run leaves such a page of its own, report.html, among its results. It holds all it shows and asks nothing of the network.")]
+pub(crate) struct ReportArgs {
+    /// Folders of `etendue run` or `compare`
+    #[arg(value_name = "DIR", required = true)]
+    pub(crate) folders: Vec<PathBuf>,
+
+    /// The page
+    #[arg(long, value_name = "FILE", default_value = "out/report.html")]
+    pub(crate) out: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue figure 9
+  etendue figure all --quality draft --out out/figures
+  etendue figure my.ron                                      light field and spectra along the path of a scene of one's own
+  etendue figure a.ron b.ron --plane receiver --out out      scenes side by side at a plane, in one range of colors
+
+Figures of Durand et al. 2005: 1, 3 to 15, and table1. Those of kernels, 5 and 12, are theory alone; all others are measured,
+and predicted beside it. Each has a folder with
+  figure.png, .svg, .pdf   the PDF at most 7 inches wide, two columns of a journal; text is text
+  figure.npz               light fields and spectra of all planes (docs/conventions.md)
+  figure.csv               the numbers of curves and bars
+  figure.json              whether each plane agrees with theory, and the command that makes the figure again
+  NAME.ron                 its scenes; those of one's own stand in figure.json as they were run
+Exit codes are those of run, of the worst plane.")]
+pub(crate) struct FigureArgs {
+    /// Figures of the paper (1, 3 to 15, table1, or all), or scene files, which make one figure
+    #[arg(value_name = "NAME|SCENE.ron", required = true)]
+    pub(crate) names: Vec<String>,
+
+    /// Set a field of the scene files, such as blockers.0.fill=0.5; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+
+    /// The plane at which scene files are shown; of one scene file, it alone [default: of several the last, of one all]
+    #[arg(long, value_name = "NAME")]
+    pub(crate) plane: Option<String>,
+
+    /// Folder of the figures
+    #[arg(long, value_name = "DIR", default_value = "results/figures")]
+    pub(crate) out: PathBuf,
+
+    /// Looks, in RON; each field may be left out: (titles: false, scene: false, verdicts: false, width: 3.33,
+    /// floor: -40, palette: Viridis). Titles go with their notes; the scene is the drawing above its planes; width is
+    /// that of the page in inches, 3.3 to 7; floor that of spectra in dB; palettes are Inferno, Magma, Viridis and Cividis
+    #[arg(long, value_name = "FILE")]
+    pub(crate) style: Option<PathBuf>,
+
+    /// How much work goes into it
+    #[arg(long, value_name = "QUALITY", default_value = "print", value_parser = qualities())]
+    pub(crate) quality: Quality,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}

@@ -1,0 +1,322 @@
+//! Arguments of commands on scenes: run and its stages, checks and comparisons.
+
+use super::shared::{ForceArgs, PhotonArgs, SceneArgs, ThreadArgs, one_of, share};
+use clap::builder::TypedValueParser;
+use clap::{Args, ValueEnum};
+use etendue_pipeline::photons::Save;
+use std::ops::Range;
+use std::path::PathBuf;
+use std::time::Duration;
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue run scenes/fig9b.ron
+  etendue run scenes/fig9b.ron --photons 1e8 --seed 7 --threads 2 --out out/more
+  etendue run scenes/fig9b.ron --set planes.3.at='Distance(1.5)' --save photons
+  etendue run scenes/fig9b.ron --save mcpl,tm25                        rays for other programs (docs/rays.md)
+  etendue run scenes/fig9b.ron --photons 2^33 --resume --time 2h      again and again, until it is done
+
+Photon counts may be written 10_000_000, 1e7 or 2^23.
+Powers of two have least noise, in 64 batches or 2^m.")]
+pub(crate) struct RunArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Folder for the results [default: out/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Goes on until noise alone is at most this share of the spectrum at each plane: with 2^20
+    /// photons first, then as many as that takes, up to --photons [default: 2^40]; exit code 3 if
+    /// these do not do
+    #[arg(long, value_name = "SHARE", value_parser = share)]
+    pub(crate) target_error: Option<f64>,
+
+    /// Go on from the batches that a run of the same command has left; several processes may share the work
+    #[arg(long, conflicts_with_all = ["target_error", "expect"])]
+    pub(crate) resume: bool,
+
+    /// Begin no more batches after this time, such as 90s, 30m or 1h 30m; what is done is kept for --resume
+    #[arg(long, value_name = "TIME", value_parser = humantime::parse_duration, conflicts_with = "target_error")]
+    pub(crate) time: Option<Duration>,
+
+    /// What else to keep
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = saves())]
+    pub(crate) save: Vec<Save>,
+
+    /// A small folder for an archive: without CSV and SVG beside the pictures, and without the explorer
+    #[arg(long)]
+    pub(crate) compact: bool,
+
+    /// Succeed when measured and predicted disagree, fail when they agree
+    #[arg(long, value_name = "OUTCOME")]
+    pub(crate) expect: Option<Expect>,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue measure scenes/fig9b.ron --out out/all
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 0..32 --out out/a     on one machine,
+  etendue measure scenes/fig9b.ron --photons 1e8 --batches 32..64 --out out/b    on another
+
+Batches of one scene, seed and photon count fit together, wherever they were measured.")]
+pub(crate) struct MeasureArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Folder for the measurement
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    /// Batches to measure, A up to but without B [default: all]; --photons counts those of all
+    #[arg(long, value_name = "A..B", value_parser = range, allow_hyphen_values = true)]
+    pub(crate) batches: Option<Range<u32>>,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue split scenes/fig9b.ron --photons 2^36 --parts 32               a command for each part, and two for the end
+  etendue split scenes/fig9b.ron --photons 2^36 --parts 32 --slurm > job.sh && sh job.sh
+
+Parts may run in any order, anywhere: the result has the bytes of one run.")]
+pub(crate) struct SplitArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Parts, each of about as many batches
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub(crate) parts: u32,
+
+    /// Print a script for Slurm: an array of jobs, and one that depends on all
+    #[arg(long)]
+    pub(crate) slurm: bool,
+
+    /// Folder for the results, with those of the parts inside [default: out/NAME]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue predict scenes/fig9b.ron --out out/predicted
+  etendue predict scenes/fig9b.ron --set blockers.0.pitch=0.05 --out out/narrow
+
+A prediction serves measurements of its scene with any seed and number of photons.")]
+pub(crate) struct PredictArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Folder for the prediction
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    /// Those of the measurement: where there is no theory, the other method measures as many
+    #[command(flatten)]
+    pub(crate) photons: PhotonArgs,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue compare --measured out/all --predicted out/predicted --out out/fig9b
+  etendue compare --measured out/a out/b --predicted out/predicted --out out/fig9b
+
+Parts of a measurement may come in any order. 32 batches are enough; what is reported is of those there are.")]
+pub(crate) struct CompareArgs {
+    /// Folders of `etendue measure`: a measurement, whole or in parts
+    #[arg(long, value_name = "DIR", num_args = 1.., required = true)]
+    pub(crate) measured: Vec<PathBuf>,
+
+    /// Folder of `etendue predict`
+    #[arg(long, value_name = "DIR")]
+    pub(crate) predicted: PathBuf,
+
+    /// Folder for the results
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: PathBuf,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+
+    /// Succeed when measured and predicted disagree, fail when they agree
+    #[arg(long, value_name = "OUTCOME")]
+    pub(crate) expect: Option<Expect>,
+
+    /// Print nothing but errors
+    #[arg(long)]
+    pub(crate) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue converge scenes/table1/concave_oblique.ron
+  etendue converge scenes/table1/concave_oblique.ron --set as_printed=true      the paper's printed formulas stay off
+
+Widths of light and windows times e, frequencies over e: the error of first-order maps falls as e, and as e² at normal incidence.
+No order is given where an error is down to that of the quadrature.")]
+pub(crate) struct ConvergeArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    #[command(flatten)]
+    pub(crate) threads: ThreadArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue diff results/fig9b out/fig9b                 of two versions of the program
+  etendue diff out/seed1 out/seed2                     is a disagreement chance?
+  etendue diff out/photons out/backward                of two methods
+
+Tested are, over all planes together at level α: the measured slices, by χ² of their difference over both variances, and each
+parameter of the chain, by its pull. Both results need noise of their own: other seeds, or other methods. Results with one
+seed share photons; they are then the same number for number, or undecided. Predictions of one scene must be equal within
+their stated errors. Of scenes with another window or other frequencies at a plane, the plane is not compared.
+
+The test assumes that each result is a mean of many independent batches, so that its noise is normal, and that the noise of both
+is correlated alike from frequency to frequency; where it is not, p is too large rather than too small.
+
+Exit codes: 0 the same but for noise, 1 different, 2 bad input, 4 undecided")]
+pub(crate) struct DiffArgs {
+    /// Folder of `etendue run` or `compare`
+    #[arg(value_name = "A")]
+    pub(crate) a: PathBuf,
+
+    /// Another
+    #[arg(value_name = "B")]
+    pub(crate) b: PathBuf,
+
+    /// Probability of finding a difference where there is none
+    #[arg(long, value_name = "SHARE", default_value = "1%", value_parser = share)]
+    pub(crate) alpha: f64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// Draw the scene with its central ray and planes into this file (.png or .svg)
+    #[arg(long, value_name = "FILE")]
+    pub(crate) draw: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Example:
+  etendue export --to mitsuba scenes/fig9b.ron --out out/mitsuba
+  python tests/peers/mitsuba_light_field.py --help         records the same light field with Mitsuba and compares spectra")]
+pub(crate) struct ExportArgs {
+    #[command(flatten)]
+    pub(crate) scene: SceneArgs,
+
+    /// The program
+    #[arg(long, value_name = "PROGRAM")]
+    pub(crate) to: Program,
+
+    /// Folder for its files [default: out/NAME-mitsuba]
+    #[arg(long, value_name = "DIR")]
+    pub(crate) out: Option<PathBuf>,
+
+    #[command(flatten)]
+    pub(crate) force: ForceArgs,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "Examples:
+  etendue schema > docs/scene.schema.json
+  etendue schema --page > docs/scene.md")]
+pub(crate) struct SchemaArgs {
+    /// Print the page, in Markdown
+    #[arg(long)]
+    pub(crate) page: bool,
+}
+
+/// What `--to` knows.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Program {
+    /// Mitsuba 3: scene.xml, PLY files, and planes.json
+    Mitsuba,
+}
+
+/// What `--save` keeps.
+fn saves() -> impl TypedValueParser<Value = Save> {
+    let named = |save: Save, help| (save, save.name(), help);
+    one_of([
+        named(
+            Save::Photons,
+            "Every photon that crossed a plane: photons.npy and photons.json, 40 bytes for each",
+        ),
+        named(
+            Save::Mcpl,
+            "The same photons as rays of the world with their power in W, photons.mcpl: 64 bytes for each",
+        ),
+        named(
+            Save::Tm25,
+            "The same as an IES TM-25 file in single precision, photons.tm25ray: 28 bytes for each",
+        ),
+        named(
+            Save::Field,
+            "The light field on a 4D grid, field.npy and field.json, and its full radial spectrum, full_radial.npz, which is predicted and compared too; takes another pass over the photons for each plane, or two where memory is short",
+        ),
+    ])
+}
+
+/// What `--expect` may expect.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Expect {
+    /// Photons must agree with the exact predictions, and a first-order chain must have a wrong map.
+    Disagreement,
+}
+
+/// Batches A..B, at least one.
+fn range(text: &str) -> Result<Range<u32>, String> {
+    let ends = text.split_once("..").map(|(a, b)| (a.parse(), b.parse()));
+    match ends {
+        Some((Ok(start), Ok(end))) if start < end => Ok(start..end),
+        _ => Err("must be A..B, whole numbers with A < B".to_owned()),
+    }
+}

@@ -1,0 +1,164 @@
+//! Arguments that several commands have.
+
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use etendue_field::tidy;
+use etendue_pipeline::load::SceneSource;
+use etendue_scene::RunFile;
+use etendue_store::Method;
+use std::path::PathBuf;
+
+/// How a scene is measured, where it is not as the scene says.
+#[derive(Debug, Args)]
+pub(crate) struct PhotonArgs {
+    /// Photons to emit, instead of the scene's
+    #[arg(long, value_name = "N", value_parser = whole_number, allow_hyphen_values = true)]
+    pub(crate) photons: Option<u64>,
+
+    /// Seed of the photons, instead of the scene's
+    #[arg(long, value_name = "N")]
+    pub(crate) seed: Option<u64>,
+
+    /// How light is measured
+    #[arg(long, value_name = "METHOD", default_value = "photons", value_parser = methods())]
+    pub(crate) method: Method,
+}
+
+/// Takes one of some values by its name; each has a line of help.
+pub(super) fn one_of<T: Copy + Send + Sync + 'static, const N: usize>(
+    all: [(T, &'static str, &'static str); N],
+) -> impl TypedValueParser<Value = T> {
+    let names = all.map(|(_, name, help)| PossibleValue::new(name).help(help));
+    PossibleValuesParser::new(names).try_map(move |text| {
+        let mut all = all.iter();
+        let found = all.find(|(_, name, _)| *name == text);
+        found.map(|(value, ..)| *value).ok_or("no such value")
+    })
+}
+
+/// The methods that a user may name.
+pub(super) fn methods() -> impl TypedValueParser<Value = Method> {
+    let named = |method: Method, help| (method, method.name(), help);
+    one_of([
+        named(Method::Photons, "Photons from the light, forward"),
+        named(
+            Method::Backward,
+            "Rays drawn in the window of each plane, traced back to the light",
+        ),
+    ])
+}
+
+impl PhotonArgs {
+    /// Overrides what a scene says.
+    pub(crate) fn set(&self, run: &mut RunFile) {
+        run.photons = self.photons.unwrap_or(run.photons);
+        run.seed = self.seed.unwrap_or(run.seed);
+    }
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ForceArgs {
+    /// Replace files that etendue did not write, or that were changed since; each is named
+    #[arg(long)]
+    pub(crate) force: bool,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ThreadArgs {
+    /// Threads [default: one for each core]; the results do not depend on it
+    #[arg(long = "threads", value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    pub(crate) count: Option<u16>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SceneArgs {
+    /// Scene file, in RON
+    #[arg(value_name = "SCENE.ron")]
+    pub(crate) path: PathBuf,
+
+    /// Set a field of the scene, such as blockers.0.fill=0.5; may be repeated
+    #[arg(long, value_name = "PATH=VALUE", value_parser = assignment)]
+    pub(crate) set: Vec<(String, String)>,
+}
+
+impl SceneArgs {
+    /// The scene, for the pipeline.
+    pub(crate) fn source(&self) -> SceneSource {
+        SceneSource {
+            path: self.path.clone(),
+            set: self.set.clone(),
+        }
+    }
+}
+
+pub(super) fn assignment(text: &str) -> Result<(String, String), String> {
+    let (path, value) = text.split_once('=').ok_or("must be PATH=VALUE")?;
+    Ok((path.trim().to_owned(), value.trim().to_owned()))
+}
+
+/// Shares without a unit are below this: a larger number is likely a percentage.
+const MAX_PLAIN_SHARE: f64 = 0.05;
+
+/// A share in (0, 1] in per cent, or a small one as a number.
+pub(super) fn share(text: &str) -> Result<f64, String> {
+    let fault = || "must be a share of the spectrum, such as 0.1% or 0.001".to_owned();
+    let parsed = |number: &str| number.trim().parse().ok().filter(|x: &f64| *x > 0.0);
+    if let Some(number) = text.trim().strip_suffix('%') {
+        let share = parsed(number).map(|percent| 0.01 * percent);
+        return share.filter(|share| *share <= 1.0).ok_or_else(fault);
+    }
+    match parsed(text) {
+        Some(share) if share < MAX_PLAIN_SHARE => Ok(share),
+        Some(percent) if percent <= 100.0 => Err(format!(
+            "a number without % must be below {MAX_PLAIN_SHARE}: for {percent} per cent write {percent}% or {}",
+            tidy(0.01 * percent)
+        )),
+        _ => Err(fault()),
+    }
+}
+
+/// A whole number, also as 10_000_000, 1e7 or 2^23.
+#[expect(
+    clippy::cast_possible_truncation,
+    clippy::cast_sign_loss,
+    reason = "checked to be a whole number that f64 holds exactly"
+)]
+pub(super) fn whole_number(text: &str) -> Result<u64, String> {
+    let digits = text.replace('_', "");
+    if let Ok(n) = digits.parse() {
+        return Ok(n);
+    }
+    let power = digits.strip_prefix("2^").and_then(|m| m.parse().ok());
+    if let Some(number) = power.and_then(|m: u32| 1_u64.checked_shl(m)) {
+        return Ok(number);
+    }
+    let x: f64 = digits.parse().map_err(|_| "must be a whole number")?;
+    if (0.0..=9.0e15).contains(&x) && x.fract() == 0.0 {
+        Ok(x as u64)
+    } else {
+        Err("must be a whole number from 0 to 9e15".to_owned())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::share;
+
+    #[test]
+    fn a_large_share_needs_its_unit() {
+        assert_eq!(share("0.3%"), share("0.003"));
+        assert_eq!(share("30 %"), Ok(0.3));
+        assert_eq!(share("0.049"), Ok(0.049));
+        for (text, advice) in [
+            ("0.3", "write 0.3% or 0.003"),
+            ("0.05", "write 0.05% or 0.0005"),
+            ("2", "write 2% or 0.02"),
+        ] {
+            let message = share(text).err().unwrap_or_default();
+            assert!(message.contains(advice), "{text}: {message}");
+        }
+        for text in ["0", "-1%", "101%", "101", "nan", "inf%", "x"] {
+            assert!(share(text).is_err(), "{text}");
+        }
+    }
+}
