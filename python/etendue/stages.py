@@ -141,7 +141,7 @@ def run(
     `threads` is 1 to 1024, one for each core unless said; the result does not depend on it.
     `progress` is whether a bar is shown, or a function that is told how many photons are done.
 
-    The same bytes as `etendue run`. Ctrl-C stops it within a tenth of a second. Raises `SceneError` with all faults of the scene, and
+    The same bytes as `etendue run` on processors of one kind. Ctrl-C stops it within a tenth of a second. Raises `SceneError` with all faults of the scene, and
     `CannotRun` where memory does not do.
     """
     scene = as_scene(scene, set, photons, seed, method)

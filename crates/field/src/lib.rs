@@ -13,7 +13,6 @@
 mod brdf;
 mod crossing;
 mod environment;
-pub mod fft;
 mod field_grid;
 mod frame;
 mod frequency;

@@ -1,8 +1,6 @@
 //! Functions whose bits do not depend on the machine's C library, where `libm` has none or a slow
 //! one.
 
-use std::f64::consts::FRAC_PI_2;
-
 /// Complex numbers of a spectrum.
 pub type Complex = num_complex::Complex<f64>;
 
@@ -22,18 +20,6 @@ pub fn power(x: f64, y: f64) -> f64 {
         1.0
     } else {
         libm::exp(y * libm::log(x))
-    }
-}
-
-/// cos and sin of e^(−2πi k/n), right to rounding.
-pub(crate) fn root_of_unity(k: usize, n: usize) -> [f64; 2] {
-    let (quarter, rest) = (4 * (k % n) / n, 4 * (k % n) % n);
-    let (sin, cos) = libm::sincos(FRAC_PI_2 * rest as f64 / n as f64);
-    match quarter {
-        0 => [cos, -sin],
-        1 => [-sin, -cos],
-        2 => [-cos, sin],
-        _ => [sin, cos],
     }
 }
 

@@ -1,7 +1,8 @@
 //! Batches of a run, kept as they are measured, so that a run that ends early goes on from them.
 //!
 //! Each is a file below `batches/` and the key of the run, in the folder of its results. It comes there whole, by one move, and its name has
-//! the hash of its content. A batch has the same bytes whoever measures it: processes need no lock to share the work, and one that
+//! the hash of its content. A batch has the same bytes whoever measures it (on another kind of processor, the same but for
+//! rounding): processes need no lock to share the work, and one that
 //! dies holds nothing up. A batch on the way is a file too, the sum of its first parts: the next one replaces it.
 
 use crate::Failure;

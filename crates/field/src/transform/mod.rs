@@ -8,12 +8,12 @@ mod fine;
 mod kernel;
 mod spread;
 
-use crate::{Complex, FrequencyAxis, SliceGrid, Slices, TwoPlane};
+use crate::{FrequencyAxis, SliceGrid, Slices, TwoPlane};
 use block::Block;
 use fearless_simd::{Level, dispatch};
 use fine::{FineTransform, Workspace};
 use kernel::{Kernel, UPSAMPLING, WIDTH};
-use ndarray::{ArrayViewMut2, Axis};
+use ndarray::Axis;
 use spread::{Placement, spread};
 use std::fmt;
 
@@ -27,8 +27,10 @@ use std::fmt;
 /// kernel.
 ///
 /// Error: below 2·10⁻⁷ Σ|w| at every frequency, reached by a single ray; rays spread out average it
-/// down. Window and radiance weight are the caller's: `w` is taken as it comes. The bits of the
-/// result depend on the rays and their order, not on the instructions a processor offers.
+/// down. Window and radiance weight are the caller's: `w` is taken as it comes.
+///
+/// The bits of the result depend on the rays, their order, and the kind of processor: the FFTs
+/// (`rustfft`, `realfft`) take the best instructions it has. Spreading gives the same bits on all.
 ///
 /// One plan serves any number of [`Accumulator`]s, on any number of threads.
 pub struct SliceTransform {
@@ -86,9 +88,8 @@ impl SliceTransform {
     #[must_use]
     pub fn bytes(&self) -> f64 {
         let [rows, columns] = self.placements[0].padded();
-        let fine = (self.grid.azimuths * rows * columns) as f64;
-        let work = self.fine.workspace_cells() as f64;
-        size_of::<f64>() as f64 * fine + size_of::<Complex>() as f64 * work
+        let fine = size_of::<f64>() * self.grid.azimuths * rows * columns;
+        (fine + self.fine.workspace().bytes()) as f64
     }
 
     /// An empty sum.
@@ -152,13 +153,9 @@ impl Accumulator<'_> {
         self.flush();
         let mut slices = Slices::zeros(self.plan.grid);
         let each = self.fine.len() / self.plan.grid.azimuths;
-        let mut views = slices.half.axis_iter_mut(Axis(0));
-        for pair in self.fine.chunks(2 * each) {
-            let (a, b) = pair.split_at(each);
-            // The last of an odd number of azimuths is transformed beside itself.
-            let b = if b.is_empty() { a } else { b };
-            let views: [Option<ArrayViewMut2<'_, Complex>>; 2] = [views.next(), views.next()];
-            self.plan.fine.slices([a, b], scale, &mut self.work, views);
+        let views = slices.half.axis_iter_mut(Axis(0));
+        for (fine, slice) in self.fine.chunks_exact(each).zip(views) {
+            self.plan.fine.slice(fine, scale, &mut self.work, slice);
         }
         self.fine.fill(0.0);
         slices
