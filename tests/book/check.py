@@ -134,18 +134,15 @@ def check_chapter(page: Path, folder: Path, environment: dict[str, str]) -> list
 
 
 def kept_pictures(page: Path, folder: Path) -> list[str]:
-    """Pictures of a chapter that are not what its commands make, byte for byte.
-
-    pictures/NAME.svg is out/NAME/path.svg."""
+    """Pictures of a chapter, pictures/NAME.svg, that have not the bytes of any that its commands make."""
+    made = {file.read_bytes() for file in (folder / "out").glob("**/*.svg")}
     wrong = []
     for name in re.findall(r"\]\(pictures/(\w+)\.svg\)", page.read_text()):
-        kept, made = (
-            page.parent / "pictures" / f"{name}.svg",
-            TOP / "target" / "book" / f"{name}.svg",
-        )
-        shutil.copy(folder / "out" / name / "path.svg", made)
-        if not kept.exists() or made.read_bytes() != kept.read_bytes():
-            wrong.append(f"{kept} is not what {page} makes; that is in {made}")
+        kept = page.parent / "pictures" / f"{name}.svg"
+        if not kept.exists() or kept.read_bytes() not in made:
+            copy = TOP / "target" / "book" / page.stem
+            shutil.copytree(folder / "out", copy, dirs_exist_ok=True)
+            wrong.append(f"{kept} is not what {page} makes; that is in {copy}")
     return wrong
 
 

@@ -3,6 +3,7 @@
 //! Coordinates are those of [`Scene`]: metres, the light's centre at the origin, and x, y, z along X, Y and D of the
 //! central ray. They are written so that every f64 comes back the same.
 
+mod id;
 mod light;
 mod material;
 mod patch;
@@ -17,6 +18,7 @@ use crate::Export;
 use etendue_field::{HalfPlane, Light, Mask, Rectangle, Shape};
 use etendue_scene::{BlockerLayer, Event, MeshObject, Object, PatchObject, Scene, Surface};
 use glam::DVec3;
+use id::id;
 use xml::{Xml, diffuse};
 
 /// What a scene says and Mitsuba cannot.
@@ -114,15 +116,6 @@ pub fn mitsuba(scene: &Scene) -> Result<Export, NotInMitsuba> {
     ];
     files.append(&mut writer.files);
     Ok(Export { files })
-}
-
-/// Names in the scene file may hold anything, identifiers may not.
-fn id(object: Object) -> String {
-    match object {
-        Object::Surface(i) => format!("surface_{i}"),
-        Object::Mesh(i) => format!("mesh_{i}"),
-        Object::Patch(i) => format!("smooth_{i}"),
-    }
 }
 
 struct Writer {

@@ -1,4 +1,4 @@
-//! Lights.
+//! Lights of a scene, and how far they reach.
 
 use crate::{Environment, Image, RayLight, Shape};
 use serde::{Serialize, Serializer};

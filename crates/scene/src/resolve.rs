@@ -3,6 +3,7 @@
 mod apart;
 mod blockers;
 mod faults;
+mod fields;
 mod jitter;
 mod light;
 mod limits;
@@ -168,7 +169,7 @@ impl Resolver<'_> {
         for pair in flat.windows(2) {
             let distance = pair[1].extent[0];
             if (distance - pair[0].extent[0]).abs() <= SAME_PLANE * distance.abs() {
-                let [a, b] = [0, 1].map(|i| names::fields(file, pair[i].name).next());
+                let [a, b] = [0, 1].map(|i| fields::fields(file, pair[i].name).next());
                 let [a, b] = [a, b].map(Option::unwrap_or_default);
                 self.faults.add_on_path(
                     format!("{a}.center and {b}.center"),

@@ -29,6 +29,7 @@
 
 pub mod bandwidth;
 mod batch;
+mod covariance;
 pub mod direct;
 pub mod estimate;
 pub mod field;
@@ -41,10 +42,11 @@ mod radial;
 mod ray_moments;
 
 pub use batch::{Batch, PartialBatch, PlaneBatch};
+pub use covariance::{CovarianceEstimate, covariance};
 pub use etendue_field::transform::{Accumulator, SliceTransform};
 pub use histogram::ProjectionHistogram;
 pub use jackknife::Uncertain;
 pub use measure::{PROJECTION_BINS, Watch, measure, measure_watched};
 pub use measurement::{Measurement, MergeError};
 pub use radial::{CrossPower, RadialPower};
-pub use ray_moments::{CovarianceEstimate, RayMoments, covariance};
+pub use ray_moments::RayMoments;

@@ -27,7 +27,7 @@ impl Lock {
             if path.is_symlink() {
                 return Err(Failure::write(path, "a link is there"));
             }
-            let file = options.open(path).map_err(|e| Failure::write(path, e))?;
+            let file = options.open(path).map_err(failure)?;
             match file.try_lock() {
                 Ok(()) => {}
                 Err(TryLockError::WouldBlock) => {

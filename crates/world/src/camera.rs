@@ -1,4 +1,4 @@
-//! Cameras.
+//! Cameras of a world, and the rays of their pixels.
 
 use glam::{DAffine3, DVec3};
 

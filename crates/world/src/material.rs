@@ -1,4 +1,4 @@
-//! Materials.
+//! What surfaces of a world do to light.
 
 use crate::Texture;
 

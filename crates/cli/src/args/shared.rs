@@ -132,11 +132,12 @@ pub(super) fn whole_number(text: &str) -> Result<u64, String> {
     if let Some(number) = power.and_then(|m: u32| 1_u64.checked_shl(m)) {
         return Ok(number);
     }
-    let x: f64 = digits.parse().map_err(|_| "must be a whole number")?;
+    let allowed = "must be a whole number from 0 to 9e15, such as 10_000_000, 1e7 or 2^23";
+    let x: f64 = digits.parse().map_err(|_| allowed)?;
     if (0.0..=9.0e15).contains(&x) && x.fract() == 0.0 {
         Ok(x as u64)
     } else {
-        Err("must be a whole number from 0 to 9e15".to_owned())
+        Err(allowed.to_owned())
     }
 }
 

@@ -1,4 +1,4 @@
-//! Cameras.
+//! Cameras of a glTF file.
 
 use super::node::Placed;
 use super::reader::Reader;

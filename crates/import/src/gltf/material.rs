@@ -1,4 +1,4 @@
-//! Materials.
+//! Materials of a glTF file.
 
 use super::level::Level;
 use super::reader::Reader;

@@ -1,6 +1,7 @@
 //! Names: of the scene, of what stands in it, and of planes.
 
 use super::faults::show;
+use super::fields::fields;
 use super::{Resolver, Stop};
 use crate::file::{BlockersFile, SceneFile, SurfaceFile};
 use crate::limits;
@@ -54,18 +55,6 @@ impl Resolver<'_> {
             }
         }
     }
-}
-
-/// What has a name: `blockers[0]`, `surfaces[0]`.
-pub(super) fn fields<'a>(file: &'a SceneFile, name: &'a str) -> impl Iterator<Item = String> + 'a {
-    let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
-    let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();
-    let blockers = blockers.map(|(i, name)| (format!("blockers[{i}]"), name));
-    let surfaces = surfaces.map(|(i, name)| (format!("surfaces[{i}]"), name));
-    let named = blockers
-        .chain(surfaces)
-        .filter(move |(_, its)| *its == name);
-    named.map(|(field, _)| field)
 }
 
 /// Whether a name can stand in messages, files and pictures.

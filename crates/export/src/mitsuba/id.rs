@@ -1,0 +1,12 @@
+//! Identifiers of what a scene holds.
+
+use etendue_scene::Object;
+
+/// Names in the scene file may hold anything, identifiers may not.
+pub(super) fn id(object: Object) -> String {
+    match object {
+        Object::Surface(i) => format!("surface_{i}"),
+        Object::Mesh(i) => format!("mesh_{i}"),
+        Object::Patch(i) => format!("smooth_{i}"),
+    }
+}

@@ -1,0 +1,15 @@
+//! Fields of a scene file by the name of what they hold.
+
+use crate::file::{BlockersFile, SceneFile, SurfaceFile};
+
+/// What has a name: `blockers[0]`, `surfaces[0]`.
+pub(super) fn fields<'a>(file: &'a SceneFile, name: &'a str) -> impl Iterator<Item = String> + 'a {
+    let blockers = file.blockers.iter().map(BlockersFile::name).enumerate();
+    let surfaces = file.surfaces.iter().map(SurfaceFile::name).enumerate();
+    let blockers = blockers.map(|(i, name)| (format!("blockers[{i}]"), name));
+    let surfaces = surfaces.map(|(i, name)| (format!("surfaces[{i}]"), name));
+    let named = blockers
+        .chain(surfaces)
+        .filter(move |(_, its)| *its == name);
+    named.map(|(field, _)| field)
+}

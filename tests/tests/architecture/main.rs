@@ -1,0 +1,314 @@
+//! The house as ARCHITECTURE.md has it: which crate may use which, no circles of modules, files that say what they hold.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+mod modules;
+
+use modules::{Modules, circles, code};
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Each crate with those that it may use.
+const MAY_USE: &[(&str, &[&str])] = &[
+    ("field", &[]),
+    ("rays", &[]),
+    ("theory", &["field"]),
+    ("spectrum", &["field"]),
+    ("figures", &["field"]),
+    ("world", &["field"]),
+    ("explorer", &["field", "theory"]),
+    ("scene", &["field", "rays"]),
+    ("trace", &["field", "scene"]),
+    ("export", &["field", "scene"]),
+    ("compare", &["field", "scene", "spectrum", "theory"]),
+    ("import", &["field", "scene", "world"]),
+    ("paths", &["field", "scene", "trace", "world"]),
+    (
+        "adaptive",
+        &["compare", "field", "paths", "theory", "world"],
+    ),
+    ("store", &["compare", "field", "scene", "spectrum"]),
+    (
+        "pipeline",
+        &[
+            "compare", "field", "rays", "scene", "spectrum", "store", "trace",
+        ],
+    ),
+    (
+        "report",
+        &[
+            "compare", "explorer", "field", "figures", "pipeline", "scene", "spectrum", "store",
+        ],
+    ),
+    (
+        "sweep",
+        &[
+            "compare", "field", "figures", "pipeline", "report", "scene", "store",
+        ],
+    ),
+    (
+        "view",
+        &[
+            "adaptive", "compare", "field", "figures", "import", "paths", "pipeline", "report",
+            "spectrum", "store", "theory", "world",
+        ],
+    ),
+    (
+        "paper",
+        &[
+            "adaptive", "compare", "field", "figures", "import", "paths", "pipeline", "report",
+            "scene", "spectrum", "store", "theory", "world",
+        ],
+    ),
+    (
+        "cli",
+        &[
+            "adaptive", "compare", "export", "field", "figures", "import", "paper", "pipeline",
+            "rays", "report", "scene", "spectrum", "store", "sweep", "theory", "view",
+        ],
+    ),
+];
+
+/// Circles that are left, by a module of each.
+const KNOWN_CIRCLES: &[(&str, &str)] = &[
+    ("compare", "ways::meshes"),
+    ("compare", "dark"),
+    ("compare", "plane"),
+    ("theory", "mask"),
+    ("theory", "parallel::disc"),
+];
+
+/// Lines of a file above which it needs a reason.
+const MAX_LINES: usize = 500;
+
+/// Longer files, each with why it is not two.
+const LONG_FILES: &[(&str, &str)] = &[
+    (
+        "crates/compare/src/plane.rs",
+        "every number of a plane's report is made in one place",
+    ),
+    (
+        "crates/trace/src/backward/tracer.rs",
+        "one ray traced back: each kind of surface calls the next",
+    ),
+];
+
+fn root() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+        .parent()
+        .unwrap()
+        .to_owned()
+}
+
+fn crates() -> Vec<String> {
+    let entries = fs::read_dir(root().join("crates")).unwrap();
+    let mut names: Vec<String> = entries
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .collect();
+    names.sort();
+    names
+}
+
+/// The crates of the workspace that a manifest names as dependencies, those of tests left out.
+fn uses(manifest: &str) -> BTreeSet<String> {
+    let own = manifest
+        .split("\n[dependencies]")
+        .nth(1)
+        .unwrap_or_default();
+    let own = own.split("\n[").next().unwrap_or_default();
+    let names = own.lines().filter_map(|line| line.strip_prefix("etendue-"));
+    names
+        .filter_map(|line| line.split(['.', ' ', '=']).next())
+        .map(str::to_owned)
+        .collect()
+}
+
+/// What of `found` may not be there.
+fn forbidden(name: &str, found: &BTreeSet<String>) -> Vec<String> {
+    let allowed = MAY_USE.iter().find(|(known, _)| *known == name);
+    let allowed = allowed.map_or(&[] as &[&str], |(_, allowed)| *allowed);
+    let others = found
+        .iter()
+        .filter(|other| !allowed.contains(&other.as_str()));
+    others.cloned().collect()
+}
+
+#[test]
+fn crates_use_those_below_them() {
+    for name in crates() {
+        assert!(
+            MAY_USE.iter().any(|(known, _)| *known == name),
+            "{name} has no row in MAY_USE"
+        );
+        let manifest = fs::read_to_string(root().join("crates").join(&name).join("Cargo.toml"));
+        let found = uses(&manifest.unwrap());
+        let forbidden = forbidden(&name, &found);
+        assert!(forbidden.is_empty(), "{name} may not use {forbidden:?}");
+    }
+    // No row is below one that it uses.
+    for (i, (name, uses)) in MAY_USE.iter().enumerate() {
+        let place =
+            |other: &&&str| MAY_USE.iter().position(|(known, _)| known == *other) >= Some(i);
+        assert_eq!(
+            uses.iter().find(place),
+            None,
+            "{name} uses a crate that comes later"
+        );
+    }
+    let planted = "[package]\nname = \"etendue-theory\"\n\n[dependencies]\netendue-field.workspace = true\netendue-trace.workspace = true\n";
+    assert_eq!(forbidden("theory", &uses(planted)), ["trace"]);
+}
+
+#[test]
+fn architecture_names_every_crate() {
+    let text = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    for name in crates() {
+        assert!(
+            text.contains(&format!("| `{name}` |")),
+            "ARCHITECTURE.md has no row for {name}"
+        );
+    }
+}
+
+#[test]
+fn modules_have_no_circles() {
+    let mut all = Vec::new();
+    for name in crates() {
+        let found = modules::modules(&root().join("crates").join(&name).join("src"));
+        let unknown: Vec<_> = circles(&found)
+            .into_iter()
+            .filter(|circle| {
+                let is_known =
+                    |(other, module): &(&str, &str)| *other == name && circle.contains(*module);
+                !KNOWN_CIRCLES.iter().any(is_known)
+            })
+            .collect();
+        all.extend(unknown.into_iter().map(|circle| (name.clone(), circle)));
+    }
+    assert!(all.is_empty(), "these modules use each other: {all:#?}");
+}
+
+#[test]
+fn a_planted_circle_is_found() {
+    let module = |name: &str| {
+        name.split("::")
+            .filter(|part| !part.is_empty())
+            .map(str::to_owned)
+            .collect()
+    };
+    let planted = |files: &[(&str, &str)]| -> Modules {
+        files
+            .iter()
+            .map(|(name, text)| (module(name), code(text)))
+            .collect()
+    };
+    let of = |files: &[(&str, &str)]| circles(&planted(files)).len();
+    let root = ("", "mod a;\nmod b;\npub use a::A;\n");
+    assert_eq!(
+        of(&[
+            root,
+            ("a", "use crate::b::B;\n"),
+            ("b", "use crate::a::A;\n")
+        ]),
+        1
+    );
+    // Through what the root exports again, and in nested groups.
+    assert_eq!(
+        of(&[
+            root,
+            ("a", "use super::{b::{B, C}, d};\n"),
+            ("b", "fn f() { crate::A::new() }\n")
+        ]),
+        1
+    );
+    assert_eq!(
+        of(&[
+            root,
+            ("a", "use crate::b::B;\n"),
+            ("b", "// use crate::a::A;\n")
+        ]),
+        0
+    );
+    assert_eq!(
+        of(&[
+            root,
+            ("a", "use crate::b::B;\n"),
+            (
+                "b",
+                "fn f() {}\n#[cfg(test)]\nmod tests { use crate::a::A; }\n"
+            )
+        ]),
+        0
+    );
+    assert_eq!(
+        of(&[
+            ("", "mod a;\n"),
+            ("a", "mod b;\nuse b::B;\n"),
+            ("a::b", "use super::A;\n")
+        ]),
+        1
+    );
+    assert_eq!(
+        of(&[
+            ("", "mod a;\n"),
+            ("a", "mod b;\npub use b::B;\n"),
+            ("a::b", "use super::super::c;\n")
+        ]),
+        0
+    );
+}
+
+/// Files of the workspace's sources with their text.
+fn files() -> BTreeMap<String, String> {
+    fn collect(folder: &Path, found: &mut BTreeMap<String, String>) {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                collect(&path, found);
+            } else if path.extension().is_some_and(|e| e == "rs") {
+                let name = path
+                    .strip_prefix(root())
+                    .unwrap()
+                    .to_str()
+                    .unwrap()
+                    .to_owned();
+                found.insert(name, fs::read_to_string(&path).unwrap());
+            }
+        }
+    }
+    let mut found = BTreeMap::new();
+    for name in crates() {
+        collect(&root().join("crates").join(name).join("src"), &mut found);
+    }
+    for folder in ["tests/src", "mpi/src", "python/src"] {
+        collect(&root().join(folder), &mut found);
+    }
+    found
+}
+
+/// Whether a text opens with a sentence on what it holds.
+fn has_head(text: &str) -> bool {
+    let first = text.lines().next().unwrap_or_default();
+    first
+        .strip_prefix("//! ")
+        .is_some_and(|head| head.len() > 10)
+}
+
+#[test]
+fn files_open_with_what_they_hold_and_are_short() {
+    for (name, text) in files() {
+        assert!(
+            has_head(&text),
+            "{name} does not open with a sentence on what it holds"
+        );
+        let is_long = text.lines().count() > MAX_LINES;
+        let has_reason = LONG_FILES.iter().any(|(long, _)| *long == name);
+        assert!(
+            !is_long || has_reason,
+            "{name} has more than {MAX_LINES} lines"
+        );
+        assert!(is_long || !has_reason, "{name} needs no reason any more");
+    }
+    assert!(!has_head("use std::fs;\n") && !has_head("//!\n"));
+}

@@ -1,0 +1,239 @@
+//! The modules of a crate, and which of them use which, read from their text.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
+
+/// The names from the root of a crate to a module; empty for the root.
+pub(crate) type Module = Vec<String>;
+
+/// The modules of a crate with their text.
+pub(crate) type Modules = BTreeMap<Module, String>;
+
+/// What a name of a module stands for: the parts of the path that it was imported by.
+type Imports = BTreeMap<String, Vec<String>>;
+
+/// A re-export may lead to another one; more than this are a circle of their own.
+const MAX_REEXPORTS: usize = 8;
+
+/// The modules below a folder with sources. Of each the part that is compiled outside of tests, without comments.
+pub(crate) fn modules(src: &Path) -> Modules {
+    let mut found = Modules::new();
+    collect(src, &Module::new(), &mut found);
+    found
+}
+
+fn collect(folder: &Path, parent: &Module, found: &mut Modules) {
+    let mut entries: Vec<_> = fs::read_dir(folder)
+        .unwrap()
+        .map(|e| e.unwrap().path())
+        .collect();
+    entries.sort();
+    for path in entries {
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        let mut module = parent.clone();
+        if path.is_dir() {
+            module.push(name);
+            collect(&path, &module, found);
+        } else if path.extension().is_some_and(|e| e == "rs") && name != "main" {
+            if name != "lib" && name != "mod" {
+                module.push(name);
+            }
+            found.insert(module, code(&fs::read_to_string(&path).unwrap()));
+        }
+    }
+}
+
+/// A text without tests, comments and what stands in quotes.
+pub(crate) fn code(text: &str) -> String {
+    let end = text.find("\n#[cfg(test)]\n").unwrap_or(text.len());
+    let lines = text[..end].lines();
+    let lines = lines.map(|line| line.split("//").next().unwrap_or_default());
+    let all = lines.collect::<Vec<_>>().join("\n");
+    let outside = all.split('"').step_by(2);
+    outside.collect::<Vec<_>>().join("\"\"")
+}
+
+/// The circles of modules that use each other, each in order of names.
+pub(crate) fn circles(modules: &Modules) -> Vec<BTreeSet<String>> {
+    let names: Vec<&Module> = modules.keys().collect();
+    let uses: BTreeMap<&Module, BTreeSet<Module>> = names
+        .iter()
+        .map(|module| (*module, used(modules, module)))
+        .collect();
+    let reach: BTreeMap<&Module, BTreeSet<&Module>> = names
+        .iter()
+        .map(|module| (*module, reached(&uses, module)))
+        .collect();
+    let mut circles: BTreeSet<BTreeSet<String>> = BTreeSet::new();
+    for module in &names {
+        let both = reach[module]
+            .iter()
+            .filter(|other| reach[**other].contains(module));
+        let circle: BTreeSet<String> = both.map(|other| shown(other)).collect();
+        if circle.len() > 1 {
+            circles.insert(circle);
+        }
+    }
+    circles.into_iter().collect()
+}
+
+fn shown(module: &Module) -> String {
+    match module.as_slice() {
+        [] => "lib".to_owned(),
+        parts => parts.join("::"),
+    }
+}
+
+/// All that a module leads to, over any number of others.
+fn reached<'a>(
+    uses: &'a BTreeMap<&'a Module, BTreeSet<Module>>,
+    from: &Module,
+) -> BTreeSet<&'a Module> {
+    let mut reached = BTreeSet::new();
+    let mut left: Vec<&Module> = uses[from].iter().collect();
+    while let Some(next) = left.pop() {
+        if reached.insert(next) {
+            left.extend(uses[next].iter());
+        }
+    }
+    reached
+}
+
+/// The other modules that a module uses. What it only exports again does not count.
+fn used(modules: &Modules, module: &Module) -> BTreeSet<Module> {
+    let text = &modules[module];
+    let (imports, body) = split(text);
+    let own = imports.iter().filter(|(is_export, _)| !is_export);
+    let mut paths: Vec<Vec<String>> = own.map(|(_, path)| path.clone()).collect();
+    paths.extend(paths_of(&body));
+    let resolved = paths.iter().filter_map(|path| {
+        let path = absolute(modules, module, path)?;
+        resolve(modules, &path, 0)
+    });
+    resolved.filter(|found| found != module).collect()
+}
+
+/// Imports of a text, each with whether it is exported again, and the rest.
+fn split(text: &str) -> (Vec<(bool, Vec<String>)>, String) {
+    let mut imports = Vec::new();
+    let mut rest = String::new();
+    let mut left = text;
+    while let Some(at) = find_use(left) {
+        let (before, after) = left.split_at(at);
+        let is_export = before.trim_end().ends_with(')') || before.trim_end().ends_with("pub");
+        let Some((tree, next)) = after["use ".len()..].split_once(';') else {
+            break;
+        };
+        imports.extend(expanded(tree).into_iter().map(|path| (is_export, path)));
+        rest.push_str(before);
+        left = next;
+    }
+    rest.push_str(left);
+    (imports, rest)
+}
+
+/// Where a `use` begins.
+fn find_use(text: &str) -> Option<usize> {
+    let starts = text.match_indices("use ").map(|(at, _)| at);
+    let is_word = |at: &usize| {
+        let before = text[..*at].chars().next_back();
+        before.is_none_or(|c| c == '\n' || c == ' ')
+    };
+    let mut starts = starts.filter(is_word);
+    starts.find(|at| {
+        let line = text[..*at].rsplit('\n').next().unwrap_or_default().trim();
+        line.is_empty() || line.starts_with("pub")
+    })
+}
+
+/// The paths of a tree of imports, such as `a::{b, c::d as e}`; the last part is the name that it has here.
+fn expanded(tree: &str) -> Vec<Vec<String>> {
+    let tree = tree.trim();
+    let Some(open) = tree.find('{') else {
+        let path = tree.split(" as ").next().unwrap_or_default();
+        let parts = path.split("::").map(|part| part.trim().to_owned());
+        let mut parts: Vec<String> = parts.collect();
+        if parts.last().is_some_and(|last| last == "self") {
+            parts.pop();
+        }
+        return vec![parts];
+    };
+    let close = tree.rfind('}').unwrap_or(tree.len());
+    let (prefix, inner) = (&tree[..open], &tree[open + 1..close]);
+    let mut depth = 0;
+    let parts = inner.split(|c| {
+        match c {
+            '{' => depth += 1,
+            '}' => depth -= 1,
+            _ => {}
+        }
+        c == ',' && depth == 0
+    });
+    let parts = parts.filter(|part| !part.trim().is_empty());
+    parts
+        .flat_map(|part| expanded(&format!("{prefix}{}", part.trim())))
+        .collect()
+}
+
+/// Paths in the code itself: those that begin at the crate, at a parent, or at a module below.
+fn paths_of(body: &str) -> Vec<Vec<String>> {
+    let is_part = |c: char| c.is_alphanumeric() || c == '_' || c == ':';
+    let words = body
+        .split(|c| !is_part(c))
+        .filter(|word| word.contains("::"));
+    let parts = words.map(|word| word.split("::").map(str::to_owned).collect());
+    parts
+        .filter(|parts: &Vec<String>| !parts[0].is_empty())
+        .collect()
+}
+
+/// A path from the root of the crate; `None` for one of another crate.
+fn absolute(modules: &Modules, module: &Module, path: &[String]) -> Option<Module> {
+    let mut base = module.clone();
+    let mut path = path;
+    match path.first()?.as_str() {
+        "crate" => return Some(path[1..].to_vec()),
+        "self" => path = &path[1..],
+        "super" => {
+            while path.first().is_some_and(|part| part == "super") {
+                base.pop();
+                path = &path[1..];
+            }
+        }
+        first => {
+            base.push(first.to_owned());
+            if !modules.contains_key(&base) {
+                return None;
+            }
+            base.pop();
+        }
+    }
+    base.extend(path.iter().cloned());
+    Some(base)
+}
+
+/// The module in which a path ends, through what modules export again.
+fn resolve(modules: &Modules, path: &[String], depth: usize) -> Option<Module> {
+    let longest = (0..=path.len()).rev();
+    let known = longest
+        .map(|n| path[..n].to_vec())
+        .find(|part| modules.contains_key(part))?;
+    let rest = &path[known.len()..];
+    let Some(name) = rest.first().filter(|_| depth < MAX_REEXPORTS) else {
+        return Some(known);
+    };
+    let (imports, _) = split(&modules[&known]);
+    let imports: Imports = imports
+        .into_iter()
+        .filter_map(|(_, path)| Some((path.last()?.clone(), path)))
+        .collect();
+    match imports.get(name) {
+        None => Some(known),
+        Some(import) => {
+            let mut whole = absolute(modules, &known, import)?;
+            whole.extend(rest[1..].iter().cloned());
+            resolve(modules, &whole, depth + 1)
+        }
+    }
+}
