@@ -1,7 +1,7 @@
 //! What the pixels of a picture see.
 
 use crate::cutoffs::Cutoffs;
-use etendue_paths::{Paths, Reflects, Seen};
+use etendue_paths::{Paths, Reflects, SurfaceHit};
 use etendue_world::Camera;
 use glam::DVec3;
 use rayon::prelude::*;
@@ -57,7 +57,7 @@ pub(crate) struct Surface {
 }
 
 impl Surface {
-    pub(crate) fn new(paths: &Paths, seen: &Seen, cutoffs: &Cutoffs) -> Self {
+    pub(crate) fn new(paths: &Paths, seen: &SurfaceHit, cutoffs: &Cutoffs) -> Self {
         let reflects = paths.reflects(seen);
         let has_lobe = matches!(reflects, Reflects::Lobe(_) | Reflects::Mirror);
         Self {

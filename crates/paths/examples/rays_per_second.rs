@@ -10,7 +10,7 @@
 #![allow(clippy::print_stdout, reason = "a program for people")]
 
 use etendue_import::{Options, import};
-use etendue_paths::{Ray, Space};
+use etendue_paths::{Ray, SceneGeometry};
 use glam::DVec3;
 use std::error::Error;
 use std::io::BufRead;
@@ -23,14 +23,14 @@ fn main() -> Result<(), Box<dyn Error>> {
     let world = import(Path::new(&mesh), &Options::default())
         .map_err(|refused| format!("{:?}", refused.causes))?
         .world;
-    let mut built: Option<Space> = None;
+    let mut built: Option<SceneGeometry> = None;
     for line in std::io::stdin().lock().lines() {
         let line = line?;
         match line.split_once(' ') {
             None => {
                 drop(built.take());
                 let (memory, start) = (resident()?, seconds()?);
-                built = Some(Space::new(&world));
+                built = Some(SceneGeometry::new(&world));
                 println!("{} {}", seconds()? - start, resident()? - memory);
             }
             Some((kind, file)) => {

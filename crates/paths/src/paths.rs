@@ -1,9 +1,9 @@
 //! Paths of light through a world.
 
-use crate::lamps::Lamps;
+use crate::lights::LightSampler;
 use crate::numbers::Numbers;
 use crate::scatter::{Bounce, Scatter};
-use crate::space::{Hit, Ray, Space};
+use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_world::World;
 use glam::DVec3;
 
@@ -13,8 +13,8 @@ use glam::DVec3;
 /// would have found (Veach and Guibas 1995, *Optimally combining sampling techniques*, the balance heuristic).
 #[derive(Debug)]
 pub struct Paths {
-    pub(crate) space: Space,
-    pub(crate) lamps: Lamps,
+    pub(crate) geometry: SceneGeometry,
+    pub(crate) lights: LightSampler,
     materials: Vec<Scatter>,
     of_shape: Vec<usize>,
     pub(crate) depth: u32,
@@ -31,10 +31,10 @@ impl Paths {
     /// The paths of a world whose shapes name materials that exist.
     #[must_use]
     pub fn new(world: &World) -> Self {
-        let space = Space::new(world);
+        let geometry = SceneGeometry::new(world);
         Self {
-            lamps: Lamps::new(world, &space),
-            space,
+            lights: LightSampler::new(world, &geometry),
+            geometry,
             materials: world.materials.iter().map(Scatter::from).collect(),
             of_shape: world.shapes.iter().map(|shape| shape.material).collect(),
             depth: world.depth.unwrap_or(LONGEST).min(LONGEST),
@@ -51,7 +51,7 @@ impl Paths {
         before: u32,
         numbers: &mut Numbers<'_>,
     ) -> f64 {
-        let hit = self.space.first(&ray, seen);
+        let hit = self.geometry.first(&ray, seen);
         let mut sum = self.shown(&ray, hit.as_ref(), before);
         if let Some(hit) = hit {
             self.scattered(ray, hit, before, numbers, &mut |_, light| sum += light);
@@ -100,7 +100,7 @@ impl Paths {
                 weight /= share;
             }
             ray = onward(&hit, &bounce);
-            let next = self.space.first(&ray, [0.0, f64::INFINITY]);
+            let next = self.geometry.first(&ray, [0.0, f64::INFINITY]);
             let from = *first.get_or_insert(bounce.wi);
             found(
                 from,
@@ -120,7 +120,7 @@ impl Paths {
 
     /// Whether light comes from far away on all sides.
     pub(crate) fn has_sky(&self) -> bool {
-        self.lamps.of_sky(DVec3::Z).next().is_some()
+        self.lights.of_sky(DVec3::Z).next().is_some()
     }
 
     /// What lights send along a ray that meets them, weighted against looking for them.
@@ -130,8 +130,8 @@ impl Paths {
             None => radiance,
         };
         match hit {
-            Some(hit) => balanced(self.lamps.of_hit(ray.from, ray.along, hit)),
-            None => self.lamps.of_sky(ray.along).map(balanced).sum(),
+            Some(hit) => balanced(self.lights.of_hit(ray.from, ray.along, hit)),
+            None => self.lights.of_sky(ray.along).map(balanced).sum(),
         }
     }
 
@@ -143,7 +143,7 @@ impl Paths {
         wo: DVec3,
         random: [f64; 4],
     ) -> (DVec3, f64) {
-        let Some(light) = self.lamps.sample(&self.space, hit.position, random) else {
+        let Some(light) = self.lights.sample(&self.geometry, hit.position, random) else {
             return (DVec3::Z, 0.0);
         };
         let wi = hit.frame.transpose() * light.toward;
@@ -155,7 +155,7 @@ impl Paths {
             from: hit.position,
             along: light.toward,
         };
-        if !self.space.is_free(&ray, light.distance) {
+        if !self.geometry.is_free(&ray, light.distance) {
             return (wi, 0.0);
         }
         let share = light.density.map_or(1.0, |looked| {

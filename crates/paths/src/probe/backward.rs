@@ -50,7 +50,7 @@ impl<'a> BackwardProbe<'a> {
         let drawn: [f64; 4] = numbers.draw();
         let [x, y, u, v] = [0, 1, 2, 3].map(|i: usize| (2.0 * drawn[i] - 1.0) * half[i]);
         let ray = TwoPlane { x, y, u, v };
-        let line = legs[plane.leg].line(&paths.space, &plane.frame, &ray);
+        let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &ray);
         let before = u32::try_from(plane.leg).unwrap_or(u32::MAX);
         let radiance = paths.radiance(line, [0.0, f64::INFINITY], before, &mut numbers);
         // The window's volume over the number of rays, as the mean over them has it.

@@ -1,6 +1,6 @@
 //! Legs of the central ray of a probe, and lines in the coordinates of its planes.
 
-use crate::space::{Ray, Space};
+use crate::space::{Ray, SceneGeometry};
 use etendue_field::{Frame, TwoPlane};
 use glam::DVec3;
 
@@ -24,16 +24,16 @@ impl Leg {
     }
 
     /// The line that a plane of this leg has as `seen`, followed back from where the leg ends: at the camera, or on the surface there.
-    pub(super) fn line(&self, space: &Space, plane: &Frame, seen: &TwoPlane) -> Ray {
+    pub(super) fn line(&self, geometry: &SceneGeometry, plane: &Frame, seen: &TwoPlane) -> Ray {
         let point = plane.to_world(DVec3::new(seen.x, seen.y, 0.0));
         let along = plane
             .vector_to_world(DVec3::new(seen.u, seen.v, 1.0))
             .normalize();
-        self.through(space, point, along)
+        self.through(geometry, point, along)
     }
 
     /// The line through a point along the way of light.
-    pub(super) fn through(&self, space: &Space, point: DVec3, along: DVec3) -> Ray {
+    pub(super) fn through(&self, geometry: &SceneGeometry, point: DVec3, along: DVec3) -> Ray {
         let end = &self.frame;
         let left = (end.origin - point).dot(end.d) / along.dot(end.d);
         let at_end = point + left * along;
@@ -42,7 +42,7 @@ impl Leg {
                 from: at_end - self.reach * along,
                 along,
             };
-            let hit = space.meets(shape, &ray, [0.0, 2.0 * self.reach])?;
+            let hit = geometry.meets(shape, &ray, [0.0, 2.0 * self.reach])?;
             Some(hit.position)
         });
         Ray {

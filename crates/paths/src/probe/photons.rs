@@ -3,7 +3,7 @@
 use super::lines::Leg;
 use super::lines::seen_by;
 use super::{Budget, Probe, Stop};
-use crate::lamps::{Emitted, Flash, Target, chosen, mixed};
+use crate::lights::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
 use crate::numbers::Numbers;
 use crate::paths::ROULETTE;
 use crate::space::{Hit, Ray};
@@ -19,7 +19,7 @@ pub struct PhotonProbe<'a> {
     probe: &'a Probe<'a>,
     budget: Budget,
     /// What the windows look at, on each surface.
-    targets: Vec<Target>,
+    targets: Vec<EmissionTarget>,
 }
 
 /// Photons between two reports.
@@ -41,7 +41,7 @@ impl<'a> PhotonProbe<'a> {
     #[must_use]
     pub fn new(probe: &'a Probe<'a>, budget: Budget) -> Self {
         let targets = probe.stops.iter().zip(&probe.legs);
-        let target = |(stop, leg): (&Stop, &Leg)| Target {
+        let target = |(stop, leg): (&Stop, &Leg)| EmissionTarget {
             center: stop.position,
             // Of the corners of the window, on a surface at an angle.
             radius: 2.0 * leg.wide(stop.distance) / stop.cosine().max(0.1),
@@ -73,8 +73,8 @@ impl<'a> PhotonProbe<'a> {
                 u: half[1] * u,
                 v: half[1] * v,
             };
-            let line = legs[plane.leg].line(&paths.space, &plane.frame, &seen);
-            match paths.space.first(&line, [0.0, f64::INFINITY]) {
+            let line = legs[plane.leg].line(&paths.geometry, &plane.frame, &seen);
+            match paths.geometry.first(&line, [0.0, f64::INFINITY]) {
                 None if paths.has_sky() => Some("the sky"),
                 Some(hit) if paths.scatter(&hit).has_mirror() => Some("a smooth surface"),
                 _ => None,
@@ -86,8 +86,8 @@ impl<'a> PhotonProbe<'a> {
         let paths = self.probe.paths;
         let mut numbers = Numbers::new(self.budget.seed, number);
         let emitted = paths
-            .lamps
-            .emit(&paths.space, numbers.draw(), &self.targets);
+            .lights
+            .emit(&paths.geometry, numbers.draw(), &self.targets);
         let Some(Emitted {
             mut ray,
             mut flux,
@@ -96,7 +96,7 @@ impl<'a> PhotonProbe<'a> {
         else {
             return;
         };
-        if let Some(Flash {
+        if let Some(EmissionPoint {
             position,
             normal,
             shine,
@@ -119,7 +119,7 @@ impl<'a> PhotonProbe<'a> {
             return;
         }
         for met in 1..=paths.depth {
-            let Some(hit) = paths.space.first(&ray, [0.0, f64::INFINITY]) else {
+            let Some(hit) = paths.geometry.first(&ray, [0.0, f64::INFINITY]) else {
                 return;
             };
             let wi = hit.frame.transpose() * -ray.along;
@@ -245,10 +245,10 @@ impl<'a> PhotonProbe<'a> {
     /// Whether the line through a place, followed back from the end of a leg, meets that place first.
     fn is_seen(&self, leg: usize, position: DVec3, along: DVec3) -> bool {
         let Probe { paths, legs, .. } = self.probe;
-        let line = legs[leg].through(&paths.space, position, along);
+        let line = legs[leg].through(&paths.geometry, position, along);
         // The line may begin at that very place: then light leaves on the other side of the surface.
         let is_before = (position - line.from).dot(line.along) > 1e-6 * legs[leg].reach;
-        is_before && paths.space.is_clear(line.from, position)
+        is_before && paths.geometry.is_clear(line.from, position)
     }
 }
 

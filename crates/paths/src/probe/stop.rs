@@ -2,7 +2,7 @@
 
 use crate::paths::Paths;
 use crate::scatter::Reflects;
-use crate::space::{Hit, Ray, Space};
+use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_world::Look;
 use glam::DVec3;
 
@@ -55,7 +55,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
     let mut seen = look.seen;
     let mut travelled = 0.0;
     while stops.len() < most
-        && let Some(hit) = paths.space.first(&ray, seen)
+        && let Some(hit) = paths.geometry.first(&ray, seen)
     {
         travelled += hit.distance;
         let side = if hit.frame.z_axis.dot(ray.along) < 0.0 {
@@ -75,7 +75,7 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
             reflects: paths
                 .scatter(&hit)
                 .kind(hit.uv, hit.frame.transpose() * -ray.along),
-            curvature: curvature(&paths.space, &hit, normal, -ray.along, half * travelled),
+            curvature: curvature(&paths.geometry, &hit, normal, -ray.along, half * travelled),
         });
         ray = Ray {
             from: hit.position,
@@ -90,24 +90,30 @@ pub(super) fn followed(paths: &Paths, look: &Look, most: usize, half: f64) -> Ve
 const HALVINGS: i32 = 16;
 
 /// Curvatures by the normals at a step to either side: at the largest step that is still on the surface.
-fn curvature(space: &Space, hit: &Hit, normal: DVec3, leaving: DVec3, largest: f64) -> [f64; 2] {
+fn curvature(
+    geometry: &SceneGeometry,
+    hit: &Hit,
+    normal: DVec3,
+    leaving: DVec3,
+    largest: f64,
+) -> [f64; 2] {
     let tangent = across(leaving, normal).unwrap_or_else(|| normal.any_orthonormal_vector());
     [tangent, normal.cross(tangent)].map(|axis| {
         let steps = (0..HALVINGS).map(|i| largest * 0.5_f64.powi(i));
-        let mut found = steps.filter_map(|step| between(space, hit, normal, step * axis));
+        let mut found = steps.filter_map(|step| between(geometry, hit, normal, step * axis));
         found.next().unwrap_or(0.0)
     })
 }
 
 /// The curvature between the places of a shape a step to either side; `None` where one of them is beside it.
-fn between(space: &Space, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
+fn between(geometry: &SceneGeometry, hit: &Hit, normal: DVec3, step: DVec3) -> Option<f64> {
     let height = 4.0 * step.length();
     let at = |side: f64| {
         let ray = Ray {
             from: hit.position + side * step + height * normal,
             along: -normal,
         };
-        let met = space.meets(hit.shape, &ray, [0.0, 2.0 * height])?;
+        let met = geometry.meets(hit.shape, &ray, [0.0, 2.0 * height])?;
         let facing = met.frame.z_axis.dot(normal).signum();
         Some((met.position, facing * met.frame.z_axis))
     };

@@ -48,7 +48,7 @@ pub struct Hit {
 
 /// All surfaces of a world.
 #[derive(Debug)]
-pub struct Space {
+pub struct SceneGeometry {
     placed: Vec<Placed>,
     hierarchy: Hierarchy,
     /// No nearer hit counts: it is the surface that the ray begins on.
@@ -71,7 +71,7 @@ pub(crate) struct Placed {
 /// Hits nearer than this share of the world's size are the surface itself: f64 places points by some 10⁻¹⁵ of it, and roots of quadratics by 10⁻¹².
 const NEAREST: f64 = 1e-9;
 
-impl Space {
+impl SceneGeometry {
     /// The surfaces of a world, with hierarchies over them.
     #[must_use]
     pub fn new(world: &World) -> Self {

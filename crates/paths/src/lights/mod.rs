@@ -6,28 +6,28 @@ mod incoming;
 mod shape;
 mod sky;
 
-use crate::space::{Hit, Space};
-use ball::Ball;
-pub(crate) use emit::{Emitted, Flash, Target, chosen, mixed};
+use crate::space::{Hit, SceneGeometry};
+use ball::ShiningSphere;
+pub(crate) use emit::{EmissionPoint, EmissionTarget, Emitted, chosen, mixed};
 use etendue_world::{Falloff, Geometry, Light, Shape, Texture, World};
 use glam::{DAffine3, DVec3};
 pub(crate) use incoming::Incoming;
 use incoming::way;
-use shape::Surface;
-use sky::Sky;
+use shape::ShiningShape;
+use sky::SampledSky;
 
 /// All lights of a world, of which each is looked for alike.
 #[derive(Debug)]
-pub(crate) struct Lamps {
-    lamps: Vec<Lamp>,
-    /// The lamp of each shape that shines.
+pub(crate) struct LightSampler {
+    lights: Vec<SampledLight>,
+    /// The light of each shape that shines.
     of_shape: Vec<Option<usize>>,
 }
 
 #[derive(Debug)]
-enum Lamp {
-    Surface(Surface),
-    Ball(Ball),
+enum SampledLight {
+    ShiningShape(ShiningShape),
+    ShiningSphere(ShiningSphere),
     Point {
         position: DVec3,
         intensity: f64,
@@ -43,36 +43,36 @@ enum Lamp {
         toward: DVec3,
         irradiance: f64,
     },
-    Sky(Sky),
+    Sky(SampledSky),
 }
 
-impl Lamps {
-    pub(crate) fn new(world: &World, space: &Space) -> Self {
-        let mut lamps = Vec::new();
+impl LightSampler {
+    pub(crate) fn new(world: &World, geometry: &SceneGeometry) -> Self {
+        let mut lights = Vec::new();
         let of_shape = world.shapes.iter().enumerate().map(|(i, shape)| {
-            lamps.push(shining(shape, i, space)?);
-            Some(lamps.len() - 1)
+            lights.push(shining(shape, i, geometry)?);
+            Some(lights.len() - 1)
         });
         let of_shape = of_shape.collect();
-        lamps.extend(world.lights.iter().map(Lamp::from));
-        Self { lamps, of_shape }
+        lights.extend(world.lights.iter().map(SampledLight::from));
+        Self { lights, of_shape }
     }
 
     /// Light that comes to a place, from four numbers; `None` where none does.
     pub(crate) fn sample(
         &self,
-        space: &Space,
+        geometry: &SceneGeometry,
         at: DVec3,
         [a, b, c, d]: [f64; 4],
     ) -> Option<Incoming> {
-        let count = self.lamps.len() as f64;
+        let count = self.lights.len() as f64;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "a number of a lamp"
+            reason = "a number of a light"
         )]
-        let lamp = self.lamps.get((d * count) as usize)?;
-        let found = lamp.sample(space, at, [a, b, c])?;
+        let light = self.lights.get((d * count) as usize)?;
+        let found = light.sample(geometry, at, [a, b, c])?;
         let density = found.density.map(|density| density / count);
         Some(Incoming {
             weight: found.weight * count,
@@ -83,40 +83,40 @@ impl Lamps {
 
     /// The radiance that a shape emits where a ray along `along` meets it, and the density with which [`Self::sample`] looks there.
     pub(crate) fn of_hit(&self, from: DVec3, along: DVec3, hit: &Hit) -> (f64, f64) {
-        let Some(lamp) = self.of_shape[hit.shape].map(|lamp| &self.lamps[lamp]) else {
+        let Some(light) = self.of_shape[hit.shape].map(|light| &self.lights[light]) else {
             return (0.0, 0.0);
         };
-        let (radiance, density) = match lamp {
-            Lamp::Surface(surface) => surface.of_hit(along, hit),
-            Lamp::Ball(ball) => ball.of_hit(from, along, hit),
+        let (radiance, density) = match light {
+            SampledLight::ShiningShape(surface) => surface.of_hit(along, hit),
+            SampledLight::ShiningSphere(ball) => ball.of_hit(from, along, hit),
             _ => (0.0, 0.0),
         };
-        (radiance, density / self.lamps.len() as f64)
+        (radiance, density / self.lights.len() as f64)
     }
 
     /// The radiance that comes from far away along a direction, and the density with which [`Self::sample`] looks there: a sum over lights.
     pub(crate) fn of_sky(&self, toward: DVec3) -> impl Iterator<Item = (f64, f64)> {
-        let count = self.lamps.len() as f64;
-        let skies = self.lamps.iter().filter_map(|lamp| match lamp {
-            Lamp::Sky(sky) => Some(sky),
+        let count = self.lights.len() as f64;
+        let skies = self.lights.iter().filter_map(|light| match light {
+            SampledLight::Sky(sky) => Some(sky),
             _ => None,
         });
         skies.map(move |sky| (sky.radiance(toward), sky.density(toward) / count))
     }
 }
 
-fn shining(shape: &Shape, number: usize, space: &Space) -> Option<Lamp> {
+fn shining(shape: &Shape, number: usize, geometry: &SceneGeometry) -> Option<SampledLight> {
     let emission: Texture = shape.emission.clone()?;
-    let placed = space.placed(number);
+    let placed = geometry.placed(number);
     Some(match shape.geometry {
         Geometry::Sphere if !shape.is_flipped => {
-            Lamp::Ball(Ball::new(number, &shape.to_world, emission))
+            SampledLight::ShiningSphere(ShiningSphere::new(number, &shape.to_world, emission))
         }
-        _ => Lamp::Surface(Surface::new(number, &placed.areas(), emission)),
+        _ => SampledLight::ShiningShape(ShiningShape::new(number, &placed.areas(), emission)),
     })
 }
 
-impl From<&Light> for Lamp {
+impl From<&Light> for SampledLight {
     fn from(light: &Light) -> Self {
         match light {
             Light::Point {
@@ -146,17 +146,17 @@ impl From<&Light> for Lamp {
                 toward: -*direction,
                 irradiance: *irradiance,
             },
-            Light::Constant { radiance } => Self::Sky(Sky::Constant(*radiance)),
-            Light::Sky(map) => Self::Sky(Sky::new(map)),
+            Light::Constant { radiance } => Self::Sky(SampledSky::Constant(*radiance)),
+            Light::Sky(map) => Self::Sky(SampledSky::new(map)),
         }
     }
 }
 
-impl Lamp {
-    fn sample(&self, space: &Space, at: DVec3, [a, b, c]: [f64; 3]) -> Option<Incoming> {
+impl SampledLight {
+    fn sample(&self, geometry: &SceneGeometry, at: DVec3, [a, b, c]: [f64; 3]) -> Option<Incoming> {
         match self {
-            Self::Surface(surface) => surface.sample(space, at, [a, b, c]),
-            Self::Ball(ball) => ball.sample(space, at, [a, b]),
+            Self::ShiningShape(surface) => surface.sample(geometry, at, [a, b, c]),
+            Self::ShiningSphere(ball) => ball.sample(geometry, at, [a, b]),
             Self::Point {
                 position,
                 intensity,
@@ -202,7 +202,7 @@ impl Lamp {
     }
 }
 
-impl Lamp {
+impl SampledLight {
     /// What a spot sends along a direction of its own coordinates, W sr⁻¹.
     fn intensity(&self, local: DVec3) -> f64 {
         let Self::Spot {

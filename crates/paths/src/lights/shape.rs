@@ -1,20 +1,20 @@
 //! Other shapes that shine.
 
 use super::incoming::{Incoming, emitted, way};
-use crate::space::{Hit, Space};
+use crate::space::{Hit, SceneGeometry};
 use etendue_world::Texture;
 use glam::{DVec2, DVec3};
 
 /// A shape that shines, of which places are drawn evenly over its area.
 #[derive(Debug)]
-pub(super) struct Surface {
+pub(super) struct ShiningShape {
     shape: usize,
     emission: Texture,
     /// The areas of its pieces, summed up to each.
     summed: Vec<f64>,
 }
 
-impl Surface {
+impl ShiningShape {
     pub(super) fn new(shape: usize, areas: &[f64], emission: Texture) -> Self {
         let sum = |sum: &mut f64, area: &f64| {
             *sum += area;
@@ -32,8 +32,13 @@ impl Surface {
         self.summed.last().copied().unwrap_or_default()
     }
 
-    pub(super) fn sample(&self, space: &Space, at: DVec3, [a, b, c]: [f64; 3]) -> Option<Incoming> {
-        let (place, normal, uv) = self.place(space, [a, b, c])?;
+    pub(super) fn sample(
+        &self,
+        geometry: &SceneGeometry,
+        at: DVec3,
+        [a, b, c]: [f64; 3],
+    ) -> Option<Incoming> {
+        let (place, normal, uv) = self.place(geometry, [a, b, c])?;
         let (toward, distance) = way(at, place);
         let density = self.density(distance, normal.dot(toward));
         let radiance = emitted(&self.emission, uv, normal, -toward);
@@ -46,16 +51,24 @@ impl Surface {
     }
 
     /// A place drawn evenly over its area, its normal and texture coordinates.
-    fn place(&self, space: &Space, [a, b, c]: [f64; 3]) -> Option<(DVec3, DVec3, DVec2)> {
+    fn place(
+        &self,
+        geometry: &SceneGeometry,
+        [a, b, c]: [f64; 3],
+    ) -> Option<(DVec3, DVec3, DVec2)> {
         let wanted = c * self.area();
         let piece = self.summed.partition_point(|sum| *sum <= wanted);
         let piece = piece.min(self.summed.len().checked_sub(1)?);
-        Some(space.placed(self.shape).sample(piece, [a, b]))
+        Some(geometry.placed(self.shape).sample(piece, [a, b]))
     }
 
     /// A place, its normal, and the radiance there over the density of places.
-    pub(super) fn emit(&self, space: &Space, random: [f64; 3]) -> Option<(DVec3, DVec3, f64)> {
-        let (place, normal, uv) = self.place(space, random)?;
+    pub(super) fn emit(
+        &self,
+        geometry: &SceneGeometry,
+        random: [f64; 3],
+    ) -> Option<(DVec3, DVec3, f64)> {
+        let (place, normal, uv) = self.place(geometry, random)?;
         Some((place, normal, self.emission.value(uv) * self.area()))
     }
 

@@ -15,18 +15,18 @@ pub struct View {
     /// What sources themselves send along it, W m⁻² sr⁻¹.
     pub emitted: f64,
     /// The surface there; `None` where the look leaves the world.
-    pub surface: Option<Seen>,
+    pub surface: Option<SurfaceHit>,
 }
 
 /// A place of a surface that is seen.
 #[derive(Clone, Copy, Debug)]
-pub struct Seen {
+pub struct SurfaceHit {
     hit: Hit,
     /// The ray that sees it.
     ray: Ray,
 }
 
-impl Seen {
+impl SurfaceHit {
     /// The number of its shape.
     #[must_use]
     pub fn shape(&self) -> usize {
@@ -87,22 +87,22 @@ impl Paths {
             from: look.from,
             along: look.along,
         };
-        let hit = self.space.first(&ray, look.seen);
+        let hit = self.geometry.first(&ray, look.seen);
         View {
             emitted: self.shown(&ray, hit.as_ref(), 0),
-            surface: hit.map(|hit| Seen { hit, ray }),
+            surface: hit.map(|hit| SurfaceHit { hit, ray }),
         }
     }
 
     /// What the surface does to light, in a word.
     #[must_use]
-    pub fn reflects(&self, seen: &Seen) -> Reflects {
+    pub fn reflects(&self, seen: &SurfaceHit) -> Reflects {
         self.scatter(&seen.hit).kind(seen.hit.uv, seen.wo())
     }
 
     /// The factors of base and lobe there, as textures have them. What has one part only has that as its base.
     #[must_use]
-    pub fn factors(&self, seen: &Seen) -> [f64; 2] {
+    pub fn factors(&self, seen: &SurfaceHit) -> [f64; 2] {
         self.scatter(&seen.hit).factors(seen.hit.uv, seen.wo())
     }
 
@@ -111,7 +111,7 @@ impl Paths {
     ///
     /// Paths of one place begin with the points of a scrambled net, which makes the mean better than that variance says.
     #[must_use]
-    pub fn shade(&self, seen: &Seen, paths: u32, seed: u64, number: u64) -> ([f64; 2], f64) {
+    pub fn shade(&self, seen: &SurfaceHit, paths: u32, seed: u64, number: u64) -> ([f64; 2], f64) {
         let net = Net::new(seed, Stream::Net, number, JOINT);
         let scatter = self.scatter(&seen.hit);
         let [mut base, mut mean, mut squares] = [0.0; 3];
@@ -139,7 +139,7 @@ impl Paths {
     #[must_use]
     pub fn nearness(
         &self,
-        seen: &Seen,
+        seen: &SurfaceHit,
         rays: u32,
         nearest: f64,
         seed: u64,
@@ -164,7 +164,8 @@ impl Paths {
                 .and_then(|bounce| {
                     let along = (seen.hit.frame * bounce.wi).normalize();
                     let from = seen.hit.position;
-                    self.space.first(&Ray { from, along }, [0.0, f64::INFINITY])
+                    self.geometry
+                        .first(&Ray { from, along }, [0.0, f64::INFINITY])
                 })
                 .map_or(0.0, |hit| hit.distance.max(nearest).recip());
         }
@@ -181,14 +182,14 @@ impl Paths {
     }
 
     /// Light that is looked for at the lights, and what stands before it.
-    fn shadow(&self, seen: &Seen, random: [f64; 4]) -> Option<Shadow> {
+    fn shadow(&self, seen: &SurfaceHit, random: [f64; 4]) -> Option<Shadow> {
         let Hit {
             position: from,
             frame,
             uv,
             ..
         } = seen.hit;
-        let light = self.lamps.sample(&self.space, from, random)?;
+        let light = self.lights.sample(&self.geometry, from, random)?;
         let wi = frame.transpose() * light.toward;
         let value = light.weight * self.scatter(&seen.hit).value(uv, wi, seen.wo());
         if value <= 0.0 {
@@ -198,13 +199,13 @@ impl Paths {
             from,
             along: light.toward,
         };
-        if self.space.is_free(&ray, light.distance) {
+        if self.geometry.is_free(&ray, light.distance) {
             return Some(Shadow {
                 light: value,
                 nearness: 0.0,
             });
         }
-        let blocker = self.space.first(&ray, [0.0, light.distance])?.distance;
+        let blocker = self.geometry.first(&ray, [0.0, light.distance])?.distance;
         // What is looked for this densely covers some 1/density of all directions.
         let angle = light
             .density

@@ -1,21 +1,21 @@
 //! Spheres that shine.
 
 use super::incoming::{Incoming, emitted, way};
-use crate::space::{Hit, Ray, Space};
+use crate::space::{Hit, Ray, SceneGeometry};
 use etendue_world::Texture;
 use glam::{DAffine3, DVec3};
 use std::f64::consts::TAU;
 
 /// A sphere that shines outwards, looked for within the cone in which it is seen.
 #[derive(Debug)]
-pub(super) struct Ball {
+pub(super) struct ShiningSphere {
     shape: usize,
     emission: Texture,
     center: DVec3,
     radius: f64,
 }
 
-impl Ball {
+impl ShiningSphere {
     pub(super) fn new(shape: usize, to_world: &DAffine3, emission: Texture) -> Self {
         Self {
             shape,
@@ -32,7 +32,12 @@ impl Ball {
         (sine2 < 1.0).then(|| sine2 / (1.0 + (1.0 - sine2).sqrt()))
     }
 
-    pub(super) fn sample(&self, space: &Space, at: DVec3, [a, b]: [f64; 2]) -> Option<Incoming> {
+    pub(super) fn sample(
+        &self,
+        geometry: &SceneGeometry,
+        at: DVec3,
+        [a, b]: [f64; 2],
+    ) -> Option<Incoming> {
         let cone = self.cone(at)?;
         let (axis, distance) = way(at, self.center);
         let fall = a * cone;
@@ -44,7 +49,7 @@ impl Ball {
             from: at,
             along: toward,
         };
-        let hit = space.meets(self.shape, &ray, [0.0, 2.0 * (distance + self.radius)])?;
+        let hit = geometry.meets(self.shape, &ray, [0.0, 2.0 * (distance + self.radius)])?;
         let density = 1.0 / (TAU * cone);
         let radiance = emitted(&self.emission, hit.uv, hit.normal, -toward);
         Some(Incoming {
@@ -56,8 +61,8 @@ impl Ball {
     }
 
     /// A place drawn evenly over its area, its normal, and the radiance there over the density of places.
-    pub(super) fn emit(&self, space: &Space, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
-        let (place, normal, uv) = space.placed(self.shape).sample(0, [a, b]);
+    pub(super) fn emit(&self, geometry: &SceneGeometry, [a, b]: [f64; 2]) -> (DVec3, DVec3, f64) {
+        let (place, normal, uv) = geometry.placed(self.shape).sample(0, [a, b]);
         let area = 2.0 * TAU * self.radius * self.radius;
         (place, normal, self.emission.value(uv) * area)
     }

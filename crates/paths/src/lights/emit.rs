@@ -1,7 +1,7 @@
 //! Light as it leaves its sources, for photons: half of them as they come, half of them aimed.
 
-use super::{Lamp, Lamps};
-use crate::space::{Ray, Space};
+use super::{LightSampler, SampledLight};
+use crate::space::{Ray, SceneGeometry};
 use glam::{DMat3, DVec3};
 use std::f64::consts::{PI, TAU};
 
@@ -12,12 +12,12 @@ pub(crate) struct Emitted {
     /// Its flux, W, times the number of photons.
     pub(crate) flux: f64,
     /// The place of a surface that it has left.
-    pub(crate) flash: Option<Flash>,
+    pub(crate) flash: Option<EmissionPoint>,
 }
 
 /// A place of a surface that shines.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Flash {
+pub(crate) struct EmissionPoint {
     pub(crate) position: DVec3,
     pub(crate) normal: DVec3,
     /// Radiance over the density of places, W sr⁻¹.
@@ -26,35 +26,35 @@ pub(crate) struct Flash {
 
 /// A sphere that photons are aimed at.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Target {
+pub(crate) struct EmissionTarget {
     pub(crate) center: DVec3,
     pub(crate) radius: f64,
 }
 
 /// What the ways of photons are drawn from.
 struct Draw<'a> {
-    targets: &'a [Target],
+    targets: &'a [EmissionTarget],
     /// For the way, and for what it is drawn by.
     random: [f64; 3],
 }
 
-impl Lamps {
+impl LightSampler {
     /// A photon, from seven numbers; `None` for one that carries nothing.
     pub(crate) fn emit(
         &self,
-        space: &Space,
-        [a, b, c, d, e, by, lamp]: [f64; 7],
-        targets: &[Target],
+        geometry: &SceneGeometry,
+        [a, b, c, d, e, by, light]: [f64; 7],
+        targets: &[EmissionTarget],
     ) -> Option<Emitted> {
-        let count = self.lamps.len() as f64;
+        let count = self.lights.len() as f64;
         #[expect(
             clippy::cast_possible_truncation,
             clippy::cast_sign_loss,
-            reason = "a number of a lamp"
+            reason = "a number of a light"
         )]
-        let lamp = self.lamps.get((lamp * count) as usize)?;
+        let light = self.lights.get((light * count) as usize)?;
         let random = [d, e, by];
-        let mut emitted = lamp.emit(space, [a, b, c], &Draw { targets, random })?;
+        let mut emitted = light.emit(geometry, [a, b, c], &Draw { targets, random })?;
         emitted.flux *= count;
         if let Some(flash) = &mut emitted.flash {
             flash.shine *= count;
@@ -63,12 +63,12 @@ impl Lamps {
     }
 }
 
-impl Lamp {
-    fn emit(&self, space: &Space, place: [f64; 3], draw: &Draw<'_>) -> Option<Emitted> {
+impl SampledLight {
+    fn emit(&self, geometry: &SceneGeometry, place: [f64; 3], draw: &Draw<'_>) -> Option<Emitted> {
         let [a, b, c] = place;
         match self {
-            Self::Surface(surface) => Some(draw.flashed(surface.emit(space, place)?)),
-            Self::Ball(ball) => Some(draw.flashed(ball.emit(space, [a, b]))),
+            Self::ShiningShape(surface) => Some(draw.flashed(surface.emit(geometry, place)?)),
+            Self::ShiningSphere(ball) => Some(draw.flashed(ball.emit(geometry, [a, b]))),
             Self::Point {
                 position,
                 intensity,
@@ -82,25 +82,25 @@ impl Lamp {
                 Some(draw.away(to_world.translation, axis, libm::cos(*cutoff), &intensity))
             }
             Self::Directional { toward, irradiance } => {
-                Some(draw.afar(space, *toward, *irradiance))
+                Some(draw.afar(geometry, *toward, *irradiance))
             }
             Self::Sky(sky) => {
                 let toward = sky.sample([a, b, c]);
                 let density = sky.density(toward);
                 let irradiance = sky.radiance(toward) / density;
-                (density > 0.0).then(|| draw.afar(space, toward, irradiance))
+                (density > 0.0).then(|| draw.afar(geometry, toward, irradiance))
             }
         }
     }
 }
 
 impl Draw<'_> {
-    fn target(&self) -> Option<&Target> {
+    fn target(&self) -> Option<&EmissionTarget> {
         let [.., by] = self.random;
         chosen(self.targets, by)
     }
 
-    fn density(&self, plain: f64, aimed: impl Fn(&Target) -> f64) -> f64 {
+    fn density(&self, plain: f64, aimed: impl Fn(&EmissionTarget) -> f64) -> f64 {
         mixed(plain, self.targets, aimed)
     }
 
@@ -119,7 +119,7 @@ impl Draw<'_> {
                 along,
             },
             flux: shine * cosine / density,
-            flash: Some(Flash {
+            flash: Some(EmissionPoint {
                 position,
                 normal,
                 shine,
@@ -155,18 +155,18 @@ impl Draw<'_> {
     }
 
     /// A photon from far away: across a disc as wide as all surfaces, or as a target.
-    fn afar(&self, space: &Space, toward: DVec3, irradiance: f64) -> Emitted {
+    fn afar(&self, geometry: &SceneGeometry, toward: DVec3, irradiance: f64) -> Emitted {
         let [a, b, _] = self.random;
-        let whole = Target {
-            center: space.center,
+        let whole = EmissionTarget {
+            center: geometry.center,
             // A little wider, for what touches the sphere.
-            radius: 1.001 * space.radius,
+            radius: 1.001 * geometry.radius,
         };
         let aimed = self.target().unwrap_or(&whole);
         let (s, t) = toward.any_orthonormal_pair();
         let (sin, cos) = libm::sincos(TAU * b);
         let place = aimed.center + aimed.radius * a.sqrt() * (cos * s + sin * t);
-        let density = |disc: &Target| {
+        let density = |disc: &EmissionTarget| {
             let off = place - disc.center;
             let is_in = off.length_squared() - off.dot(toward).powi(2) <= disc.radius.powi(2);
             if is_in {
@@ -188,7 +188,7 @@ impl Draw<'_> {
 }
 
 /// The target that a photon is aimed at: half of them are, each target by as many.
-pub(crate) fn chosen(targets: &[Target], by: f64) -> Option<&Target> {
+pub(crate) fn chosen(targets: &[EmissionTarget], by: f64) -> Option<&EmissionTarget> {
     let number = (2.0 * by - 1.0) * targets.len() as f64;
     #[expect(
         clippy::cast_possible_truncation,
@@ -200,7 +200,11 @@ pub(crate) fn chosen(targets: &[Target], by: f64) -> Option<&Target> {
 }
 
 /// The density of what is drawn by `plain` for half of the photons, and by `aimed` for each target's share of the rest.
-pub(crate) fn mixed(plain: f64, targets: &[Target], aimed: impl Fn(&Target) -> f64) -> f64 {
+pub(crate) fn mixed(
+    plain: f64,
+    targets: &[EmissionTarget],
+    aimed: impl Fn(&EmissionTarget) -> f64,
+) -> f64 {
     if targets.is_empty() {
         return plain;
     }
@@ -208,7 +212,7 @@ pub(crate) fn mixed(plain: f64, targets: &[Target], aimed: impl Fn(&Target) -> f
     0.5 * plain + 0.5 * aimed / targets.len() as f64
 }
 
-impl Target {
+impl EmissionTarget {
     /// 1 − cos of half of the cone in which it is seen; all around from within.
     fn cone(&self, from: DVec3) -> f64 {
         let sine2 = self.radius * self.radius / (self.center - from).length_squared();

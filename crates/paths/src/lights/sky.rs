@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 /// Light from far away.
 #[derive(Debug)]
-pub(super) enum Sky {
+pub(super) enum SampledSky {
     Constant(f64),
     Map(Map),
 }
@@ -21,7 +21,7 @@ pub(super) struct Map {
     summed: Vec<f64>,
 }
 
-impl Sky {
+impl SampledSky {
     pub(super) fn new(map: &SkyMap) -> Self {
         let pixels = &*map.radiance;
         let (w, h) = (pixels.width(), pixels.height());
