@@ -49,16 +49,23 @@ impl Plane {
             };
             return Some((ray, along.length_squared().powi(-2)));
         }
-        let (point, normal) = match &self.patch {
-            None => (foot, self.frame.d),
-            Some(patch) => self.above(foot, patch)?,
-        };
+        let (point, normal) = self.point([x, y])?;
         let away = self.away([u, v])?;
         let towards = self.frame.turned_to(normal).vector_to_world(away);
         let direction = if self.arriving { -towards } else { towards };
         // Of a curved surface an area is seen of which dx dy is what lies below it.
         let etendue = away.z * libm::cos(v) / normal.dot(self.frame.d);
         Some((Ray { point, direction }, etendue))
+    }
+
+    /// The point at two coordinates, of the plane or of the surface it is on, and the normal there on
+    /// the side of D. `None` where the surface has none.
+    pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
+        let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
+        match &self.patch {
+            None => Some((foot, self.frame.d)),
+            Some(patch) => self.above(foot, patch),
+        }
     }
 
     /// The direction with two angles of a plane on a surface, seen from the normal. `None` beyond a
