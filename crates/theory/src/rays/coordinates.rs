@@ -31,7 +31,7 @@ impl Plane {
             return Some(0.0);
         }
         if let Some(patch) = &self.patch {
-            return Some(ray.met(patch)?.0);
+            return Some(self.arrives_on(patch, ray)?.0);
         }
         let t = (self.frame.origin - ray.point).dot(self.frame.d) / ray.direction.dot(self.frame.d);
         t.is_finite().then_some(t)
@@ -120,7 +120,7 @@ impl Plane {
             return Some((point, self.frame.d));
         };
         let (point, normal) = if self.arriving {
-            let (distance, normal) = ray.met(patch)?;
+            let (distance, normal) = self.arrives_on(patch, ray)?;
             (ray.point + ray.direction * distance, normal)
         } else {
             let gradient = patch.gradient(patch.frame.to_local(ray.point));
@@ -129,6 +129,11 @@ impl Plane {
         };
         let side = normal.dot(self.frame.d).signum();
         Some((point, normal * side))
+    }
+
+    /// Where a ray meets the surface that the plane is on from the side of the plane's D.
+    fn arrives_on(&self, patch: &Patch, ray: &Ray) -> Option<(f64, DVec3)> {
+        ray.met_from(patch, patch.frame.d.dot(self.frame.d).signum())
     }
 
     /// Angles to the D of `local`; `None` if the direction points into the surface.
