@@ -51,11 +51,9 @@ fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
         residuals.p_value(scene.run.seed).unwrap()
     };
     let sound = p(|_| ());
-    println!("{name}: {sound}");
     assert!(sound > ALPHA / 6.0, "{name}: {sound}");
     for (words, fault) in faults {
         let planted = p(*fault);
-        println!("{name}, {words}: {planted}");
         assert!(planted < 1e-3, "{name}, {words}: {planted}");
     }
 }
@@ -105,15 +103,15 @@ fn traced(scene: &Scene) -> Measurement {
     measure(&tracer, &scene.planes, 0..scene.run.batches, &|_| ())
 }
 
-/// Fig. 3: five suns behind a grating, by slopes and by angles.
+/// Fig. 3: five suns behind a grating, by slopes and by angles. Half a turn changes nothing of them.
 #[test]
 fn two_parameterisations() {
     let scene = scene("fig3");
     let photons = traced(&scene);
     let faults: [Fault; 2] = [("no masks", without_masks), ("light turned", turned_light)];
-    tells(&scene, &photons, "travel", &faults);
-    let faults: [Fault; 2] = [("frame turned", turned_round), ("no masks", without_masks)];
-    tells(&scene, &photons, "plane_sphere", &faults);
+    for plane in ["travel", "plane_sphere"] {
+        tells(&scene, &photons, plane, &faults);
+    }
 }
 
 /// Fig. 14: on a sphere, before the lobes of its surface.

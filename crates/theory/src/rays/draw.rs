@@ -213,7 +213,10 @@ impl<'a> Draw<'a> {
                 // dx dy of the light over that of the plane, by the area of the surface.
                 let spread = (normal.dot(along) / normal.dot(plane.frame.d)).abs();
                 let density = of_x * of_y * of_light / spread;
-                (point.z > 0.0).then(|| (placed(slopes, [start.x, start.y]), density))
+                // Light from behind has met the front of the surface at another point.
+                let is_hidden = plane.arriving && normal.dot(along) >= 0.0;
+                let arrives = point.z > 0.0 && !is_hidden;
+                arrives.then(|| (placed(slopes, [start.x, start.y]), density))
             }
             By::Aim {
                 targets: [first, second],

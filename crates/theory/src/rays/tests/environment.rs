@@ -278,9 +278,15 @@ fn all_ways_to_draw_the_sky_agree() {
     );
     let plain = under(&environment, vec![]);
     let local = on_sphere(0.4, Orientation::LocalNormals, Quantity::Radiance);
+    // A small sphere seen from the side: rays meet it in the window from behind, too.
+    let mut aside = on_sphere(0.9, Orientation::LocalNormals, Quantity::Radiance);
+    if let Some(patch) = &mut aside.patch {
+        patch.curvature = [2.5; 3];
+    }
     let cases = [
         (&plain, after(&plain, 1.0)),
         (&plain, local),
+        (&plain, aside),
         (&mirror, after(&mirror, 0.4)),
     ];
     for (system, plane) in cases {
