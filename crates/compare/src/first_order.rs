@@ -4,7 +4,7 @@ use crate::budget::budget;
 use crate::residuals::Residuals;
 use crate::system::print;
 use crate::verdict::Verdict;
-use etendue_field::{Profile, Shape, Slices, Window};
+use etendue_field::{Light, Profile, Shape, Slices, Window};
 use etendue_scene::Scene;
 use etendue_spectrum::Measurement;
 use etendue_theory::geometry::{Edition, Map, Matrix};
@@ -190,8 +190,12 @@ impl FirstOrder {
 }
 
 /// The covariance after the chain and the window of a Gaussian as wide as the light. Inverses of
-/// covariances add up in a product of Gaussians, and a map takes them to A⁻ᵀ S⁻¹ A⁻¹.
+/// covariances add up in a product of Gaussians, and a map takes them to A⁻ᵀ S⁻¹ A⁻¹. `None` for an
+/// environment, which has no width.
 fn propagated(system: &System, chain: &Matrix<4>, window: &Window) -> Option<Matrix<4>> {
+    if matches!(system.light, Light::Environment { .. }) {
+        return None;
+    }
     let window = [window.x, window.y, window.u, window.v].map(|profile| variance(&profile));
     // What has no width gets one that is narrow beside the window; what has no end adds no inverse.
     let narrow = window.map(|v| 1e8 / v);

@@ -8,10 +8,10 @@ use etendue_theory::rays::{Element, Plane, System};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
-/// where light comes from an environment or a ray file, and where a surface is not specular.
+/// where light comes from a ray file, and where a surface is not specular.
 #[must_use]
 pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
-    if matches!(scene.light, Light::Environment { .. } | Light::Rays { .. }) {
+    if matches!(scene.light, Light::Rays { .. }) {
         return None;
     }
     let path = &scene.path;

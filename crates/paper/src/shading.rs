@@ -19,7 +19,7 @@ pub(crate) fn environment(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let steps = taken.plate(&Plate {
         title: "Diffuse shading under an environment map",
         note: "Light that varies over angle alone has its spectrum along *ν*; curvature shears it onto *ρ* = *kν*, the cosine blurs it along *ν*, and what leaves a diffuse \
-               surface is the line *ν* = 0. Predicted before reflection: by backward rays.",
+               surface is the line *ν* = 0.",
         heads: names.map(str::to_owned).to_vec(),
         rows: compared(&seen, false),
         feet: feet(&seen),

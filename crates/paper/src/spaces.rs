@@ -18,9 +18,6 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let names = ["two_plane", "travel", "plane_sphere"];
     let seen = names.map(|name| Seen::at(&taken.shots[0], name));
     let seen: Vec<Seen<'_>> = seen.into_iter().collect::<Result<_, _>>()?;
-    let mut rows = compared(&seen, false);
-    // No theory speaks of light of an environment on its way: photons are judged by the other tracer.
-    rows[2].name = "backward rays";
     let spaces = taken.plate(&Plate {
         title: "Two parameterisations, and travel",
         note: "Five suns, 0.4 rad apart, behind a grating: stripes at slopes *u* = tan *θ*, which are not equally far apart, and at angles, which are. \
@@ -28,7 +25,7 @@ pub(crate) fn coordinates(taken: &FigureData<'_>) -> Result<Figure, Failure> {
         heads: ["slopes", "slopes, 0.5 m on", "angles, there"]
             .map(str::to_owned)
             .to_vec(),
-        rows,
+        rows: compared(&seen, false),
         feet: feet(&seen),
         bars: None,
     })?;

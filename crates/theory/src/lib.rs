@@ -68,6 +68,7 @@ mod reference;
 pub mod reflections;
 pub mod scattering;
 pub mod shading;
+mod sky;
 #[cfg(test)]
 mod testing;
 mod words;

@@ -1,4 +1,4 @@
-//! Light of an environment that arrives at a sphere, by a quadrature of its own: theory follows it only behind the surface.
+//! Light of an environment that arrives at a sphere, by a quadrature of its own beside the nets of theory.
 
 use etendue_field::{Complex, Environment, Slices, TwoPlane, VirtualPlane};
 use etendue_scene::Scene;

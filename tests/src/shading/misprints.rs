@@ -61,7 +61,7 @@ pub(super) fn misprints(photons: Option<u64>) -> Section {
         text: format!(
             "The misprints of the table in 2D that a spectrum of photons can tell, in 4D, at {:.0e} photons. Eq. 6 on a diffuse sphere; a mirror as a BRDF without 1/cos θ, which leaves \
              the light times cos⁺ θ cos² φ, the cosine of the plane-sphere parameterisation; section 6.1 on the light that arrives at the sphere in the environment, times the cosine and turned \
-             about the normals, where theory has no word and the corrected formula is a midpoint rule over the window. Eqs. 15, 17, 20 and 21 are about steps by themselves and \
+             about the normals, where the corrected formula is a midpoint rule over the window. Eqs. 15, 17, 20 and 21 are about steps by themselves and \
              stay with quadrature in 2D. Apart: printed from corrected, of the spectrum. Required: p < {level:.5}, α = {ALPHA} over {count} planes, of what is printed, and p of what is corrected not below.",
             photons.unwrap_or_default() as f64
         ),

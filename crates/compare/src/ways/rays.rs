@@ -116,6 +116,15 @@ impl Ray {
         let found = found.copied().filter(|t| *t > 0.0);
         found.filter(|t| patch.contains(point + *t * direction))
     }
+
+    /// Where it comes to a surface from the side of a normal, whatever it meets before.
+    pub(super) fn front_hit(&self, patch: &Patch, side: DVec3) -> Option<f64> {
+        let Self { point, direction } = self.seen_from(&patch.frame);
+        let side = patch.frame.d.dot(side).signum();
+        let faces = |t: &f64| side * patch.gradient(point + *t * direction).dot(direction) < 0.0;
+        let hits = patch.hits(point, direction).into_iter();
+        hits.filter(|t| *t > 0.0).find(faces)
+    }
 }
 
 /// Six numbers in (0, 1) that fill the cube evenly: multiples of powers of the root of x⁷ = x + 1

@@ -226,7 +226,7 @@ impl Follower<'_> {
             return Some(None);
         };
         let point = if self.at.arriving {
-            ray.at(ray.theory_hit(patch)?)
+            ray.at(ray.front_hit(patch, self.at.frame.d)?)
         } else {
             ray.point
         };
@@ -317,23 +317,20 @@ impl Follower<'_> {
         let Some(counted) = self.counted(patch, ray) else {
             return (None, unforeseen);
         };
-        let theory = if self.at.arriving {
-            ray.theory_hit(patch).map(|t| ray.at(t))
-        } else {
-            Some(ray.point)
-        };
         let scale = SAME * counted.length();
-        if theory.is_none_or(|theory| theory.distance(counted) > scale) {
-            let object = if self.at.arriving { ends } else { leaves };
-            unforeseen = unforeseen.or(object.map(Meets::Itself));
+        if !self.at.arriving && ray.point.distance(counted) > scale {
+            unforeseen = unforeseen.or(leaves.map(Meets::Itself));
         }
         let seen = coordinates(self.at, ray, Some(on(patch, counted)));
         (seen, unforeseen)
     }
 
-    /// The point of a surface at which a plane on it counts a photon: that of its line nearest to
-    /// where the central ray hits.
+    /// The point of a surface at which a plane on it counts a photon: where it comes to its front,
+    /// or, of light that leaves, that of its line nearest to where the central ray hits.
     fn counted(&self, patch: &Patch, ray: &Ray) -> Option<DVec3> {
+        if self.at.arriving {
+            return Some(ray.at(ray.front_hit(patch, self.at.frame.d)?));
+        }
         let local = ray.seen_from(&patch.frame);
         let hits = patch.hits(local.point, local.direction).into_iter();
         let points = hits.filter(|t| !t.is_nan()).map(|t| ray.at(t));

@@ -31,7 +31,7 @@ impl Plane {
             return Some(0.0);
         }
         if let Some(patch) = &self.patch {
-            return Some(ray.met(patch)?.0);
+            return Some(self.arrives_on(patch, ray)?.0);
         }
         let t = (self.frame.origin - ray.point).dot(self.frame.d) / ray.direction.dot(self.frame.d);
         t.is_finite().then_some(t)
@@ -49,16 +49,23 @@ impl Plane {
             };
             return Some((ray, along.length_squared().powi(-2)));
         }
-        let (point, normal) = match &self.patch {
-            None => (foot, self.frame.d),
-            Some(patch) => self.above(foot, patch)?,
-        };
+        let (point, normal) = self.point([x, y])?;
         let away = self.away([u, v])?;
         let towards = self.frame.turned_to(normal).vector_to_world(away);
         let direction = if self.arriving { -towards } else { towards };
         // Of a curved surface an area is seen of which dx dy is what lies below it.
         let etendue = away.z * libm::cos(v) / normal.dot(self.frame.d);
         Some((Ray { point, direction }, etendue))
+    }
+
+    /// The point at two coordinates, of the plane or of the surface it is on, and the normal there on
+    /// the side of D. `None` where the surface has none.
+    pub(crate) fn point(&self, [x, y]: [f64; 2]) -> Option<(DVec3, DVec3)> {
+        let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
+        match &self.patch {
+            None => Some((foot, self.frame.d)),
+            Some(patch) => self.above(foot, patch),
+        }
     }
 
     /// The direction with two angles of a plane on a surface, seen from the normal. `None` beyond a
@@ -113,7 +120,7 @@ impl Plane {
             return Some((point, self.frame.d));
         };
         let (point, normal) = if self.arriving {
-            let (distance, normal) = ray.met(patch)?;
+            let (distance, normal) = self.arrives_on(patch, ray)?;
             (ray.point + ray.direction * distance, normal)
         } else {
             let gradient = patch.gradient(patch.frame.to_local(ray.point));
@@ -122,6 +129,11 @@ impl Plane {
         };
         let side = normal.dot(self.frame.d).signum();
         Some((point, normal * side))
+    }
+
+    /// Where a ray meets the surface that the plane is on from the side of the plane's D.
+    fn arrives_on(&self, patch: &Patch, ray: &Ray) -> Option<(f64, DVec3)> {
+        ray.met_from(patch, patch.frame.d.dot(self.frame.d).signum())
     }
 
     /// Angles to the D of `local`; `None` if the direction points into the surface.

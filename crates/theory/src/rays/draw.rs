@@ -11,18 +11,21 @@ use super::emission::{Emission, point_of};
 use super::{Plane, System};
 use crate::geometry::{Map, Matrix};
 use crate::nets::{DIMENSIONS, Density, Target};
-use etendue_field::{Shape, Window};
+use crate::sky::Sky;
+use etendue_field::{Environment, Light, Shape, Window};
+use glam::DVec3;
 
 /// What rays are drawn by. No choice is best everywhere: they are tried on the scene.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum RayStrategy {
     /// The picture of the light.
     Picture,
-    /// Positions at the plane; of an area light, also points of it.
+    /// Positions at the plane; of an area light, also points of it, and of an environment
+    /// directions.
     Positions,
-    /// Slopes at the plane; of an area light, also points of it.
+    /// Slopes at the plane, and the same.
     Slopes,
-    /// Positions and slopes at the plane, of an area light.
+    /// Positions and slopes at the plane, of a light with extent.
     Plane,
 }
 
@@ -32,21 +35,38 @@ impl RayStrategy {
 
 /// Draws rays (x, y, u, v) of the light.
 #[derive(Clone, Debug)]
-pub(super) struct Draw {
+pub(super) struct Draw<'a> {
     emission: Emission,
+    outer: Outer<'a>,
     by: By,
+}
+
+/// What a light with extent draws of a ray: the two coordinates that its emission is not counted by.
+#[derive(Clone, Debug)]
+enum Outer<'a> {
+    /// Nothing: all rays have the same.
+    Center,
+    /// Positions on an area light.
+    Shape(Shape),
+    /// Slopes of an environment.
+    Sky(&'a Environment, Box<Sky<'a>>),
 }
 
 #[derive(Clone, Debug)]
 enum By {
     Picture([Density; 2]),
+    /// Positions at a plane that light reaches straight from the light.
+    Straight {
+        positions: Box<[Density; 2]>,
+        plane: Plane,
+    },
     /// Two coordinates at the plane.
     Aim {
         targets: [Target; 2],
         /// Where rays of the central point land: those coordinates of the central ray.
         center: [f64; 2],
-        /// How they change with the light's position, and with its other two coordinates.
-        position: Matrix<2>,
+        /// How they change with what the light draws, and with the other two coordinates.
+        outer: Matrix<2>,
         inverse: Matrix<2>,
         determinant: f64,
     },
@@ -63,16 +83,48 @@ enum By {
     },
 }
 
-impl Draw {
+impl<'a> Outer<'a> {
+    /// `None` where nothing shines.
+    fn new(system: &'a System, plane: Option<&Plane>) -> Option<Self> {
+        Some(match &system.light {
+            Light::Area { shape, .. } => Self::Shape(*shape),
+            Light::Environment { environment } => {
+                let met = plane.filter(|plane| plane.arriving && system.elements.is_empty());
+                let normal = met.map_or(DVec3::NEG_Z, |plane| plane.frame.d);
+                Self::Sky(environment, Box::new(Sky::new(environment, normal)?))
+            }
+            _ => Self::Center,
+        })
+    }
+
+    /// Two coordinates and their density; `None` for light that does not go forward.
+    fn draw(&self, at: [f64; 2]) -> Option<([f64; 2], f64)> {
+        match self {
+            Self::Center => Some(([0.0; 2], 1.0)),
+            Self::Shape(shape) => Some((point_of(shape, at), 1.0 / shape.area())),
+            Self::Sky(environment, sky) => {
+                let from = sky.draw(at);
+                let along = -environment.frame.vector_to_world(from);
+                let density = sky.density(from, environment.map.radiance(from));
+                // dω = cos³ du dv.
+                let slopes = [along.x / along.z, along.y / along.z];
+                (along.z > 0.0).then(|| (slopes, density * along.z.powi(3)))
+            }
+        }
+    }
+}
+
+impl<'a> Draw<'a> {
     /// `center` is where the central ray lands and `jacobian` how that changes with the ray; `None`
     /// where they do not tell rays apart. Without a plane all rays land as they tell.
     pub(super) fn new(
-        (system, plane): (&System, Option<&Plane>),
+        (system, plane): (&'a System, Option<&Plane>),
         window: &Window,
         (center, jacobian): &([f64; 4], Matrix<4>),
         strategy: RayStrategy,
     ) -> Option<Self> {
         let emission = system.emission();
+        let outer = Outer::new(system, plane)?;
         let profiles = [window.x, window.y, window.u, window.v];
         let aim = |row: usize| {
             let block = |columns: [usize; 2]| -> Matrix<2> {
@@ -85,22 +137,34 @@ impl Draw {
             Some(By::Aim {
                 targets: [0, 1].map(|i| Target::new(&profiles[row + i])),
                 center: [center[row], center[row + 1]],
-                position: block([0, 1]),
+                outer: block(emission.outer()),
                 inverse: aimed.inverse()?.matrix,
                 determinant: aimed.det().abs(),
             })
         };
         let by = match strategy {
             RayStrategy::Picture => By::Picture(system.picture_densities()?),
-            RayStrategy::Positions => aim(0)?,
+            RayStrategy::Positions => match (&outer, plane) {
+                (Outer::Sky(..), Some(plane)) if system.elements.is_empty() => By::Straight {
+                    positions: Box::new([window.x, window.y].map(|profile| Density::of(&profile))),
+                    plane: *plane,
+                },
+                _ => aim(0)?,
+            },
             RayStrategy::Slopes => aim(2)?,
             RayStrategy::Plane => {
-                emission.shape?;
+                if matches!(outer, Outer::Center) {
+                    return None;
+                }
                 if let Some(plane) = plane {
                     let back = Back::new(system, plane);
                     let window = Box::new(profiles.map(|profile| Density::of(&profile)));
                     let by = By::Back { window, back };
-                    return Some(Self { emission, by });
+                    return Some(Self {
+                        emission,
+                        outer,
+                        by,
+                    });
                 }
                 let rays = Map {
                     matrix: *jacobian,
@@ -116,18 +180,23 @@ impl Draw {
                 }
             }
         };
-        Some(Self { emission, by })
+        Some(Self {
+            emission,
+            outer,
+            by,
+        })
     }
 
     /// A ray and its density in the emission's coordinates; `None` for one that the light does not
     /// emit.
     pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<([f64; 4], f64)> {
         let [a, b, c, d, ..] = *at;
-        let Emission { inner, shape, .. } = &self.emission;
-        let placed = |outer: [f64; 2], coordinates: [f64; 2]| {
-            let mut ray = [outer[0], outer[1], 0.0, 0.0];
-            ray[inner[0]] = coordinates[0];
-            ray[inner[1]] = coordinates[1];
+        let placed = |outer: [f64; 2], inner: [f64; 2]| {
+            let mut ray = [0.0; 4];
+            for i in 0..2 {
+                ray[self.emission.outer()[i]] = outer[i];
+                ray[self.emission.inner[i]] = inner[i];
+            }
             ray
         };
         match &self.by {
@@ -135,21 +204,32 @@ impl Draw {
                 let [s, t] = [first.quantile(a), second.quantile(b)];
                 Some((placed([0.0; 2], [s, t]), first.value(s) * second.value(t)))
             }
+            By::Straight { positions, plane } => {
+                let (slopes, of_light) = self.outer.draw([c, d])?;
+                let [[x, of_x], [y, of_y]] = [positions[0].draw(a), positions[1].draw(b)];
+                let (point, normal) = plane.point([x, y])?;
+                let along = DVec3::new(slopes[0], slopes[1], 1.0);
+                let start = point - point.z * along;
+                // dx dy of the light over that of the plane, by the area of the surface.
+                let spread = (normal.dot(along) / normal.dot(plane.frame.d)).abs();
+                let density = of_x * of_y * of_light / spread;
+                // Light from behind has met the front of the surface at another point.
+                let is_hidden = plane.arriving && normal.dot(along) >= 0.0;
+                let arrives = point.z > 0.0 && !is_hidden;
+                arrives.then(|| (placed(slopes, [start.x, start.y]), density))
+            }
             By::Aim {
                 targets: [first, second],
                 center,
-                position,
+                outer,
                 inverse,
                 determinant,
             } => {
-                let (outer, of_light) = match shape {
-                    Some(shape) => (point_of(shape, [c, d]), 1.0 / shape.area()),
-                    None => ([0.0; 2], 1.0),
-                };
+                let (drawn, of_light) = self.outer.draw([c, d])?;
                 let [s, t] = [first.quantile(a), second.quantile(b)];
-                let from = crate::geometry::times(position, &outer);
+                let from = crate::geometry::times(outer, &drawn);
                 let left = [s - center[0] - from[0], t - center[1] - from[1]];
-                let ray = placed(outer, crate::geometry::times(inverse, &left));
+                let ray = placed(drawn, crate::geometry::times(inverse, &left));
                 let density = first.value(s) * second.value(t) * determinant * of_light;
                 Some((ray, density))
             }
@@ -175,8 +255,10 @@ impl Draw {
 
     /// Whether a ray begins in the light.
     fn emits(&self, [x, y, ..]: &[f64; 4]) -> bool {
-        let shape = self.emission.shape.as_ref();
-        shape.is_some_and(|shape: &Shape| shape.contains(*x, *y))
+        match &self.outer {
+            Outer::Shape(shape) => shape.contains(*x, *y),
+            Outer::Center | Outer::Sky(..) => true,
+        }
     }
 }
 

@@ -3,16 +3,15 @@
 use super::System;
 use crate::nets::Density;
 use etendue_field::{Light, Shape};
+use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
-/// What the light's rays are counted by: two of the coordinates x, y, u, v, and for an area light
-/// the other two as well.
+/// What the light's rays are counted by: two of the coordinates x, y, u, v, and for a light with
+/// extent the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Emission {
     /// Indices of those two coordinates.
     pub(super) inner: [usize; 2],
-    /// The area light that has the other two.
-    pub(super) shape: Option<Shape>,
     /// Where to stop looking for rays, in those coordinates.
     pub(super) reach: [f64; 2],
     /// Cycles per unit of those coordinates in the light's picture.
@@ -23,6 +22,13 @@ pub(super) struct Emission {
 const GAUSSIAN: f64 = 3.6;
 /// Slopes beyond which no ray is looked for, where the light has no picture.
 const STEEPEST: f64 = 30.0;
+
+impl Emission {
+    /// The other two coordinates.
+    pub(super) fn outer(&self) -> [usize; 2] {
+        self.inner.map(|inner| (inner + 2) % 4)
+    }
+}
 
 impl System {
     pub(super) fn emission(&self) -> Emission {
@@ -48,7 +54,6 @@ impl System {
         }
         Emission {
             inner,
-            shape: self.light.shape().copied(),
             reach: image.map_or([STEEPEST; 2], |image| image.width.map(|w| GAUSSIAN * w)),
             cycles,
         }
@@ -81,6 +86,7 @@ impl System {
 /// | point | the same with a white image |
 /// | beam | E · image(x, y) dx dy |
 /// | area light | L₀ (1 + u² + v²)^(−2 − n/2) dx dy du dv |
+/// | environment | L(u, v) (1 + u² + v²)⁻² dx dy du dv |
 pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
     let [x, y, u, v] = ray;
     let cosine = 1.0 / (1.0 + u * u + v * v).sqrt();
@@ -91,9 +97,8 @@ pub(crate) fn emitted(light: &Light, ray: [f64; 4]) -> f64 {
         Light::Area {
             radiance, exponent, ..
         } => radiance * cosine.powi(4) * libm::pow(cosine, *exponent),
-        // Its rays leave no plane.
-        Light::Environment { .. } => {
-            panic!("rays of an environment are not followed from the light")
+        Light::Environment { environment } => {
+            environment.radiance(DVec3::new(u, v, 1.0)) * cosine.powi(4)
         }
         Light::Rays { .. } => panic!("rays of a file are summed, not drawn"),
     }

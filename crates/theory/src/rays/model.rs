@@ -19,7 +19,8 @@ impl Model for Observed<System> {
         &self.system.light
     }
 
-    /// Those that are not zero: a plane at its surface has no travel to it.
+    /// Those that are not zero: a plane at its surface has no travel to it. Nor has one under an
+    /// environment that nothing stands in the way of, where light is alike everywhere.
     fn parameters(&self) -> Vec<Parameter> {
         let Self { system, plane } = self;
         let mut all = Parameter::of_light(&system.light);
@@ -41,6 +42,9 @@ impl Model for Observed<System> {
             all.push(Parameter::Travel(system.elements.len()));
         }
         let is_there = |parameter: &Parameter| {
+            if *parameter == Parameter::Travel(0) && system.is_alike_everywhere() {
+                return false;
+            }
             let value = self.value(*parameter);
             value.is_some_and(|value| value.abs() > NOTHING)
                 && Moved::nearby(self, *parameter).is_some()
@@ -158,6 +162,12 @@ impl System {
             light: shrunk_light(&self.light, factor),
             ..self.clone()
         }
+    }
+
+    /// Whether light is the same at all distances from where it begins.
+    fn is_alike_everywhere(&self) -> bool {
+        let is_environment = matches!(self.light, Light::Environment { .. });
+        is_environment && self.layers.is_empty() && self.obstacles.is_empty()
     }
 
     /// Where a leg starts, and along what.

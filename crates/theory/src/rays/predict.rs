@@ -10,7 +10,7 @@ use crate::model::{Moved, Observed, Over};
 use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
 use crate::obstacle::Obstacles;
 use crate::predicted::Predicted;
-use etendue_field::{Frame, FrequencyAxis, Mask, SliceGrid, Slices, TwoPlane, Window};
+use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
 
 /// Of a prediction that needs neither picture nor moments.
@@ -79,7 +79,7 @@ pub(crate) fn with_rays(
 /// The radiance of ray z at the light goes to A z + t, A being the transpose of the map's matrix
 /// and t its phase, and its spectrum is multiplied by the map's factor: F = factor · ∫ ℓ(z) W(A z +
 /// t) e^(−2πi Ω·(A z + t)) dz. Masks of the first leg are exact; obstacles are met by the rays of
-/// each leg to first order.
+/// each leg to first order. On a surface that an environment shines on, z has angles for slopes.
 #[must_use]
 pub fn linear(
     view: &Observed<System>,
@@ -111,7 +111,7 @@ fn derivatives(
     let masks: Vec<_> = sides()
         .map(|view| Masks::new(&view.system.layers, &view.system.obstacles))
         .collect();
-    let draws: Option<Vec<Draw>> = sides()
+    let draws: Option<Vec<Draw<'_>>> = sides()
         .map(|Observed { system, plane }| {
             let lands = neighbourhood(system, plane)?;
             Draw::new((system, Some(plane)), over.0, &lands, strategy)
@@ -160,6 +160,9 @@ fn linear_field<'a>(
     let Observed { system, plane } = view;
     let rays = map.rays();
     let legs = AffineLeg::all(view);
+    let is_sky = matches!(system.light, Light::Environment { .. });
+    let by_angle = is_sky && plane.arriving && system.elements.is_empty();
+    let distance = plane.frame.origin.z;
     move |ray: [f64; 4]| {
         let [.., u, v] = ray;
         let flux = flux(system, masks, ray);
@@ -171,9 +174,29 @@ fn linear_field<'a>(
             .map(|(i, leg)| leg.passes(&masks.obstacles, i, ray))
             .product();
         let radiance = passes * flux * (1.0 + u * u + v * v).powi(2);
+        let (ray, per_slope) = if by_angle {
+            angles(ray, distance)
+        } else {
+            (ray, 1.0)
+        };
         let z = rays.apply(ray);
-        Some((z, map.factor * radiance * plane.factor(z)))
+        Some((z, map.factor * radiance * per_slope * plane.factor(z)))
     }
+}
+
+/// A ray by its angles: the light of an environment that arrives on a surface is a function of
+/// these, and no slope is small. Travel over a distance takes it to where the ray goes. With dθ dφ
+/// over du dv.
+fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
+    let across = (1.0 + u * u).sqrt();
+    let (longitude, latitude) = (libm::atan(u), libm::atan(v / across));
+    let start = [
+        x + distance * (u - longitude),
+        y + distance * (v - latitude),
+    ];
+    // dω = cos φ dθ dφ = du dv cos³, and cos φ is `across` times the cosine.
+    let per_slope = 1.0 / (across * (1.0 + u * u + v * v));
+    ([start[0], start[1], longitude, latitude], per_slope)
 }
 
 /// Where rays of the light are on a leg, to first order about the central ray.
@@ -264,7 +287,7 @@ fn summed(
     let opaque = |(_, mask): &(f64, Mask)| matches!(mask, Mask::Opaque { .. });
     let emission = system.emission();
     let is_cut = system.layers.iter().any(opaque) || !system.obstacles.is_empty();
-    let is_smooth = emission.shape.is_none() && !is_cut;
+    let is_smooth = !system.light.has_extent() && !is_cut;
     let finder = Finder {
         field,
         window,
@@ -311,7 +334,7 @@ fn best(
 /// A light field and how its rays are drawn.
 struct Drawn<'a> {
     field: Box<dyn RayField + 'a>,
-    draw: &'a Draw,
+    draw: &'a Draw<'a>,
     window: &'a Window,
 }
 

@@ -40,6 +40,18 @@ impl Ray {
     /// polynomial of degree two, so there is one root on either side of its extremum, and the
     /// nearer to the tangent plane is found.
     pub(crate) fn met(&self, patch: &Patch) -> Option<(f64, DVec3)> {
+        self.met_facing(patch, None)
+    }
+
+    /// The same where the ray comes to a patch from one side, whatever is nearer: that of D, or the
+    /// other for −1.
+    ///
+    /// It comes to a quadric once from either side, so that there is one such point at most.
+    pub(crate) fn met_from(&self, patch: &Patch, side: f64) -> Option<(f64, DVec3)> {
+        self.met_facing(patch, Some(side))
+    }
+
+    fn met_facing(&self, patch: &Patch, side: Option<f64>) -> Option<(f64, DVec3)> {
         let point = patch.frame.to_local(self.point);
         let direction = patch.frame.vector_to_local(self.direction);
         let mut t = if direction.z.abs() > 1e-3 {
@@ -52,7 +64,9 @@ impl Ray {
         let a = (DVec3::from(patch.curvature) * direction).dot(direction);
         let b = patch.gradient(near).dot(direction);
         let c = patch.value(near);
-        let mut s = 0.0;
+        // As far beyond the extremum lies as good a start for the root on its other side.
+        let leaves = side.is_some_and(|side| side * b > 0.0);
+        let mut s = if leaves { -2.0 * b / a } else { 0.0 };
         for _ in 0..MOST_STEPS {
             let step = ((a * s + 2.0 * b) * s + c) / (2.0 * (a * s + b));
             s -= step;

@@ -7,10 +7,10 @@
 use super::brdf::narrowest;
 use super::exact::Leaving;
 use super::incoming::{Part, secant};
-use super::sky::Sky;
 use super::{ReflectionChain, System};
 use crate::geometry::{Map, Matrix, product, times};
 use crate::nets::Density;
+use crate::sky::Sky;
 use etendue_field::{Frame, Light, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};

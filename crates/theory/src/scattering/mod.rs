@@ -25,7 +25,6 @@ mod linear;
 mod model;
 mod operator;
 mod predict;
-mod sky;
 #[cfg(test)]
 mod tests;
 

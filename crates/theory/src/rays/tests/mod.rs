@@ -40,6 +40,7 @@ fn linear(
 }
 
 mod back;
+mod environment;
 mod kernel;
 mod known;
 mod order;

@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 /// A density over directions in proportion to the radiance from there, or nearly.
 #[derive(Clone, Debug)]
-pub(super) enum Sky<'a> {
+pub(crate) enum Sky<'a> {
     /// Of spherical Gaussians.
     Lobes(Lobes),
     /// Of a map.
@@ -15,7 +15,7 @@ pub(super) enum Sky<'a> {
 
 /// Spherical Gaussians ready to be drawn.
 #[derive(Clone, Debug)]
-pub(super) struct Lobes {
+pub(crate) struct Lobes {
     /// Their shares of the light, added up.
     shares: Vec<f64>,
     /// σ², exp(−2/σ²) − 1, and axes with D to where most of each comes from.
@@ -26,7 +26,7 @@ pub(super) struct Lobes {
 
 /// The cells of a map.
 #[derive(Clone, Debug)]
-pub(super) struct Pixels<'a> {
+pub(crate) struct Pixels<'a> {
     map: &'a LatLong,
     /// Shares of rows, added up from the top.
     rows: Vec<f64>,
@@ -40,7 +40,7 @@ const GRAZING: f64 = 0.05;
 impl<'a> Sky<'a> {
     /// The density for a surface with this normal, which is in the frame at the light; `None` where
     /// nothing shines.
-    pub(super) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
+    pub(crate) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
         match &environment.map {
             EnvironmentMap::Lobes(lobes) => {
                 let integrals = || lobes.iter().map(SphericalGaussian::integral);
@@ -65,7 +65,7 @@ impl<'a> Sky<'a> {
     }
 
     /// Where light comes from, of unit length in the axes of the environment.
-    pub(super) fn draw(&self, [a, b]: [f64; 2]) -> DVec3 {
+    pub(crate) fn draw(&self, [a, b]: [f64; 2]) -> DVec3 {
         match self {
             Self::Lobes(lobes) => {
                 let (i, a) = picked(&lobes.shares, a);
@@ -83,7 +83,7 @@ impl<'a> Sky<'a> {
     }
 
     /// Its density per steradian, where the radiance is this.
-    pub(super) fn density(&self, from: DVec3, radiance: f64) -> f64 {
+    pub(crate) fn density(&self, from: DVec3, radiance: f64) -> f64 {
         match self {
             Self::Lobes(lobes) => radiance / lobes.total,
             Self::Map(pixels) => pixels.density(from),

@@ -1,0 +1,135 @@
+//! Light of environments on a leg and on surfaces: photons tell what theory predicts from what it
+//! would predict with a fault.
+
+#![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
+
+use etendue_compare::{Residuals, system};
+use etendue_field::{Light, Orientation, ProjectionGrid, Quantity};
+use etendue_scene::{Scene, SceneFile, resolve};
+use etendue_spectrum::{Measurement, measure};
+use etendue_theory::rays::System;
+use etendue_theory::{Budget, Model, Observed, Predicted};
+use etendue_trace::Tracer;
+use glam::{DQuat, DVec3};
+
+/// Of a prediction: a few times the error that the photons of these tests have.
+const BUDGET: Budget = Budget {
+    nodes: 2e6,
+    error: 1e-3,
+};
+/// Photons of each scene.
+const PHOTONS: u64 = 1 << 22;
+/// Planes that are true are rejected with this probability in all.
+const ALPHA: f64 = 0.01;
+
+type Fault = (&'static str, fn(&mut Observed<System>));
+
+/// A scene file of the repository, with fewer photons.
+fn scene(name: &str) -> Scene {
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenes");
+    let text = std::fs::read_to_string(format!("{folder}/{name}.ron")).unwrap();
+    let file = SceneFile::parse(&text).unwrap();
+    let mut scene = resolve(name, file, folder.as_ref(), u64::MAX).unwrap();
+    scene.run.photons = PHOTONS;
+    scene
+}
+
+fn predicted(scene: &Scene, plane: usize, fault: fn(&mut Observed<System>)) -> Predicted {
+    let plane = &scene.planes[plane];
+    let mut view = system(scene, plane).unwrap();
+    fault(&mut view);
+    let picture = ProjectionGrid::new(&plane.window, 1);
+    view.predict(&[], (&plane.window, &plane.grid, &picture), BUDGET)
+}
+
+/// Photons accept the prediction of a plane, and reject each fault.
+fn tells(scene: &Scene, photons: &Measurement, name: &str, faults: &[Fault]) {
+    let plane = scene.planes.iter().position(|p| p.name == name).unwrap();
+    let p = |fault: fn(&mut Observed<System>)| {
+        let found = predicted(scene, plane, fault);
+        let residuals = Residuals::between(photons, plane, &found.slices, &found.replicates);
+        residuals.p_value(scene.run.seed).unwrap()
+    };
+    let sound = p(|_| ());
+    assert!(sound > ALPHA / 6.0, "{name}: {sound}");
+    for (words, fault) in faults {
+        let planted = p(*fault);
+        assert!(planted < 1e-3, "{name}, {words}: {planted}");
+    }
+}
+
+/// The axes of a surface turned about its normal, by half a turn.
+fn turned_round(view: &mut Observed<System>) {
+    let frame = &mut view.plane.frame;
+    (frame.x, frame.y) = (-frame.x, -frame.y);
+}
+
+/// A hollow sphere for a convex one.
+fn hollow(view: &mut Observed<System>) {
+    let patch = view.plane.patch.as_mut().unwrap();
+    patch.curvature = patch.curvature.map(|k| -k);
+}
+
+/// A sphere that is a hundredth more curved.
+fn more_curved(view: &mut Observed<System>) {
+    let patch = view.plane.patch.as_mut().unwrap();
+    patch.curvature = patch.curvature.map(|k| 1.01 * k);
+}
+
+fn without_cosine(view: &mut Observed<System>) {
+    view.plane.quantity = Quantity::Radiance;
+}
+
+fn mirrored(view: &mut Observed<System>) {
+    view.plane.orientation = Orientation::Mirrored;
+}
+
+/// The environment turned by a degree.
+fn turned_light(view: &mut Observed<System>) {
+    let Light::Environment { environment } = &mut view.system.light else {
+        panic!("an environment");
+    };
+    let turn = DQuat::from_axis_angle(DVec3::Y, 1.0_f64.to_radians());
+    let frame = &mut environment.frame;
+    (frame.x, frame.y, frame.d) = (turn * frame.x, turn * frame.y, turn * frame.d);
+}
+
+fn without_masks(view: &mut Observed<System>) {
+    view.system.layers.clear();
+}
+
+fn traced(scene: &Scene) -> Measurement {
+    let tracer = Tracer::new(scene);
+    measure(&tracer, &scene.planes, 0..scene.run.batches, &|_| ())
+}
+
+/// Fig. 3: five suns behind a grating, by slopes and by angles. Half a turn changes nothing of them.
+#[test]
+fn two_parameterisations() {
+    let scene = scene("fig3");
+    let photons = traced(&scene);
+    let faults: [Fault; 2] = [("no masks", without_masks), ("light turned", turned_light)];
+    for plane in ["travel", "plane_sphere"] {
+        tells(&scene, &photons, plane, &faults);
+    }
+}
+
+/// Fig. 14: on a sphere, before the lobes of its surface.
+#[test]
+fn the_steps_of_shading() {
+    let scene = scene("fig14");
+    let photons = traced(&scene);
+    let faults: [Fault; 2] = [
+        ("frame turned", turned_round),
+        ("light turned", turned_light),
+    ];
+    tells(&scene, &photons, "environment", &faults);
+    let faults: [Fault; 3] = [
+        ("sign of curvature", hollow),
+        ("curvature by 1 %", more_curved),
+        ("turned about the normal", mirrored),
+    ];
+    tells(&scene, &photons, "curvature", &faults);
+    let faults: [Fault; 2] = [("no cosine", without_cosine), ("sign of curvature", hollow)];
+    tells(&scene, &photons, "cosine", &faults);
+}
