@@ -4,13 +4,12 @@ use crate::chain::chain;
 use crate::class::Class;
 use crate::dark;
 use crate::parallel::obstacles_to_theory;
-use crate::system::{in_the_way, print, reflected, scattered, system, too_fine};
-use crate::ways::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
-use etendue_field::{Mask, Orientation, Side, VirtualPlane, Window};
+use crate::system::{in_the_way, print, reflected, system, too_fine};
+use crate::theories::{Theory, is_same};
+use crate::validity::{OffPatches, off_patches, unforeseen_by_rays, unforeseen_by_scattering};
+use etendue_field::{Orientation, Side, VirtualPlane, Window};
 use etendue_scene::{BlockerLayer, Scene};
-use etendue_theory::{
-    Budget, Chain, Model, Observed, Over, Parameter, Work, rays, reflections, scattering,
-};
+use etendue_theory::{rays, reflections, scattering};
 
 /// What theory says of a plane: which one applies, or why none does.
 #[derive(Clone, Debug)]
@@ -28,35 +27,7 @@ pub struct Applicability {
     pub off_patches: Option<OffPatches>,
 }
 
-/// The theories of a windowed light field.
-#[derive(Clone, Debug)]
-pub enum Theory {
-    /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
-    Parallel(Chain),
-    /// Rays followed through smooth specular surfaces, or through pictures.
-    Specular(Box<Observed<rays::System>>),
-    /// Light that one smooth surface reflects by a BRDF.
-    Scattering(Box<Observed<scattering::System>>),
-    /// Light that several surfaces send on in turn, or one past its own shadow or its edges.
-    Reflections(Box<Observed<reflections::System>>),
-    /// None: another measurement takes its place.
-    None,
-}
-
 impl Theory {
-    /// The theory that has words for what the central ray meets on its way to a plane, whether or
-    /// not what it takes for granted is so.
-    #[must_use]
-    pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
-        if let Some(view) = followed(scene, plane) {
-            Self::Specular(Box::new(view))
-        } else if let Some(view) = scattered(scene, plane) {
-            Self::Scattering(Box::new(view))
-        } else {
-            Self::Parallel(chain(scene, plane))
-        }
-    }
-
     /// What of a scene is not as the theory takes it to be, in words. Blockers that light meets where
     /// the central ray does not become obstacles of the theory.
     fn obstacles(
@@ -89,58 +60,6 @@ impl Theory {
         layers.retain(|known| from > 0 || !is_same(known, layer));
         obstacles.push(in_the_way(layer, from));
     }
-
-    /// Whether all light meets blockers before it comes to a surface.
-    pub(crate) fn has_all_light_meet(&self, layer: &BlockerLayer) -> bool {
-        let layers = match self {
-            Self::Specular(view) => &view.system.layers,
-            Self::Scattering(view) => &view.system.layers,
-            Self::Reflections(_) => return false,
-            Self::Parallel(_) | Self::None => return true,
-        };
-        layers.iter().any(|known| is_same(known, layer))
-    }
-
-    /// What the theory takes for granted of a scene, each checked where it applies.
-    #[must_use]
-    pub fn assumptions(&self) -> &'static [&'static str] {
-        const FOLLOWED: &[&str] = &["light meets each surface once, in the order of the path, \
-             and where it is not in its own shadow"];
-        match self {
-            Self::Parallel(_) => &[
-                "all that light meets lies in planes across the path",
-                "the receiver has no edge in view",
-            ],
-            Self::Specular(_) | Self::Scattering(_) => FOLLOWED,
-            Self::Reflections(_) | Self::None => &[],
-        }
-    }
-
-    /// The numbers of its model that a measurement may be asked for.
-    pub(crate) fn parameters(&self) -> Vec<Parameter> {
-        match self {
-            Self::Parallel(chain) => chain.parameters(),
-            Self::Specular(view) => view.parameters(),
-            Self::Scattering(view) => view.parameters(),
-            Self::Reflections(view) => view.parameters(),
-            Self::None => Vec::new(),
-        }
-    }
-
-    /// What a prediction of its model takes.
-    pub(crate) fn work(&self, over: Over<'_>, budget: Budget) -> Work {
-        match self {
-            Self::Parallel(chain) => chain.work(over, budget),
-            Self::Specular(view) => view.work(over, budget),
-            Self::Scattering(view) => view.work(over, budget),
-            Self::Reflections(view) => view.work(over, budget),
-            Self::None => Work::none(),
-        }
-    }
-}
-
-fn is_same((distance, mask): &(f64, Mask), layer: &BlockerLayer) -> bool {
-    distance.total_cmp(&layer.distance).is_eq() && *mask == layer.mask
 }
 
 /// Share of its distance by which a plane stands off what is right at it: more than rounding, and far below what phases show.
@@ -265,14 +184,4 @@ impl Applicability {
         ));
         steps
     }
-}
-
-/// The system of specular surfaces that leads to a plane behind one or on one, or of light that
-/// goes through pictures.
-fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::System>> {
-    let across = plane.orientation == Orientation::Orthogonal;
-    if !scene.light.is_picture() && plane.leg == 0 && across {
-        return None;
-    }
-    system(scene, plane)
 }

@@ -1,8 +1,9 @@
 //! How fast a glossy reflection changes with angle, by the paper's criteria, by quadrature and as
 //! measured.
 
-use crate::applicability::{Applicability, Theory};
+use crate::applicability::Applicability;
 use crate::budget::budget;
+use crate::theories::Theory;
 use etendue_field::{Lobe, Orientation, ProjectionGrid, Reflectance, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::bandwidth::{BANDWIDTH_FRACTION, bandwidth_nu};

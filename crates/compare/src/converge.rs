@@ -1,8 +1,9 @@
 //! How the first-order chain becomes exact as the neighbourhood of the central ray shrinks.
 
-use crate::applicability::{Applicability, Theory};
+use crate::applicability::Applicability;
 use crate::first_order::distance;
 use crate::system::print;
+use crate::theories::Theory;
 use etendue_field::{FrequencyAxis, ProjectionGrid, SliceGrid, VirtualPlane, Window};
 use etendue_scene::Scene;
 use etendue_theory::{Budget, Model, Observed, Over, Predicted, rays, reflections};

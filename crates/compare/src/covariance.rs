@@ -1,9 +1,10 @@
 //! Covariance tracing beside the spectra it stands for: predicted along the chain, exact, measured.
 
-use crate::applicability::{Applicability, Theory};
+use crate::applicability::Applicability;
 use crate::class::Class;
 use crate::prediction::Prediction;
 use crate::report::Pair;
+use crate::theories::Theory;
 use etendue_field::{FieldGrid, SliceGrid, VirtualPlane, percent, tidy};
 use etendue_spectrum::estimate::TooFewBatches;
 use etendue_spectrum::field::{FieldCovariance, Moments, PowerMoments};

@@ -1,7 +1,7 @@
 //! Planes that no light reaches, by what stands on the first leg.
 
-use crate::applicability::Theory;
 use crate::chain::stands_before;
+use crate::theories::Theory;
 use etendue_field::{Mask, Orientation, Profile, Shape, VirtualPlane};
 use etendue_scene::{BlockerLayer, Object, Scene};
 

@@ -1,7 +1,8 @@
 //! The spectrum of a plane on a 4D grid as theory predicts it.
 
-use crate::applicability::{Applicability, Theory};
+use crate::applicability::Applicability;
 use crate::budget::budget;
+use crate::theories::Theory;
 use etendue_field::{Assignment, FieldGrid, ProjectionGrid, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::PROJECTION_BINS;

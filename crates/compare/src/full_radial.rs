@@ -1,11 +1,7 @@
 //! The full radial spectrum of a plane held against its prediction.
 
-use crate::agreement::UNSEEN;
 use crate::field::PredictedField;
-use crate::plane::PlaneComparison;
-use crate::prediction::Prediction;
 use crate::residuals::{ROUNDS, signs};
-use crate::verdict::{Test, Verdict};
 use etendue_spectrum::field::{
     FieldGroup, FieldMeasurement, FieldSpectrum, FullRadial, RadialBins,
 };
@@ -177,31 +173,6 @@ pub(crate) fn compared(
     };
     let report = report(&differences, (&power, &sigma), aliasing, seed);
     (report, power, sigma)
-}
-
-impl PlaneComparison {
-    /// Adds the full radial spectrum. A plane that would pass fails where p is below the level of the test, unless the
-    /// stated error of the prediction, which no replicates show, may be seen in the noise.
-    pub fn add_full_radial(
-        &mut self,
-        full_radial: FullRadialComparison,
-        prediction: &Prediction,
-        test: &Test,
-    ) {
-        let report = &mut self.report;
-        let numbers = full_radial.report;
-        let disagrees = numbers.p_value.is_some_and(|p| p < test.level);
-        let error = prediction.systematic_error().zip(report.noise_limit);
-        let is_excused = error.is_some_and(|(error, noise)| error > UNSEEN * noise);
-        report.full_radial = Some(numbers);
-        if disagrees && !is_excused && report.exact_verdict() == Verdict::Pass {
-            report.verdict = Verdict::Fail;
-            if let Some(chain) = &mut report.first_order {
-                chain.exact = Verdict::Fail;
-            }
-        }
-        self.full_radial = Some(full_radial);
-    }
 }
 
 /// Every number of the differences of all bins.

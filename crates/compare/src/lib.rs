@@ -32,13 +32,14 @@ mod residuals;
 mod score;
 mod system;
 mod tail;
+mod theories;
 mod two_samples;
 mod uneven;
+mod validity;
 mod verdict;
-mod ways;
 mod work;
 
-pub use applicability::{Applicability, Theory};
+pub use applicability::Applicability;
 pub use bandwidth::{criterion, exact_bandwidth, lobe_cutoff, measured_bandwidth};
 pub use chain::{chain, stands_before};
 pub use class::Class;
@@ -58,7 +59,8 @@ pub use report::{
 pub use residuals::Residuals;
 pub use score::ParameterReport;
 pub use system::{scattered, system};
+pub use theories::Theory;
 pub use two_samples::{Estimate, Sample, TwoSamples, pull};
+pub use validity::OffPatches;
 pub use verdict::{Test, Verdict, sidak};
-pub use ways::OffPatches;
 pub use work::{TooMuchWork, seconds, too_much_work};

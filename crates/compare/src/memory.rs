@@ -1,7 +1,8 @@
 //! What a run holds in memory, before it begins.
 
-use crate::applicability::{Applicability, Theory};
+use crate::applicability::Applicability;
 use crate::budget::budget;
+use crate::theories::Theory;
 use crate::work;
 use etendue_field::{ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_scene::Scene;

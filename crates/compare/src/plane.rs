@@ -538,3 +538,28 @@ fn warnings(predicted: &Array2<f64>, grid: &SliceGrid, blur: Option<(f64, f64)>)
     }
     warnings
 }
+
+impl PlaneComparison {
+    /// Adds the full radial spectrum. A plane that would pass fails where p is below the level of the test, unless the
+    /// stated error of the prediction, which no replicates show, may be seen in the noise.
+    pub fn add_full_radial(
+        &mut self,
+        full_radial: FullRadialComparison,
+        prediction: &Prediction,
+        test: &Test,
+    ) {
+        let report = &mut self.report;
+        let numbers = full_radial.report;
+        let disagrees = numbers.p_value.is_some_and(|p| p < test.level);
+        let error = prediction.systematic_error().zip(report.noise_limit);
+        let is_excused = error.is_some_and(|(error, noise)| error > UNSEEN * noise);
+        report.full_radial = Some(numbers);
+        if disagrees && !is_excused && report.exact_verdict() == Verdict::Pass {
+            report.verdict = Verdict::Fail;
+            if let Some(chain) = &mut report.first_order {
+                chain.exact = Verdict::Fail;
+            }
+        }
+        self.full_radial = Some(full_radial);
+    }
+}

@@ -1,11 +1,12 @@
 //! Everything a measurement of a plane is held against.
 
-use crate::applicability::{Applicability, Theory};
+use crate::applicability::Applicability;
 use crate::budget::budget;
 use crate::class::Class;
 use crate::depth::depth;
 use crate::first_order::FirstOrder;
-use crate::ways::OffPatches;
+use crate::theories::Theory;
+use crate::validity::OffPatches;
 use etendue_field::{Projection, ProjectionGrid, Slices, VirtualPlane};
 use etendue_scene::Scene;
 use etendue_spectrum::estimate::{self, TooFewBatches};

@@ -51,6 +51,7 @@
 //! assert!((prediction.half[[1, 2, 3]] - plain).norm() < 1e-10 * prediction.at_zero());
 //! ```
 
+mod barrier;
 pub mod covariance;
 pub mod geometry;
 mod mask;

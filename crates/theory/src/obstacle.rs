@@ -1,6 +1,6 @@
 //! What stands in the way of rays beside the masks of the first leg.
 
-use crate::mask::Barrier;
+use crate::barrier::Barrier;
 use crate::rays::Ray;
 use etendue_field::{Frame, Mask, Patch};
 use glam::DVec3;

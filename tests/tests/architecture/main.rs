@@ -70,15 +70,6 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ),
 ];
 
-/// Circles that are left, by a module of each.
-const KNOWN_CIRCLES: &[(&str, &str)] = &[
-    ("compare", "ways::meshes"),
-    ("compare", "dark"),
-    ("compare", "plane"),
-    ("theory", "mask"),
-    ("theory", "parallel::disc"),
-];
-
 /// Lines of a file above which it needs a reason.
 const MAX_LINES: usize = 500;
 
@@ -176,15 +167,8 @@ fn modules_have_no_circles() {
     let mut all = Vec::new();
     for name in crates() {
         let found = modules::modules(&root().join("crates").join(&name).join("src"));
-        let unknown: Vec<_> = circles(&found)
-            .into_iter()
-            .filter(|circle| {
-                let is_known =
-                    |(other, module): &(&str, &str)| *other == name && circle.contains(*module);
-                !KNOWN_CIRCLES.iter().any(is_known)
-            })
-            .collect();
-        all.extend(unknown.into_iter().map(|circle| (name.clone(), circle)));
+        let circles = circles(&found).into_iter();
+        all.extend(circles.map(|circle| (name.clone(), circle)));
     }
     assert!(all.is_empty(), "these modules use each other: {all:#?}");
 }

@@ -2,8 +2,8 @@
 
 use super::expansion::Expansion;
 use crate::Chain;
+use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::slope::Slope;
-use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{Complex, Window};
 
 /// The spectrum ℓ̂(Ωx, Ωy, Ωu, Ωv) of the windowed light field at one frequency.
@@ -21,7 +21,7 @@ pub fn at(chain: &Chain, window: &Window, frequency: [f64; 4]) -> Complex {
     let [x, y, u, v] = frequency.map(f64::abs);
     let fineness = DiscResolution::for_spectrum(&path, window, [x.max(y), u.max(v)]);
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
-    Expansion::new(&path, window, &slope, &fineness).at(frequency)
+    Expansion::new(&path, window, &slope, &fineness.0).at(frequency)
 }
 
 impl Expansion {

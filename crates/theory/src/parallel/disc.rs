@@ -1,7 +1,7 @@
 //! A disc as a weighted sum of rectangles, so that it can be multiplied out like all the rest.
 
 use crate::parallel::weighted_rectangle::WeightedRectangle;
-use etendue_field::Disc;
+use etendue_field::{Disc, Shape};
 use std::f64::consts::FRAC_PI_2;
 
 /// How a disc is taken apart.
@@ -34,6 +34,14 @@ impl Discs {
 /// and B being the integrals over the two rectangles' sides, once A and B have been written in the
 /// cosines and sines of odd multiples of t that their oddness leaves. With the sum over multiples m
 /// < 2n in closed form, π/n² Σ m cos(m t_j) sin(m t_k) = π/2n (c(k + j + 1) + c(k − j)), c(i) =
+/// The rectangles that a shape is taken apart into.
+pub(crate) fn patches_of(shape: &Shape, discs: Discs) -> Vec<WeightedRectangle> {
+    match shape {
+        Shape::Rectangle(rectangle) => vec![WeightedRectangle::of_rectangle(rectangle)],
+        Shape::Disc(disc) => discs.patches(disc),
+    }
+}
+
 /// −(−1)^i / sin(π i/2n), c(0) = 0.
 fn rule(disc: &Disc, n: usize) -> Vec<WeightedRectangle> {
     let angle = FRAC_PI_2 / n as f64;

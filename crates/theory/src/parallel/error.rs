@@ -47,7 +47,7 @@ pub fn quadrature_error(
 mod tests {
     use super::*;
     use crate::parallel::disc::Discs;
-    use crate::parallel::weighted_rectangle::DiscResolution;
+    use crate::parallel::disc_resolution::DiscResolution;
     use crate::slices;
     use crate::testing::*;
     use etendue_field::{FrequencyAxis, Profile};

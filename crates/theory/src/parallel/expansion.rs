@@ -1,11 +1,11 @@
 //! Light fields as sums of polygons times waves.
 
 use crate::parallel::chain::Path;
-use crate::parallel::disc::Discs;
+use crate::parallel::disc::{Discs, patches_of};
 use crate::parallel::polygon::Polygon;
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
-use crate::parallel::weighted_rectangle::{DiscResolution, WeightedRectangle};
+use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
 
@@ -152,12 +152,7 @@ impl Section {
 }
 
 impl Expansion {
-    pub(crate) fn new(
-        path: &Path<'_>,
-        window: &Window,
-        slope: &Slope,
-        fineness: &DiscResolution,
-    ) -> Self {
+    pub(crate) fn new(path: &Path<'_>, window: &Window, slope: &Slope, fineness: &[Discs]) -> Self {
         let mut expansion = Self::empty(window);
         expansion.products = products(path, window, slope, &expansion.sections);
         expansion.multiply_out(path, fineness, usize::MAX);
@@ -168,7 +163,7 @@ impl Expansion {
     pub(crate) fn within(
         path: &Path<'_>,
         window: &Window,
-        fineness: &DiscResolution,
+        fineness: &[Discs],
         most: usize,
     ) -> Option<Self> {
         let mut expansion = Self::empty(window);
@@ -197,14 +192,14 @@ impl Expansion {
 
     /// The light and the opaque masks; stops and says no where there are more terms or polygons
     /// than `most`.
-    fn multiply_out(&mut self, path: &Path<'_>, fineness: &DiscResolution, most: usize) -> bool {
+    fn multiply_out(&mut self, path: &Path<'_>, fineness: &[Discs], most: usize) -> bool {
         for section in &mut self.sections {
             section.has_discs = path.has_discs();
         }
-        self.shine(path, fineness.0[0]);
+        self.shine(path, fineness[0]);
         let layers = path.layers.iter();
         let opaque = layers.filter(|layer| matches!(layer.mask, Mask::Opaque { .. }));
-        for (layer, &discs) in opaque.zip(&fineness.0[1..]) {
+        for (layer, &discs) in opaque.zip(&fineness[1..]) {
             let patches = patches(layer.mask, discs);
             // Each pair is looked at, though few may meet.
             if self.terms.len().saturating_mul(patches.len()) > most.saturating_mul(PAIRS_PER_TERM)
@@ -226,7 +221,7 @@ impl Expansion {
     pub(crate) fn of_rectangles(chain: &crate::Chain, window: &Window) -> Self {
         let path = chain.path();
         let slope = Slope::new([&window.u, &window.v], path.slope_power());
-        let fineness = DiscResolution::for_spectrum(&path, window, [0.0; 2]);
+        let fineness = vec![Discs::Rule(1); path.planes().len()];
         Self::new(&path, window, &slope, &fineness)
     }
 
@@ -234,7 +229,7 @@ impl Expansion {
     fn shine(&mut self, path: &Path<'_>, discs: Discs) {
         self.brightness = path.light.brightness;
         if let Some(shape) = &path.light.shape {
-            self.terms = self.inside(&WeightedRectangle::of_shape(shape, discs), path.distance);
+            self.terms = self.inside(&patches_of(shape, discs), path.distance);
         } else {
             for section in &mut self.sections {
                 section.become_segment(path.distance);
@@ -354,9 +349,7 @@ fn patches(mask: &Mask, discs: Discs) -> Vec<WeightedRectangle> {
     else {
         return Vec::new();
     };
-    let shapes = shapes
-        .iter()
-        .flat_map(|s| WeightedRectangle::of_shape(s, discs));
+    let shapes = shapes.iter().flat_map(|s| patches_of(s, discs));
     shapes
         .chain(half_planes.iter().map(WeightedRectangle::of_half_plane))
         .collect()

@@ -3,7 +3,7 @@
 //! Each ray goes through the chain by itself: travel moves it, a mask takes its share, the window weighs it. So the
 //! prediction has no error but that of the transform, and shares neither random numbers nor the tracer's hits with the photons.
 
-use crate::mask::Barrier;
+use crate::barrier::Barrier;
 use crate::model::Over;
 use crate::nets::RayNets;
 use crate::predicted::Predicted;

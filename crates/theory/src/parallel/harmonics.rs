@@ -4,10 +4,10 @@ use super::wave::Wave;
 use crate::Chain;
 use crate::parallel::chain::Path;
 use crate::parallel::corners::Corners;
+use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::row::FrequencyRow;
 use crate::parallel::slope::Slope;
-use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{Assignment, Complex, FieldGrid, Window};
 use rayon::prelude::*;
 
@@ -84,7 +84,7 @@ impl Harmonics {
         let highest = [max(0).max(max(1)), max(2).max(max(3))];
         let fineness = DiscResolution::for_spectrum(&path, window, highest);
         let slope = Slope::new([&window.u, &window.v], path.slope_power());
-        let expansion = Expansion::new(&path, window, &slope, &fineness);
+        let expansion = Expansion::new(&path, window, &slope, &fineness.0);
         let size = |axis: usize| {
             let cells = (2 * half[axis] + 1) * (2 * half[axis + 2] + 1);
             cells * expansion.sections[axis].polygons.len() * expansion.products.len()

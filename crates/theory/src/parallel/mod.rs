@@ -22,6 +22,7 @@ mod corners;
 mod derivative;
 mod describe;
 mod disc;
+mod disc_resolution;
 mod error;
 pub(crate) mod expansion;
 mod given;

@@ -2,7 +2,7 @@
 
 use crate::model::{Model, Over};
 use crate::nets::{Budget, RayNets, work_of_nets};
-use crate::parallel::weighted_rectangle::DiscResolution;
+use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::{at, derivative, given, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
 use crate::predicted::Predicted;

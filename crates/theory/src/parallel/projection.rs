@@ -4,10 +4,10 @@ use super::expansion::Expansion;
 use crate::Chain;
 use crate::numerics::quadrature::gauss_legendre;
 use crate::parallel::chain::Path;
+use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::polygon::{Polygon, cross};
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
-use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{CosineTerm, Grating, Mask, Projection, ProjectionGrid, Window, whole};
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -35,7 +35,7 @@ pub fn projection(chain: &Chain, window: &Window, grid: &ProjectionGrid) -> Proj
     }
     let fineness = DiscResolution::for_projection(&path, window, grid.bins);
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
-    let expansion = Expansion::new(&path, window, &slope, &fineness);
+    let expansion = Expansion::new(&path, window, &slope, &fineness.0);
     let densities = densities(&expansion, &slope);
     let section = &expansion.sections[0];
     let polygons: Vec<_> = section.polygons.iter().zip(densities).collect();

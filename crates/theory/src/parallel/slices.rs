@@ -4,10 +4,10 @@ use super::expansion::{Columns, Expansion, Sum};
 use crate::Chain;
 use crate::parallel::chain::Path;
 use crate::parallel::corners::Corners;
+use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::row::FrequencyRow;
 use crate::parallel::slope::Slope;
 use crate::parallel::wave::Wave;
-use crate::parallel::weighted_rectangle::DiscResolution;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
@@ -41,7 +41,7 @@ pub(crate) fn slices_at_fineness(
         return receiver.slices(window, grid);
     }
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
-    let expansion = Expansion::new(path, window, &slope, fineness);
+    let expansion = Expansion::new(path, window, &slope, &fineness.0);
     let products: Vec<_> = expansion
         .products
         .iter()
@@ -215,7 +215,7 @@ mod tests {
         let path = chain.path();
         let fast = slices(chain, window, grid);
         let slope = Slope::new([&window.u, &window.v], path.slope_power());
-        let expansion = Expansion::new(&path, window, &slope, &fineness(&path, window, grid));
+        let expansion = Expansion::new(&path, window, &slope, &fineness(&path, window, grid).0);
         let (mut worst, mut largest) = (0.0, 0.0);
         for ((k, m, n), value) in fast.half.indexed_iter() {
             let (rho, nu) = (m as f64 * grid.rho.spacing, grid.nu.value(n));

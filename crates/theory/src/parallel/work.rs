@@ -7,11 +7,11 @@
 use crate::Chain;
 use crate::Model;
 use crate::parallel::chain::Path;
+use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::projection::nodes_of_cells;
 use crate::parallel::slices::fineness;
 use crate::parallel::slope::Slope;
-use crate::parallel::weighted_rectangle::DiscResolution;
 use crate::work::Work;
 use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
 
@@ -32,7 +32,7 @@ pub(crate) fn work(
     }
     // The series of slopes are short, their products with gratings may not be.
     let slope = Slope::new([&window.u, &window.v], path.slope_power());
-    let of = |fineness: &DiscResolution| Expansion::within(&path, window, fineness, MOST_PARTS);
+    let of = |fineness: &DiscResolution| Expansion::within(&path, window, &fineness.0, MOST_PARTS);
     let Some(single) = of(&DiscResolution::single(&path)) else {
         return too_many();
     };

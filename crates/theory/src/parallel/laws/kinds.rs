@@ -1,9 +1,9 @@
 //! Every kind of light, mask and factor against brute force, and planted faults.
 
 use super::{FREQUENCIES, brute_force, hann, zero};
+use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::slope::Slope;
-use crate::parallel::weighted_rectangle::DiscResolution;
 use crate::reference::gaussian::{Gaussian, disc_light, point_light};
 use crate::testing::*;
 use crate::{Chain, Model, Operator, Parameter, at};
@@ -113,7 +113,7 @@ fn at_power(chain: &Chain, window: &Window, power: f64, k: [f64; 4]) -> Complex 
     let path = chain.path();
     let slope = Slope::new([&window.u, &window.v], power);
     let fineness = DiscResolution::for_spectrum(&path, window, [3.0; 2]);
-    let expansion = Expansion::new(&path, window, &slope, &fineness);
+    let expansion = Expansion::new(&path, window, &slope, &fineness.0);
     expansion.at(k)
 }
 

@@ -1,6 +1,6 @@
 //! What is integrated over the slopes that arrive at a point: (1 + u² + v²)^(−p) times gratings.
 
-use crate::mask::Bounds;
+use crate::barrier::Bounds;
 use crate::numerics::quadrature::gauss_legendre;
 use etendue_field::Grating;
 use std::f64::consts::TAU;

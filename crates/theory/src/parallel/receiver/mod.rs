@@ -16,7 +16,7 @@ mod region;
 mod tests;
 mod work;
 
-use crate::mask::{Barrier, Bounds};
+use crate::barrier::{Barrier, Bounds};
 use crate::parallel::chain::{Emitter, Layer};
 use density::{Density, Integrator};
 use etendue_field::{Disc, Grating, Rectangle, Shape};

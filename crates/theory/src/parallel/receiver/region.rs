@@ -1,7 +1,7 @@
 //! Sets of slopes: a rectangle and discs, intersected.
 
 use super::density::Density;
-use crate::mask::Bounds;
+use crate::barrier::Bounds;
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 

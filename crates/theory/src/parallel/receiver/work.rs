@@ -4,7 +4,7 @@ use super::density::Density;
 use super::kernel::Axis;
 use super::region::ReceiverRegion;
 use super::{Receiver, SlopeProjection, exitant};
-use crate::mask::Barrier;
+use crate::barrier::Barrier;
 use crate::work::Work;
 use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 

@@ -8,6 +8,7 @@
 
 mod clearance;
 mod coordinates;
+mod mesh_error;
 mod meshes;
 mod rays;
 mod scattered;
@@ -15,6 +16,6 @@ mod search;
 mod specular;
 mod surroundings;
 
-pub use meshes::OffPatches;
+pub use mesh_error::OffPatches;
 pub(crate) use scattered::unforeseen_by_scattering;
 pub(crate) use specular::{off_patches, unforeseen_by_rays};

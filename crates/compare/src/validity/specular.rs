@@ -2,7 +2,7 @@
 
 use super::clearance::Piece;
 use super::coordinates::{coordinates, seen};
-use super::meshes::OffPatches;
+use super::mesh_error::OffPatches;
 use super::rays::{Draw, Ray, centred, point_on, ray_to, strength, within};
 use super::search::{Followed, found};
 use super::surroundings::{Meets, Surroundings, TakenLayer, unforeseen};

@@ -1,6 +1,7 @@
 //! How far smooth meshes lead light beside where their osculating patches do.
 
 use super::coordinates::coordinates;
+use super::mesh_error::OffPatches;
 use super::rays::{Draw, Ray, bright, density, offset_of};
 use super::specular::{Arrival, Follower, on};
 use etendue_field::transform::SliceTransform;
@@ -20,18 +21,6 @@ const LOOKED_AT: usize = 30_000_000;
 const NEIGHBOURS: f64 = 5.0;
 /// What light meets again is as far off as can be.
 const LOST: f64 = 1.0;
-
-/// How far rays that meet the triangles of smooth meshes are from those that meet the patches that
-/// osculate them.
-#[derive(Clone, Copy, Debug)]
-pub struct OffPatches {
-    /// How far apart they arrive, in half-widths of the window: the root of the mean square over
-    /// light.
-    pub apart: f64,
-    /// ‖change of the slices‖, as a share of their value at frequency zero: an upper estimate,
-    /// from a sample of rays with its standard error added.
-    pub change: f64,
-}
 
 /// A ray that brings light into the window: where it is predicted, and where it arrives by
 /// triangles, if it does.

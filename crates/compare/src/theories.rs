@@ -1,0 +1,101 @@
+//! The theories of a windowed light field.
+
+use crate::chain::chain;
+use crate::system::{scattered, system};
+use etendue_field::{Mask, Orientation, VirtualPlane};
+use etendue_scene::{BlockerLayer, Scene};
+use etendue_theory::{
+    Budget, Chain, Model, Observed, Over, Parameter, Work, rays, reflections, scattering,
+};
+
+/// The theories of a windowed light field.
+#[derive(Clone, Debug)]
+pub enum Theory {
+    /// Light between parallel planes, in closed form or by quadrature over a flat receiver.
+    Parallel(Chain),
+    /// Rays followed through smooth specular surfaces, or through pictures.
+    Specular(Box<Observed<rays::System>>),
+    /// Light that one smooth surface reflects by a BRDF.
+    Scattering(Box<Observed<scattering::System>>),
+    /// Light that several surfaces send on in turn, or one past its own shadow or its edges.
+    Reflections(Box<Observed<reflections::System>>),
+    /// None: another measurement takes its place.
+    None,
+}
+
+impl Theory {
+    /// The theory that has words for what the central ray meets on its way to a plane, whether or
+    /// not what it takes for granted is so.
+    #[must_use]
+    pub fn of(scene: &Scene, plane: &VirtualPlane) -> Self {
+        if let Some(view) = followed(scene, plane) {
+            Self::Specular(Box::new(view))
+        } else if let Some(view) = scattered(scene, plane) {
+            Self::Scattering(Box::new(view))
+        } else {
+            Self::Parallel(chain(scene, plane))
+        }
+    }
+
+    /// Whether all light meets blockers before it comes to a surface.
+    pub(crate) fn has_all_light_meet(&self, layer: &BlockerLayer) -> bool {
+        let layers = match self {
+            Self::Specular(view) => &view.system.layers,
+            Self::Scattering(view) => &view.system.layers,
+            Self::Reflections(_) => return false,
+            Self::Parallel(_) | Self::None => return true,
+        };
+        layers.iter().any(|known| is_same(known, layer))
+    }
+
+    /// What the theory takes for granted of a scene, each checked where it applies.
+    #[must_use]
+    pub fn assumptions(&self) -> &'static [&'static str] {
+        const FOLLOWED: &[&str] = &["light meets each surface once, in the order of the path, \
+             and where it is not in its own shadow"];
+        match self {
+            Self::Parallel(_) => &[
+                "all that light meets lies in planes across the path",
+                "the receiver has no edge in view",
+            ],
+            Self::Specular(_) | Self::Scattering(_) => FOLLOWED,
+            Self::Reflections(_) | Self::None => &[],
+        }
+    }
+
+    /// The numbers of its model that a measurement may be asked for.
+    pub(crate) fn parameters(&self) -> Vec<Parameter> {
+        match self {
+            Self::Parallel(chain) => chain.parameters(),
+            Self::Specular(view) => view.parameters(),
+            Self::Scattering(view) => view.parameters(),
+            Self::Reflections(view) => view.parameters(),
+            Self::None => Vec::new(),
+        }
+    }
+
+    /// What a prediction of its model takes.
+    pub(crate) fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+        match self {
+            Self::Parallel(chain) => chain.work(over, budget),
+            Self::Specular(view) => view.work(over, budget),
+            Self::Scattering(view) => view.work(over, budget),
+            Self::Reflections(view) => view.work(over, budget),
+            Self::None => Work::none(),
+        }
+    }
+}
+
+/// The system of specular surfaces that leads to a plane behind one or on one, or of light that
+/// goes through pictures.
+fn followed(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<rays::System>> {
+    let across = plane.orientation == Orientation::Orthogonal;
+    if !scene.light.is_picture() && plane.leg == 0 && across {
+        return None;
+    }
+    system(scene, plane)
+}
+
+pub(crate) fn is_same((distance, mask): &(f64, Mask), layer: &BlockerLayer) -> bool {
+    distance.total_cmp(&layer.distance).is_eq() && *mask == layer.mask
+}

@@ -1,0 +1,181 @@
+//! A mask made ready for many questions: the share of a ray that passes, and the shapes in its way.
+
+use etendue_field::{HalfPlane, Mask, Shape};
+
+/// Lowest and highest coordinate along two axes.
+pub(crate) type Bounds = [[f64; 2]; 2];
+
+/// A mask made ready for many questions.
+#[derive(Debug)]
+pub(crate) struct Barrier<'a> {
+    /// Where it stands: metres from the light, or before a receiver, as its owner counts.
+    pub(crate) distance: f64,
+    /// What half-planes leave open.
+    pub(crate) open: Bounds,
+    pub(crate) shapes: Bins<'a>,
+    pub(crate) mask: &'a Mask,
+}
+
+impl<'a> Barrier<'a> {
+    pub(crate) fn new(distance: f64, mask: &'a Mask) -> Self {
+        let (shapes, half_planes): (&[Shape], &[HalfPlane]) = match mask {
+            Mask::Opaque {
+                shapes,
+                half_planes,
+            } => (shapes, half_planes),
+            _ => (&[], &[]),
+        };
+        let mut open = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
+        for half in half_planes {
+            let [low, high] = &mut open[half.axis];
+            if half.above {
+                *high = high.min(half.edge);
+            } else {
+                *low = low.max(half.edge);
+            }
+        }
+        Self {
+            distance,
+            open,
+            shapes: Bins::new(shapes),
+            mask,
+        }
+    }
+
+    /// The share of radiance that passes at (x, y).
+    pub(crate) fn transmittance(&self, x: f64, y: f64) -> f64 {
+        if !matches!(self.mask, Mask::Opaque { .. }) {
+            return self.mask.transmittance(x, y);
+        }
+        let [ox, oy] = self.open;
+        let between = |[low, high]: [f64; 2], t: f64| low < t && t < high;
+        let mut blocked = !(between(ox, x) && between(oy, y));
+        self.shapes
+            .meeting([[x, x], [y, y]], |shape| blocked |= shape.contains(x, y));
+        if blocked { 0.0 } else { 1.0 }
+    }
+}
+
+/// Shapes, in a grid of about as many cells.
+#[derive(Debug)]
+pub(crate) struct Bins<'a> {
+    shapes: &'a [Shape],
+    low: [f64; 2],
+    /// Cells per metre.
+    per_length: [f64; 2],
+    /// Cells along each axis.
+    side: usize,
+    /// Shapes that touch a cell, by number.
+    cells: Vec<Vec<usize>>,
+}
+
+impl<'a> Bins<'a> {
+    fn new(shapes: &'a [Shape]) -> Self {
+        let side = (1..).find(|n| n * n >= shapes.len()).unwrap_or(1);
+        let extents = |axis| shapes.iter().map(move |s| s.bounds().extent(axis));
+        let low = [0, 1].map(|axis| extents(axis).fold(f64::INFINITY, |m, e| m.min(e[0])));
+        let high = [0, 1].map(|axis| extents(axis).fold(f64::NEG_INFINITY, |m, e| m.max(e[1])));
+        let mut bins = Self {
+            shapes,
+            low,
+            per_length: [0, 1].map(|axis| side as f64 / (high[axis] - low[axis])),
+            side,
+            cells: vec![vec![]; side * side],
+        };
+        for (number, shape) in shapes.iter().enumerate() {
+            let [x, y] = [0, 1].map(|axis| bins.touched(axis, shape.bounds().extent(axis)));
+            for i in x {
+                for j in y.clone() {
+                    bins.cells[i * side + j].push(number);
+                }
+            }
+        }
+        bins
+    }
+
+    /// The narrowest width of a shape; `None` where there are none.
+    pub(crate) fn narrowest(&self) -> Option<f64> {
+        let widths = self.shapes.iter().map(|shape| {
+            let [w, h] = shape.bounds().size;
+            w.min(h)
+        });
+        widths.min_by(f64::total_cmp)
+    }
+
+    /// Cells that an interval along an axis touches; those at the ends stand for all beyond.
+    fn touched(&self, axis: usize, [low, high]: [f64; 2]) -> std::ops::RangeInclusive<usize> {
+        self.cell(axis, low)..=self.cell(axis, high)
+    }
+
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "clamped first; what is not a number becomes zero"
+    )]
+    fn cell(&self, axis: usize, coordinate: f64) -> usize {
+        let cell = (coordinate - self.low[axis]) * self.per_length[axis];
+        cell.clamp(0.0, (self.side - 1) as f64) as usize
+    }
+
+    /// Hands over every shape whose bounds meet a rectangle, once, in an order that depends on the
+    /// rectangle alone.
+    pub(crate) fn meeting(&self, sides: Bounds, mut each: impl FnMut(&'a Shape)) {
+        if self.shapes.is_empty() {
+            return;
+        }
+        let [x, y] = [0, 1].map(|axis| self.touched(axis, sides[axis]));
+        for i in x.clone() {
+            for j in y.clone() {
+                for &number in &self.cells[i * self.side + j] {
+                    let shape = &self.shapes[number];
+                    let extents = [0, 1].map(|axis| shape.bounds().extent(axis));
+                    // A shape in several of the cells is met in the first.
+                    let first = [(0, *x.start()), (1, *y.start())]
+                        .map(|(axis, start)| self.cell(axis, extents[axis][0]).max(start));
+                    let meets = |axis: usize| {
+                        extents[axis][0] <= sides[axis][1] && sides[axis][0] <= extents[axis][1]
+                    };
+                    if first == [i, j] && meets(0) && meets(1) {
+                        each(shape);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::testing::{blockers, square};
+
+    #[test]
+    fn finds_each_shape_once() {
+        let mut shapes: Vec<_> = blockers(12, 0.1, 0.06)
+            .into_iter()
+            .map(Shape::Rectangle)
+            .collect();
+        shapes.push(Shape::Rectangle(square([3.0, 0.2], 4.5)));
+        let bins = Bins::new(&shapes);
+        for k in 0..200 {
+            let k = f64::from(k);
+            let at = [libm::sin(1.7 * k), libm::cos(2.3 * k)];
+            let half = 0.2 * libm::sin(0.9 * k).abs();
+            let sides = at.map(|c| [c - half, c + half]);
+            let mut found = Vec::new();
+            bins.meeting(sides, |shape| found.push(shape.bounds().center));
+            let mut expected: Vec<_> = shapes.iter().map(Shape::bounds).collect();
+            expected.retain(|r| {
+                [0, 1].iter().all(|&axis| {
+                    let [low, high] = r.extent(axis);
+                    low <= sides[axis][1] && sides[axis][0] <= high
+                })
+            });
+            let mut expected: Vec<_> = expected.iter().map(|r| r.center).collect();
+            let order = |a: &[f64; 2], b: &[f64; 2]| a.partial_cmp(b).unwrap();
+            found.sort_by(order);
+            expected.sort_by(order);
+            assert_eq!(found, expected);
+        }
+    }
+}

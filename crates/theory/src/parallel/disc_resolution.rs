@@ -1,0 +1,186 @@
+//! How finely the discs of a chain are taken apart.
+
+use crate::parallel::chain::Path;
+use crate::parallel::disc::Discs;
+use crate::parallel::expansion::Expansion;
+use crate::parallel::slope::Slope;
+use etendue_field::{Mask, Profile, Shape, Window, whole};
+use std::f64::consts::PI;
+
+/// Nodes of the rule for discs beyond π R Ω.
+const SPARE_NODES: f64 = 6.0;
+/// Most nodes: a disc becomes 72² rectangles.
+const MOST_NODES: f64 = 72.0;
+/// How far out, in largest frequencies, edges in other planes are followed.
+const FARTHEST: f64 = 4.0;
+/// Share of that which is resolved: the rest is the corners of the grid of frequencies, where there
+/// is little.
+const FAR_SHARE: f64 = 0.7;
+/// Most terms of an expansion that discs may make.
+const MOST_TERMS: f64 = 3e5;
+/// Most strips of a disc.
+const MOST_STRIPS: f64 = 64.0;
+
+/// How the discs of a chain are taken apart: those of the light, then those of each opaque mask.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
+
+impl DiscResolution {
+    /// For spectra up to `frequency`, along position and slope (docs/theory.md, after Eq. 5b).
+    pub(crate) fn for_spectrum(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+        let nodes = Self::wanted(path, window, frequency);
+        if path.has_discs() {
+            nodes.affordable(path, window)
+        } else {
+            nodes
+        }
+    }
+
+    /// Whether discs may be taken apart about as finely as spectra up to `frequency` need it. A wide
+    /// one behind a narrow window is not, and finer rules tell nothing of the error then.
+    pub(crate) fn is_enough(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> bool {
+        if !path.has_discs() {
+            return true;
+        }
+        let wanted = Self::wanted(path, window, frequency);
+        if wanted
+            .0
+            .iter()
+            .any(|discs| discs.count() >= whole(MOST_NODES))
+        {
+            return false;
+        }
+        let affordable = wanted.clone().affordable(path, window);
+        let mut both = wanted.0.iter().zip(&affordable.0);
+        both.all(|(wanted, affordable)| wanted.count() <= 2 * affordable.count())
+    }
+
+    fn wanted(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+        let rates = EdgeBandwidth::new(path, window, frequency);
+        Self::of(path, |radius, plane| {
+            let nodes = (PI * radius * rates.at(plane)).ceil() + SPARE_NODES;
+            Discs::Rule(whole(nodes.min(MOST_NODES)))
+        })
+    }
+
+    /// Discs as one patch each.
+    pub(crate) fn single(path: &Path<'_>) -> Self {
+        Self(vec![Discs::Rule(1); path.planes().len()])
+    }
+
+    /// Fewer nodes where discs in several planes would make too many terms.
+    fn affordable(self, path: &Path<'_>, window: &Window) -> Self {
+        let slope = Slope::new([&window.u, &window.v], 0.0);
+        let single = Self::single(path);
+        let seen = Expansion::new(path, window, &slope, &single.0).terms.len();
+        let round = path
+            .planes()
+            .into_iter()
+            .map(|shapes| largest(shapes) > 0.0);
+        let planes: Vec<_> = self.0.iter().zip(round).collect();
+        let (mut terms, mut count) = (seen as f64, 0.0);
+        for (discs, _) in planes.iter().filter(|(_, round)| *round) {
+            terms *= (discs.count() as f64).powi(2);
+            count += 1.0;
+        }
+        let share = libm::pow(MOST_TERMS / terms, 0.5 / count).min(1.0);
+        let fewer = |n: usize| whole((share * n as f64).round()).max(1);
+        Self(
+            planes
+                .into_iter()
+                .map(|(discs, _)| Discs::Rule(fewer(discs.count())))
+                .collect(),
+        )
+    }
+
+    /// For the light field on a grid of `bins` positions.
+    pub(crate) fn for_projection(path: &Path<'_>, window: &Window, bins: usize) -> Self {
+        let cell = 2.0 * window.x.half_width() / bins as f64;
+        Self::of(path, |radius, _| {
+            let strips = (8.0 * radius / cell).ceil().clamp(8.0, MOST_STRIPS);
+            Discs::Strips(whole(strips))
+        })
+    }
+
+    /// `discs` chooses from the largest radius in a plane and the index of the plane.
+    fn of(path: &Path<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
+        let planes = path.planes().into_iter().enumerate();
+        Self(
+            planes
+                .map(|(i, shapes)| discs(largest(shapes), i))
+                .collect(),
+        )
+    }
+
+    /// A quarter finer.
+    pub(crate) fn finer(&self) -> Self {
+        let more = |n: usize| n + n.div_ceil(4);
+        Self(
+            self.0
+                .iter()
+                .map(|discs| match *discs {
+                    Discs::Rule(n) => Discs::Rule(more(n)),
+                    Discs::Strips(n) => Discs::Strips(more(n)),
+                })
+                .collect(),
+        )
+    }
+}
+
+/// How fast integrals over the lines x − h u = c may change with c: they are the spectrum of all
+/// the rest of the field along the line of frequencies (Ωx − γ, Ωu + h γ).
+struct EdgeBandwidth {
+    /// Largest |Ωx| and |Ωu|, shifted by gratings.
+    frequency: [f64; 2],
+    /// What the window adds to them.
+    blur: [f64; 2],
+    /// Distances of planes with edges: the light's, then those of opaque masks.
+    planes: Vec<f64>,
+}
+
+impl EdgeBandwidth {
+    fn new(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+        let [x, y, u, v] = [&window.x, &window.y, &window.u, &window.v].map(Profile::half_width);
+        // A spot is as narrow as 1/√n.
+        let lobe = 1.0 / (-2.0 * path.slope_power()).max(1e-9).sqrt();
+        let mut rates = Self {
+            frequency,
+            blur: [2.0 / x.min(y), 2.0 / u.min(v).min(lobe)],
+            planes: vec![path.distance],
+        };
+        for layer in &path.layers {
+            if let Some(grating) = layer.mask.grating() {
+                rates.frequency[0] += grating.frequency.abs();
+                rates.frequency[1] += (grating.frequency * layer.distance).abs();
+            }
+            if matches!(layer.mask, Mask::Opaque { .. }) {
+                rates.planes.push(layer.distance);
+            }
+        }
+        rates
+    }
+
+    /// Under the window alone the spectrum is near zero, so that γ is both near Ωx and near −Ωu/h.
+    /// Edges in a plane at distance g spread it along Ωu = −g Ωx, which the line meets at γ = (Ωu +
+    /// g Ωx)/(g − h); far out on it there is little.
+    fn at(&self, plane: usize) -> f64 {
+        let h = self.planes[plane];
+        let [x, u] = self.frequency;
+        let widest = x + self.blur[0];
+        let own = widest.min((u + self.blur[1]) / h.abs());
+        let others = self.planes.iter().enumerate().filter(|(j, _)| *j != plane);
+        // Infinite for one at the same distance.
+        let meets = others.map(|(_, g)| (u + g.abs() * x) / (g - h).abs());
+        let farthest = meets.fold(0.0, f64::max).min(FARTHEST * widest);
+        own.max(FAR_SHARE * farthest)
+    }
+}
+
+/// The largest radius of a disc; 0 if there is none.
+fn largest(shapes: &[Shape]) -> f64 {
+    let radii = shapes.iter().map(|shape| match shape {
+        Shape::Disc(disc) => disc.radius,
+        Shape::Rectangle(_) => 0.0,
+    });
+    radii.fold(0.0, f64::max)
+}
