@@ -6,7 +6,7 @@ use crate::metric::Metric;
 const DENSEST: f64 = 4.0;
 
 /// Nor are they farther apart than this many pixels.
-const FARTHEST: f64 = 32.0;
+const MAX_SPACING: f64 = 32.0;
 
 /// No direction is sampled this many times denser than another: finite differences are not better known.
 const LONGEST: f64 = 3.0;
@@ -17,7 +17,7 @@ pub(crate) fn scaled(wanted: &[Option<Metric>], samples: f64) -> Vec<Option<Metr
         .iter()
         .map(|metric| metric.map(|metric| metric.determinant().max(0.0).sqrt()))
         .collect();
-    let sparsest = FARTHEST.powi(-2);
+    let sparsest = MAX_SPACING.powi(-2);
     let bounded = |rate: f64, scale: f64| (scale * rate).clamp(sparsest, DENSEST);
     let total = |scale: f64| -> f64 {
         let rates = rates.iter().flatten();
@@ -51,7 +51,7 @@ pub(crate) fn wanted(squared: Metric, is_even: bool) -> Metric {
     // Twice the bandwidth along each direction, as Shannon has it; and enough that what has none is sampled.
     let shannon = squared
         .times(4.0)
-        .plus(Metric::even((4.0 * FARTHEST).powi(-2)));
+        .plus(Metric::even((4.0 * MAX_SPACING).powi(-2)));
     if is_even {
         Metric::even(shannon.largest())
     } else {
@@ -93,7 +93,7 @@ mod tests {
         let found = scaled(&wanted, 1.0);
         let [dense, sparse] = [0, 1].map(|i| found[i].unwrap().determinant().sqrt());
         assert!(
-            dense <= DENSEST && sparse >= 0.999 * FARTHEST.powi(-2),
+            dense <= DENSEST && sparse >= 0.999 * MAX_SPACING.powi(-2),
             "{dense} {sparse}"
         );
     }

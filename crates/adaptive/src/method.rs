@@ -97,7 +97,7 @@ pub struct Rendered {
 }
 
 /// The share of samples that are taken first where they decide on the others.
-const FIRST: f64 = 0.25;
+const FIRST_SHARE: f64 = 0.25;
 
 /// What a plane through samples leaves falls as the fourth power of their distance, its square as the inverse square of their density n. Its sum over the
 /// picture is least for a fixed number of samples where n ∝ (c² B⁴)^(1/3), c being the contrast and B the bandwidth.
@@ -173,11 +173,11 @@ impl Work<'_> {
             let found = self.shaded(&points, 0);
             return found.into_iter().map(|(sample, _)| sample).collect();
         }
-        let first = scaled(&wanted, FIRST * count);
-        let points = self.points(&first, FIRST * count, 0);
+        let first = scaled(&wanted, FIRST_SHARE * count);
+        let points = self.points(&first, FIRST_SHARE * count, 0);
         let pilot = self.shaded(&points, 0);
         let contrast = self.contrast(&pilot);
-        let rest = (1.0 - FIRST) * count;
+        let rest = (1.0 - FIRST_SHARE) * count;
         let then = if method == Method::Weighted {
             let missed = self.missed(&pilot);
             let found = first.iter().zip(&missed);
@@ -190,7 +190,7 @@ impl Work<'_> {
             sums(&halves[0], &halves[1])
         } else {
             let by_contrast = |(metric, contrast): (&Option<Metric>, &f64)| {
-                Some(metric.as_ref()?.times(contrast.max(LEAST)))
+                Some(metric.as_ref()?.times(contrast.max(MIN_CONTRAST)))
             };
             let wanted: Vec<_> = wanted.iter().zip(&contrast).map(by_contrast).collect();
             scaled(&wanted, rest)
@@ -425,7 +425,7 @@ const RECENT: usize = 256;
 const WIDER: f64 = 2.0;
 
 /// No contrast counts as less: a first sample in four may have missed it.
-const LEAST: f64 = 0.02;
+const MIN_CONTRAST: f64 = 0.02;
 
 #[expect(
     clippy::cast_possible_truncation,

@@ -79,7 +79,7 @@ struct Values {
 }
 
 impl Sums {
-    const NOTHING: Self = Self {
+    const ZERO: Self = Self {
         weight: 0.0,
         x: [0.0; 2],
         xx: [0.0; 3],
@@ -144,7 +144,7 @@ impl<'a> Band<'a> {
             visible,
             first_row,
             rows,
-            sums: vec![Sums::NOTHING; FOUR * rows * visible.size[0]],
+            sums: vec![Sums::ZERO; FOUR * rows * visible.size[0]],
         }
     }
 

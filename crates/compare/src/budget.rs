@@ -4,7 +4,7 @@ use etendue_scene::Scene;
 use etendue_theory::Budget;
 
 /// The largest relative error of a prediction that is accepted, however few the photons.
-const LARGEST: f64 = 3e-3;
+const MAX_ERROR: f64 = 3e-3;
 /// The error that is accepted, times √photons. The photons' own noise is about 25/√photons.
 const OF_NOISE: f64 = 12.0;
 /// Rays of a prediction, as a share of the photons, so that it takes less time than tracing them.
@@ -19,6 +19,6 @@ pub(crate) fn budget(scene: &Scene) -> Budget {
     let photons = scene.run.photons as f64;
     Budget {
         nodes: (SHARE * photons).max(FEWEST),
-        error: (OF_NOISE / photons.sqrt()).min(LARGEST),
+        error: (OF_NOISE / photons.sqrt()).min(MAX_ERROR),
     }
 }

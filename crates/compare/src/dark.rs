@@ -11,7 +11,7 @@ type Extent = [[f64; 2]; 2];
 /// No limits.
 const UNLIMITED: Extent = [[f64::NEG_INFINITY, f64::INFINITY]; 2];
 /// Slopes that no light exceeds.
-const FAR: f64 = 1e3;
+const MAX_SLOPE: f64 = 1e3;
 /// Share of the rays of a section that rounding may leave.
 const ROUNDING: f64 = 1e-12;
 /// Parts of a layer at which it is taken to have holes.
@@ -66,10 +66,10 @@ impl RaySection {
         let [position, slope] =
             [[&window.x, &window.u], [&window.y, &window.v]][axis].map(Profile::half_width);
         // What has no end shines from beyond this by steeper slopes only.
-        let far = FAR * (plane.distance + position);
+        let far = MAX_SLOPE * (plane.distance + position);
         let ends = scene.light.extent(axis);
         let [low, high] = ends.map(|x| if x.is_finite() { x } else { far.copysign(x) });
-        let most = scene.light.steepest(axis).min(FAR);
+        let most = scene.light.steepest(axis).min(MAX_SLOPE);
         let corners = [[low, -most], [high, -most], [high, most], [low, most]];
         let mut section = Self(corners.to_vec());
         // Coordinates on a surface are not those across the leg.

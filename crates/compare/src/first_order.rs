@@ -75,7 +75,7 @@ pub struct FirstOrderReport {
 /// that is left out or wrong by a thousandth is seen.
 const DEFECT: f64 = 1e-5;
 /// Above this error a first-order chain says nothing of the light field.
-const LARGEST: f64 = 0.5;
+const MAX_ERROR: f64 = 0.5;
 /// The one-sided 95 % quantile of the normal distribution.
 const NINETY_FIVE: f64 = 1.645;
 
@@ -86,7 +86,7 @@ impl FirstOrderChain {
     pub fn verdict(&self) -> Verdict {
         if self.defect > DEFECT {
             Verdict::Fail
-        } else if self.error > LARGEST {
+        } else if self.error > MAX_ERROR {
             Verdict::Undecided
         } else {
             Verdict::Pass

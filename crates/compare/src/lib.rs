@@ -50,7 +50,7 @@ pub use first_order::{FirstOrder, FirstOrderChain, FirstOrderReport};
 pub use full_radial::{FullRadialComparison, FullRadialReport};
 pub use memory::Memory;
 pub use noise::noise_dof;
-pub use plane::{EACH, PlaneComparison, compare};
+pub use plane::{MIN_PHOTONS_PER_BATCH, PlaneComparison, compare};
 pub use prediction::{PredictedParameter, Prediction};
 pub use report::{
     Azimuths, Bandwidth, Covariance, DirectedPair, HighFrequencyShare, Pair, PlaneReport,

@@ -57,9 +57,9 @@ const DARK: f64 = 1e-12;
 
 /// Noise above which a handful of photons makes the residuals: they are not symmetric then, as p
 /// takes them to be.
-const FEW: f64 = 0.25;
+const MAX_HANDFUL_NOISE: f64 = 0.25;
 /// Photons of a batch with which one in 3,000 batches is empty.
-pub const EACH: f64 = 8.0;
+pub const MIN_PHOTONS_PER_BATCH: f64 = 8.0;
 
 /// Compares plane `index` of a measurement with its prediction.
 ///
@@ -238,7 +238,7 @@ impl Compared<'_> {
                 "noise is {} of the spectrum, above the resolution of {resolution}{needs}",
                 percent(noise)
             ))
-        } else if noise > test.resolution.max(FEW) {
+        } else if noise > test.resolution.max(MAX_HANDFUL_NOISE) {
             Some(format!(
                 "noise is {} of the spectrum, of so few photons that p says nothing{needs}",
                 percent(noise)
@@ -276,13 +276,14 @@ impl Compared<'_> {
             let all = self.prediction.replicates.len() as f64;
             let empty = self.prediction.replicates.iter().filter(|r| r.is_dark());
             let each = libm::log(all / empty.count() as f64);
-            let more = (EACH * batches / inside as f64).max(EACH / each);
+            let more =
+                (MIN_PHOTONS_PER_BATCH * batches / inside as f64).max(MIN_PHOTONS_PER_BATCH / each);
             let more = more.is_finite().then(|| (emitted as f64 * more).ceil());
             let less_noise = agreement.photons_needed(emitted, self.prediction, test);
             more.into_iter().chain(less_noise).max_by(f64::total_cmp)
         } else {
             let uneven = self.uneven(agrees);
-            let more = uneven.map(|each| (emitted as f64 * EACH / each).ceil());
+            let more = uneven.map(|each| (emitted as f64 * MIN_PHOTONS_PER_BATCH / each).ceil());
             let less_noise = agreement.photons_needed(emitted, self.prediction, test);
             more.into_iter().chain(less_noise).max_by(f64::total_cmp)
         }

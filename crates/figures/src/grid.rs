@@ -135,7 +135,7 @@ impl<'b, 'a> Grid<'b, 'a> {
     /// When a row has not a picture for each column.
     pub(crate) fn new(rows: Vec<Row<'b, 'a>>, columns: usize, least: f64, style: &Style) -> Self {
         // Of one block, and of several, which would make a long page.
-        const MOST: [f64; 2] = [190.0, 112.0];
+        const MAX_SIDES: [f64; 2] = [190.0, 112.0];
         for row in &rows {
             assert_eq!(row.cells.len(), columns, "pictures of {}", row.name);
         }
@@ -156,7 +156,7 @@ impl<'b, 'a> Grid<'b, 'a> {
                 after.map(|column| grid.gap(column)).sum()
             };
             let widest = starts.iter().map(|start| gaps(*start)).fold(0.0, f64::max);
-            let most = MOST[usize::from(count > 1)] / shape;
+            let most = MAX_SIDES[usize::from(count > 1)] / shape;
             grid.side = ((inner(style) - widest) / length as f64).min(most).floor();
             if grid.side >= least || length == 1 {
                 grid.blocks = starts

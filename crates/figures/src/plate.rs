@@ -63,7 +63,7 @@ pub struct Bars {
 const BARS: f64 = 110.0;
 const BAR: f64 = 60.0;
 /// The least width of a picture: those that do not fit go below.
-const LEAST: f64 = 58.0;
+const MIN_WIDTH: f64 = 58.0;
 /// Least width of what is under a title, if the page has it.
 const TITLE: f64 = 440.0;
 
@@ -78,7 +78,7 @@ const TITLE: f64 = 440.0;
 /// When a row has not a picture for each head.
 pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     let rows = plate.rows.iter().map(row);
-    let grid = Grid::new(rows.collect(), plate.heads.len(), LEAST, style);
+    let grid = Grid::new(rows.collect(), plate.heads.len(), MIN_WIDTH, style);
     let mut svg = Svg::default();
     let inner = grid.width().max(TITLE.min(inner(style)));
     let room = inner + 0.8 * RIGHT;

@@ -140,7 +140,7 @@ const CUT: f64 = 190.0;
 /// Height of the lines from the cut to the columns.
 const LEADERS: f64 = 34.0;
 /// The least width of a picture: columns that do not fit go below the others.
-const LEAST: f64 = 78.0;
+const MIN_WIDTH: f64 = 78.0;
 
 /// Draws a strip, as wide as the page.
 ///
@@ -215,7 +215,7 @@ fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> Grid<'b, 'a> {
     let rows = Row::of(strip).into_iter().map(row).collect();
     // Two stand side by side on the narrowest page.
     let half = 0.5 * (inner(style) - GAPS[1]);
-    Grid::new(rows, strip.columns.len(), LEAST.min(half), style)
+    Grid::new(rows, strip.columns.len(), MIN_WIDTH.min(half), style)
 }
 
 /// The keys to dashed lines and to cells without a value; returns the lowest baseline.

@@ -140,7 +140,7 @@ impl Svg {
     pub(crate) fn polygon(&mut self, points: &[[f64; 2]], fill: &str) {
         let near = points
             .iter()
-            .map(|point| point.map(|at| at.clamp(-FAR, FAR)));
+            .map(|point| point.map(|at| at.clamp(-MAX_COORDINATE, MAX_COORDINATE)));
         let points = &near.collect::<Vec<_>>();
         self.raw(&format!("<path d=\"{}Z\" fill=\"{fill}\"/>", path(points)));
     }
@@ -158,7 +158,7 @@ impl Svg {
     }
 
     pub(crate) fn circle(&mut self, center: [f64; 2], radius: f64, fill: &str) {
-        let [x, y] = center.map(|at| at.clamp(-FAR, FAR));
+        let [x, y] = center.map(|at| at.clamp(-MAX_COORDINATE, MAX_COORDINATE));
         self.raw(&format!(
             "<circle cx=\"{}\" cy=\"{}\" r=\"{}\" fill=\"{fill}\"/>",
             number(x),
@@ -268,10 +268,10 @@ impl Svg {
 
 /// Farther from the corner of a drawing than this nothing is written: programs that draw it may not bear
 /// such numbers.
-const FAR: f64 = 1e4;
+const MAX_COORDINATE: f64 = 1e4;
 
 fn is_near(point: [f64; 2]) -> bool {
-    point.iter().all(|at| at.abs() <= FAR)
+    point.iter().all(|at| at.abs() <= MAX_COORDINATE)
 }
 
 /// The part of a line that is near (Liang and Barsky 1984, ACM Trans. Graph. 3(1)).
@@ -280,16 +280,17 @@ fn near(from: [f64; 2], to: [f64; 2]) -> Option<[[f64; 2]; 2]> {
     for axis in 0..2 {
         let along = to[axis] - from[axis];
         // Shares of the way at both borders, which are not numbers on a line beside them.
-        let borders = [-FAR, FAR].map(|border| (border - from[axis]) / along);
+        let borders = [-MAX_COORDINATE, MAX_COORDINATE].map(|border| (border - from[axis]) / along);
         if along != 0.0 {
             first = first.max(borders[0].min(borders[1]));
             last = last.min(borders[0].max(borders[1]));
-        } else if from[axis].abs() > FAR {
+        } else if from[axis].abs() > MAX_COORDINATE {
             return None;
         }
     }
     let at = |share: f64| [0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis]));
-    let ends = [at(first), at(last)].map(|end| end.map(|at| at.clamp(-FAR, FAR)));
+    let ends =
+        [at(first), at(last)].map(|end| end.map(|at| at.clamp(-MAX_COORDINATE, MAX_COORDINATE)));
     (first < last).then_some(ends)
 }
 
@@ -328,12 +329,21 @@ mod tests {
     fn lines_far_away_are_cut_and_keep_their_way() {
         assert_eq!(
             near([-1e9, 50.0], [1e9, 50.0]),
-            Some([[-FAR, 50.0], [FAR, 50.0]])
+            Some([[-MAX_COORDINATE, 50.0], [MAX_COORDINATE, 50.0]])
         );
         let cut = near([0.0, 0.0], [4e9, 2e9]).unwrap_or_default();
-        assert!((cut[1][0] - FAR).abs() < 1e-6 && (cut[1][1] - 0.5 * FAR).abs() < 1e-6);
-        assert_eq!(near([2.0 * FAR, 0.0], [2.0 * FAR, 1e9]), None);
-        assert_eq!(near([-3.0 * FAR, 0.0], [0.0, 3.0 * FAR]), None);
+        assert!(
+            (cut[1][0] - MAX_COORDINATE).abs() < 1e-6
+                && (cut[1][1] - 0.5 * MAX_COORDINATE).abs() < 1e-6
+        );
+        assert_eq!(
+            near([2.0 * MAX_COORDINATE, 0.0], [2.0 * MAX_COORDINATE, 1e9]),
+            None
+        );
+        assert_eq!(
+            near([-3.0 * MAX_COORDINATE, 0.0], [0.0, 3.0 * MAX_COORDINATE]),
+            None
+        );
         let mut svg = Svg::default();
         svg.line([1e12, 3.0], [-1e12, 3.0], Stroke::solid("#000", 1.0));
         svg.circle([0.0, -1e15], 2.0, "#000");

@@ -1,9 +1,9 @@
 //! Tables of the CIE from 360 to 830 nm, in steps of 5 nm.
 
 /// Wavelength of the first number, nm.
-pub(crate) const FIRST: f64 = 360.0;
+pub(crate) const FIRST_WAVELENGTH: f64 = 360.0;
 /// Wavelength of the last number, nm.
-pub(crate) const LAST: f64 = 830.0;
+pub(crate) const LAST_WAVELENGTH: f64 = 830.0;
 /// Numbers in a table.
 pub(crate) const COUNT: usize = 95;
 

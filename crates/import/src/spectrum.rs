@@ -1,6 +1,6 @@
 //! Spectra as one number.
 
-use crate::cie::{COUNT, D65, FIRST, LAST, OBSERVER};
+use crate::cie::{COUNT, D65, FIRST_WAVELENGTH, LAST_WAVELENGTH, OBSERVER};
 
 /// Wavelengths at which a spectrum is summed.
 const STEPS: u32 = 1000;
@@ -25,7 +25,8 @@ pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
     let mut xyz = [0.0; 3];
     let mut next = 0;
     for step in 0..STEPS {
-        let wavelength = FIRST + f64::from(step) / f64::from(STEPS - 1) * (LAST - FIRST);
+        let wavelength = FIRST_WAVELENGTH
+            + f64::from(step) / f64::from(STEPS - 1) * (LAST_WAVELENGTH - FIRST_WAVELENGTH);
         while next < samples.len() && samples[next][0] <= wavelength {
             next += 1;
         }
@@ -40,7 +41,7 @@ pub(crate) fn rgb(samples: &[[f64; 2]], role: Role) -> [f64; 3] {
             *sum += at(observer, wavelength) * lit;
         }
     }
-    let scale = (LAST - FIRST) * PER_OBSERVER / f64::from(STEPS);
+    let scale = (LAST_WAVELENGTH - FIRST_WAVELENGTH) * PER_OBSERVER / f64::from(STEPS);
     let most = if role == Role::Reflectance {
         1.0
     } else {
@@ -69,7 +70,8 @@ fn between(samples: &[[f64; 2]], next: usize, wavelength: f64) -> Option<f64> {
 }
 
 fn at(table: &[f64; COUNT], wavelength: f64) -> f64 {
-    let place = (wavelength - FIRST) / (LAST - FIRST) * (COUNT - 1) as f64;
+    let place =
+        (wavelength - FIRST_WAVELENGTH) / (LAST_WAVELENGTH - FIRST_WAVELENGTH) * (COUNT - 1) as f64;
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -38,7 +38,7 @@ const FILES: [(&str, &[u8]); 4] = [
 const SPARSE: usize = 20;
 
 /// Paths of each shading sample.
-const EACH: u32 = 128;
+const PATHS_PER_SAMPLE: u32 = 128;
 
 /// Paths of each pixel of the reference.
 const REFERENCE: u32 = 64;
@@ -84,7 +84,7 @@ impl Scene {
         let plan = Plan {
             method,
             samples: self.samples,
-            each: EACH,
+            each: PATHS_PER_SAMPLE,
             blocker_rays: BLOCKER_RAYS,
             is_even,
             seed: 1,
@@ -193,7 +193,7 @@ pub(crate) fn pictures(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let [a, b, c] = few.each_ref().map(|of| shown(of));
     let [a, b, c, d] = [a?, b?, c?, shown(&reference)?];
     let note = format!(
-        "{} shading samples of {EACH} paths, 0.05 a pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²), *ε* a hundredth of the mean, noise of the reference *r* included.",
+        "{} shading samples of {PATHS_PER_SAMPLE} paths, 0.05 a pixel. relMSE: the mean of (*x* − *r*)²/(*r*² + *ε*²), *ε* a hundredth of the mean, noise of the reference *r* included.",
         scene.samples
     );
     let radiance = || Quantity::new("radiance of white", "");

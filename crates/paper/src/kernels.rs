@@ -114,7 +114,7 @@ fn solid_slopes(taken: &FigureData<'_>) -> Result<Figure, Failure> {
 /// Shares of energy that the table of Fig. 12 has.
 const SHARES: [f64; 3] = [0.8, 0.95, 0.99];
 /// The frequency up to which they are looked for, cycles per radian.
-const LARGEST: f64 = 6.0;
+const MAX_FREQUENCY: f64 = 6.0;
 
 /// The cosine, or the cosine times a Fresnel factor.
 struct Material {
@@ -138,7 +138,7 @@ impl Material {
         let nodes = gauss_legendre(200).into_iter();
         let squares = nodes.map(|(t, w)| w * self.value(FRAC_PI_2 * t).powi(2));
         let energy = FRAC_PI_2 * squares.sum::<f64>();
-        energy_below(|omega| self.transform(omega), energy, SHARES, LARGEST)
+        energy_below(|omega| self.transform(omega), energy, SHARES, MAX_FREQUENCY)
     }
 }
 

@@ -14,7 +14,7 @@ use ndarray::{Array2, ArrayView2, Axis as Along};
 /// Lowest level of a spectrum's colors, in decibels below its peak.
 pub(crate) const DECIBEL: Scale = Scale::Decibel { floor: -50.0 };
 /// Powers below this share of the largest have no phase worth showing.
-pub(crate) const LEAST: f64 = 1e-5;
+pub(crate) const MIN_POWER: f64 = 1e-5;
 
 /// A plane of a scene with what was found there.
 #[derive(Clone, Copy)]
@@ -64,7 +64,7 @@ pub(crate) fn power(slices: &Slices) -> Array2<f64> {
 /// In degrees.
 pub(crate) fn phase(slices: &Slices) -> Array2<f64> {
     slice(slices, &|s, most| {
-        if s.norm_sqr() > LEAST * most {
+        if s.norm_sqr() > MIN_POWER * most {
             libm::atan2(s.im, s.re).to_degrees()
         } else {
             f64::NAN

@@ -1,7 +1,7 @@
 //! Whether photons that are aimed at the window of a plane reach it.
 
 use crate::case::MeasuredScene;
-use etendue_compare::{Class, EACH, PlaneComparison, Verdict};
+use etendue_compare::{Class, MIN_PHOTONS_PER_BATCH, PlaneComparison, Verdict};
 use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::Scene;
 use etendue_store::Method;
@@ -26,7 +26,7 @@ pub(crate) fn leave_open(case: &MeasuredScene, planes: &mut [PlaneComparison]) {
         }
         let photons = case.scene.run.photons / count;
         let reach = reached(&case.scene, plane, photons);
-        if (reach as f64) < EACH * f64::from(case.scene.run.batches) {
+        if (reach as f64) < MIN_PHOTONS_PER_BATCH * f64::from(case.scene.run.batches) {
             let has_wrong_map = report.first_order.as_mut().is_some_and(|chain| {
                 chain.exact = Verdict::Undecided;
                 chain.verdict == Verdict::Fail

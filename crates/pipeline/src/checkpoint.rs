@@ -17,7 +17,7 @@ use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Batches done before this are not kept: they are soon made again.
-const SHORT: Duration = Duration::from_secs(5);
+const MIN_AGE: Duration = Duration::from_secs(5);
 /// How often a batch on the way is kept.
 const PARTIAL_INTERVAL: Duration = Duration::from_secs(2);
 
@@ -165,7 +165,7 @@ impl Keeper<'_> {
             workers,
         } = self.checkpointing;
         let is_eager = resume || until.is_some() || workers.is_some();
-        is_eager || self.begun.elapsed() > SHORT
+        is_eager || self.begun.elapsed() > MIN_AGE
     }
 
     /// Keeps something by `write`. Where that fails the run goes on without it.

@@ -13,11 +13,11 @@ use indicatif::HumanDuration;
 use std::time::{Duration, Instant};
 
 /// Photons of the first stage.
-const FIRST: u64 = 1 << 20;
+const FIRST_PHOTONS: u64 = 1 << 20;
 /// The most photons of a stage, unless a user says so.
-const MOST: u64 = 1 << 40;
+const MAX_PHOTONS: u64 = 1 << 40;
 /// How many times as many photons the root of their number may ask for, that nets may do without.
-const FARTHEST: f64 = 8.0;
+const MAX_FACTOR: f64 = 8.0;
 
 /// Measures all batches of a scene with 2ᵐ photons: the first of these numbers, from 2²⁰ on, with
 /// which noise is at most a share `target` of the spectrum at each plane. The scene is given that
@@ -35,8 +35,8 @@ pub fn reached(
     (target, most): (f64, Option<u64>),
     reporter: &dyn Reporter,
 ) -> Result<Measurement, Failure> {
-    let most = most.unwrap_or(MOST);
-    let mut photons = FIRST.min(most);
+    let most = most.unwrap_or(MAX_PHOTONS);
+    let mut photons = FIRST_PHOTONS.min(most);
     loop {
         let begun = Instant::now();
         scene.run.photons = photons;
@@ -58,7 +58,7 @@ pub fn reached(
         while next < most && 2.0 * next as f64 <= needed {
             next = next.saturating_mul(2);
         }
-        if photons == most || needed > FARTHEST * most as f64 {
+        if photons == most || needed > MAX_FACTOR * most as f64 {
             return Err(Failure::cannot_run(format!(
                 "--target-error {} %: {now}, and falls as the root of their number or faster: \
                  {needed:.1e} photons reach that; allowed: {}, more by --photons",

@@ -16,7 +16,7 @@ use std::path::Path;
 pub const NAME: &str = "report.html";
 
 /// Most bytes of a page that is read.
-const MOST: u64 = 1 << 28;
+const MAX_PAGE_BYTES: u64 = 1 << 28;
 
 /// What is around the data of a run in a page; before it, where the explorer is.
 const BEFORE: &str = "class=\"run-data\">";
@@ -32,7 +32,7 @@ pub fn stored_data(folder: &Path) -> Result<String, Failure> {
             "{folder} is no whole result with a {NAME}: run the scene again with this version"
         ))
     })?;
-    let bytes = read_file(&shown, MOST).map_err(|e| fault(&e.to_string()))?;
+    let bytes = read_file(&shown, MAX_PAGE_BYTES).map_err(|e| fault(&e.to_string()))?;
     if hash != blake3::hash(&bytes).to_hex().as_str() {
         return Err(fault("damaged: its hash is not the one in summary.json"));
     }

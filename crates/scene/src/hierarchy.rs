@@ -45,7 +45,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// The largest coordinate of a box, which f32 still holds four times over. The farthest corner of a
 /// patch is at 1e28.
-const LARGEST: f64 = 1e36;
+const MAX_EXTENT: f64 = 1e36;
 
 /// More boxes than these are built in parts of as many, each by one thread. What the builder needs,
 /// some 150 bytes for each box, is then held for a part at a time.
@@ -53,7 +53,7 @@ const PART: usize = 1 << 15;
 
 /// Up to so many boxes the builder takes its time: a tenth of a second makes rays up to twice as
 /// fast. With more it takes seconds, for a few percent.
-const FEW: usize = 1 << 13;
+const MAX_REINSERTED: usize = 1 << 13;
 
 impl Hierarchy {
     /// Over boxes, by number, given by their lowest and highest corners. `origins` is the largest
@@ -106,12 +106,12 @@ impl Hierarchy {
 
 impl Space {
     fn around(boxes: impl Iterator<Item = [DVec3; 2]>, origins: f64) -> Self {
-        let sound = boxes.filter(|of| is_sound(of, LARGEST));
+        let sound = boxes.filter(|of| is_sound(of, MAX_EXTENT));
         let all = sound.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
         let [low, high] = all.unwrap_or_default();
         let center = 0.5 * low + 0.5 * high;
         let size = (high - center).max(center - low).max_element();
-        let farthest = (center.abs().max_element() + size + origins).min(LARGEST);
+        let farthest = (center.abs().max_element() + size + origins).min(MAX_EXTENT);
         Self {
             center,
             size,
@@ -125,7 +125,7 @@ impl Space {
             low - self.center - self.padding,
             high - self.center + self.padding,
         );
-        if is_sound(&[low, high], 2.0 * LARGEST) {
+        if is_sound(&[low, high], 2.0 * MAX_EXTENT) {
             Aabb::new(vector(low), vector(high))
         } else {
             let everywhere = DVec3::splat(self.size + self.padding);
@@ -173,7 +173,7 @@ fn is_sound(corners: &[DVec3; 2], largest: f64) -> bool {
 /// The hierarchy over some boxes.
 fn built(numbers: Vec<u32>, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
-    let preset = if boxes.len() <= FEW {
+    let preset = if boxes.len() <= MAX_REINSERTED {
         BvhBuildParams::very_slow_build()
     } else {
         BvhBuildParams::fast_build()

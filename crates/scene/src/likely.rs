@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 
 /// Metres that are many among others of a metre.
-const FAR: f64 = 100.0;
+const MANY_METRES: f64 = 100.0;
 /// What a length of a metre is less than.
 const NEAR: f64 = 10.0;
 
@@ -40,7 +40,7 @@ fn long(scene: &Scene) -> Option<String> {
     lengths.sort_by(|(_, a), (_, b)| a.total_cmp(b));
     let (_, median) = lengths.get(lengths.len() / 2)?;
     let (path, longest) = lengths.last()?;
-    (*longest >= FAR && *median < NEAR).then(|| {
+    (*longest >= MANY_METRES && *median < NEAR).then(|| {
         format!(
             "{path} is {} m, among lengths of about {} m: are those millimetres?",
             tidy(*longest),

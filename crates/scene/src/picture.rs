@@ -11,7 +11,7 @@ use std::path::Path;
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
 /// Most numbers in a file: 8192 × 4096 pixels of red, green, blue and alpha.
-const MOST: usize = 1 << 27;
+const MAX_NUMBERS: usize = 1 << 27;
 
 /// Most numbers in a byte of a file: DEFLATE makes at most 1032 bytes of one (RFC 1951; zlib's technical
 /// notes), which are as many numbers of a PNG file and half as many of an OpenEXR file. So memory is
@@ -100,7 +100,7 @@ fn fault(place: impl Into<String>, value: impl ToString, allowed: impl Into<Stri
 
 /// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.
 fn limited(numbers: Option<usize>, length: usize) -> Result<(), Fault> {
-    let most = MOST.min(length.saturating_mul(MOST_PER_BYTE));
+    let most = MAX_NUMBERS.min(length.saturating_mul(MOST_PER_BYTE));
     match numbers {
         Some(numbers) if numbers <= most => Ok(()),
         _ => {
@@ -195,7 +195,8 @@ fn png(bytes: &[u8]) -> Result<Channels, Fault> {
     // Palettes and levels of less than 8 bits become bytes.
     decoder.set_transformations(png::Transformations::EXPAND);
     let info = decoder.read_header_info().map_err(unsound)?;
-    let [width, height] = [info.width, info.height].map(|n| usize::try_from(n).unwrap_or(MOST));
+    let [width, height] =
+        [info.width, info.height].map(|n| usize::try_from(n).unwrap_or(MAX_NUMBERS));
     let pixels = width.checked_mul(height);
     limited(pixels, bytes.len())?;
     limited(pixels.and_then(|n| n.checked_mul(4)), usize::MAX)?;

@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// Difference of a spectrum between photons and backward rays from which a mesh is warned of.
 const LEVEL: f64 = 0.01;
 /// Triangles looked at; of finer meshes every second, every third, ….
-const MOST: usize = 20_000;
+const MAX_TRIANGLES: usize = 20_000;
 /// Pieces of a window across which triangles are cut.
 const PIECES: f64 = 8.0;
 /// Azimuths of waves, and waves along each: multiples of the spacing of a plane's frequencies, up
@@ -178,7 +178,7 @@ impl<'a> Look<'a> {
     /// The root of the energy of the difference over that of the window.
     fn mismatch(&self) -> f64 {
         let mut waves = waves(self.plane);
-        let stride = self.mesh.triangles.len().div_ceil(MOST);
+        let stride = self.mesh.triangles.len().div_ceil(MAX_TRIANGLES);
         let triangles = self.mesh.triangles.iter().zip(self.smooth.normals.iter());
         for (corners, normals) in triangles.step_by(stride) {
             let local = corners.map(|p| self.frame.to_local(p));

@@ -52,12 +52,15 @@ fn collect(field: String, a: &Value, b: &Value, found: &mut Vec<FieldChange>) {
 
 /// A value on part of a line.
 fn brief(value: &Value) -> String {
-    const MOST: usize = 60;
+    const MAX_CHARACTERS: usize = 60;
     let text = value.to_string();
-    if text.chars().count() <= MOST {
+    if text.chars().count() <= MAX_CHARACTERS {
         return text;
     }
-    text.chars().take(MOST).chain("…".chars()).collect()
+    text.chars()
+        .take(MAX_CHARACTERS)
+        .chain("…".chars())
+        .collect()
 }
 
 #[cfg(test)]

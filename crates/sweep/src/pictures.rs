@@ -10,7 +10,7 @@ use etendue_store::Failure;
 pub(crate) const NAMES: [&str; 3] = ["bandwidth_rho", "bandwidth_nu", "slope"];
 
 /// Panels of a picture, beyond which nobody looks at them.
-const MOST: usize = 24;
+const MAX_PANELS: usize = 24;
 
 /// The pictures of [`NAMES`], unless they would have too many panels. Of a grid of several fields
 /// there is a panel for each value of all but the first.
@@ -25,7 +25,7 @@ pub(crate) fn drawn(scene: &str, found: &[Found], together: bool) -> Result<Vec<
             panels.push(panel);
         }
     }
-    if panels.len() > MOST {
+    if panels.len() > MAX_PANELS {
         return Ok(Vec::new());
     }
     let quantities = [

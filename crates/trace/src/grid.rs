@@ -36,8 +36,8 @@ fn reach(shape: &Shape, axis: usize) -> [f64; 2] {
 impl Grid {
     /// `None` where a grid is of no help: for few shapes, and where many lie on top of each other.
     pub(crate) fn new(distance: f64, shapes: &[Shape]) -> Option<Self> {
-        const FEW: usize = 8;
-        if shapes.len() < FEW {
+        const MIN_SHAPES: usize = 8;
+        if shapes.len() < MIN_SHAPES {
             return None;
         }
         let bounds = [0, 1].map(|axis| {

@@ -39,7 +39,7 @@ const SIDE: u32 = 9;
 /// Between these, slopes may be larger by less than this.
 const MARGIN: f64 = 1.1;
 /// Light that comes at larger angles to the central ray, in radians, is not aimed by its slopes.
-const WIDE: f64 = 0.8;
+const MAX_AIMED_ANGLE: f64 = 0.8;
 
 /// The points of a line on a patch.
 fn points(patch: &Patch, start: DVec3, along: DVec3) -> impl Iterator<Item = DVec3> {
@@ -264,7 +264,7 @@ impl SurfaceCoordinates {
             }
         }
         let widest = widest.map(|angle| MARGIN * angle + 2.0 * turns);
-        (widest[0].max(widest[1]) < WIDE).then(|| widest.map(libm::tan))
+        (widest[0].max(widest[1]) < MAX_AIMED_ANGLE).then(|| widest.map(libm::tan))
     }
 
     /// Whether it looks at light that arrives.

@@ -31,11 +31,11 @@ pub(crate) fn reach(
     for from in origins {
         for to in &points {
             let ahead = to.z - from.z;
-            if leg > 0 && ahead < LEAST * this.length {
+            if leg > 0 && ahead < MIN_COSINE * this.length {
                 return None;
             }
             // What lies behind the light cannot be reached from there.
-            let share = (this.length - from.z) / ahead.max(LEAST * this.length);
+            let share = (this.length - from.z) / ahead.max(MIN_COSINE * this.length);
             let at = from.lerp(*to, share);
             half = [half[0].max(at.x.abs()), half[1].max(at.y.abs())];
         }
@@ -195,7 +195,7 @@ fn seen_of_patch(
         }
     }
     // What leaves along the surface or behind it has come from no part of it that has an end.
-    if rays.iter().any(|[_, along]| along.z < LEAST) {
+    if rays.iter().any(|[_, along]| along.z < MIN_COSINE) {
         return None;
     }
     let corners = patch.corners().map(|p| at.to_local(p));
@@ -247,10 +247,10 @@ fn tube(plane: &VirtualPlane, along: f64, leg: &Leg) -> Vec<[DVec3; 2]> {
 fn meets(from: DVec3, to: DVec3, surface: &Frame, side: f64) -> Option<DVec3> {
     let [a, b] = [from, to].map(|p| surface.to_local(p));
     let leaves = (b - a).z;
-    (side * leaves > LEAST).then(|| a - (a.z / leaves) * (b - a))
+    (side * leaves > MIN_COSINE).then(|| a - (a.z / leaves) * (b - a))
 }
 
 /// Cosine, and share of a leg, below which light runs along a surface.
-const LEAST: f64 = 1e-3;
+const MIN_COSINE: f64 = 1e-3;
 /// What is aimed at is wider than what is looked at by more than rounding.
 const MARGIN: f64 = 1e-9;

@@ -370,12 +370,12 @@ pub(crate) struct CameraArgs {
 }
 
 /// Most pixels along a side.
-const MOST: usize = 1 << 14;
+const MAX_PIXELS: usize = 1 << 14;
 
 fn size(text: &str) -> Result<[usize; 2], String> {
-    let number = |text: &str| text.parse().ok().filter(|n| (1..=MOST).contains(n));
+    let number = |text: &str| text.parse().ok().filter(|n| (1..=MAX_PIXELS).contains(n));
     let parsed = text
         .split_once('x')
         .and_then(|(w, h)| Some([number(w)?, number(h)?]));
-    parsed.ok_or_else(|| format!("allowed: two whole numbers from 1 to {MOST}, as in 64x48"))
+    parsed.ok_or_else(|| format!("allowed: two whole numbers from 1 to {MAX_PIXELS}, as in 64x48"))
 }

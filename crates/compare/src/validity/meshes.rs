@@ -13,8 +13,8 @@ use ndarray::Array3;
 /// Rays that are drawn for those with light in the window.
 const TRIES: u32 = 300_000;
 /// Fewest and most rays with light in the window that are followed.
-const FEWEST: usize = 300;
-const MOST: usize = 3000;
+const MIN_RAYS: usize = 300;
+const MAX_RAYS: usize = 3000;
 /// Triangles looked at for these, where more than the fewest are followed.
 const LOOKED_AT: usize = 30_000_000;
 /// Edges of a triangle within which it is around the point that a ray leaves.
@@ -44,7 +44,7 @@ impl Follower<'_> {
         if triangles == 0 {
             return None;
         }
-        let most = (LOOKED_AT / triangles).clamp(FEWEST, MOST);
+        let most = (LOOKED_AT / triangles).clamp(MIN_RAYS, MAX_RAYS);
         let draws = || (0..TRIES).map(Draw::new);
         match self.system.light {
             // Evenly in the window, and the volume of rays stays what it is on their way.

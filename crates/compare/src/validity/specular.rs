@@ -86,7 +86,7 @@ impl Followed for Drawn<'_> {
 pub(super) type Arrival = Option<(TwoPlane, f64)>;
 
 /// Distances closer than this share are one.
-const SAME: f64 = 1e-6;
+const SAME_DISTANCE: f64 = 1e-6;
 
 impl<'a> Follower<'a> {
     fn new(
@@ -281,7 +281,7 @@ impl Follower<'_> {
         match met {
             None => (None, None),
             Some((t, object)) if Some(object) == expected => {
-                let same = theory.is_some_and(|theory| (t - theory).abs() < SAME * t);
+                let same = theory.is_some_and(|theory| (t - theory).abs() < SAME_DISTANCE * t);
                 (Some(t), (!same).then_some(Meets::Itself(object)))
             }
             Some((_, object)) if Some(object) == leaves => (None, Some(Meets::Itself(object))),
@@ -317,7 +317,7 @@ impl Follower<'_> {
         let Some(counted) = self.counted(patch, ray) else {
             return (None, unforeseen);
         };
-        let scale = SAME * counted.length();
+        let scale = SAME_DISTANCE * counted.length();
         if !self.at.arriving && ray.point.distance(counted) > scale {
             unforeseen = unforeseen.or(leaves.map(Meets::Itself));
         }

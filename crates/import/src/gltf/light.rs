@@ -1,7 +1,7 @@
 //! Lights of `KHR_lights_punctual`.
 
 use super::node::Placed;
-use super::reader::{MOST, Reader};
+use super::reader::{MAX_SHAPES, Reader};
 use crate::range::MAX_NUMBER;
 use ::gltf::json::extensions::scene::khr_lights_punctual::{Light as Punctual, Spot, Type};
 use ::gltf::json::validation::Checked;
@@ -16,8 +16,8 @@ impl<'a> Reader<'a> {
         let Some(light) = lights.and_then(|of| of.lights.get(number)) else {
             return self.cause(&placed.path, "a light that is not there");
         };
-        if self.world.lights.len() >= MOST {
-            return self.cause(&placed.path, format!("more than {MOST} lights"));
+        if self.world.lights.len() >= MAX_SHAPES {
+            return self.cause(&placed.path, format!("more than {MAX_SHAPES} lights"));
         }
         if light.range.is_some() {
             let message = "left out: light goes on without end";

@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use std::collections::BTreeMap;
 
 /// Most corners; their numbers are of 32 bits.
-const MOST: usize = u32::MAX as usize;
+const MAX_CORNERS: usize = u32::MAX as usize;
 
 fn attribute(primitive: &Primitive, of: Semantic) -> Option<Index<Accessor>> {
     primitive.attributes.get(&Checked::Valid(of)).copied()
@@ -65,7 +65,7 @@ impl Reader<'_> {
 
     /// Corners of a primitive without indices: all vertices in their order.
     fn all(&self, count: usize, path: &str) -> Option<Vec<u32>> {
-        let count = u32::try_from(count.min(MOST)).ok()?;
+        let count = u32::try_from(count.min(MAX_CORNERS)).ok()?;
         let spent = self.files.spend(u64::from(count) * 4);
         spent.map_err(|error| self.cause(path, error)).ok()?;
         Some((0..count).collect())

@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 /// Most shapes, and most lights.
-pub(super) const MOST: usize = 1 << 20;
+pub(super) const MAX_SHAPES: usize = 1 << 20;
 
 /// Makes a world of a file.
 pub(super) struct Reader<'a> {

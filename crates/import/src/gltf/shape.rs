@@ -2,7 +2,7 @@
 
 use super::mesh::back_of;
 use super::node::Placed;
-use super::reader::{MOST, Reader};
+use super::reader::{MAX_SHAPES, Reader};
 use super::surface::Surface;
 use crate::range::MAX_NUMBER;
 use ::gltf::json::mesh::{Mode, Primitive};
@@ -49,10 +49,10 @@ impl<'a> Reader<'a> {
         name: &str,
     ) {
         let path = format!("meshes[{}].primitives[{}]", key[0], key[1]);
-        if self.world.shapes.len() >= MOST {
+        if self.world.shapes.len() >= MAX_SHAPES {
             // The first one says it.
             if !self.report.has_causes() {
-                self.cause(&placed.path, format!("more than {MOST} shapes"));
+                self.cause(&placed.path, format!("more than {MAX_SHAPES} shapes"));
             }
             return;
         }

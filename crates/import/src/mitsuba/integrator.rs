@@ -5,7 +5,7 @@ use super::reader::Reader;
 use crate::report::quoted;
 
 /// Integrators within one another, such as moment and aov.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
 impl<'a> Reader<'a> {
     /// What the integrator says of the depth; all the rest is how Mitsuba computes.
@@ -13,7 +13,7 @@ impl<'a> Reader<'a> {
         let Some(mut object) = self.child(scene, Kind::Integrator) else {
             return;
         };
-        for _ in 0..DEEPEST {
+        for _ in 0..MAX_DEPTH {
             object.is_used.set(true);
             match object.plugin.as_str() {
                 "moment" | "aov" => match self.child(object, Kind::Integrator) {

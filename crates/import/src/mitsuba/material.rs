@@ -10,10 +10,10 @@ use crate::spectrum::Role;
 use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness, Texture};
 
 /// Materials within one another.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
 /// Materials of a world, with those within one another.
-const MOST: usize = 1 << 20;
+const MAX_MATERIALS: usize = 1 << 20;
 
 /// Plugins that are materials of a world.
 const ALLOWED: &str = "diffuse, conductor, roughconductor, dielectric, thindielectric, roughdielectric, plastic, roughplastic, phong, twosided, mask, blendbsdf, null";
@@ -50,16 +50,17 @@ impl<'a> Reader<'a> {
     pub(super) fn make_material(&mut self, object: &'a Object, depth: usize) -> Option<Material> {
         object.is_used.set(true);
         self.made_materials += 1;
-        if self.made_materials > MOST {
+        if self.made_materials > MAX_MATERIALS {
             // References may repeat what is within one another.
-            if self.made_materials == MOST + 1 {
-                let message = format!("more than {MOST} bsdfs, with all that are repeated");
+            if self.made_materials == MAX_MATERIALS + 1 {
+                let message =
+                    format!("more than {MAX_MATERIALS} bsdfs, with all that are repeated");
                 self.report.cause(&object.place, message);
             }
             return None;
         }
-        if depth > DEEPEST {
-            let message = format!("more than {DEEPEST} bsdfs in one another, or one in itself");
+        if depth > MAX_DEPTH {
+            let message = format!("more than {MAX_DEPTH} bsdfs in one another, or one in itself");
             self.report.cause(&object.place, message);
             return None;
         }

@@ -13,7 +13,7 @@ const ALLOWED: &str = "perspective, thinlens, orthographic";
 const SIZE: [usize; 2] = [768, 576];
 
 /// Most pixels across or down.
-const MOST: i64 = 1 << 16;
+const MAX_PIXELS: i64 = 1 << 16;
 
 /// Diagonal of a frame of 35 mm film, mm, to which focal lengths refer.
 const DIAGONAL: f64 = 43.266_615_305_567_87;
@@ -235,10 +235,10 @@ impl<'a> Reader<'a> {
             return Some(SIZE[usize::from(name == "height")]);
         }
         let value = self.whole(film, name)?;
-        if (1..=MOST).contains(&value) {
+        if (1..=MAX_PIXELS).contains(&value) {
             return usize::try_from(value).ok();
         }
-        let message = format!("{name} is {value}; allowed: 1 to {MOST}");
+        let message = format!("{name} is {value}; allowed: 1 to {MAX_PIXELS}");
         self.report.cause(self.place_of(film, name), message);
         None
     }

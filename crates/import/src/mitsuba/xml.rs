@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 /// Elements within one another.
-const DEEPEST: usize = 64;
+const MAX_DEPTH: usize = 64;
 /// Attributes of an element.
 const MAX_ATTRIBUTES: usize = 64;
 /// Elements of all files together.
@@ -125,10 +125,10 @@ impl<'a> Tree<'a> {
     fn element(&mut self, node: Node<'_, '_>, parent: usize, source: &mut Source, depth: usize) {
         let place = source.cursor.place(node.range().start, &source.name);
         self.elements += 1;
-        if self.elements > MOST_ELEMENTS || depth > DEEPEST {
+        if self.elements > MOST_ELEMENTS || depth > MAX_DEPTH {
             // Said once, not for each that follows.
             if self.elements <= MOST_ELEMENTS || self.elements == MOST_ELEMENTS + 1 {
-                let most = format!("at most {MOST_ELEMENTS} elements, {DEEPEST} in one another");
+                let most = format!("at most {MOST_ELEMENTS} elements, {MAX_DEPTH} in one another");
                 self.report
                     .cause(&place, format!("too many elements: {most}"));
             }

@@ -5,7 +5,7 @@ use super::scene::{Instance, Object};
 use crate::report::{Place, quoted};
 
 /// Blocks within one another.
-const DEEPEST: usize = 1 << 12;
+const MAX_DEPTH: usize = 1 << 12;
 
 impl Builder<'_> {
     /// A cause for each block above a level that has no end.
@@ -25,8 +25,8 @@ impl Builder<'_> {
 
     pub(super) fn push(&mut self, kind: char, place: &Place) -> Result<(), String> {
         self.within_world("a block")?;
-        if self.stack.len() >= DEEPEST {
-            return Err(format!("more than {DEEPEST} blocks in one another"));
+        if self.stack.len() >= MAX_DEPTH {
+            return Err(format!("more than {MAX_DEPTH} blocks in one another"));
         }
         self.stack.push((self.state.clone(), kind, place.clone()));
         Ok(())

@@ -15,7 +15,7 @@ const ALLOWED: &str = "perspective, orthographic";
 const SIZE: [usize; 2] = [1280, 720];
 
 /// Most pixels across or down.
-const MOST: i64 = 1 << 16;
+const MAX_PIXELS: i64 = 1 << 16;
 
 /// What pbrt's depth is, if nothing is said.
 const DEPTH: i64 = 5;
@@ -173,12 +173,12 @@ impl Reader<'_> {
             let value = film.integer_or(report, name, default)?;
             let fits = usize::try_from(value)
                 .ok()
-                .filter(|_| (1..=MOST).contains(&value));
+                .filter(|_| (1..=MAX_PIXELS).contains(&value));
             fits.ok_or_else(|| {
                 film.fault(
                     report,
                     name,
-                    format!("{name} is {value}; allowed: 1 to {MOST}"),
+                    format!("{name} is {value}; allowed: 1 to {MAX_PIXELS}"),
                 )
             })
         };

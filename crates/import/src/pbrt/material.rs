@@ -10,10 +10,10 @@ use crate::spectrum::Role;
 use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness, Texture};
 
 /// Materials within one another.
-const DEEPEST: usize = 8;
+const MAX_DEPTH: usize = 8;
 
 /// Materials of a world, with those within one another.
-const MOST: usize = 1 << 20;
+const MAX_MATERIALS: usize = 1 << 20;
 
 /// Below it pbrt takes a surface for smooth.
 const SMOOTH: f64 = 1e-3;
@@ -75,7 +75,7 @@ impl Reader<'_> {
     fn make_material(&mut self, entity: &Entity, uv: Uv) -> Read<Option<Material>> {
         entity.is_used.set(true);
         self.made_materials += 1;
-        if self.made_materials > MOST || self.depth > DEEPEST {
+        if self.made_materials > MAX_MATERIALS || self.depth > MAX_DEPTH {
             let message = "it is in itself, or too many materials are in one another";
             self.cause_once(&entity.place, message.to_owned());
             return Err(Given);

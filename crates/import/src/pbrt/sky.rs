@@ -11,7 +11,7 @@ use std::f64::consts::{FRAC_2_PI, PI, TAU};
 use std::sync::Arc;
 
 /// Most pixels along a side: the map that is made of them has eight times as many pixels.
-const MOST: usize = 2048;
+const MAX_PIXELS: usize = 2048;
 
 /// Places in each pixel of the map, along both sides, of a map of one pixel: the larger it is the fewer, so that none takes long.
 const WITHIN: usize = 4096;
@@ -33,9 +33,11 @@ impl Reader<'_> {
         let curve = if is_png { Curve::Srgb } else { Curve::Linear };
         let square = self.picture(entity, curve)?;
         let side = square.width();
-        if side != square.height() || side > MOST {
+        if side != square.height() || side > MAX_PIXELS {
             let (w, h) = (side, square.height());
-            let message = format!("{w} × {h} pixels; allowed: squares of at most {MOST} × {MOST}");
+            let message = format!(
+                "{w} × {h} pixels; allowed: squares of at most {MAX_PIXELS} × {MAX_PIXELS}"
+            );
             return Err(entity.fault(self.report, "filename", message));
         }
         let factor = self.wanted(entity, "illuminance", illuminance(&square))?;

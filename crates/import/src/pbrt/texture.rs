@@ -13,7 +13,7 @@ use glam::{DAffine2, DMat2, DVec2};
 use std::sync::Arc;
 
 /// Textures within one another.
-const DEEPEST: usize = 16;
+const MAX_DEPTH: usize = 16;
 
 /// Plugins that textures may be.
 const ALLOWED: &str = "constant, imagemap, checkerboard, scale, mix";
@@ -114,7 +114,7 @@ impl Reader<'_> {
             let kind = if is_spectrum { "spectrum" } else { "float" };
             return Err(fault(&format!("is not known among those of type {kind}")));
         };
-        if self.depth >= DEEPEST {
+        if self.depth >= MAX_DEPTH {
             return Err(fault("is in itself, or too many are in one another"));
         }
         entity.is_used.set(true);

@@ -3,16 +3,16 @@
 /// Most numbers in a byte of a file; a block of 64 numbers takes more than half a bit in any JPEG file that shows something.
 const MOST_PER_BYTE: usize = 1032;
 /// Most numbers in a picture, as in those of the scene crate.
-const MOST: usize = 1 << 27;
+const MAX_NUMBERS: usize = 1 << 27;
 
 /// Refuses a picture that is too large, or larger than its file of `length` bytes can hold.
 pub(super) fn check_size(width: usize, height: usize, length: usize) -> Result<(), String> {
-    let most = MOST.min(length.saturating_mul(MOST_PER_BYTE));
+    let most = MAX_NUMBERS.min(length.saturating_mul(MOST_PER_BYTE));
     let numbers = width.checked_mul(height).and_then(|n| n.checked_mul(3));
     match numbers {
         Some(1..) if numbers <= Some(most) => Ok(()),
         _ => Err(format!(
-            "has {width} × {height} pixels; allowed: as many as {length} bytes can hold, and at most {MOST} numbers"
+            "has {width} × {height} pixels; allowed: as many as {length} bytes can hold, and at most {MAX_NUMBERS} numbers"
         )),
     }
 }

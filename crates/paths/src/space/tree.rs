@@ -69,7 +69,7 @@ const ROUNDING: f64 = 1e-13;
 
 /// The largest coordinate of a box, which f32 still holds four times over. The farthest corner of a
 /// patch is at 1e28.
-const LARGEST: f64 = 1e36;
+const MAX_EXTENT: f64 = 1e36;
 
 /// More boxes than these are built in parts of as many, each by one thread. What the builder needs,
 /// some 150 bytes for each box, is then held for a part at a time.
@@ -77,7 +77,7 @@ const PART: usize = 1 << 15;
 
 /// Up to so many boxes the builder takes its time: a tenth of a second makes rays up to twice as
 /// fast. With more it takes seconds, for a few percent.
-const FEW: usize = 1 << 13;
+const MAX_REINSERTED: usize = 1 << 13;
 
 /// What opening a node takes, in triangles of a leaf that are tried: these come several at a time.
 const OPENING: f32 = 3.0;
@@ -188,12 +188,12 @@ impl<M: FnMut(usize) -> f32> Visit for Boxes<'_, M> {
 
 impl Space {
     fn around(boxes: impl Iterator<Item = [DVec3; 2]>, origins: f64) -> Self {
-        let sound = boxes.filter(|of| is_sound(of, LARGEST));
+        let sound = boxes.filter(|of| is_sound(of, MAX_EXTENT));
         let all = sound.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
         let [low, high] = all.unwrap_or_default();
         let center = 0.5 * low + 0.5 * high;
         let size = (high - center).max(center - low).max_element();
-        let farthest = (center.abs().max_element() + size + origins).min(LARGEST);
+        let farthest = (center.abs().max_element() + size + origins).min(MAX_EXTENT);
         Self {
             center,
             size,
@@ -209,7 +209,7 @@ impl Space {
             low - self.center - self.padding,
             high - self.center + self.padding,
         );
-        if is_sound(&[low, high], 2.0 * LARGEST) {
+        if is_sound(&[low, high], 2.0 * MAX_EXTENT) {
             Aabb::new(vector(low), vector(high))
         } else {
             let everywhere = DVec3::splat(self.size + self.padding);
@@ -278,7 +278,7 @@ fn bvh(count: usize, space: &Space, bounds: impl Fn(usize) -> [DVec3; 2] + Sync)
 /// The tree over some of them.
 fn built(numbers: Vec<u32>, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
-    let preset = if boxes.len() <= FEW {
+    let preset = if boxes.len() <= MAX_REINSERTED {
         BvhBuildParams::very_slow_build()
     } else {
         BvhBuildParams::fast_build()
@@ -286,7 +286,7 @@ fn built(numbers: Vec<u32>, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
     // Without pre-splits: they are for triangles.
     let parameters = BvhBuildParams {
         pre_split: false,
-        max_prims_per_leaf: number(leaf::MOST),
+        max_prims_per_leaf: number(leaf::MAX_LEAF),
         collapse_traversal_cost: OPENING,
         ..preset
     };

@@ -1,7 +1,7 @@
 //! One plane of two results: which tests are made, and what they come to.
 
 use super::stored::{StoredPlane, StoredResult, StoredSlices};
-use etendue_compare::{Class, EACH, Estimate, Sample, TwoSamples, Verdict, pull};
+use etendue_compare::{Class, Estimate, MIN_PHOTONS_PER_BATCH, Sample, TwoSamples, Verdict, pull};
 use etendue_field::{Complex, SliceGrid, percent, tidy};
 use etendue_store::Failure;
 use etendue_store::fields::{FieldChange, differences};
@@ -267,7 +267,7 @@ impl Pair<'_> {
             }
             let each = plane.in_window as f64 / result.index.batches as f64;
             // The other's light says enough of a plane that is dark here.
-            if plane.in_window > 0 && each < EACH {
+            if plane.in_window > 0 && each < MIN_PHOTONS_PER_BATCH {
                 return Some(format!(
                     "{folder} has {} photons in its window, too few for a test",
                     plane.in_window

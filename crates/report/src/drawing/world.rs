@@ -7,7 +7,7 @@ use etendue_scene::{Leg, Scene};
 use glam::DVec3;
 
 /// What has no end goes as far as this, metres: beyond any picture.
-const FAR: f64 = 1e4;
+const ENDLESS_METRES: f64 = 1e4;
 /// A path that turns by less is straight.
 const STRAIGHT: f64 = 1e-9;
 
@@ -17,7 +17,7 @@ pub(super) fn world(scene: &Scene, planes: &[&VirtualPlane]) -> Option<World> {
     let turns = |leg: &Leg| leg.frame.d.dot(legs[0].frame.d).abs() < 1.0 - STRAIGHT;
     let last = legs.iter().any(turns).then(|| legs.last()).flatten()?;
     let point = |leg: &Leg, [z, x]: [f64; 2]| {
-        let local = DVec3::new(x.clamp(-FAR, FAR), 0.0, z - leg.start);
+        let local = DVec3::new(x.clamp(-ENDLESS_METRES, ENDLESS_METRES), 0.0, z - leg.start);
         let place = leg.frame.to_world(local);
         [place.z, place.x]
     };

@@ -5,7 +5,7 @@ use crate::fault::Fault;
 use glam::{DAffine3, DVec3};
 
 /// The largest coordinate, as everywhere in a scene.
-const LARGEST: f64 = 1e9;
+const MAX_COORDINATE: f64 = 1e9;
 
 /// Triangles with shared vertices, in the file's units and frame.
 ///
@@ -109,10 +109,10 @@ pub(super) fn check_corners(count: usize, place: impl FnOnce() -> String) -> Res
 
 /// Requires a coordinate that a scene may hold.
 pub(super) fn check_coordinate(value: f64, place: impl FnOnce() -> String) -> Result<f64, Fault> {
-    if value.abs() <= LARGEST {
+    if value.abs() <= MAX_COORDINATE {
         Ok(value)
     } else {
-        let allowed = format!("{:?} to {LARGEST:?}", -LARGEST);
+        let allowed = format!("{:?} to {MAX_COORDINATE:?}", -MAX_COORDINATE);
         Err(fault(place(), format!("{value:?}"), allowed))
     }
 }

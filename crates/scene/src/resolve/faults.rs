@@ -74,20 +74,20 @@ impl Faults {
 
     /// Requires a size, a width or a frequency, and tells whether it is one.
     pub(super) fn positive(&mut self, field: impl Into<String>, value: f64) -> bool {
-        self.within(field, value, 1.0 / LARGEST..=LARGEST)
+        self.within(field, value, 1.0 / MAX_NUMBER..=MAX_NUMBER)
     }
 
     /// Requires coordinates.
     pub(super) fn coordinates(&mut self, field: &str, values: &[f64]) {
         for (i, value) in values.iter().enumerate() {
-            self.within(format!("{field}[{i}]"), *value, -LARGEST..=LARGEST);
+            self.within(format!("{field}[{i}]"), *value, -MAX_NUMBER..=MAX_NUMBER);
         }
     }
 }
 
 /// The largest number a scene may hold, and the inverse of the smallest size: their products to the sixth
 /// power, which a power spectrum has, stay far inside what f64 holds.
-const LARGEST: f64 = 1e9;
+const MAX_NUMBER: f64 = 1e9;
 
 /// Whether a field says where a surface or blockers are, and so what the central ray meets.
 fn is_of_place(field: &str) -> bool {

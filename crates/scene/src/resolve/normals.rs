@@ -14,7 +14,7 @@ use glam::DVec3;
 /// It is also the least length of a vertex's sum of normals times areas, over the sum of their
 /// lengths. A shorter sum has a triangle whose cosine is less, since the mean cosine, weighted by
 /// area, is that ratio. So no mesh is refused by this that would pass the other.
-const LEAST: f64 = 0.01;
+const MIN_NORMAL: f64 = 0.01;
 
 impl Resolver<'_> {
     /// The normals of all vertices, the mean of the triangles around each by area; zero where no
@@ -32,7 +32,7 @@ impl Resolver<'_> {
         let share = |(sum, lengths): &(DVec3, f64)| sum.length() / lengths;
         let cancel = (0u32..).zip(&sums);
         let cancel: Vec<u32> = cancel
-            .filter(|(_, sum)| share(sum) < LEAST)
+            .filter(|(_, sum)| share(sum) < MIN_NORMAL)
             .map(|(i, _)| i)
             .collect();
         if let Some(first) = cancel.first() {
@@ -40,7 +40,7 @@ impl Resolver<'_> {
             let left = share(&sums[*first as usize]);
             let value = format!("where normals cancel: {left:.1e} of their sum by area is left");
             let allowed = format!(
-                "vertices of a smooth surface, with at least {LEAST} left{}",
+                "vertices of a smooth surface, with at least {MIN_NORMAL} left{}",
                 others(cancel.len())
             );
             self.faults.add(field, value, allowed);
@@ -48,7 +48,7 @@ impl Resolver<'_> {
         let normals: Vec<DVec3> = sums
             .iter()
             .map(|sum| {
-                if share(sum) >= LEAST {
+                if share(sum) >= MIN_NORMAL {
                     sum.0.normalize()
                 } else {
                     DVec3::ZERO
@@ -66,8 +66,9 @@ impl Resolver<'_> {
             let normal = across(corners).normalize();
             let cosines = indices.map(|i| (i, normals[i as usize].dot(normal)));
             // A vertex without a normal has been named already.
-            let turned_here =
-                |(i, cosine): &(u32, f64)| *cosine < LEAST && normals[*i as usize] != DVec3::ZERO;
+            let turned_here = |(i, cosine): &(u32, f64)| {
+                *cosine < MIN_NORMAL && normals[*i as usize] != DVec3::ZERO
+            };
             let here = cosines.into_iter().filter(turned_here);
             turned.extend(here.map(|(i, cosine)| (i, cosine, *indices)));
         }
@@ -82,7 +83,7 @@ impl Resolver<'_> {
         );
         let allowed = format!(
             "vertices of a smooth surface, at most {:.1}° from each triangle, all wound alike{}",
-            libm::acos(LEAST).to_degrees(),
+            libm::acos(MIN_NORMAL).to_degrees(),
             others(turned.len())
         );
         self.faults.add(field, value, allowed);

@@ -10,7 +10,7 @@ use etendue_field::{Frame, Light, Specular, TwoPlane, interpolated_normal, trian
 use glam::DVec3;
 
 /// Share of a leg within which it does not meet again what it has just left.
-const LEFT: f64 = 1e-9;
+const MIN_LEG_SHARE: f64 = 1e-9;
 
 /// Cosine of an angle to the normal at which a surface is met edge-on.
 const GRAZING: f64 = 1.7e-3;
@@ -269,14 +269,14 @@ impl Things<'_> {
                 let at = surface.frame.to_local(frame.origin + t * frame.d);
                 let [x, y] = surface.size;
                 let inside = 2.0 * at.x.abs() <= x && 2.0 * at.y.abs() <= y;
-                (t > LEFT && inside).then_some((t, n))
+                (t > MIN_LEG_SHARE && inside).then_some((t, n))
             }
             Object::Mesh(i) => self.meshes[i].first_on(frame),
             Object::Patch(i) => {
                 let patch = &self.patches[i].patch;
                 let local = patch.frame.decompose(frame);
                 let hits = patch.hits(local.origin, local.d);
-                let t = hits.into_iter().find(|t| *t > LEFT);
+                let t = hits.into_iter().find(|t| *t > MIN_LEG_SHARE);
                 t.map(|t| (t, patch.normal(frame.origin + t * frame.d)))
             }
         };
@@ -311,7 +311,7 @@ impl Things<'_> {
         let crossing = |z: f64| {
             let t = (z - frame.origin.z) / frame.d.z;
             let at = frame.origin + t * frame.d;
-            (t > LEFT && t.is_finite()).then_some((t, at.x, at.y))
+            (t > MIN_LEG_SHARE && t.is_finite()).then_some((t, at.x, at.y))
         };
         let masks = self.blockers.iter().filter_map(|layer| {
             let (t, x, y) = crossing(layer.distance)?;
@@ -336,7 +336,7 @@ impl MeshObject {
             .enumerate()
             .filter_map(|(i, corners)| {
                 let t = triangle_distance(&corners.map(|p| frame.to_local(p)), &central)?;
-                (t > LEFT).then_some((t, i))
+                (t > MIN_LEG_SHARE).then_some((t, i))
             });
         let (t, i) = hits.min_by(|(a, _), (b, _)| a.total_cmp(b))?;
         Some((t, self.normal(i, frame.origin + t * frame.d)))

@@ -18,9 +18,9 @@ const THIN: f64 = 1e-12;
 const LEAST_HEIGHT: f64 = 1e-18;
 /// Share of a mesh's area that thin triangles may hold and be dropped: what is missing then is
 /// beneath all noise.
-const NOTHING: f64 = 1e-6;
+const MAX_DROPPED_SHARE: f64 = 1e-6;
 /// The largest coordinate, as everywhere in a scene.
-const LARGEST: f64 = 1e9;
+const MAX_COORDINATE: f64 = 1e9;
 
 /// Where a mesh is, and how its faults are told.
 pub(super) struct Placement<'a> {
@@ -86,7 +86,7 @@ impl Resolver<'_> {
         let Some(&(first, height)) = thin.first() else {
             return Some(mesh);
         };
-        if !kept.is_empty() && thin_area <= NOTHING * area {
+        if !kept.is_empty() && thin_area <= MAX_DROPPED_SHARE * area {
             return Mesh::new(mesh.vertices().to_vec(), kept).ok();
         }
         let allowed = format!(
@@ -106,15 +106,15 @@ impl Resolver<'_> {
         corners.sort_unstable();
         corners.dedup();
         let world = |i: u32| at.world(mesh.vertices()[i as usize]);
-        corners.retain(|i| world(*i).abs().max_element() > LARGEST);
+        corners.retain(|i| world(*i).abs().max_element() > MAX_COORDINATE);
         let Some(first) = corners.first() else {
             return Some(());
         };
         let field = at.field(&format!("vertex {}", at.number(*first)));
         let value = format!("at {} in the world", world(*first));
         let allowed = format!(
-            "coordinates of {:?} to {LARGEST:?}{}",
-            -LARGEST,
+            "coordinates of {:?} to {MAX_COORDINATE:?}{}",
+            -MAX_COORDINATE,
             others(corners.len())
         );
         self.faults.add(field, value, allowed);

@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// The least groups a jackknife can do with.
-const LEAST: usize = 3;
+const MIN_GROUPS: usize = 3;
 
 /// How a light field is put on a 4D grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -63,7 +63,7 @@ impl FieldOptions {
     /// at work or kept. The caller's to compare with the memory there is, before measuring.
     #[must_use]
     pub fn bytes(&self, grid: &FieldGrid, threads: usize) -> u64 {
-        let groups = self.groups.max(LEAST);
+        let groups = self.groups.max(MIN_GROUPS);
         let grids = if self.keep || self.spectra {
             groups
         } else {
@@ -124,10 +124,10 @@ pub fn measure_field(
     progress: &(dyn Fn(u64) + Sync),
 ) -> Result<FieldMeasurement, TooFewBatches> {
     let batches: Vec<u32> = batches.filter(|b| source.emitted(*b) > 0).collect();
-    if batches.len() < LEAST {
+    if batches.len() < MIN_GROUPS {
         return Err(TooFewBatches {
             have: batches.len(),
-            need: LEAST,
+            need: MIN_GROUPS,
         });
     }
     let grid = options.grid(plane);
@@ -135,7 +135,7 @@ pub fn measure_field(
         source,
         index,
         plane,
-        groups: options.groups.clamp(LEAST, batches.len()),
+        groups: options.groups.clamp(MIN_GROUPS, batches.len()),
         batches,
         spectra: options.spectra,
         transform: FieldTransform::new(grid, options.assignment),

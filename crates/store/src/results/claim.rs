@@ -7,7 +7,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Names told in a message.
-const TOLD: usize = 10;
+const MAX_NAMES: usize = 10;
 
 impl Results {
     /// The files of the earlier result, as its index lists them.
@@ -66,7 +66,7 @@ impl Results {
         if foreign.is_empty() || self.plan.force {
             return Ok(());
         }
-        let told = foreign.iter().take(TOLD).copied().collect::<Vec<_>>();
+        let told = foreign.iter().take(MAX_NAMES).copied().collect::<Vec<_>>();
         let more = match foreign.len() - told.len() {
             0 => String::new(),
             more => format!(" and {more} more"),

@@ -8,7 +8,7 @@ use std::f64::consts::{PI, TAU};
 const STEP: f64 = 1.0 / 32.0;
 /// Frequencies beyond this are not evaluated: the recurrence takes a step for each third of a cycle
 /// per radian.
-const LARGEST: f64 = 1e5;
+const MAX_FREQUENCY: f64 = 1e5;
 
 /// The kernel K(Ωv, Ωθ) = ∫ e^(2πi(Ωv tan t − Ωθ t)) dt over |t| < π/2, real, of the change from
 /// slopes to angles: L_angle(Ωx, Ωθ) = ∫ L_slope(Ωx, Ωv) K(Ωv, Ωθ) dΩv (Durand et al. 2005, section
@@ -23,7 +23,7 @@ const LARGEST: f64 = 1e5;
 pub fn plane_sphere_kernel(omega_v: f64, omega_theta: f64) -> f64 {
     let sign = if omega_v < 0.0 { -1.0 } else { 1.0 };
     let (a, b) = (sign * TAU * omega_v, sign * TAU * omega_theta);
-    let evaluated = a <= TAU * LARGEST && b.abs() <= TAU * LARGEST;
+    let evaluated = a <= TAU * MAX_FREQUENCY && b.abs() <= TAU * MAX_FREQUENCY;
     if !evaluated {
         f64::NAN
     } else if a < f64::MIN_POSITIVE {

@@ -128,7 +128,7 @@ pub(crate) struct Target {
 }
 
 /// The share of rays that are aimed anywhere.
-const FAR: f64 = 0.04;
+const ANYWHERE_SHARE: f64 = 0.04;
 /// How much wider than the window the rest is.
 const WIDER: f64 = 1.2;
 
@@ -147,17 +147,19 @@ impl Target {
 
     /// The coordinate below which a share lies, the near ones and the far ones apart.
     pub(crate) fn quantile(&self, share: f64) -> f64 {
-        if share >= FAR {
-            return self.near.quantile((share - FAR) / (1.0 - FAR));
+        if share >= ANYWHERE_SHARE {
+            return self
+                .near
+                .quantile((share - ANYWHERE_SHARE) / (1.0 - ANYWHERE_SHARE));
         }
-        let to_side = 2.0 * share / FAR - 1.0;
+        let to_side = 2.0 * share / ANYWHERE_SHARE - 1.0;
         self.half * to_side / (1.0 - to_side.abs())
     }
 
     /// Its value.
     pub(crate) fn value(&self, t: f64) -> f64 {
         let far = 0.5 / (self.half * (1.0 + t.abs() / self.half).powi(2));
-        (1.0 - FAR) * self.near.value(t) + FAR * far
+        (1.0 - ANYWHERE_SHARE) * self.near.value(t) + ANYWHERE_SHARE * far
     }
 }
 

@@ -35,11 +35,11 @@ const DERIVATIVE_NODES: [u32; 2] = [1 << 12, 1 << 15];
 /// it, as a share of its distance from the scene's.
 const DERIVATIVE_ERROR: f64 = 0.03;
 /// Nodes of a net before its error is first looked at.
-const FIRST: u32 = 1 << 11;
+const FIRST_NODES: u32 = 1 << 11;
 
 /// Fewest nodes of a net that a prediction stops with because its error is small: nets that have
 /// not met their heavy rays yet agree too well.
-const LEAST: u32 = 1 << 14;
+const MIN_NODES: u32 = 1 << 14;
 
 /// When to stop adding nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -151,8 +151,12 @@ fn doubled(
     let bins = running[0].projection.nrows();
     let picture = ProjectionGrid::new(window, bins);
     let transform = SliceTransform::new(grid);
-    let least = if budget.error.is_infinite() { 0 } else { LEAST };
-    let (mut each, mut more) = (0, FIRST);
+    let least = if budget.error.is_infinite() {
+        0
+    } else {
+        MIN_NODES
+    };
+    let (mut each, mut more) = (0, FIRST_NODES);
     while more < least && 2.0 * f64::from(more) * REPLICATES as f64 <= budget.nodes {
         more *= 2;
     }
@@ -221,7 +225,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
     let azimuths = grid.azimuths as f64;
     let replicates = REPLICATES as f64;
-    let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST))).max(1.0);
+    let rounds = libm::log2(budget.nodes / (replicates * f64::from(FIRST_NODES))).max(1.0);
     let derivatives = OF_DERIVATIVES as f64 * FIELDS;
     // Each field of a derivative has rays of its own.
     let rays = budget.nodes + derivatives * f64::from(DERIVATIVE_NODES[1]);
@@ -429,7 +433,7 @@ mod tests {
         let replicate = 5;
         let mut net = Net::new(replicate, DIMENSIONS);
         let mut nodes = [Node::DARK; 2];
-        let rays: Vec<Node> = (0..FIRST)
+        let rays: Vec<Node> = (0..FIRST_NODES)
             .map(|_| {
                 Waves.nodes(&net.point(), &mut nodes);
                 nodes[0]
@@ -442,7 +446,7 @@ mod tests {
                 let phase: f64 = omega.iter().zip(node.z).map(|(o, z)| o * z).sum();
                 Complex::from_polar(node.weight, -TAU * phase)
             };
-            let plain = rays.iter().map(term).sum::<Complex>() / f64::from(FIRST);
+            let plain = rays.iter().map(term).sum::<Complex>() / f64::from(FIRST_NODES);
             // The bound of the transform, 2·10⁻⁷ of the mean weight.
             assert!((value - plain).norm() < 4e-7, "{k} {m} {n}");
         }

@@ -12,7 +12,7 @@ const SPARE_NODES: f64 = 6.0;
 /// Most nodes: a disc becomes 72² rectangles.
 const MOST_NODES: f64 = 72.0;
 /// How far out, in largest frequencies, edges in other planes are followed.
-const FARTHEST: f64 = 4.0;
+const MAX_FREQUENCIES: f64 = 4.0;
 /// Share of that which is resolved: the rest is the corners of the grid of frequencies, where there
 /// is little.
 const FAR_SHARE: f64 = 0.7;
@@ -171,7 +171,7 @@ impl EdgeBandwidth {
         let others = self.planes.iter().enumerate().filter(|(j, _)| *j != plane);
         // Infinite for one at the same distance.
         let meets = others.map(|(_, g)| (u + g.abs() * x) / (g - h).abs());
-        let farthest = meets.fold(0.0, f64::max).min(FARTHEST * widest);
+        let farthest = meets.fold(0.0, f64::max).min(MAX_FREQUENCIES * widest);
         own.max(FAR_SHARE * farthest)
     }
 }

@@ -29,7 +29,7 @@ const APART: f64 = 1.05;
 /// Lobes of this reach, in radians, count as cut off.
 const BROAD: f64 = 1.5;
 /// Most frequencies to each side that a narrow lobe is followed to.
-const MOST: usize = 512;
+const MAX_FREQUENCIES: usize = 512;
 
 /// The slice at azimuth 0 of the chain's field after a lobe, under a window.
 ///
@@ -116,7 +116,7 @@ impl Blur {
         let half = window.half_width() + reach;
         let period = 2.0 * APART * half;
         let lattice = FrequencyAxis {
-            half: whole((highest(reach) * period).ceil()).min(MOST),
+            half: whole((highest(reach) * period).ceil()).min(MAX_FREQUENCIES),
             spacing: 1.0 / period,
         };
         let frequencies = lattice.values().into_iter();

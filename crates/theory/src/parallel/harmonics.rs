@@ -32,7 +32,7 @@ struct HarmonicTable {
 }
 
 /// Most numbers kept: 1.6 GB.
-const LARGEST: usize = 100_000_000;
+const MAX_NUMBERS: usize = 100_000_000;
 
 impl Harmonics {
     /// Tables for frequencies (Ωx, Ωy, Ωu, Ωv) of up to `half` multiples of `spacing` along each
@@ -89,7 +89,7 @@ impl Harmonics {
             let cells = (2 * half[axis] + 1) * (2 * half[axis + 2] + 1);
             cells * expansion.sections[axis].polygons.len() * expansion.products.len()
         };
-        if size(0) + size(1) > LARGEST {
+        if size(0) + size(1) > MAX_NUMBERS {
             return None;
         }
         let table = |waves: &[Vec<Wave>; 2], axis: usize| {

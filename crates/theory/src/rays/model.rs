@@ -12,7 +12,7 @@ use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular}
 use glam::{DQuat, DVec3};
 
 /// Metres, and whatever else parameters are in, that rounding leaves of zero.
-const NOTHING: f64 = 1e-9;
+const ROUNDING_OF_ZERO: f64 = 1e-9;
 
 impl Model for Observed<System> {
     fn light(&self) -> &Light {
@@ -46,7 +46,7 @@ impl Model for Observed<System> {
                 return false;
             }
             let value = self.value(*parameter);
-            value.is_some_and(|value| value.abs() > NOTHING)
+            value.is_some_and(|value| value.abs() > ROUNDING_OF_ZERO)
                 && Moved::nearby(self, *parameter).is_some()
         };
         all.retain(is_there);

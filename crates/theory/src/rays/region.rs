@@ -18,7 +18,7 @@ impl<F: Fn([f64; 4]) -> Option<([f64; 4], f64)> + Sync> RayField for F {}
 /// Cells along each side of the box in which rays are looked for.
 const CELLS: usize = 32;
 /// Rays below this share of the strongest carry nothing.
-const NOTHING: f64 = 1e-13;
+const MIN_SHARE: f64 = 1e-13;
 /// Halvings of a cell that find an edge to rounding.
 const HALVINGS: usize = 40;
 /// Boxes tried before the last is taken.
@@ -128,7 +128,7 @@ impl<F: RayField> Finder<'_, F> {
         };
         let at = |k: usize| middle(&region, (k / CELLS, k % CELLS));
         let strengths: Vec<f64> = (0..CELLS * CELLS).map(|k| self.strength(at(k))).collect();
-        let dark = NOTHING * strengths.iter().copied().fold(0.0, f64::max);
+        let dark = MIN_SHARE * strengths.iter().copied().fold(0.0, f64::max);
         let inner = |(i, j): &(usize, usize)| i + 1 < CELLS && j + 1 < CELLS;
         let pairs = cells().filter(inner).flat_map(|(i, j)| {
             let here = i * CELLS + j;
@@ -164,7 +164,7 @@ impl<F: RayField> Finder<'_, F> {
         let most = strengths.iter().copied().fold(0.0, f64::max);
         let mut found: Option<[[usize; 2]; 2]> = None;
         for ((i, j), strength) in cells().zip(strengths) {
-            if strength > NOTHING * most {
+            if strength > MIN_SHARE * most {
                 let [a, b] = found.unwrap_or([[i, i], [j, j]]);
                 found = Some([[a[0].min(i), a[1].max(i)], [b[0].min(j), b[1].max(j)]]);
             }

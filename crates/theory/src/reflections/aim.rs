@@ -33,7 +33,7 @@ pub(super) enum Aim {
 
 /// How much farther than a surface is wide a plane must be to be aimed at: none of the surface lies
 /// beyond it.
-const FAR: f64 = 2.0;
+const MIN_DISTANCE: f64 = 2.0;
 
 impl Aim {
     /// Of the leg that begins at the light (0) or at a scatterer.
@@ -65,7 +65,7 @@ impl Aim {
     fn at_plane(plane: &Plane, surface: &Surface) -> Self {
         let beyond = (plane.frame.origin - surface.hit).dot(plane.frame.d);
         let is_across = plane.orientation == Orientation::Orthogonal;
-        if is_across && beyond > FAR * surface.patch.aperture {
+        if is_across && beyond > MIN_DISTANCE * surface.patch.aperture {
             Self::Plane(plane.frame)
         } else {
             Self::Angles

@@ -151,7 +151,7 @@ impl<'a> Paths<'a> {
         going.radiance *= passes;
         let point = ray.point + end * ray.direction;
         // A ray through two points of a surface is drawn by the first alone.
-        let beside = |target: DVec3| target.distance(point) > SAME * end;
+        let beside = |target: DVec3| target.distance(point) > SAME_DISTANCE * end;
         let is_second = going.target.take().is_some_and(beside);
         (passes > 0.0 && !is_second).then_some(point)
     }
@@ -253,7 +253,7 @@ impl<'a> Paths<'a> {
 }
 
 /// Share of a distance within which two points are one.
-const SAME: f64 = 1e-6;
+const SAME_DISTANCE: f64 = 1e-6;
 /// Standard deviation of angles of incidence, radians, where nothing else narrows them.
 const FRONT: f64 = 0.6;
 

@@ -92,10 +92,10 @@ pub fn beside(
 
 /// How many times as long a ray takes as one of few lobes of light.
 fn cost(system: &System) -> f64 {
-    const FEW: f64 = 16.0;
+    const FEW_LOBES: f64 = 16.0;
     match &system.light {
         Light::Environment { environment } => match &environment.map {
-            EnvironmentMap::Lobes(lobes) => 1.0 + lobes.len() as f64 / FEW,
+            EnvironmentMap::Lobes(lobes) => 1.0 + lobes.len() as f64 / FEW_LOBES,
             EnvironmentMap::LatLong(_) => 1.0,
         },
         _ => 1.0,

@@ -99,13 +99,13 @@ impl Lobe {
     #[must_use]
     pub fn cutoff(&self, fraction: f64) -> f64 {
         const NODES: usize = 16;
-        const MOST: u32 = 4000;
+        const MAX_PANELS: u32 = 4000;
         let step = 0.05 / self.width();
         let energy = |low: f64, high: f64| {
             2.0 * integrate(NODES, [low, high], |omega| self.spectrum(omega).powi(2))
         };
         let mut missing = fraction * self.energy();
-        for panel in 0..MOST {
+        for panel in 0..MAX_PANELS {
             let low = f64::from(panel) * step;
             let next = energy(low, low + step);
             if next < missing {

@@ -20,10 +20,10 @@ use std::path::PathBuf;
 
 const FILES: [&str; 5] = ["map.exr", "map.npz", "map.png", "map.svg", "map.csv"];
 /// Nor is one of a spectrum with more noise than this share.
-const NOISY: f64 = 0.6;
+const MAX_NOISE: f64 = 0.6;
 
 /// A bandwidth with a larger standard error, as a share of it, is not shown: few rays make its jackknife unsafe.
-const UNSURE: f64 = 0.2;
+const MAX_ERROR: f64 = 0.2;
 
 /// What is known of a pixel; NaN where there is nothing, or too much noise.
 #[derive(Clone, Copy, Debug)]
@@ -40,7 +40,7 @@ struct Point {
 }
 
 impl Point {
-    const NOTHING: Self = Self {
+    const UNKNOWN: Self = Self {
         measured: f64::NAN,
         error: f64::NAN,
         criterion: f64::NAN,
@@ -93,7 +93,7 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
     let pixel = [0, 1].map(|i| (2 * at[i] + 1) * case.camera.size[i] / (2 * lattice[i]));
     let question = case.question(pixel, 4);
     let Some(mut probe) = Probe::new(&case.paths, &case.camera, &question) else {
-        return Ok(Point::NOTHING);
+        return Ok(Point::UNKNOWN);
     };
     probe.planes.truncate(1);
     let number = (at[1] * lattice[0] + at[0]) as u64;
@@ -106,8 +106,8 @@ fn point(case: &ProbedScene<'_>, at: [usize; 2], lattice: [usize; 2]) -> Result<
     let power = CrossPower::new(&found, 0).map_err(Failure::cannot_run)?;
     let nu = power.bandwidth(bandwidth_nu).map(|widest| widest.value);
     let noise = estimate::noise(&found, 0).map_err(Failure::cannot_run)?;
-    let is_clear = noise.is_some_and(|noise| noise <= NOISY);
-    let nu = nu.filter(|nu| is_clear && nu.error <= UNSURE * nu.value);
+    let is_clear = noise.is_some_and(|noise| noise <= MAX_NOISE);
+    let nu = nu.filter(|nu| is_clear && nu.error <= MAX_ERROR * nu.value);
     Ok(Point {
         measured: nu.map_or(f64::NAN, |nu| nu.value),
         error: nu.map_or(f64::NAN, |nu| nu.error),

@@ -1,6 +1,6 @@
 //! From a tree with two boxes in a node to one with eight, such that a ray opens as few nodes as can be.
 
-use super::leaf::MOST;
+use super::leaf::MAX_LEAF;
 use super::wide::{Node, WIDTH, Wide};
 use obvhs::bvh2::Bvh2;
 
@@ -17,7 +17,7 @@ struct Collapse<'a> {
 ///
 /// # Panics
 ///
-/// When a leaf has more than [`MOST`].
+/// When a leaf has more than [`MAX_LEAF`].
 pub(super) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     // As many as there can be: memory is taken once it is written to.
     let most = bvh.nodes.len() / 2 + 1;
@@ -38,7 +38,10 @@ pub(super) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
         for (i, child) in collapse.children(root).into_iter().enumerate() {
             let of = &bvh.nodes[child];
             let number = if of.is_leaf() {
-                assert!(of.prim_count as usize <= MOST, "more than was asked for");
+                assert!(
+                    of.prim_count as usize <= MAX_LEAF,
+                    "more than was asked for"
+                );
                 leaves.push([of.first_index, of.prim_count]);
                 Node::leaf(leaves.len() - 1)
             } else {

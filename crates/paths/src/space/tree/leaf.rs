@@ -9,7 +9,7 @@ use fearless_simd::{Simd, f32x4, prelude::*};
 use glam::{DVec3, Vec3A};
 
 /// The most triangles, or boxes, of a leaf.
-pub(super) const MOST: usize = 4;
+pub(super) const MAX_LEAF: usize = 4;
 
 /// A number for each triangle.
 type Lanes<S> = f32x4<S>;
@@ -17,7 +17,7 @@ type Lanes<S> = f32x4<S>;
 #[derive(Clone)]
 pub(super) struct Leaf {
     /// [corner, axis, triangle], in lengths such that the largest coordinate of all triangles is 1.
-    corners: [[[f32; MOST]; 3]; 3],
+    corners: [[[f32; MAX_LEAF]; 3]; 3],
     first: u32,
     count: u32,
 }
@@ -55,7 +55,7 @@ impl Sight {
 
 impl Leaf {
     pub(super) fn new(first: u32, triangles: impl Iterator<Item = [Vec3A; 3]>) -> Self {
-        let mut corners = [[[0.0; MOST]; 3]; 3];
+        let mut corners = [[[0.0; MAX_LEAF]; 3]; 3];
         let mut count = 0;
         for (i, triangle) in triangles.enumerate() {
             for (corner, place) in triangle.iter().enumerate() {

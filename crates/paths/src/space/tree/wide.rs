@@ -15,7 +15,7 @@ pub(super) struct Wide {
 pub(super) const WIDTH: usize = 8;
 
 /// Of a tree of as many levels as any with a million triangles, ways are remembered without asking for memory.
-const ENOUGH: usize = 96;
+const STACK: usize = 96;
 
 #[derive(Clone)]
 #[repr(align(32))]
@@ -40,7 +40,7 @@ pub(super) struct Ray {
 }
 
 /// No component of a direction is nearer to zero: over any way it moves a ray by nothing, and one over it is a number.
-const LEAST: f32 = 1e-20;
+const MIN_COMPONENT: f32 = 1e-20;
 
 /// A child that is still to be looked at, and how far along the ray its box begins.
 #[derive(Clone, Copy, Default)]
@@ -59,8 +59,8 @@ impl Ray {
     #[inline]
     pub(super) fn new(origin: Vec3A, direction: Vec3A, until: f32) -> Self {
         let turned = direction.to_array().map(|d| {
-            if d.abs() < LEAST {
-                LEAST.copysign(d).recip()
+            if d.abs() < MIN_COMPONENT {
+                MIN_COMPONENT.copysign(d).recip()
             } else {
                 d.recip()
             }
@@ -84,8 +84,8 @@ impl Wide {
     /// Visits the leaves whose boxes a ray meets, the nearer ones about first.
     #[inline(always)]
     pub(super) fn along<S: Simd>(&self, simd: S, ray: &Ray, visit: impl Visit) {
-        if self.memory <= ENOUGH {
-            self.remembering(simd, ray, &mut [Waiting::default(); ENOUGH], visit);
+        if self.memory <= STACK {
+            self.remembering(simd, ray, &mut [Waiting::default(); STACK], visit);
         } else {
             let mut memory = vec![Waiting::default(); self.memory];
             self.remembering(simd, ray, &mut memory, visit);

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 /// −ln of the relative error of a rule: 10⁻¹².
 const NATS: f64 = 28.0;
 /// The most nodes a rule has; longer intervals are cut into panels.
-const MOST: usize = 48;
+const MAX_NODES: usize = 48;
 /// Nodes on an arc, beside those its length needs: for the turn of its direction.
 const ARC: usize = 10;
 /// Halvings of the longest panel that have a count of their own.
@@ -17,7 +17,7 @@ const LEVELS: usize = 24;
 const CLOSED: f64 = 100.0;
 /// A rectangle that needs no more nodes than this is integrated by them: in the closed form its
 /// corners cancel.
-const FEW: usize = 16;
+const FEW_NODES: usize = 16;
 
 /// The lobe (1 + u² + v²)^(−p), u and v being slopes.
 #[derive(Clone, Copy, Debug)]
@@ -69,7 +69,7 @@ impl Counts {
     fn new(power: f64, frequency: f64) -> Self {
         let halves = |level: usize| 4.0 * libm::pow(0.5_f64, level as f64);
         let mut lengths = (0..).map(halves);
-        let fits = |length: &f64| nodes(power, frequency, *length) <= MOST;
+        let fits = |length: &f64| nodes(power, frequency, *length) <= MAX_NODES;
         let longest = lengths.find(fits).unwrap_or(f64::MIN_POSITIVE);
         let count = |level: usize| nodes(power, frequency, 0.25 * longest * halves(level));
         Self {
@@ -134,7 +134,7 @@ impl Integrator {
         Self {
             lobe: SlopePower::new(power),
             counts: frequencies.map(|f| Counts::new(power, f)),
-            rules: (0..=MOST + ARC).map(gauss_legendre).collect(),
+            rules: (0..=MAX_NODES + ARC).map(gauss_legendre).collect(),
         }
     }
 }
@@ -160,7 +160,7 @@ impl Density<'_> {
         if self.gratings.is_empty() {
             match self.integrator.lobe {
                 SlopePower::Flat => return (u[1] - u[0]) * (v[1] - v[0]),
-                SlopePower::Cosine if self.size(sides) > FEW => return cosine(sides),
+                SlopePower::Cosine if self.size(sides) > FEW_NODES => return cosine(sides),
                 _ => {}
             }
         }
@@ -198,7 +198,7 @@ impl Density<'_> {
     /// Steps of [`Self::rectangle`].
     pub(crate) fn steps(&self, sides: Bounds) -> f64 {
         let [u, v] = self.along(sides);
-        let few = u * v <= FEW as f64;
+        let few = u * v <= FEW_NODES as f64;
         match self.integrator.lobe {
             SlopePower::Flat if self.gratings.is_empty() => CLOSED,
             SlopePower::Cosine if self.gratings.is_empty() && !few => CLOSED,

@@ -17,7 +17,7 @@ const PER_CYCLE: f64 = 4.0;
 /// Nodes across the narrowest penumbra or period on the receiver.
 const ACROSS: f64 = 8.0;
 /// Fewest nodes across what is resolved.
-const LEAST: f64 = 4.0;
+const MIN_NODES: f64 = 4.0;
 /// How the error falls with the spacing of the nodes: irradiance has kinks where penumbras begin
 /// and end.
 const ORDER: i32 = 2;
@@ -107,11 +107,13 @@ impl Receiver<'_> {
             // Lengths in a mask's plane are this much longer on the receiver, for a point of the
             // light.
             let grown = self.distance / beyond;
-            let is_told = |length: f64| length * grown > LEAST * cell;
+            let is_told = |length: f64| length * grown > MIN_NODES * cell;
             let penumbra = self.width() * barrier.distance / beyond;
             match barrier.mask.grating() {
                 Some(grating) => is_told(1.0 / grating.frequency.abs()),
-                None => penumbra > LEAST * cell || barrier.shapes.narrowest().is_none_or(is_told),
+                None => {
+                    penumbra > MIN_NODES * cell || barrier.shapes.narrowest().is_none_or(is_told)
+                }
             }
         })
     }

@@ -6,7 +6,7 @@ use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// Discs that differ by less than this share of their radius are one.
-const SAME: f64 = 1e-12;
+const SAME_RADIUS: f64 = 1e-12;
 
 /// The intersection of a rectangle and discs, in slopes.
 #[derive(Clone, Debug)]
@@ -239,7 +239,7 @@ fn distances(sides: Bounds, point: [f64; 2]) -> [f64; 2] {
 
 /// Whether one disc holds another, or is the same.
 fn holds(large: &Disc, small: &Disc) -> bool {
-    distance(large, small) + small.radius <= large.radius * (1.0 + SAME)
+    distance(large, small) + small.radius <= large.radius * (1.0 + SAME_RADIUS)
 }
 
 fn apart(a: &Disc, b: &Disc) -> bool {

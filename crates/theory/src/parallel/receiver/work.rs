@@ -12,7 +12,7 @@ use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 const SOME: usize = 4;
 /// Steps at a place that are counted: with more than these, a table of the fewest nodes is beyond
 /// all limits.
-const MOST: f64 = 1e8;
+const MAX_STEPS: f64 = 1e8;
 /// Steps for a shape that is looked at, and for one that stops light.
 const SHAPE: f64 = 100.0;
 /// Steps of a sum over one node at one frequency.
@@ -87,7 +87,7 @@ impl Receiver<'_> {
         steps
     }
 
-    /// Adds the steps of [`Self::passed`], up to [`MOST`].
+    /// Adds the steps of [`Self::passed`], up to [`MAX_STEPS`].
     fn count(
         &self,
         bundle: &SlopeProjection,
@@ -107,13 +107,13 @@ impl Receiver<'_> {
         let place = bundle.positions(open.bounds(), before);
         barrier.shapes.meeting(place, |shape| {
             *steps += SHAPE;
-            if *steps < MOST
+            if *steps < MAX_STEPS
                 && let Some(part) = open.cut(&bundle.seen(shape, before))
             {
                 self.count(bundle, &part, rest, density, steps);
             }
         });
-        if *steps < MOST {
+        if *steps < MAX_STEPS {
             self.count(bundle, &open, rest, density, steps);
         }
     }
