@@ -21,7 +21,6 @@ mod curvature;
 mod examples;
 mod fault;
 mod file;
-mod hierarchy;
 mod likely;
 pub mod limits;
 mod mesh;
@@ -47,7 +46,6 @@ pub use file::{
     MeshSource, PathFile, PatternFile, Place, PlaneFile, RunFile, Sampling, SceneFile, ShapeFile,
     SphericalGaussianFile, SurfaceFile, TermFile, WindowFile,
 };
-pub use hierarchy::Hierarchy;
 pub use mesh::{DetailedMesh, Mesh, ObjFile, ObjPart};
 pub use picture::{Channels, read_channels};
 pub use read::{ReadError, read_below, read_file};

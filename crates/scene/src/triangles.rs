@@ -1,6 +1,6 @@
 //! The triangles of a mesh in a scene.
 
-use crate::hierarchy::Hierarchy;
+use etendue_bvh::BinaryHierarchy;
 use etendue_field::enclosing;
 use glam::DVec3;
 use std::fmt;
@@ -15,7 +15,7 @@ pub struct Triangles(Arc<Shared>);
 struct Shared {
     corners: Vec<[DVec3; 3]>,
     bounds: [DVec3; 2],
-    hierarchy: Hierarchy,
+    hierarchy: BinaryHierarchy,
 }
 
 impl Triangles {
@@ -24,7 +24,7 @@ impl Triangles {
     pub fn new(corners: Vec<[DVec3; 3]>, origins: f64) -> Self {
         let bounds = |i: usize| enclosing(&corners[i]);
         Self(Arc::new(Shared {
-            hierarchy: Hierarchy::new(corners.len(), origins, bounds),
+            hierarchy: BinaryHierarchy::new(corners.len(), origins, bounds),
             bounds: enclosing(corners.as_flattened()),
             corners,
         }))
@@ -36,7 +36,7 @@ impl Triangles {
         self.0.bounds
     }
 
-    /// Names the triangles that a ray may meet: [`Hierarchy::along`].
+    /// Names the triangles that a ray may meet: [`BinaryHierarchy::along`].
     #[inline]
     pub fn along(
         &self,

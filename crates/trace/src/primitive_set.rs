@@ -2,8 +2,8 @@
 
 use crate::line::{direction, start};
 use crate::primitive::Primitive;
+use etendue_bvh::BinaryHierarchy;
 use etendue_field::TwoPlane;
-use etendue_scene::Hierarchy;
 use glam::DVec3;
 
 /// Something that ends a ray, and what it is.
@@ -24,7 +24,7 @@ pub(crate) struct PrimitiveHit<'a, T> {
 /// Primitives, and the hierarchy that finds the first one hit.
 #[derive(Debug)]
 pub(crate) struct PrimitiveSet<T> {
-    hierarchy: Hierarchy,
+    hierarchy: BinaryHierarchy,
     /// In the order of the hierarchy's leaves.
     primitives: Vec<TaggedPrimitive<T>>,
 }
@@ -65,7 +65,7 @@ impl<T: Clone> PrimitiveSet<T> {
             .iter()
             .map(|primitive| primitive.primitive.bounds())
             .collect();
-        let hierarchy = Hierarchy::new(bounds.len(), origins, |i| bounds[i]);
+        let hierarchy = BinaryHierarchy::new(bounds.len(), origins, |i| bounds[i]);
         let order = hierarchy.order().iter();
         let primitives = order.map(|i| primitives[*i as usize].clone()).collect();
         Self {

@@ -12,18 +12,19 @@ use std::path::{Path, PathBuf};
 /// Each crate with those that it may use.
 const MAY_USE: &[(&str, &[&str])] = &[
     ("field", &[]),
+    ("bvh", &[]),
     ("rays", &[]),
     ("theory", &["field"]),
     ("spectrum", &["field"]),
     ("figures", &["field"]),
     ("world", &["field"]),
     ("explorer", &["field", "theory"]),
-    ("scene", &["field", "rays"]),
-    ("trace", &["field", "scene"]),
+    ("scene", &["bvh", "field", "rays"]),
+    ("trace", &["bvh", "field", "scene"]),
     ("export", &["field", "scene"]),
     ("compare", &["field", "scene", "spectrum", "theory"]),
     ("import", &["field", "scene", "world"]),
-    ("paths", &["field", "scene", "trace", "world"]),
+    ("paths", &["bvh", "field", "scene", "trace", "world"]),
     (
         "adaptive",
         &["compare", "field", "paths", "theory", "world"],

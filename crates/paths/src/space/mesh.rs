@@ -1,8 +1,8 @@
 //! Triangles of a world as rays meet them.
 
 use super::local::Local;
-use super::tree::Hierarchy;
 use super::triangle::Sight;
+use etendue_bvh::WideHierarchy;
 use etendue_world::Triangles;
 use glam::{DAffine3, DVec2, DVec3};
 use std::sync::Arc;
@@ -11,7 +11,7 @@ use std::sync::Arc;
 #[derive(Debug)]
 pub(crate) struct Mesh {
     triangles: Arc<Triangles>,
-    hierarchy: Hierarchy,
+    hierarchy: WideHierarchy,
     /// The vertices of triangles, in the order in which the hierarchy names them.
     ordered: Vec<[u32; 3]>,
     bounds: [DVec3; 2],
@@ -30,8 +30,9 @@ impl Mesh {
         let all = all.unwrap_or_default();
         // Rays begin some way from it: padding counts that in.
         let origins = 10.0 * (all[1] - all[0]).length();
-        let hierarchy =
-            Hierarchy::over_triangles(corners.len(), origins, |i| places(&triangles, corners[i]));
+        let hierarchy = WideHierarchy::over_triangles(corners.len(), origins, |i| {
+            places(&triangles, corners[i])
+        });
         let order = hierarchy.order().iter();
         Self {
             ordered: order.map(|i| corners[*i as usize]).collect(),

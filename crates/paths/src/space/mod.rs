@@ -3,16 +3,15 @@
 mod form;
 mod local;
 mod mesh;
-mod tree;
 mod triangle;
 
+use etendue_bvh::WideHierarchy;
 use etendue_world::{Geometry, Shape, Triangles, World};
 use form::Form;
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use local::Local;
 use mesh::Mesh;
 use std::sync::Arc;
-use tree::Hierarchy;
 
 /// A ray; distances along it are in lengths of `along`, which is 1 long.
 #[derive(Clone, Copy, Debug)]
@@ -50,7 +49,7 @@ pub struct Hit {
 #[derive(Debug)]
 pub struct SceneGeometry {
     placed: Vec<Placed>,
-    hierarchy: Hierarchy,
+    hierarchy: WideHierarchy,
     /// No nearer hit counts: it is the surface that the ray begins on.
     nearest: f64,
     /// A sphere around all surfaces.
@@ -93,7 +92,7 @@ impl SceneGeometry {
             .map(|camera| camera.to_world.translation.abs().max_element());
         let farthest = cameras.fold(low.abs().max(high.abs()).max_element(), f64::max);
         Self {
-            hierarchy: Hierarchy::new(placed.len(), farthest, |i| bounds[i]),
+            hierarchy: WideHierarchy::new(placed.len(), farthest, |i| bounds[i]),
             placed,
             nearest: NEAREST * farthest,
             center: 0.5 * (low + high),

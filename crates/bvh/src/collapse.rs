@@ -1,7 +1,7 @@
 //! From a tree with two boxes in a node to one with eight, such that a ray opens as few nodes as can be.
 
-use super::leaf::MAX_LEAF;
-use super::wide::{Node, WIDTH, Wide};
+use crate::leaf::MAX_LEAF;
+use crate::wide::{Node, WIDTH, Wide};
 use obvhs::bvh2::Bvh2;
 
 /// What visiting a leaf takes, in openings of a node.
@@ -18,7 +18,7 @@ struct Collapse<'a> {
 /// # Panics
 ///
 /// When a leaf has more than [`MAX_LEAF`].
-pub(super) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
+pub(crate) fn collapsed(bvh: &Bvh2) -> (Wide, Vec<[u32; 2]>) {
     // As many as there can be: memory is taken once it is written to.
     let most = bvh.nodes.len() / 2 + 1;
     let (mut nodes, mut leaves) = (Vec::with_capacity(most), Vec::with_capacity(most));

@@ -5,6 +5,6 @@
     clippy::cast_possible_truncation,
     reason = "f32 only names candidates; padding covers its rounding"
 )]
-pub(super) fn single(x: f64) -> f32 {
+pub(crate) fn single(x: f64) -> f32 {
     x as f32
 }

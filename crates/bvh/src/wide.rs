@@ -5,21 +5,21 @@ use glam::Vec3A;
 
 /// A tree; its root is the first node.
 #[derive(Clone)]
-pub(super) struct Wide {
+pub(crate) struct Wide {
     nodes: Vec<Node>,
     /// Places that a way through it may need to remember.
     memory: usize,
 }
 
 /// Boxes in a node.
-pub(super) const WIDTH: usize = 8;
+pub(crate) const WIDTH: usize = 8;
 
 /// Of a tree of as many levels as any with a million triangles, ways are remembered without asking for memory.
 const STACK: usize = 96;
 
 #[derive(Clone)]
 #[repr(align(32))]
-pub(super) struct Node {
+pub(crate) struct Node {
     /// Lowest x of all boxes, highest x, lowest y and so on. A place without a box is what no ray meets.
     planes: [[f32; WIDTH]; 6],
     /// Numbers of nodes, and of leaves with [`LEAF`].
@@ -30,7 +30,7 @@ pub(super) struct Node {
 const LEAF: u32 = 1 << 31;
 
 /// A ray as nodes see it.
-pub(super) struct Ray {
+pub(crate) struct Ray {
     origin: [f32; 3],
     /// One over its direction.
     turned: [f32; 3],
@@ -50,14 +50,14 @@ struct Waiting {
 }
 
 /// What is done with the leaves that a ray comes to.
-pub(super) trait Visit {
+pub(crate) trait Visit {
     /// How far boxes still matter.
     fn visit<S: Simd>(&mut self, simd: S, leaf: usize) -> f32;
 }
 
 impl Ray {
     #[inline]
-    pub(super) fn new(origin: Vec3A, direction: Vec3A, until: f32) -> Self {
+    pub(crate) fn new(origin: Vec3A, direction: Vec3A, until: f32) -> Self {
         let turned = direction.to_array().map(|d| {
             if d.abs() < MIN_COMPONENT {
                 MIN_COMPONENT.copysign(d).recip()
@@ -76,14 +76,14 @@ impl Ray {
 
 impl Wide {
     /// Of nodes, of which so many lie below one another.
-    pub(super) fn new(nodes: Vec<Node>, depth: usize) -> Self {
+    pub(crate) fn new(nodes: Vec<Node>, depth: usize) -> Self {
         let memory = WIDTH * depth;
         Self { nodes, memory }
     }
 
     /// Visits the leaves whose boxes a ray meets, the nearer ones about first.
     #[inline(always)]
-    pub(super) fn along<S: Simd>(&self, simd: S, ray: &Ray, visit: impl Visit) {
+    pub(crate) fn along<S: Simd>(&self, simd: S, ray: &Ray, visit: impl Visit) {
         if self.memory <= STACK {
             self.remembering(simd, ray, &mut [Waiting::default(); STACK], visit);
         } else {
@@ -146,7 +146,7 @@ impl Wide {
 }
 
 impl Node {
-    pub(super) const EMPTY: Self = {
+    pub(crate) const EMPTY: Self = {
         let [low, high] = [[f32::INFINITY; WIDTH], [f32::NEG_INFINITY; WIDTH]];
         Self {
             planes: [low, high, low, high, low, high],
@@ -154,17 +154,17 @@ impl Node {
         }
     };
 
-    pub(super) fn inner(place: usize) -> u32 {
+    pub(crate) fn inner(place: usize) -> u32 {
         // Fewer than boxes, of which there are at most 2³².
         u32::try_from(place).unwrap_or(LEAF) & !LEAF
     }
 
-    pub(super) fn leaf(place: usize) -> u32 {
+    pub(crate) fn leaf(place: usize) -> u32 {
         Self::inner(place) | LEAF
     }
 
     /// Puts a child at one of its places, in a box from its lowest to its highest corner.
-    pub(super) fn set(&mut self, place: usize, [low, high]: [[f32; 3]; 2], child: u32) {
+    pub(crate) fn set(&mut self, place: usize, [low, high]: [[f32; 3]; 2], child: u32) {
         for axis in 0..3 {
             self.planes[2 * axis][place] = low[axis];
             self.planes[2 * axis + 1][place] = high[axis];

@@ -3,19 +3,19 @@
 //! Seen along the ray, a triangle is hit if the ray is on the same side of its three edges (Woop, Benthin and Wald 2013, *Watertight ray/triangle
 //! intersection*). Here a triangle is left out only if the ray is on different sides by more than all rounding.
 
-use super::single::single;
-use super::wide::Visit;
+use crate::single::single;
+use crate::wide::Visit;
 use fearless_simd::{Simd, f32x4, prelude::*};
 use glam::{DVec3, Vec3A};
 
 /// The most triangles, or boxes, of a leaf.
-pub(super) const MAX_LEAF: usize = 4;
+pub(crate) const MAX_LEAF: usize = 4;
 
 /// A number for each triangle.
 type Lanes<S> = f32x4<S>;
 
 #[derive(Clone)]
-pub(super) struct Leaf {
+pub(crate) struct Leaf {
     /// [corner, axis, triangle], in lengths such that the largest coordinate of all triangles is 1.
     corners: [[[f32; MAX_LEAF]; 3]; 3],
     first: u32,
@@ -23,7 +23,7 @@ pub(super) struct Leaf {
 }
 
 /// A ray, its direction made (x, y, 1) on axes of its own.
-pub(super) struct Sight {
+pub(crate) struct Sight {
     origin: [f32; 3],
     axes: [usize; 3],
     slopes: [f32; 2],
@@ -33,7 +33,7 @@ pub(super) struct Sight {
 
 impl Sight {
     #[inline]
-    pub(super) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
+    pub(crate) fn new(origin: Vec3A, direction: DVec3, tolerance: f32) -> Self {
         let size = direction.abs();
         // The largest component becomes 1.
         let axes = if size.x > size.y && size.x > size.z {
@@ -54,7 +54,7 @@ impl Sight {
 }
 
 impl Leaf {
-    pub(super) fn new(first: u32, triangles: impl Iterator<Item = [Vec3A; 3]>) -> Self {
+    pub(crate) fn new(first: u32, triangles: impl Iterator<Item = [Vec3A; 3]>) -> Self {
         let mut corners = [[[0.0; MAX_LEAF]; 3]; 3];
         let mut count = 0;
         for (i, triangle) in triangles.enumerate() {
@@ -111,10 +111,10 @@ fn size<S: Simd>(p: [Lanes<S>; 2]) -> Lanes<S> {
 }
 
 /// Leaves of triangles, of which those are named that a ray may meet.
-pub(super) struct Triangles<'a, M> {
-    pub(super) leaves: &'a [Leaf],
-    pub(super) sight: Sight,
-    pub(super) meet: M,
+pub(crate) struct Triangles<'a, M> {
+    pub(crate) leaves: &'a [Leaf],
+    pub(crate) sight: Sight,
+    pub(crate) meet: M,
 }
 
 impl<M: FnMut(usize) -> f32> Visit for Triangles<'_, M> {

@@ -1,0 +1,59 @@
+//! A hierarchy with two boxes in a node, for scenes of few things.
+
+use crate::build::{Kind, bvh};
+use crate::space::{Space, vector};
+use glam::DVec3;
+use obvhs::bvh2::Bvh2;
+use obvhs::ray::{Ray, RayHit};
+use std::fmt;
+
+/// A hierarchy over boxes.
+#[derive(Clone)]
+pub struct BinaryHierarchy {
+    bvh: Bvh2,
+    space: Space,
+}
+
+impl BinaryHierarchy {
+    /// Over boxes, by number, given by their lowest and highest corners. `origins` is the largest
+    /// coordinate a ray starts from.
+    #[must_use]
+    pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
+        let space = Space::around((0..count).map(&bounds), origins);
+        let bvh = bvh(count, &space, Kind::Binary, bounds);
+        Self { bvh, space }
+    }
+
+    /// The boxes, in the order in which [`Self::along`] names them.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        &self.bvh.primitive_indices
+    }
+
+    /// Names the boxes that a ray may meet from `from` on, the nearer ones about first. Distances
+    /// are in lengths of `direction`, which is at least 1 long. `meet` tells how far boxes still
+    /// matter; before anything is met, that is `until`.
+    #[inline]
+    pub fn along(
+        &self,
+        start: DVec3,
+        direction: DVec3,
+        [from, until]: [f64; 2],
+        mut meet: impl FnMut(usize) -> f64,
+    ) {
+        let begin = self.space.begin(start, direction, from);
+        let origin = start + begin * direction - self.space.center;
+        let limit = |at: f64| self.space.limit(at, begin);
+        let ray = Ray::new(vector(origin), vector(direction), 0.0, limit(until));
+        let meet = |_: &Ray, i| limit(meet(i));
+        self.bvh.ray_traverse(ray, &mut RayHit::none(), meet);
+    }
+}
+
+impl fmt::Debug for BinaryHierarchy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("BinaryHierarchy")
+            .field("boxes", &self.order().len())
+            .finish_non_exhaustive()
+    }
+}

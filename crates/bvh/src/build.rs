@@ -1,0 +1,142 @@
+//! Trees built by obvhs, two boxes in a node.
+
+use crate::leaf::MAX_LEAF;
+use crate::space::Space;
+use glam::DVec3;
+use obvhs::BvhBuildParams;
+use obvhs::aabb::Aabb;
+use obvhs::bvh2::Bvh2;
+use obvhs::bvh2::builder::build_bvh2;
+use obvhs::bvh2::node::Bvh2Node;
+use obvhs::bvh2::reinsertion::ReinsertionOptimizer;
+use rayon::prelude::*;
+use std::time::Duration;
+
+/// What becomes of a tree.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Rays go through it as it is.
+    Binary,
+    /// It is collapsed to a tree with eight boxes in a node.
+    Collapsed,
+}
+
+/// More boxes than these are built in parts of as many, each by one thread. What the builder needs,
+/// some 150 bytes for each box, is then held for a part at a time.
+const PART: usize = 1 << 15;
+
+/// Up to so many boxes the builder takes its time: a tenth of a second makes rays up to twice as
+/// fast. With more it takes seconds, for a few percent.
+const MAX_REINSERTED: usize = 1 << 13;
+
+/// What opening a node takes, in triangles of a leaf that are tried: these come several at a time.
+const OPENING: f32 = 3.0;
+
+/// The tree over boxes, two in a node, by number, given by their lowest and highest corners.
+pub(crate) fn bvh(
+    count: usize,
+    space: &Space,
+    kind: Kind,
+    bounds: impl Fn(usize) -> [DVec3; 2] + Sync,
+) -> Bvh2 {
+    let boxed = |i: &u32| space.padded(bounds(*i as usize));
+    let numbers = 0..number(count);
+    if count <= PART {
+        return built(numbers.collect(), kind, boxed);
+    }
+    let place = |i| (space.place(bounds(i as usize)), i);
+    let mut order: Vec<(u64, u32)> = numbers.into_par_iter().map(place).collect();
+    order.par_sort_unstable();
+    let part = |part: &[(u64, u32)]| built(part.iter().map(|(_, i)| *i).collect(), kind, boxed);
+    let parts = order.par_chunks(PART).map(part).collect();
+    drop(order);
+    joined(parts, kind)
+}
+
+/// The tree over some of them.
+fn built(numbers: Vec<u32>, kind: Kind, boxed: impl Fn(&u32) -> Aabb) -> Bvh2 {
+    let boxes: Vec<Aabb> = numbers.iter().map(boxed).collect();
+    let preset = if boxes.len() <= MAX_REINSERTED {
+        BvhBuildParams::very_slow_build()
+    } else {
+        BvhBuildParams::fast_build()
+    };
+    // Without pre-splits: they are for triangles.
+    let parameters = BvhBuildParams {
+        pre_split: false,
+        ..preset
+    };
+    let parameters = match kind {
+        Kind::Binary => parameters,
+        Kind::Collapsed => BvhBuildParams {
+            max_prims_per_leaf: number(MAX_LEAF),
+            collapse_traversal_cost: OPENING,
+            ..parameters
+        },
+    };
+    let mut bvh = build_bvh2(&boxes, parameters, &mut Duration::default());
+    for i in &mut bvh.primitive_indices {
+        *i = numbers[*i as usize];
+    }
+    finished(bvh, kind)
+}
+
+/// A tree as rays ask it: nodes lie in the order in which they are opened.
+fn finished(mut bvh: Bvh2, kind: Kind) -> Bvh2 {
+    if kind == Kind::Binary {
+        bvh.reorder_in_stack_traversal_order();
+        bvh.parents = Vec::new();
+        bvh.nodes.shrink_to_fit();
+    }
+    bvh
+}
+
+/// One tree over what several have.
+fn joined(mut parts: Vec<Bvh2>, kind: Kind) -> Bvh2 {
+    let root = |i: &u32| *parts[*i as usize].nodes[0].aabb();
+    let one_each = BvhBuildParams {
+        max_prims_per_leaf: 1,
+        ..BvhBuildParams::very_slow_build()
+    };
+    let numbers: Vec<u32> = (0..).take(parts.len()).collect();
+    let roots: Vec<Aabb> = numbers.iter().map(root).collect();
+    let mut bvh = build_bvh2(&roots, one_each, &mut Duration::default());
+    let of_parts = std::mem::take(&mut bvh.primitive_indices);
+    let above = bvh.nodes.len();
+    let below = |counted: fn(&Bvh2) -> usize| parts.iter().map(counted).sum::<usize>();
+    bvh.nodes.reserve_exact(below(|part| part.nodes.len() - 1));
+    bvh.primitive_indices
+        .reserve_exact(below(|part| part.primitive_indices.len()));
+    for leaf in 0..above {
+        if !bvh.nodes[leaf].is_leaf() {
+            continue;
+        }
+        let part = of_parts[bvh.nodes[leaf].first_index as usize] as usize;
+        let part = std::mem::take(&mut parts[part]);
+        // The root takes the place of the leaf, what is below it comes after all else.
+        let [nodes, boxes] = [bvh.nodes.len() - 1, bvh.primitive_indices.len()].map(number);
+        let mut moved = part.nodes.iter().map(|node| {
+            let by = if node.is_leaf() { boxes } else { nodes };
+            Bvh2Node {
+                first_index: node.first_index + by,
+                ..*node
+            }
+        });
+        if let Some(root) = moved.next() {
+            bvh.nodes[leaf] = root;
+        }
+        bvh.nodes.extend(moved);
+        bvh.primitive_indices.extend(&part.primitive_indices);
+    }
+    bvh.parents = Vec::new();
+    // Parts overlap: some nodes belong elsewhere.
+    ReinsertionOptimizer::default().run(&mut bvh, 0.01, None);
+    if kind == Kind::Binary {
+        bvh.max_depth = bvh.max_depth.max(bvh.depth(0) + 1);
+    }
+    finished(bvh, kind)
+}
+
+fn number(count: usize) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}

@@ -1,0 +1,106 @@
+//! Where boxes are in f32, and by how much they grow.
+
+use crate::single::single;
+use glam::{DVec3, Vec3A};
+use obvhs::aabb::Aabb;
+use obvhs::ploc::morton::morton_encode_u64_unorm;
+
+/// Where boxes are: f32 counts from the middle of all of them.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Space {
+    pub(crate) center: DVec3,
+    /// The largest coordinate from there.
+    size: f64,
+    /// By how much boxes grow.
+    pub(crate) padding: f64,
+    /// Makes coordinates those of `leaf`, about 1 and less.
+    pub(crate) unit: f64,
+}
+
+/// Boxes grow by this share of `Space::size`: f32 rounding is 6e-8 of it, a ray adds a few of
+/// those.
+const PADDING: f64 = 1e-5;
+
+/// And by this share of the largest coordinate that a ray begins at: some roundings of f64.
+const ROUNDING: f64 = 1e-13;
+
+/// The largest coordinate of a box, which f32 still holds four times over. The farthest corner of a
+/// patch is at 1e28.
+const MAX_EXTENT: f64 = 1e36;
+
+impl Space {
+    pub(crate) fn around(boxes: impl Iterator<Item = [DVec3; 2]>, origins: f64) -> Self {
+        let sound = boxes.filter(|of| is_sound(of, MAX_EXTENT));
+        let all = sound.reduce(|[a, b], [low, high]| [a.min(low), b.max(high)]);
+        let [low, high] = all.unwrap_or_default();
+        let center = 0.5 * low + 0.5 * high;
+        let size = (high - center).max(center - low).max_element();
+        let farthest = (center.abs().max_element() + size + origins).min(MAX_EXTENT);
+        Self {
+            center,
+            size,
+            padding: PADDING * size + ROUNDING * farthest,
+            // Without a size, or with one that f64 cannot turn over, all triangles are candidates.
+            unit: 1.0 / size,
+        }
+    }
+
+    /// The box to look for.
+    pub(crate) fn padded(&self, [low, high]: [DVec3; 2]) -> Aabb {
+        let (low, high) = (
+            low - self.center - self.padding,
+            high - self.center + self.padding,
+        );
+        if is_sound(&[low, high], 2.0 * MAX_EXTENT) {
+            Aabb::new(vector(low), vector(high))
+        } else {
+            let everywhere = DVec3::splat(self.size + self.padding);
+            Aabb::new(vector(-everywhere), vector(everywhere))
+        }
+    }
+
+    /// A place as triangles in leaves have it.
+    pub(crate) fn scaled(&self, place: DVec3) -> Vec3A {
+        vector(self.unit * (place - self.center))
+    }
+
+    /// Where the middle of a box is on a curve that fills the space.
+    pub(crate) fn place(&self, [low, high]: [DVec3; 2]) -> u64 {
+        let middle = 0.5 * (low + high) - self.center;
+        // From 0 to below 1.
+        morton_encode_u64_unorm(0.5 + 0.49 * middle / self.size)
+    }
+
+    /// Where to begin looking along a ray: at `from`, or, if that is far from everything, where it
+    /// comes near; f32 would lose it on the way.
+    #[inline]
+    pub(crate) fn begin(&self, start: DVec3, direction: DVec3, from: f64) -> f64 {
+        let start = start - self.center;
+        let at = start + from * direction;
+        if at.abs().max_element() < 4.0 * self.size {
+            return from;
+        }
+        let comes_near = |at: f64, d: f64| (-at - (2.0 * self.size).copysign(d)) / d;
+        let near = [0, 1, 2].map(|axis| comes_near(start[axis], direction[axis]));
+        // Along an axis a ray does not come nearer: NaN, or beyond all numbers.
+        let near = near.into_iter().filter(|t| t.is_finite());
+        near.fold(from, f64::max)
+    }
+
+    /// How far a ray that begins to be looked at `begin` along itself is followed in f32 for boxes up to `at`: boxes this far are
+    /// still opened, and what is met is decided in f64.
+    #[inline]
+    pub(crate) fn limit(&self, at: f64, begin: f64) -> f32 {
+        single((at - begin) * (1.0 + PADDING) + self.padding)
+    }
+}
+
+fn is_sound(corners: &[DVec3; 2], largest: f64) -> bool {
+    let within = |p: &DVec3| p.is_finite() && p.abs().max_element() <= largest;
+    corners.iter().all(within)
+}
+
+#[inline]
+pub(crate) fn vector(v: DVec3) -> Vec3A {
+    Vec3A::new(single(v.x), single(v.y), single(v.z))
+}

@@ -1,0 +1,138 @@
+//! A hierarchy with eight boxes in a node, for many triangles and rays that go anywhere.
+
+use crate::build::{Kind, bvh};
+use crate::collapse;
+use crate::leaf::{self, Leaf, Sight};
+use crate::single::single;
+use crate::space::{Space, vector};
+use crate::wide::{Ray, Visit, Wide};
+use fearless_simd::{Level, Simd, dispatch};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::fmt;
+
+/// A hierarchy over boxes or triangles.
+#[derive(Clone)]
+pub struct WideHierarchy {
+    /// Numbers as they were given, in the order of leaves.
+    order: Vec<u32>,
+    tree: Wide,
+    leaves: Leaves,
+    space: Space,
+    level: Level,
+}
+
+/// What is in the leaves of a tree.
+#[derive(Clone)]
+enum Leaves {
+    /// The first and the number of them.
+    Boxes(Vec<[u32; 2]>),
+    Triangles(Vec<Leaf>),
+}
+
+impl WideHierarchy {
+    /// Over boxes, by number, given by their lowest and highest corners. `origins` is the largest
+    /// coordinate a ray starts from.
+    #[must_use]
+    pub fn new(count: usize, origins: f64, bounds: impl Fn(usize) -> [DVec3; 2] + Sync) -> Self {
+        let space = Space::around((0..count).map(&bounds), origins);
+        let bvh = bvh(count, &space, Kind::Collapsed, bounds);
+        let (tree, leaves) = collapse::collapsed(&bvh);
+        Self {
+            order: bvh.primitive_indices,
+            tree,
+            leaves: Leaves::Boxes(leaves),
+            space,
+            level: Level::new(),
+        }
+    }
+
+    /// Over triangles, by number, given by their corners.
+    #[must_use]
+    pub fn over_triangles(
+        count: usize,
+        origins: f64,
+        corners: impl Fn(usize) -> [DVec3; 3] + Sync,
+    ) -> Self {
+        let boxes = Self::new(count, origins, |i| {
+            let [a, b, c] = corners(i);
+            [a.min(b).min(c), a.max(b).max(c)]
+        });
+        let Leaves::Boxes(leaves) = &boxes.leaves else {
+            return boxes;
+        };
+        let within = |[first, count]: &[u32; 2]| {
+            let numbers = &boxes.order[*first as usize..(*first + *count) as usize];
+            let corners = numbers.iter().map(|i| corners(*i as usize));
+            Leaf::new(*first, corners.map(|of| of.map(|p| boxes.space.scaled(p))))
+        };
+        let leaves = Leaves::Triangles(leaves.par_iter().map(within).collect());
+        Self { leaves, ..boxes }
+    }
+
+    /// The boxes or triangles, in the order in which [`Self::along`] names them.
+    #[must_use]
+    pub fn order(&self) -> &[u32] {
+        &self.order
+    }
+
+    /// Names the boxes or triangles that a ray may meet from `from` on, the nearer ones about first.
+    /// Distances are in lengths of `direction`, which is at least 1 long. `meet` tells how far they
+    /// still matter; before anything is met, that is `until`.
+    #[inline]
+    pub fn along(
+        &self,
+        start: DVec3,
+        direction: DVec3,
+        [from, until]: [f64; 2],
+        mut meet: impl FnMut(usize) -> f64,
+    ) {
+        let begin = self.space.begin(start, direction, from);
+        let origin = start + begin * direction - self.space.center;
+        let limit = |at: f64| self.space.limit(at, begin);
+        let ray = Ray::new(vector(origin), vector(direction), limit(until));
+        let meet = |i: usize| limit(meet(i));
+        match &self.leaves {
+            Leaves::Boxes(leaves) => {
+                let visit = Boxes { leaves, meet };
+                dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
+            }
+            Leaves::Triangles(leaves) => {
+                let tolerance = single(self.space.unit * self.space.padding);
+                let origin = vector(self.space.unit * origin);
+                let visit = leaf::Triangles {
+                    leaves,
+                    sight: Sight::new(origin, direction, tolerance),
+                    meet,
+                };
+                dispatch!(self.level, simd => self.tree.along(simd, &ray, visit));
+            }
+        }
+    }
+}
+
+/// Leaves of boxes, named one after the other.
+struct Boxes<'a, M> {
+    leaves: &'a [[u32; 2]],
+    meet: M,
+}
+
+impl<M: FnMut(usize) -> f32> Visit for Boxes<'_, M> {
+    #[inline(always)]
+    fn visit<S: Simd>(&mut self, _: S, leaf: usize) -> f32 {
+        let [first, count] = self.leaves[leaf];
+        let mut until = f32::INFINITY;
+        for i in first..first + count {
+            until = until.min((self.meet)(i as usize));
+        }
+        until
+    }
+}
+
+impl fmt::Debug for WideHierarchy {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("WideHierarchy")
+            .field("order", &self.order.len())
+            .finish_non_exhaustive()
+    }
+}
