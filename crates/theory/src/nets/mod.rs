@@ -18,8 +18,8 @@ pub(crate) use sobol::{DIMENSIONS, Net};
 use crate::geometry::Matrix;
 use crate::predicted::Predicted;
 use crate::work::Work;
-use etendue_field::transform::SliceTransform;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
+use etendue_transform::SliceTransform;
 use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 

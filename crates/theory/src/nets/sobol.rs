@@ -4,8 +4,8 @@
 //! turn divides it. Scrambling moves each point at random and keeps that, so that the mean over a
 //! net is an unbiased estimate, and nets scrambled with different keys are independent (Owen 1997).
 
-use etendue_field::random::unit;
-use etendue_field::sobol_directions;
+use etendue_transform::random::unit;
+use etendue_transform::sobol_directions;
 
 /// The most coordinates of a point.
 pub(crate) const DIMENSIONS: usize = 10;

@@ -9,10 +9,10 @@ use crate::nets::RayNets;
 use crate::predicted::Predicted;
 use crate::work::Work;
 use crate::{Chain, Operator};
-use etendue_field::transform::SliceTransform;
 use etendue_field::{
     FluxRay, Light, Projection, ProjectionGrid, RayLight, SliceGrid, Slices, TwoPlane, Window,
 };
+use etendue_transform::SliceTransform;
 use ndarray::Array2;
 
 impl Chain {

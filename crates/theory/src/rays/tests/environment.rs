@@ -119,7 +119,7 @@ fn by_rule(radiance: &dyn Fn([f64; 4]) -> f64, window: &Window, grid: &SliceGrid
         halves[axis] * ((2.0 * digit + 1.0) / f64::from(NODES) - 1.0)
     };
     let volume: f64 = halves.iter().map(|h| 2.0 * h / f64::from(NODES)).product();
-    let transform = etendue_field::transform::SliceTransform::new(grid);
+    let transform = etendue_transform::SliceTransform::new(grid);
     let mut sum = transform.accumulator();
     for i in 0..nodes {
         let [x, y, u, v] = std::array::from_fn(|axis| at(i, axis));
