@@ -15,7 +15,7 @@ use tempfile::TempPath;
 
 /// Files that were there and are no more.
 #[derive(Debug, Default)]
-pub(super) struct Moved {
+pub(super) struct MovedFiles {
     /// Files of the earlier result.
     pub(super) gone: Vec<String>,
     /// Files of somebody else.
@@ -24,7 +24,7 @@ pub(super) struct Moved {
     done: Vec<[PathBuf; 2]>,
 }
 
-impl Moved {
+impl MovedFiles {
     /// Moves a file to where nothing is.
     fn file(&mut self, from: PathBuf, to: PathBuf) -> Result<(), Failure> {
         let moved = || {
@@ -61,7 +61,7 @@ impl Moved {
 
 impl Results {
     /// Puts everything in its place.
-    pub(super) fn commit(&self) -> Result<Moved, Failure> {
+    pub(super) fn commit(&self) -> Result<MovedFiles, Failure> {
         let index = self.plan.index;
         let ready = self.ready(index);
         let failure = |e| Failure::write(&self.shown, e);
@@ -76,10 +76,10 @@ impl Results {
     }
 
     /// Ends what a dead process began to move, and removes what it left.
-    pub(super) fn recover(&self) -> Result<Moved, Failure> {
+    pub(super) fn recover(&self) -> Result<MovedFiles, Failure> {
         let moved = match self.ready_index() {
             Some(index) => self.move_all(index)?,
-            None => Moved::default(),
+            None => MovedFiles::default(),
         };
         let left = self.folder.join(UNFINISHED);
         match fs::remove_dir_all(&left) {
@@ -88,8 +88,8 @@ impl Results {
         }
     }
 
-    fn move_all(&self, index: &str) -> Result<Moved, Failure> {
-        let mut moved = Moved::default();
+    fn move_all(&self, index: &str) -> Result<MovedFiles, Failure> {
+        let mut moved = MovedFiles::default();
         let result = self.moves(index, &mut moved);
         if let Err(error) = result {
             moved.undo();
@@ -110,7 +110,7 @@ impl Results {
         Ok(moved)
     }
 
-    fn moves(&self, index: &str, moved: &mut Moved) -> Result<(), Failure> {
+    fn moves(&self, index: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let ready = self.ready(index);
         let new = listed(&ready).unwrap_or_default();
         // From here on the folder is no result, until the new index comes.
@@ -147,7 +147,7 @@ impl Results {
     }
 
     /// Moves a new file to its name; with `--force`, a file of somebody else goes aside.
-    fn place(&self, from: PathBuf, name: &str, moved: &mut Moved) -> Result<(), Failure> {
+    fn place(&self, from: PathBuf, name: &str, moved: &mut MovedFiles) -> Result<(), Failure> {
         let to = self.inside(name).ok_or_else(|| {
             let shown = self.shown.join(name);
             Failure::write(&shown, LINKED)
