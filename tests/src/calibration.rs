@@ -2,7 +2,7 @@
 
 use crate::progress::progress;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, predicted, sampled, traced, words};
 use crate::statistics::{mean, uniformity};
 use etendue_compare::{PlaneReport, Prediction, Test, compare};
@@ -12,7 +12,7 @@ use rayon::prelude::*;
 use std::ops::Range;
 
 /// What the seeds gave, plane by plane.
-struct PlaneTally {
+struct CalibratedPlane {
     name: String,
     p_values: Vec<f64>,
     chi2: Vec<f64>,
@@ -44,7 +44,11 @@ const FAULTS: [(DependenceFault, &str); 2] = [
 ///
 /// Then judges them again as if σ had been 10 % too small and too large, and with batches that are
 /// not independent: all must be found out.
-pub(crate) fn calibration(seeds: Range<u64>, photons: u64, sampling: Sampling) -> Vec<Section> {
+pub(crate) fn calibration(
+    seeds: Range<u64>,
+    photons: u64,
+    sampling: Sampling,
+) -> Vec<ReportSection> {
     // Fewer seeds do not tell 3 % of variance, and later ones only calibrate once more.
     let count = seeds.end - seeds.start;
     let plants = count >= 1000 && seeds.start == 1;
@@ -95,7 +99,7 @@ fn sample(
     seeds: Range<u64>,
     scene: &Scene,
     faults: &[Option<DependenceFault>],
-) -> Vec<Vec<PlaneTally>> {
+) -> Vec<Vec<CalibratedPlane>> {
     let predictions = predicted(scene, None);
     let bar = progress(seeds.end - seeds.start, "seeds");
     let reports: Vec<Vec<Vec<PlaneReport>>> = seeds
@@ -106,7 +110,7 @@ fn sample(
     bar.end();
     let plane = |fault: usize, i: usize| {
         let of_plane = || reports.iter().map(move |r| &r[fault][i]);
-        PlaneTally {
+        CalibratedPlane {
             name: reports[0][fault][i].name.clone(),
             p_values: of_plane().filter_map(|r| r.p_value).collect(),
             chi2: of_plane().filter_map(|r| r.chi2_per_dof).collect(),
@@ -143,7 +147,7 @@ fn reports(
     faults.iter().map(with).collect()
 }
 
-fn judge(planes: &[PlaneTally], seeds: u64, scene: &Scene, scale: f64) -> Section {
+fn judge(planes: &[CalibratedPlane], seeds: u64, scene: &Scene, scale: f64) -> ReportSection {
     let mut rows = Vec::new();
     let all: Vec<f64> = planes
         .iter()
@@ -192,7 +196,7 @@ fn judge(planes: &[PlaneTally], seeds: u64, scene: &Scene, scale: f64) -> Sectio
         "".into(),
     ];
     rows.push(Row::new(cells, vec![check]));
-    Section {
+    ReportSection {
         title: format!(
             "Calibration over {seeds} seeds at {:.0e} photons, {}",
             scene.run.photons as f64,

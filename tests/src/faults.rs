@@ -3,7 +3,7 @@
 mod smallest;
 
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, measured, named, traced};
 use etendue_compare::{Residuals, chain, sidak};
 use etendue_field::{
@@ -16,7 +16,7 @@ use etendue_trace::Tracer;
 pub(crate) use smallest::smallest;
 
 /// All planted faults at one number of photons; the first row is the scene without a fault.
-pub(crate) fn planted(photons: u64, seed: u64) -> Section {
+pub(crate) fn planted(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let tracer = Tracer::new(&scene);
     let sound = measured(&scene, &tracer);
@@ -47,7 +47,7 @@ pub(crate) fn planted(photons: u64, seed: u64) -> Section {
     ));
     rows.push(row(&scene, &losing, "1 % of photons lost", &unchanged));
 
-    Section {
+    ReportSection {
         title: format!("Planted faults at {:.0e} photons", photons as f64),
         text: "Required: the run is rejected for every fault, and only then. p-values are not below 0.00005; \
                a dash is a plane the fault does not touch."
@@ -59,7 +59,7 @@ pub(crate) fn planted(photons: u64, seed: u64) -> Section {
 }
 
 /// Faults that only other scenes can show, each planted in the scene named.
-pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> Section {
+pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();
     for (name, faults) in elsewhere() {
@@ -97,7 +97,7 @@ pub(crate) fn planted_elsewhere(photons: u64, seed: u64) -> Section {
             row
         }));
     }
-    Section {
+    ReportSection {
         title: format!("Faults planted in other scenes at {:.0e} photons", photons as f64),
         text: "Required: the run is rejected for every fault, and only then; a dash is a plane the fault does not touch."
             .to_owned(),

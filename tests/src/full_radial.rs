@@ -2,7 +2,7 @@
 
 use crate::progress::progress;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::emit;
 use crate::statistics::{mean, uniformity};
 use etendue_compare::{Applicability, FullRadialComparison, FullRadialReport, PredictedField};
@@ -120,7 +120,7 @@ fn compared(
 }
 
 /// Calibration over seeds, faults planted in predictions, and one planted in the calibration.
-pub(crate) fn full_radial(seeds: u64, photons: u64) -> Vec<Section> {
+pub(crate) fn full_radial(seeds: u64, photons: u64) -> Vec<ReportSection> {
     let found: Vec<(String, Vec<FullRadialReport>)> = CASES
         .iter()
         .map(|case| over_seeds(case, seeds, photons))
@@ -221,10 +221,14 @@ const HEADER: [&str; 5] = [
     "mean χ²/bin",
 ];
 
-fn calibrated(found: &[(String, Vec<FullRadialReport>)], seeds: u64, photons: u64) -> Section {
+fn calibrated(
+    found: &[(String, Vec<FullRadialReport>)],
+    seeds: u64,
+    photons: u64,
+) -> ReportSection {
     let level = 1.0 - 0.99_f64.powf(1.0 / found.len() as f64);
     let rows = found.iter().map(|(name, found)| row(name, found, level));
-    Section {
+    ReportSection {
         title: format!("p of the full radial spectrum over {seeds} seeds"),
         text: format!(
             "Photons of each seed, {photons}, against the same prediction. Required: p uniform by Kolmogorov–Smirnov at 1 % over the rows, \
@@ -237,7 +241,7 @@ fn calibrated(found: &[(String, Vec<FullRadialReport>)], seeds: u64, photons: u6
 }
 
 /// Predictions with a fault against photons without one.
-fn faults(photons: u64) -> Section {
+fn faults(photons: u64) -> ReportSection {
     const LEVEL: f64 = 0.002;
     let case = &CASES[0];
     let scene = case.scene(photons, crate::SEED, &[]);
@@ -263,7 +267,7 @@ fn faults(photons: u64) -> Section {
         rows.push(found(name, &predicted(&other), true));
     }
     rows.push(found("aliasing left out", &alias_free(&scene), true));
-    Section {
+    ReportSection {
         title: "Faults planted in predictions of full radial spectra".to_owned(),
         text: format!(
             "{} {}, {photons} photons. Required: p ≥ {LEVEL} without a fault, p < {LEVEL} with each.",
@@ -302,7 +306,7 @@ fn alias_free(scene: &Scene) -> PredictedField {
 }
 
 /// The calibration must fail where groups share photons.
-fn dependent(seeds: u64, photons: u64, is_sound: bool) -> Section {
+fn dependent(seeds: u64, photons: u64, is_sound: bool) -> ReportSection {
     let case = &CASES[0];
     let prediction = predicted(&case.scene(photons, 1, &[]));
     let found = each_seed(seeds, |seed| {
@@ -313,7 +317,7 @@ fn dependent(seeds: u64, photons: u64, is_sound: bool) -> Section {
         field.groups[half..].clone_from_slice(&copies);
         compared(&scene, &field, &prediction)
     });
-    let section = Section {
+    let section = ReportSection {
         title: String::new(),
         text: String::new(),
         header: HEADER.to_vec(),

@@ -32,7 +32,7 @@ mod wild;
 
 use clap::{Parser, Subcommand};
 use etendue_scene::Sampling;
-use report::Section;
+use report::ReportSection;
 use std::ops::Range;
 use std::process::ExitCode;
 
@@ -56,13 +56,13 @@ use std::process::ExitCode;
   cargo run --release -p etendue-validation -- assumptions  minutes; checks of theory switched off, on random scenes
   cargo run --release -p etendue-validation -- pulls        measured parameters of 300 random scenes, in stated errors
   cargo run --release -p etendue-validation -- all          half an hour; writes docs/validation.md")]
-struct Cli {
+struct ValidationCli {
     #[command(subcommand)]
-    command: Command,
+    command: ValidationCommand,
 }
 
 #[derive(Debug, Subcommand)]
-enum Command {
+enum ValidationCommand {
     /// A short form of all of it.
     Short,
     /// p uniform, χ²/dof = 1 and unit pulls over many seeds.
@@ -161,48 +161,48 @@ const SEED: u64 = 1;
     reason = "the report is the product"
 )]
 fn main() -> ExitCode {
-    let command = Cli::parse().command;
-    if let Command::Bandwidth { photons } = command {
+    let command = ValidationCli::parse().command;
+    if let ValidationCommand::Bandwidth { photons } = command {
         return bandwidth::page(photons);
     }
-    if matches!(command, Command::Nets) {
+    if matches!(command, ValidationCommand::Nets) {
         return nets::page();
     }
-    if let Command::Hostile(options) = &command {
+    if let ValidationCommand::Hostile(options) = &command {
         return printed(hostile::hostile(options).map(|section| vec![section]));
     }
-    if let Command::Kills(options) = &command {
+    if let ValidationCommand::Kills(options) = &command {
         return printed(kills::kills(options).map(|section| vec![section]));
     }
-    if let Command::Wild(options) = &command {
+    if let ValidationCommand::Wild(options) = &command {
         return printed(wild::wild(options).map(|section| vec![section]));
     }
-    if let Command::Small(options) = &command {
+    if let ValidationCommand::Small(options) = &command {
         return printed(wild::small(options).map(|section| vec![section]));
     }
-    if let Command::Several(options) = &command {
+    if let ValidationCommand::Several(options) = &command {
         return printed(wild::several(options).map(|section| vec![section]));
     }
-    if let Command::Assumptions(options) = &command {
+    if let ValidationCommand::Assumptions(options) = &command {
         return printed(assumptions::assumptions(options).map(|section| vec![section]));
     }
-    if let Command::Pulls(options) = &command {
+    if let ValidationCommand::Pulls(options) = &command {
         return printed(pulls::pulls(options));
     }
-    if matches!(command, Command::Second) {
+    if matches!(command, ValidationCommand::Second) {
         return printed(second::second().map(|section| vec![section]));
     }
     let parts = match command {
-        Command::All => &[
-            Command::Main,
-            Command::Table1 { photons: None },
-            Command::Shading { photons: None },
-            Command::Claims { photons: None },
+        ValidationCommand::All => &[
+            ValidationCommand::Main,
+            ValidationCommand::Table1 { photons: None },
+            ValidationCommand::Shading { photons: None },
+            ValidationCommand::Claims { photons: None },
         ][..],
         ref other => std::slice::from_ref(other),
     };
-    let report = |command: &Command, sections: Vec<Section>| {
-        let text: Vec<String> = sections.iter().map(Section::markdown).collect();
+    let report = |command: &ValidationCommand, sections: Vec<ReportSection>| {
+        let text: Vec<String> = sections.iter().map(ReportSection::markdown).collect();
         let text = text.join("\n");
         println!("{text}");
         if let Some([path, title, name, of]) = page(command) {
@@ -216,18 +216,18 @@ fn main() -> ExitCode {
         }
         Ok(sections)
     };
-    let reported = || -> Result<Vec<Section>, ()> {
+    let reported = || -> Result<Vec<ReportSection>, ()> {
         let mut all = Vec::new();
         for part in parts {
             all.extend(report(part, sections(part))?);
         }
-        if matches!(command, Command::All) {
+        if matches!(command, ValidationCommand::All) {
             all.extend(report(&command, vec![rows::rows(&all)])?);
         }
         Ok(all)
     };
     match reported() {
-        Ok(all) => ExitCode::from(u8::from(!all.iter().all(Section::passes))),
+        Ok(all) => ExitCode::from(u8::from(!all.iter().all(ReportSection::passes))),
         Err(()) => ExitCode::from(3),
     }
 }
@@ -238,12 +238,12 @@ fn main() -> ExitCode {
     clippy::print_stderr,
     reason = "the report is the product"
 )]
-fn printed(outcome: std::io::Result<Vec<Section>>) -> ExitCode {
+fn printed(outcome: std::io::Result<Vec<ReportSection>>) -> ExitCode {
     match outcome {
         Ok(sections) => {
-            let text: Vec<String> = sections.iter().map(Section::markdown).collect();
+            let text: Vec<String> = sections.iter().map(ReportSection::markdown).collect();
             println!("{}", text.join("\n"));
-            ExitCode::from(u8::from(!sections.iter().all(Section::passes)))
+            ExitCode::from(u8::from(!sections.iter().all(ReportSection::passes)))
         }
         Err(error) => {
             eprintln!("error: {error}");
@@ -253,39 +253,39 @@ fn printed(outcome: std::io::Result<Vec<Section>>) -> ExitCode {
 }
 
 /// The page that a command writes a part of: its file, the title of the part, the command's name and what is shown.
-fn page(command: &Command) -> Option<[&'static str; 4]> {
+fn page(command: &ValidationCommand) -> Option<[&'static str; 4]> {
     Some(match command {
-        Command::Main => [
+        ValidationCommand::Main => [
             "docs/validation.md",
             "The main scene",
             "main",
             "Scene: `scenes/fig9b.ron`",
         ],
-        Command::Suite { photons: None } => [
+        ValidationCommand::Suite { photons: None } => [
             "docs/suite.md",
             "The suite",
             "suite",
             "Scenes: all of `scenes/` without smooth surfaces",
         ],
-        Command::Table1 { photons: None } => [
+        ValidationCommand::Table1 { photons: None } => [
             "docs/validation.md",
             "Table 1",
             "table1",
             "Scenes: all of `scenes/table1/` without BRDFs, photons as in the files",
         ],
-        Command::Shading { photons: None } => [
+        ValidationCommand::Shading { photons: None } => [
             "docs/validation.md",
             "Shading",
             "shading",
             "In 2D and without photons where no scene is named",
         ],
-        Command::Claims { photons: None } => [
+        ValidationCommand::Claims { photons: None } => [
             "docs/validation.md",
             "Words",
             "claims",
             "Scenes: made for each statement",
         ],
-        Command::FullRadial {
+        ValidationCommand::FullRadial {
             seeds: 200,
             photons: 65_536,
         } => [
@@ -294,7 +294,7 @@ fn page(command: &Command) -> Option<[&'static str; 4]> {
             "full-radial",
             "Scenes with fewer frequencies than in their files",
         ],
-        Command::All => [
+        ValidationCommand::All => [
             "docs/validation.md",
             "Every row of Table 1",
             "all",
@@ -322,43 +322,45 @@ fn with_part(page: &str, title: &str, part: &str) -> String {
     parts.join("\n\n") + "\n"
 }
 
-fn sections(command: &Command) -> Vec<Section> {
+fn sections(command: &ValidationCommand) -> Vec<ReportSection> {
     match *command {
-        Command::Short => {
+        ValidationCommand::Short => {
             let mut sections = calibrations(1..101, 20_000);
             sections.push(faults::planted(3_000_000, SEED));
             sections.push(noise::floor(&[1 << 17, 1 << 20], SEED));
             sections.extend(suite::suite(Some(200_000)));
             sections
         }
-        Command::Calibration {
+        ValidationCommand::Calibration {
             seeds,
             first,
             photons,
         } => calibrations(first..first + seeds, photons),
-        Command::Faults { photons } => faults(photons),
-        Command::Suite { photons } => {
+        ValidationCommand::Faults { photons } => faults(photons),
+        ValidationCommand::Suite { photons } => {
             let mut sections = suite::suite(photons);
             sections.push(faults::planted_elsewhere(photons.unwrap_or(1 << 22), SEED));
             sections
         }
-        Command::Table1 { photons } => table1::table1(photons),
-        Command::Shading { photons } => shading::shading(photons),
-        Command::Claims { photons } => vec![claims::claims(photons)],
-        Command::FullRadial { seeds, photons } => full_radial::full_radial(seeds, photons),
-        Command::Bandwidth { photons } => vec![shading::glossy(photons).0],
+        ValidationCommand::Table1 { photons } => table1::table1(photons),
+        ValidationCommand::Shading { photons } => shading::shading(photons),
+        ValidationCommand::Claims { photons } => vec![claims::claims(photons)],
+        ValidationCommand::FullRadial { seeds, photons } => {
+            full_radial::full_radial(seeds, photons)
+        }
+        ValidationCommand::Bandwidth { photons } => vec![shading::glossy(photons).0],
         // These have reports of their own.
-        Command::Nets
-        | Command::Second
-        | Command::Hostile(_)
-        | Command::Kills(_)
-        | Command::Wild(_)
-        | Command::Small(_)
-        | Command::Several(_)
-        | Command::Assumptions(_)
-        | Command::Pulls(_) => Vec::new(),
-        Command::Noise { most } => noise(most),
-        Command::Main | Command::All => {
+        ValidationCommand::Nets
+        | ValidationCommand::Second
+        | ValidationCommand::Hostile(_)
+        | ValidationCommand::Kills(_)
+        | ValidationCommand::Wild(_)
+        | ValidationCommand::Small(_)
+        | ValidationCommand::Several(_)
+        | ValidationCommand::Assumptions(_)
+        | ValidationCommand::Pulls(_) => Vec::new(),
+        ValidationCommand::Noise { most } => noise(most),
+        ValidationCommand::Main | ValidationCommand::All => {
             let mut sections = noise(1 << 30);
             sections.extend(calibrations(1..1001, 100_000));
             sections.extend(faults(1 << 23));
@@ -367,7 +369,7 @@ fn sections(command: &Command) -> Vec<Section> {
     }
 }
 
-fn faults(photons: u64) -> Vec<Section> {
+fn faults(photons: u64) -> Vec<ReportSection> {
     vec![
         faults::planted(photons, SEED),
         faults::smallest(photons, SEED),
@@ -375,13 +377,13 @@ fn faults(photons: u64) -> Vec<Section> {
 }
 
 /// By both kinds of numbers.
-fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<Section> {
+fn calibrations(seeds: Range<u64>, photons: u64) -> Vec<ReportSection> {
     let kinds = [Sampling::Net, Sampling::Random].into_iter();
     let sections = kinds.flat_map(|kind| calibration::calibration(seeds.clone(), photons, kind));
     sections.collect()
 }
 
-fn noise(most: u64) -> Vec<Section> {
+fn noise(most: u64) -> Vec<ReportSection> {
     let steps = (20..=40).step_by(3).map(|n| 1_u64 << n);
     let decades: Vec<u64> = steps.filter(|n| *n <= most).collect();
     let planes = most.min(1 << 23);

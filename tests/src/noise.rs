@@ -2,7 +2,7 @@
 
 use crate::SEED;
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use crate::scenes::{fig9b, predicted, receiver, sampled, traced, words};
 use etendue_compare::{PlaneReport, Test, Verdict, compare};
@@ -11,7 +11,7 @@ use etendue_spectrum::estimate;
 use ndarray::Array3;
 
 /// Every plane at one number of photons.
-pub(crate) fn planes(photons: u64, seed: u64) -> Section {
+pub(crate) fn planes(photons: u64, seed: u64) -> ReportSection {
     let scene = fig9b(photons, seed);
     let row = |report: &PlaneReport| {
         let line = match report.name.as_str() {
@@ -21,7 +21,7 @@ pub(crate) fn planes(photons: u64, seed: u64) -> Section {
         };
         row(&scene, report).of(line)
     };
-    Section {
+    ReportSection {
         title: format!("Every plane at {:.0e} photons", photons as f64),
         text: "Required: p at least α = 1 % after Šidák over the planes.".to_owned(),
         header: HEADER.to_vec(),
@@ -31,7 +31,7 @@ pub(crate) fn planes(photons: u64, seed: u64) -> Section {
 }
 
 /// The score tests of every plane at one number of photons.
-pub(crate) fn parameters(photons: u64, seed: u64) -> Section {
+pub(crate) fn parameters(photons: u64, seed: u64) -> ReportSection {
     let reports = reports(&fig9b(photons, seed));
     let mut rows = Vec::new();
     // Two-sided 1 % for the largest of ten normal numbers, Šidák: level 0.1 %, quantile 3.29.
@@ -53,7 +53,7 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> Section {
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    Section {
+    ReportSection {
         title: format!("Parameters recovered at {:.0e} photons", photons as f64),
         text: format!(
             "Required: every parameter within {bound} errors of the scene's (1 % for the largest of {}).",
@@ -75,7 +75,7 @@ pub(crate) fn parameters(photons: u64, seed: u64) -> Section {
 
 /// How the noise of photons from nets is to that of photons from random numbers, over all
 /// frequencies of a plane.
-pub(crate) fn gain(photons: u64, batches: u32) -> Section {
+pub(crate) fn gain(photons: u64, batches: u32) -> ReportSection {
     let variances = |sampling: Sampling| {
         let mut scene = sampled(fig9b(photons, SEED), sampling);
         scene.run.batches = batches;
@@ -111,7 +111,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> Section {
         let check = Check::new("total", total, Below(-0.1), "three of its errors, dB");
         Row::new(row, vec![check])
     };
-    Section {
+    ReportSection {
         title: format!("Noise of nets, {photons} photons in {batches} batches"),
         text: format!(
             "σ² of slices with nets over that with random numbers, in dB. One frequency is told to {:.2} dB              (one standard error), so that the largest of many says little with few batches. Required: less in total.",
@@ -132,7 +132,7 @@ pub(crate) fn gain(photons: u64, batches: u32) -> Section {
 }
 
 /// The receiver plane at growing numbers of photons.
-pub(crate) fn floor(photons: &[u64], seed: u64) -> Section {
+pub(crate) fn floor(photons: &[u64], seed: u64) -> ReportSection {
     let mut rows: Vec<Row> = Vec::new();
     let mut before = None;
     for n in photons {
@@ -160,7 +160,7 @@ pub(crate) fn floor(photons: &[u64], seed: u64) -> Section {
             rows[last - 1].checks.push(check);
         }
     }
-    Section {
+    ReportSection {
         title: "Noise floor of the receiver plane".to_owned(),
         text:
             "Required: p at least α = 1 %; a floor of random numbers that falls 10 dB per decade within 0.1 dB, and one of nets that is not above it by more."

@@ -8,22 +8,22 @@ const LINES: u64 = 20;
 
 /// Things done of a known number.
 #[derive(Clone)]
-pub(crate) struct Progress {
+pub(crate) struct CountedProgress {
     bar: ProgressBar,
     things: &'static str,
 }
 
 /// Begins work on `count` things.
-pub(crate) fn progress(count: u64, things: &'static str) -> Progress {
+pub(crate) fn progress(count: u64, things: &'static str) -> CountedProgress {
     let bar = ProgressBar::new(count);
     let style = format!("{{bar:40}} {{human_pos}} of {{human_len}} {things}  {{eta}} left");
     if let Ok(style) = ProgressStyle::with_template(&style) {
         bar.set_style(style);
     }
-    Progress { bar, things }
+    CountedProgress { bar, things }
 }
 
-impl Progress {
+impl CountedProgress {
     /// One more is done.
     #[expect(clippy::print_stderr, reason = "the report goes to standard output")]
     pub(crate) fn one(&self) {

@@ -7,7 +7,7 @@
 
 use crate::progress::progress;
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::traced;
 use crate::statistics::mean;
 use crate::{nets, wild};
@@ -73,7 +73,7 @@ struct Cost {
 }
 
 /// Measures and predicts all scenes.
-pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<Section>> {
+pub(crate) fn pulls(options: &PullOptions) -> io::Result<Vec<ReportSection>> {
     let bar = progress(options.scenes, "scenes");
     let (mut pulls, mut costs) = (Vec::new(), Vec::new());
     for number in options.first..options.first + options.scenes {
@@ -244,7 +244,7 @@ fn grouped(
     title: &str,
     group: impl Fn(&Pull) -> String,
     is_judged: bool,
-) -> Section {
+) -> ReportSection {
     let mut groups: BTreeMap<String, Vec<&Pull>> = BTreeMap::new();
     for pull in pulls {
         groups.entry("all".into()).or_default().push(pull);
@@ -258,7 +258,7 @@ fn grouped(
     } else {
         "Required: nothing more than above.".into()
     };
-    Section {
+    ReportSection {
         title: title.to_owned(),
         text: format!(
             "Seed {}, {} photons for each scene. Of a normal distribution, 4.55, 0.27 and 0.006 % are beyond 2, 3 and \
@@ -322,7 +322,7 @@ fn row(name: &str, pulls: &[&Pull], is_judged: bool) -> Row {
 }
 
 /// The largest pulls.
-fn largest(pulls: &[Pull]) -> Section {
+fn largest(pulls: &[Pull]) -> ReportSection {
     let mut sorted: Vec<&Pull> = pulls.iter().collect();
     sorted.sort_by(|a, b| b.value.abs().total_cmp(&a.value.abs()));
     let row = |pull: &&Pull| {
@@ -335,7 +335,7 @@ fn largest(pulls: &[Pull]) -> Section {
         ];
         Row::new(cells, Vec::new())
     };
-    Section {
+    ReportSection {
         title: "The largest pulls".into(),
         text: "Required: nothing more than above.".into(),
         header: vec!["scene", "plane", "kind", "parameter", "pull"],
@@ -345,7 +345,7 @@ fn largest(pulls: &[Pull]) -> Section {
 }
 
 /// What predictions cost, beside the photons.
-fn cost(costs: &[Cost]) -> Section {
+fn cost(costs: &[Cost]) -> ReportSection {
     let ratio = |cost: &Cost| cost.predicted / cost.traced.max(0.01);
     let mut sorted: Vec<&Cost> = costs.iter().collect();
     sorted.sort_by(|a, b| ratio(b).total_cmp(&ratio(a)));
@@ -370,7 +370,7 @@ fn cost(costs: &[Cost]) -> Section {
     let slow = |cost: &&Cost| cost.predicted > MAX_SECONDS.max(cost.traced);
     let count = costs.iter().filter(slow).count();
     let [mean, _] = mean(&costs.iter().map(ratio).collect::<Vec<_>>());
-    Section {
+    ReportSection {
         title: "The cost of predictions".into(),
         text: format!(
             "CPU seconds of all predictions of a scene, and of its photons; the mean ratio is \

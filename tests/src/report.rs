@@ -136,7 +136,7 @@ impl Row {
 
 /// One validation: a table in Markdown, and what is required of its rows and of all of it.
 #[derive(Debug)]
-pub(crate) struct Section {
+pub(crate) struct ReportSection {
     pub(crate) title: String,
     /// What was done and what is required, in words.
     pub(crate) text: String,
@@ -147,7 +147,7 @@ pub(crate) struct Section {
     pub(crate) checks: Vec<Check>,
 }
 
-impl Section {
+impl ReportSection {
     pub(crate) fn passes(&self) -> bool {
         self.failures().is_empty()
     }

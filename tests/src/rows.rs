@@ -1,7 +1,7 @@
 //! Every row of the paper's Table 1, and what the sections of a whole validation have found of it.
 
 use crate::report::Bound::AtLeast;
-use crate::report::{Check, EXACT, Row, Section};
+use crate::report::{Check, EXACT, ReportSection, Row};
 
 /// A row of the paper's Table 1; rows of sections name those they say something of.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,8 +70,8 @@ impl Line {
 }
 
 /// Every row, of the sections of all parts.
-pub(crate) fn rows(sections: &[Section]) -> Section {
-    Section {
+pub(crate) fn rows(sections: &[ReportSection]) -> ReportSection {
+    ReportSection {
         title: "Every row".to_owned(),
         text: "What the sections below have found of each row: checks of its operator without photons, by quadrature and by traced rays; and \
                planes measured with photons right after it, with the smallest of their p against the exact prediction. Required: a row has \
@@ -92,7 +92,7 @@ pub(crate) fn rows(sections: &[Section]) -> Section {
     }
 }
 
-fn row(line: Line, sections: &[Section]) -> Row {
+fn row(line: Line, sections: &[ReportSection]) -> Row {
     let all = sections.iter().flat_map(|section| &section.rows);
     let of_line = all.filter(|row| row.lines.contains(&line));
     // With photons are those that have a p.
@@ -121,9 +121,9 @@ mod tests {
     use super::*;
     use crate::report::Bound::Below;
 
-    fn section(cells: &[&str], checks: Vec<Check>) -> Section {
+    fn section(cells: &[&str], checks: Vec<Check>) -> ReportSection {
         let cells = cells.iter().map(ToString::to_string).collect();
-        Section {
+        ReportSection {
             title: "Some".to_owned(),
             text: String::new(),
             header: vec!["operator", "said", "verdict"],
@@ -132,7 +132,7 @@ mod tests {
         }
     }
 
-    fn texture(sections: &[Section]) -> String {
+    fn texture(sections: &[ReportSection]) -> String {
         let rows = rows(sections);
         let markdown = rows.markdown();
         let row = markdown.lines().find(|row| row.contains("texture mapping"));

@@ -1,7 +1,7 @@
 //! Every scene of the repository: its prediction, and the two tracers against each other.
 
 use crate::report::Bound::{Above, AtLeast, AtMost, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{SUITE, compared, named, predicted, referred, traced, traced_backwards};
 use etendue_compare::{PlaneComparison, PlaneReport, Verdict, sidak};
 use etendue_scene::Scene;
@@ -19,7 +19,7 @@ struct SuiteRun {
 const ALPHA: f64 = 0.01;
 
 /// The whole suite, with the photons of the files or with `photons` for each scene.
-pub(crate) fn suite(photons: Option<u64>) -> Vec<Section> {
+pub(crate) fn suite(photons: Option<u64>) -> Vec<ReportSection> {
     let scenes: Vec<Scene> = SUITE
         .iter()
         .map(|(name, _)| named(name, photons, None))
@@ -54,12 +54,12 @@ fn run(scene: Scene, level: f64) -> SuiteRun {
     }
 }
 
-fn table(outcomes: &[SuiteRun], planes: usize, level: f64) -> Section {
+fn table(outcomes: &[SuiteRun], planes: usize, level: f64) -> ReportSection {
     let rows = outcomes.iter().flat_map(|outcome| {
         let planes = outcome.planes.iter().zip(&outcome.backward);
         planes.map(|(plane, p)| row(&outcome.scene, &plane.report, *p, level))
     });
-    Section {
+    ReportSection {
         title: format!("The suite: {} scenes, {planes} planes", outcomes.len()),
         text: format!(
             "Photons and seeds as in the files. Required: every plane passes in its class, and photons agree with backward \
@@ -118,7 +118,7 @@ fn outcome<'a>(outcomes: &'a [SuiteRun], name: &str) -> Option<&'a SuiteRun> {
 }
 
 /// Two occluders that block everything together, and a lot of light alone (Durand et al. 2005, Fig. 7).
-fn occluders(outcomes: &[SuiteRun]) -> Section {
+fn occluders(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     let at = |name: &str| {
         outcome(outcomes, name)?
@@ -195,7 +195,7 @@ fn occluders(outcomes: &[SuiteRun]) -> Section {
         vec!["the same without phases".to_owned(), format!("{blind:.3}")],
         vec![Check::new("moduli", blind, Above(1e-2), "phases matter")],
     ));
-    Section {
+    ReportSection {
         title: "Two occluders (Fig. 7)".to_owned(),
         text: "Required: a million photons past each, none past both; the sum of spectra F₁ + F₂ − F below 10⁻¹² of F, \
                that of their moduli not."
@@ -211,7 +211,7 @@ fn travels(operator: &etendue_theory::Operator) -> bool {
 }
 
 /// H of the light that leaves the receiver under blockers of three sizes (Durand et al. 2005, Fig. 9).
-fn high_frequencies(outcomes: &[SuiteRun]) -> Section {
+fn high_frequencies(outcomes: &[SuiteRun]) -> ReportSection {
     let shares = |name: &str| {
         let leaving = outcome(outcomes, name)?
             .planes
@@ -245,7 +245,7 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> Section {
         rows.push(Row::new(row, checks.concat()));
     }
     let cuts = Check::fact("cuts", rows.len() == 2, "the scenes have two");
-    Section {
+    ReportSection {
         title: "High frequencies of a shadow (Fig. 9)".to_owned(),
         text: "H: share of energy above the cut in the spectrum of the windowed irradiance on the light leaving the receiver, \
                measured ± error; predicted. The window's main lobe ends at 1/half-width; the first cut is twice that, the second \
@@ -258,7 +258,7 @@ fn high_frequencies(outcomes: &[SuiteRun]) -> Section {
 }
 
 /// The white furnace: radiance times the configuration factor of the light, in closed form.
-fn furnace(outcomes: &[SuiteRun]) -> Section {
+fn furnace(outcomes: &[SuiteRun]) -> ReportSection {
     let mut rows = Vec::new();
     if let Some(outcome) = outcome(outcomes, "furnace") {
         let (plane, compared) = (&outcome.scene.planes[0], &outcome.planes[0]);
@@ -300,7 +300,7 @@ fn furnace(outcomes: &[SuiteRun]) -> Section {
         rows.push(Row::new(cells, checks));
     }
     let lit = Check::fact("furnace", !rows.is_empty(), "the suite has one");
-    Section {
+    ReportSection {
         title: "White furnace".to_owned(),
         text: "∫ L W over a white receiver 0.5 m from a light of 8 m × 8 m: radiance times configuration factor, by the closed form for \
                a rectangle and a parallel element (Howell, *A Catalog of Radiation Heat Transfer Configuration Factors*, B-3)."

@@ -5,7 +5,7 @@
 mod common;
 
 use common::call;
-use etendue_explorer::{CELLS, PathPlace, Setting, Setup, scene};
+use etendue_explorer::{CELLS, PathPlace, SettingKey, Setup, scene};
 use etendue_field::{Complex, Projection, Slices};
 use ndarray::{Array2, Array3};
 use ndarray_npy::NpzReader;
@@ -62,7 +62,7 @@ fn numbers_are_those_of_the_saved_scene() {
             assert!(off < 1e-12, "{text}, {}: {off:e}", plane.name());
             if plane == PathPlace::Arrived {
                 let mut moved = setup.clone();
-                moved.set(Setting::Travel, setup.get(Setting::Travel) + 1e-9);
+                moved.set(SettingKey::Travel, setup.get(SettingKey::Travel) + 1e-9);
                 let off = apart(
                     &(plane.spectrum(&moved), plane.field(&moved, CELLS)),
                     &command,

@@ -59,9 +59,9 @@ fn sharpest_cutoff(reflectance: &Reflectance) -> f64 {
 #[must_use]
 pub fn lobe_cutoff(lobe: Lobe) -> Option<f64> {
     let lobe = match lobe {
-        Lobe::Phong { exponent } => shading::Lobe::Phong { exponent },
-        Lobe::Beckmann { roughness } => shading::Lobe::Beckmann { roughness },
-        Lobe::Ggx { roughness } => shading::Lobe::Ggx { roughness },
+        Lobe::Phong { exponent } => shading::PlanarLobe::Phong { exponent },
+        Lobe::Beckmann { roughness } => shading::PlanarLobe::Beckmann { roughness },
+        Lobe::Ggx { roughness } => shading::PlanarLobe::Ggx { roughness },
         Lobe::Lambertian => return None,
     };
     Some(lobe.cutoff(BANDWIDTH_FRACTION))

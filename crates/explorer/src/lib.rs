@@ -20,4 +20,4 @@ mod setup;
 pub use parts::{CELLS, grid, lobe};
 pub use plane::PathPlace;
 pub use ron::scene;
-pub use setup::{Setting, SettingEntry, Setup, TABLE};
+pub use setup::{SettingEntry, SettingKey, Setup, TABLE};

@@ -1,6 +1,6 @@
 //! What the page calls.
 
-use crate::{CELLS, PathPlace, Setting, Setup, TABLE, grid, lobe, scene};
+use crate::{CELLS, PathPlace, SettingKey, Setup, TABLE, grid, lobe, scene};
 use etendue_theory::shading::Criterion;
 use wasm_bindgen::prelude::wasm_bindgen;
 
@@ -28,7 +28,7 @@ impl Explorer {
     /// Takes every other frequency, where the window needs no more, and larger cells: what is
     /// moving need not be as fine, and each number stays as exact as it was.
     pub fn coarsen(&mut self) {
-        for key in [Setting::RhoStep, Setting::NuStep] {
+        for key in [SettingKey::RhoStep, SettingKey::NuStep] {
             self.setup.set(key, 2.0 * self.setup.get(key));
         }
         self.cells = CELLS / 2;
@@ -118,8 +118,8 @@ impl Explorer {
         let half = |key| self.setup.get(key);
         vec![
             self.cells as f64,
-            half(Setting::WindowX),
-            half(Setting::WindowU),
+            half(SettingKey::WindowX),
+            half(SettingKey::WindowU),
             grid.rho.half as f64,
             grid.rho.spacing,
             grid.nu.half as f64,
@@ -134,11 +134,11 @@ impl Explorer {
     pub fn criterion(&self) -> Vec<f64> {
         let get = |key| self.setup.get(key);
         let criterion = Criterion {
-            curvature: get(Setting::Curvature),
+            curvature: get(SettingKey::Curvature),
             incidence: 0.0,
             outgoing: 0.0,
             distance: 1.0,
-            blocker_distance: Some(get(Setting::Travel) - get(Setting::Distance)),
+            blocker_distance: Some(get(SettingKey::Travel) - get(SettingKey::Distance)),
             lobe_cutoff: lobe(&self.setup).cutoff(0.99),
             environment_cutoff: 0.0,
         };

@@ -1,8 +1,8 @@
 //! The light, blockers, lobe, window and frequencies of a setup.
 
-use crate::setup::{Setting, Setup};
+use crate::setup::{SettingKey, Setup};
 use etendue_field::{FrequencyAxis, Light, Profile, Rectangle, Shape, SliceGrid, Window, whole};
-use etendue_theory::shading::Lobe;
+use etendue_theory::shading::PlanarLobe;
 use etendue_transform::random::{self, Stream};
 
 /// Length of a slat along Y, metres: more than any window sees.
@@ -17,7 +17,7 @@ const MAX_FREQUENCIES: usize = 160;
 pub(crate) fn square(setup: &Setup) -> Light {
     let square = Rectangle {
         center: [0.0; 2],
-        size: [setup.get(Setting::Width); 2],
+        size: [setup.get(SettingKey::Width); 2],
     };
     Light::Area {
         shape: Shape::Rectangle(square),
@@ -28,9 +28,9 @@ pub(crate) fn square(setup: &Setup) -> Light {
 
 /// The receiver's lobe.
 #[must_use]
-pub fn lobe(setup: &Setup) -> Lobe {
-    Lobe::Phong {
-        exponent: setup.get(Setting::Exponent),
+pub fn lobe(setup: &Setup) -> PlanarLobe {
+    PlanarLobe::Phong {
+        exponent: setup.get(SettingKey::Exponent),
     }
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn place(i: u32, count: u32) -> f64 {
     reason = "1 to 41"
 )]
 pub(crate) fn count(setup: &Setup) -> u32 {
-    setup.get(Setting::Count).round() as u32
+    setup.get(SettingKey::Count).round() as u32
 }
 
 /// The seed of the jitter.
@@ -58,16 +58,16 @@ pub(crate) fn count(setup: &Setup) -> u32 {
     reason = "0 to 2³²"
 )]
 pub(crate) fn seed(setup: &Setup) -> u64 {
-    setup.get(Setting::Seed).round() as u64
+    setup.get(SettingKey::Seed).round() as u64
 }
 
 /// The blockers, from the central ray.
 pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
     let count = count(setup);
     let [pitch, fill, jitter] =
-        [Setting::Pitch, Setting::Fill, Setting::Jitter].map(|key| setup.get(key));
-    let middle = -setup.get(Setting::Position);
-    if !setup.is(Setting::Squares) {
+        [SettingKey::Pitch, SettingKey::Fill, SettingKey::Jitter].map(|key| setup.get(key));
+    let middle = -setup.get(SettingKey::Position);
+    if !setup.is(SettingKey::Squares) {
         let slat = |i| Rectangle {
             center: [middle + place(i, count) * pitch, 0.0],
             size: [fill * pitch, SLAT],
@@ -91,14 +91,15 @@ pub(crate) fn shapes(setup: &Setup) -> Vec<Shape> {
 /// The window of all planes.
 #[must_use]
 pub(crate) fn window(setup: &Setup) -> Window {
-    let [x, u] = [Setting::WindowX, Setting::WindowU].map(|key| Profile::Hann(setup.get(key)));
+    let [x, u] =
+        [SettingKey::WindowX, SettingKey::WindowU].map(|key| Profile::Hann(setup.get(key)));
     Window { x, y: x, u, v: u }
 }
 
 /// Their frequencies.
 #[must_use]
 pub fn grid(setup: &Setup) -> SliceGrid {
-    let axis = |most: Setting, step: Setting, half_width: Setting| {
+    let axis = |most: SettingKey, step: SettingKey, half_width: SettingKey| {
         // Never wider than the window asks for.
         let spacing = setup.get(step).min(0.5 / setup.get(half_width));
         let half = whole((setup.get(most) / spacing - 1e-9).ceil()).min(MAX_FREQUENCIES);
@@ -106,7 +107,7 @@ pub fn grid(setup: &Setup) -> SliceGrid {
     };
     SliceGrid {
         azimuths: 1,
-        rho: axis(Setting::RhoMax, Setting::RhoStep, Setting::WindowX),
-        nu: axis(Setting::NuMax, Setting::NuStep, Setting::WindowU),
+        rho: axis(SettingKey::RhoMax, SettingKey::RhoStep, SettingKey::WindowX),
+        nu: axis(SettingKey::NuMax, SettingKey::NuStep, SettingKey::WindowU),
     }
 }

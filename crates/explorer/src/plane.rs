@@ -1,6 +1,6 @@
 //! Planes along the path.
 
-use crate::setup::{Setting, Setup};
+use crate::setup::{SettingKey, Setup};
 
 /// A place on the path.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -30,7 +30,7 @@ impl PathPlace {
     #[must_use]
     pub fn all(setup: &Setup) -> Vec<Self> {
         let mut all = vec![Self::Light, Self::Travelled, Self::Blocked, Self::Arrived];
-        all.extend(if setup.is(Setting::Glossy) {
+        all.extend(if setup.is(SettingKey::Glossy) {
             vec![Self::Curved, Self::Blurred, Self::Glossy]
         } else {
             vec![Self::Irradiance, Self::Diffuse]

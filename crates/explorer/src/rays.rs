@@ -2,7 +2,7 @@
 
 use crate::parts::{CELLS, grid, shapes, square, window};
 use crate::plane::PathPlace;
-use crate::setup::{Setting, Setup};
+use crate::setup::{SettingKey, Setup};
 use etendue_field::{
     Brdf, Frame, Fresnel, Lobe, Mask, Orientation, Patch, ProjectionGrid, Quantity, Reflectance,
     SliceGrid,
@@ -65,30 +65,30 @@ pub(crate) fn followed(plane: PathPlace, setup: &Setup) -> Option<Predicted> {
 }
 
 fn layers(setup: &Setup) -> Vec<(f64, Mask)> {
-    if setup.get(Setting::Fill) <= 0.0 {
+    if setup.get(SettingKey::Fill) <= 0.0 {
         return Vec::new();
     }
     let mask = Mask::Opaque {
         shapes: shapes(setup),
         half_planes: Vec::new(),
     };
-    vec![(setup.get(Setting::Distance), mask)]
+    vec![(setup.get(SettingKey::Distance), mask)]
 }
 
 /// The receiver in the frame at the light, turned to it.
 fn patch(setup: &Setup) -> Patch {
-    let vertex = DVec3::Z * setup.get(Setting::Travel);
+    let vertex = DVec3::Z * setup.get(SettingKey::Travel);
     Patch {
         frame: Frame::new(vertex, DVec3::NEG_Z, DVec3::X).expect("axes at right angles"),
-        curvature: [setup.get(Setting::Curvature); 3],
+        curvature: [setup.get(SettingKey::Curvature); 3],
         aperture: APERTURE,
     }
 }
 
 fn reflectance(setup: &Setup) -> Reflectance {
-    let exponent = setup.get(Setting::Exponent);
+    let exponent = setup.get(SettingKey::Exponent);
     let lobe = Lobe::Phong { exponent };
-    Brdf::new(lobe, setup.get(Setting::Albedo), Fresnel::White).into()
+    Brdf::new(lobe, setup.get(SettingKey::Albedo), Fresnel::White).into()
 }
 
 /// A plane where the central ray meets the receiver; straight back X is turned round.

@@ -3,7 +3,7 @@
 use crate::parts::{SLAT, count, grid, place, seed};
 use crate::plane::PathPlace;
 use crate::rays::{APERTURE, AZIMUTHS};
-use crate::setup::{Setting, Setup};
+use crate::setup::{SettingKey, Setup};
 use etendue_field::FrequencyAxis;
 use std::fmt::Write;
 
@@ -15,9 +15,9 @@ const PHOTONS: u64 = 4_194_304;
 pub fn scene(setup: &Setup) -> String {
     let get = |key| setup.get(key);
     let (x, distance, end) = (
-        get(Setting::Position),
-        get(Setting::Distance),
-        get(Setting::Travel),
+        get(SettingKey::Position),
+        get(SettingKey::Distance),
+        get(SettingKey::Travel),
     );
     let grid = grid(setup);
     let axis = |axis: &FrequencyAxis| format!("(max: {}, spacing: {})", axis.max(), axis.spacing);
@@ -42,12 +42,12 @@ pub fn scene(setup: &Setup) -> String {
 )
 ",
         fragment = setup.fragment(),
-        side = get(Setting::Width),
+        side = get(SettingKey::Width),
         blockers = blockers(setup, distance),
         receiver = receiver(setup, x, end),
         planes = planes.join("\n"),
-        window_x = get(Setting::WindowX),
-        window_u = get(Setting::WindowU),
+        window_x = get(SettingKey::WindowX),
+        window_u = get(SettingKey::WindowU),
         rho = axis(&grid.rho),
         nu = axis(&grid.nu),
     )
@@ -55,13 +55,13 @@ pub fn scene(setup: &Setup) -> String {
 
 fn blockers(setup: &Setup, distance: f64) -> String {
     let [pitch, fill, jitter] =
-        [Setting::Pitch, Setting::Fill, Setting::Jitter].map(|key| setup.get(key));
+        [SettingKey::Pitch, SettingKey::Fill, SettingKey::Jitter].map(|key| setup.get(key));
     let count = count(setup);
     if fill <= 0.0 {
         return String::new();
     }
     let head = format!("name: \"blockers\", center: (0, 0, {distance})");
-    if setup.is(Setting::Squares) {
+    if setup.is(SettingKey::Squares) {
         let seed = seed(setup);
         return format!(
             "    blockers: [
@@ -84,13 +84,14 @@ fn blockers(setup: &Setup, distance: f64) -> String {
 }
 
 fn receiver(setup: &Setup, x: f64, end: f64) -> String {
-    let albedo = setup.get(Setting::Albedo);
-    if !setup.is(Setting::Glossy) {
+    let albedo = setup.get(SettingKey::Albedo);
+    if !setup.is(SettingKey::Glossy) {
         return format!(
             "Rectangle(name: \"receiver\", center: ({x}, 0, {end}), size: (6, 6), albedo: {albedo})"
         );
     }
-    let [curvature, exponent] = [Setting::Curvature, Setting::Exponent].map(|key| setup.get(key));
+    let [curvature, exponent] =
+        [SettingKey::Curvature, SettingKey::Exponent].map(|key| setup.get(key));
     let form = if curvature.abs() > 0.0 {
         format!("Sphere({curvature})")
     } else {
@@ -105,8 +106,8 @@ fn receiver(setup: &Setup, x: f64, end: f64) -> String {
 
 /// A plane; beside blockers that are not there it stands where they would be.
 fn plane(plane: PathPlace, setup: &Setup) -> String {
-    let distance = setup.get(Setting::Distance);
-    let are_there = setup.get(Setting::Fill) > 0.0;
+    let distance = setup.get(SettingKey::Distance);
+    let are_there = setup.get(SettingKey::Fill) > 0.0;
     let before_receiver = "at: Before(\"receiver\")";
     let place = match plane {
         PathPlace::Light => "at: Emission".to_owned(),

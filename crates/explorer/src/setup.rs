@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// A number that can be set.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Setting {
+pub enum SettingKey {
     /// Side of the square light, metres.
     Width,
     /// Where the light stands beside the middle of the blockers, metres.
@@ -51,7 +51,7 @@ pub enum Setting {
 #[derive(Clone, Copy, Debug)]
 pub struct SettingEntry {
     /// Which number.
-    pub key: Setting,
+    pub key: SettingKey,
     /// Its name in URLs.
     pub name: &'static str,
     /// What the page calls it; empty where the page has no slider for it.
@@ -67,7 +67,7 @@ pub struct SettingEntry {
 }
 
 const fn entry(
-    key: Setting,
+    key: SettingKey,
     name: &'static str,
     [label, unit]: [&'static str; 2],
     range: [f64; 2],
@@ -85,10 +85,10 @@ const fn entry(
     }
 }
 
-/// All of them, in the order of [`Setting`].
+/// All of them, in the order of [`SettingKey`].
 pub const TABLE: [SettingEntry; 20] = [
     entry(
-        Setting::Width,
+        SettingKey::Width,
         "width",
         ["width", "m"],
         [0.01, 0.4],
@@ -96,7 +96,7 @@ pub const TABLE: [SettingEntry; 20] = [
         0.06,
     ),
     entry(
-        Setting::Position,
+        SettingKey::Position,
         "position",
         ["position", "m"],
         [-0.2, 0.2],
@@ -104,7 +104,7 @@ pub const TABLE: [SettingEntry; 20] = [
         0.0,
     ),
     entry(
-        Setting::Travel,
+        SettingKey::Travel,
         "travel",
         ["travel", "m"],
         [0.3, 2.0],
@@ -112,7 +112,7 @@ pub const TABLE: [SettingEntry; 20] = [
         1.0,
     ),
     entry(
-        Setting::Distance,
+        SettingKey::Distance,
         "at",
         ["distance", "m"],
         [0.05, 1.98],
@@ -120,35 +120,56 @@ pub const TABLE: [SettingEntry; 20] = [
         0.5,
     ),
     entry(
-        Setting::Pitch,
+        SettingKey::Pitch,
         "pitch",
         ["pitch", "m"],
         [0.03, 0.4],
         0.002,
         0.1,
     ),
-    entry(Setting::Fill, "fill", ["fill", ""], [0.0, 0.9], 0.01, 0.5),
     entry(
-        Setting::Count,
+        SettingKey::Fill,
+        "fill",
+        ["fill", ""],
+        [0.0, 0.9],
+        0.01,
+        0.5,
+    ),
+    entry(
+        SettingKey::Count,
         "count",
         ["number", ""],
         [1.0, 41.0],
         1.0,
         21.0,
     ),
-    entry(Setting::Squares, "squares", ["", ""], [0.0, 1.0], 1.0, 0.0),
-    entry(Setting::Jitter, "jitter", ["", ""], [0.0, 1.0], 0.01, 0.0),
     entry(
-        Setting::Seed,
+        SettingKey::Squares,
+        "squares",
+        ["", ""],
+        [0.0, 1.0],
+        1.0,
+        0.0,
+    ),
+    entry(
+        SettingKey::Jitter,
+        "jitter",
+        ["", ""],
+        [0.0, 1.0],
+        0.01,
+        0.0,
+    ),
+    entry(
+        SettingKey::Seed,
         "seed",
         ["", ""],
         [0.0, 4_294_967_295.0],
         1.0,
         1.0,
     ),
-    entry(Setting::Glossy, "glossy", ["", ""], [0.0, 1.0], 1.0, 0.0),
+    entry(SettingKey::Glossy, "glossy", ["", ""], [0.0, 1.0], 1.0, 0.0),
     entry(
-        Setting::Curvature,
+        SettingKey::Curvature,
         "curvature",
         ["curvature", "1/m"],
         [-0.8, 1.5],
@@ -156,16 +177,23 @@ pub const TABLE: [SettingEntry; 20] = [
         0.5,
     ),
     entry(
-        Setting::Exponent,
+        SettingKey::Exponent,
         "exponent",
         ["lobe, n", ""],
         [5.0, 2000.0],
         0.0,
         200.0,
     ),
-    entry(Setting::Albedo, "albedo", ["", ""], [0.01, 1.0], 0.01, 0.5),
     entry(
-        Setting::WindowX,
+        SettingKey::Albedo,
+        "albedo",
+        ["", ""],
+        [0.01, 1.0],
+        0.01,
+        0.5,
+    ),
+    entry(
+        SettingKey::WindowX,
         "window_x",
         ["", "m"],
         [0.01, 5.0],
@@ -173,7 +201,7 @@ pub const TABLE: [SettingEntry; 20] = [
         0.2,
     ),
     entry(
-        Setting::WindowU,
+        SettingKey::WindowU,
         "window_u",
         ["", ""],
         [0.01, 1.0],
@@ -181,7 +209,7 @@ pub const TABLE: [SettingEntry; 20] = [
         0.25,
     ),
     entry(
-        Setting::RhoMax,
+        SettingKey::RhoMax,
         "rho_max",
         ["", "1/m"],
         [0.1, 1000.0],
@@ -189,16 +217,23 @@ pub const TABLE: [SettingEntry; 20] = [
         40.0,
     ),
     entry(
-        Setting::RhoStep,
+        SettingKey::RhoStep,
         "rho_step",
         ["", "1/m"],
         [0.01, 100.0],
         0.01,
         1.25,
     ),
-    entry(Setting::NuMax, "nu_max", ["", ""], [0.1, 1000.0], 0.1, 32.0),
     entry(
-        Setting::NuStep,
+        SettingKey::NuMax,
+        "nu_max",
+        ["", ""],
+        [0.1, 1000.0],
+        0.1,
+        32.0,
+    ),
+    entry(
+        SettingKey::NuStep,
         "nu_step",
         ["", ""],
         [0.01, 100.0],
@@ -227,18 +262,18 @@ const CLEARANCE: f64 = 0.02;
 impl Setup {
     /// A number.
     #[must_use]
-    pub fn get(&self, key: Setting) -> f64 {
+    pub fn get(&self, key: SettingKey) -> f64 {
         self.values[key as usize]
     }
 
     /// Whether one of those that are 0 or 1 is set.
     #[must_use]
-    pub fn is(&self, key: Setting) -> bool {
+    pub fn is(&self, key: SettingKey) -> bool {
         self.get(key) > 0.5
     }
 
     /// Sets a number as near to a value as its range, and the scene, let it.
-    pub fn set(&mut self, key: Setting, value: f64) {
+    pub fn set(&mut self, key: SettingKey, value: f64) {
         let SettingEntry {
             range: [low, high],
             default,
@@ -246,18 +281,18 @@ impl Setup {
         } = TABLE[key as usize];
         let value = if value.is_finite() { value } else { default };
         self.values[key as usize] = value.clamp(low, high);
-        let most = self.get(Setting::Travel) - CLEARANCE;
-        let distance = self.get(Setting::Distance).min(most);
-        self.values[Setting::Distance as usize] = distance;
+        let most = self.get(SettingKey::Travel) - CLEARANCE;
+        let distance = self.get(SettingKey::Distance).min(most);
+        self.values[SettingKey::Distance as usize] = distance;
         // Squares never overlap.
-        let room = 1.0 - self.get(Setting::Fill);
-        let jitter = self.get(Setting::Jitter).min(room);
-        self.values[Setting::Jitter as usize] = jitter;
+        let room = 1.0 - self.get(SettingKey::Fill);
+        let jitter = self.get(SettingKey::Jitter).min(room);
+        self.values[SettingKey::Jitter as usize] = jitter;
     }
 
     /// The key with a name.
     #[must_use]
-    pub fn named(name: &str) -> Option<Setting> {
+    pub fn named(name: &str) -> Option<SettingKey> {
         let mut table = TABLE.iter();
         table
             .find(|entry| entry.name == name)
@@ -270,7 +305,7 @@ impl Setup {
         let mut text = String::new();
         for entry in TABLE {
             let value = self.get(entry.key);
-            if entry.key == Setting::Width || value.to_bits() != entry.default.to_bits() {
+            if entry.key == SettingKey::Width || value.to_bits() != entry.default.to_bits() {
                 let between = if text.is_empty() { "" } else { "&" };
                 // Writing to a string does not fail.
                 let _ = write!(text, "{between}{}={value}", entry.name);
@@ -310,9 +345,9 @@ mod tests {
     fn fragments_come_back() {
         let mut setup = Setup::default();
         assert_eq!(setup.fragment(), "width=0.06");
-        setup.set(Setting::Travel, 1.7);
-        setup.set(Setting::Distance, 1.2);
-        setup.set(Setting::Width, 0.1 + 0.2);
+        setup.set(SettingKey::Travel, 1.7);
+        setup.set(SettingKey::Distance, 1.2);
+        setup.set(SettingKey::Width, 0.1 + 0.2);
         assert_eq!(
             setup.fragment(),
             "width=0.30000000000000004&travel=1.7&at=1.2"
@@ -327,9 +362,9 @@ mod tests {
     #[test]
     fn blockers_stay_before_the_receiver_and_apart() {
         let mut setup = Setup::default();
-        setup.set(Setting::Travel, 0.4);
-        assert!(setup.get(Setting::Distance) < 0.4);
-        setup.set(Setting::Jitter, 0.9);
-        assert!(setup.get(Setting::Jitter) <= 0.5);
+        setup.set(SettingKey::Travel, 0.4);
+        assert!(setup.get(SettingKey::Distance) < 0.4);
+        setup.set(SettingKey::Jitter, 0.9);
+        assert!(setup.get(SettingKey::Jitter) <= 0.5);
     }
 }

@@ -4,7 +4,7 @@ use crate::color::{NO_VALUE, Shading, hex};
 use crate::figure::Error;
 use crate::image::color_strip;
 use crate::sizes::{LABEL_TEXT, SOFT, TICK, TICK_TEXT};
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::width;
 
 /// Width of the bar itself.
@@ -68,11 +68,11 @@ fn scale(svg: &mut Svg, shading: &Shading, area: Area, overhang: f64) {
         let at = area.bottom() - axis.fraction(tick.value) * area.height;
         svg.line([area.right(), at], [area.right() + TICK, at], Stroke::FRAME);
         let place = [area.right() + TICK + 3.0, at + 4.0];
-        svg.text(Text::new(place, TICK_TEXT, Anchor::Start), &tick.text);
+        svg.text(TextStyle::new(place, TICK_TEXT, Anchor::Start), &tick.text);
         widest = widest.max(width(&tick.text, TICK_TEXT));
     }
     let at = [area.right() + TICK + 3.0 + widest + 16.0, area.middle()[1]];
-    let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
+    let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
     let label = axis.quantity.label(axis.exponent());
     svg.fitted(style, &label, area.height + overhang);
 }
@@ -80,7 +80,7 @@ fn scale(svg: &mut Svg, shading: &Shading, area: Area, overhang: f64) {
 /// A key for cells without a value, ending at `right` on the baseline `y`.
 pub(crate) fn gap_key(svg: &mut Svg, right: f64, y: f64) {
     let text = "no value";
-    let style = Text::new([right, y], TICK_TEXT, Anchor::End).fill(SOFT);
+    let style = TextStyle::new([right, y], TICK_TEXT, Anchor::End).fill(SOFT);
     svg.text(style, text);
     let swatch = Area {
         x: right - width(text, TICK_TEXT) - 18.0,

@@ -6,7 +6,7 @@ use crate::color::{Colors, Scale, Shading, has_gaps, largest};
 use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::panel::Panel;
 use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
-use crate::svg::{Anchor, Area, Svg, Text};
+use crate::svg::{Anchor, Area, Svg, TextStyle};
 use ndarray::ArrayView2;
 
 /// One quantity measured and predicted on the same cells, [x, y], both axes ascending. NaN: no value.
@@ -94,7 +94,7 @@ fn draw_panels(svg: &mut Svg, comparison: &Comparison<'_>, top: f64) -> Result<(
         panel.heat_map(svg, values, shading)?;
         panel.axes(svg);
         let at = [panel.area.middle()[0], top - 9.0];
-        svg.text(Text::new(at, HEAD_TEXT, Anchor::Middle).bold(), name);
+        svg.text(TextStyle::new(at, HEAD_TEXT, Anchor::Middle).bold(), name);
     }
     bar::draw(svg, &value, BARS_X[0], area(1, top), OVERHANG)?;
     bar::draw(svg, &difference, BARS_X[1], area(2, top), OVERHANG)

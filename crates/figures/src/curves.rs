@@ -6,7 +6,7 @@ use crate::grid::LEFT;
 use crate::panel::Panel;
 use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_BASELINE, LABEL_TEXT, THEORY_COLOR, TICK_TEXT};
 use crate::style::Style;
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::{plain, width};
 use etendue_field::whole;
 
@@ -163,7 +163,7 @@ fn key(svg: &mut Svg, curves: &Curves, [left, mut y]: [f64; 2], room: f64) -> f6
         }
         let start = x + SAMPLE + 8.0;
         svg.markup(
-            Text::new([start, y], LABEL_TEXT, Anchor::Start),
+            TextStyle::new([start, y], LABEL_TEXT, Anchor::Start),
             &curve.name,
         );
         x += long + 30.0;
@@ -252,7 +252,7 @@ fn draw(svg: &mut Svg, panel: &CurvePanel, y: &Quantity, area: Area) {
     });
     frame.axes(svg);
     let at = [area.x, area.y - 8.0];
-    let style = Text::new(at, HEAD_TEXT, Anchor::Start).bold();
+    let style = TextStyle::new(at, HEAD_TEXT, Anchor::Start).bold();
     svg.fitted(style, &panel.title, area.width);
 }
 

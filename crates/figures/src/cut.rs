@@ -6,7 +6,7 @@ use crate::axis::{Axis, upright_ticks};
 use crate::marks::{BADGE, HATCH, Hatching, LIGHT, PLANE, badge, line_of};
 use crate::section::{PlaneMark, Section, Segment, SegmentKind};
 use crate::sizes::{FAINT, HEAD_TEXT, INK, LABEL_TEXT, SOFT, TICK, TICK_TEXT};
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::width;
 use etendue_field::Side;
 use place::{SegmentName, names, number_places};
@@ -94,7 +94,7 @@ impl<'a> SectionLayout<'a> {
         for name in &self.names {
             let y = self.area.y + NAME_ROW * (name.row as f64 + 1.0) - 2.0;
             svg.text(
-                Text::new([name.middle, y], TICK_TEXT, Anchor::Middle),
+                TextStyle::new([name.middle, y], TICK_TEXT, Anchor::Middle),
                 &name.text,
             );
         }
@@ -119,12 +119,12 @@ impl<'a> SectionLayout<'a> {
             return;
         };
         badge(svg, [x, y + BADGE], plane);
-        let style = Text::new([x, y + 32.0], HEAD_TEXT, Anchor::Middle).bold();
+        let style = TextStyle::new([x, y + 32.0], HEAD_TEXT, Anchor::Middle).bold();
         svg.fitted(style, &mark.name, room);
         // Four significant digits, as short as they can be written.
         let rounded = format!("{:.3e}", mark.distance).parse::<f64>();
         let distance = rounded.unwrap_or(mark.distance);
-        let style = Text::new([x, y + 47.0], TICK_TEXT, Anchor::Middle).fill(SOFT);
+        let style = TextStyle::new([x, y + 47.0], TICK_TEXT, Anchor::Middle).fill(SOFT);
         let distance = crate::axis::minus(&distance.to_string());
         let text = format!("*z* = {distance} m{}", self.beside(mark));
         svg.fitted(style, &text, room);
@@ -273,7 +273,7 @@ impl<'a> SectionLayout<'a> {
         let widest = gaps.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.total_cmp(&a.1)));
         if let Some((gap, from)) = widest.filter(|(gap, _)| *gap > width(text, TICK_TEXT) + 16.0) {
             let at = [from + 0.5 * gap, start[1] - 5.0];
-            svg.text(Text::new(at, TICK_TEXT, Anchor::Middle), text);
+            svg.text(TextStyle::new(at, TICK_TEXT, Anchor::Middle), text);
         }
     }
 
@@ -289,11 +289,11 @@ impl<'a> SectionLayout<'a> {
             let x = self.point([tick.value, 0.0])[0];
             svg.line([x, y - TICK], [x, y], Stroke::FRAME);
             svg.text(
-                Text::new([x, y - TICK - 4.0], TICK_TEXT, Anchor::Middle),
+                TextStyle::new([x, y - TICK - 4.0], TICK_TEXT, Anchor::Middle),
                 &tick.text,
             );
         }
-        let style = Text::new([0.5 * (left + right), y - 25.0], LABEL_TEXT, Anchor::Middle);
+        let style = TextStyle::new([0.5 * (left + right), y - 25.0], LABEL_TEXT, Anchor::Middle);
         svg.markup(style, &self.z.quantity.label(self.z.exponent()));
     }
 
@@ -308,12 +308,12 @@ impl<'a> SectionLayout<'a> {
         for tick in upright_ticks(&self.x, self.plot.height) {
             let y = self.point([0.0, tick.value])[1];
             svg.line([left - TICK, y], [left, y], Stroke::FRAME);
-            let style = Text::new([left - TICK - 3.0, y + 4.0], TICK_TEXT, Anchor::End);
+            let style = TextStyle::new([left - TICK - 3.0, y + 4.0], TICK_TEXT, Anchor::End);
             svg.text(style, &tick.text);
             widest = widest.max(width(&tick.text, TICK_TEXT));
         }
         let at = [left - TICK - 11.0 - widest, self.plot.middle()[1]];
-        let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
+        let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
         svg.markup(style, &self.x.quantity.label(self.x.exponent()));
     }
 }

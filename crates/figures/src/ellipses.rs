@@ -7,7 +7,7 @@ use crate::figure::{Error, Figure, csv_text, decimal};
 use crate::grid::Picture;
 use crate::panel::Panel;
 use crate::sizes::{INK, LABEL_BASELINE, TICK_TEXT};
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use std::f64::consts::TAU;
 
 /// A covariance over the axes of a picture.
@@ -131,7 +131,7 @@ pub fn ellipses(of: &Ellipses<'_>) -> Result<Figure, Error> {
                 dash,
             },
         );
-        let style = Text::new([LEFT + 44.0, baseline], TICK_TEXT, Anchor::Start).fill(INK);
+        let style = TextStyle::new([LEFT + 44.0, baseline], TICK_TEXT, Anchor::Start).fill(INK);
         svg.fitted(style, &ellipse.name, width - LEFT - 54.0);
     }
     Ok(Figure {

@@ -7,7 +7,7 @@ use crate::figure::Error;
 use crate::panel::Panel;
 use crate::sizes::{HEAD_TEXT, LABEL_BASELINE};
 use crate::style::Style;
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use ndarray::ArrayView2;
 
 /// Values on a grid, [x, y], both axes ascending. NaN: no value.
@@ -118,7 +118,7 @@ pub(crate) fn inner(style: &Style) -> f64 {
 
 /// Rows of pictures laid out for a page.
 #[derive(Debug)]
-pub(crate) struct Grid<'b, 'a> {
+pub(crate) struct PageGrid<'b, 'a> {
     rows: Vec<PictureRow<'b, 'a>>,
     style: Style,
     /// Width of a picture.
@@ -128,7 +128,7 @@ pub(crate) struct Grid<'b, 'a> {
     blocks: Vec<Vec<PlacedColumn>>,
 }
 
-impl<'b, 'a> Grid<'b, 'a> {
+impl<'b, 'a> PageGrid<'b, 'a> {
     /// Lays out rows of `columns` pictures that are at least `least` wide, if one fits. All have the shape of the first.
     ///
     /// # Panics
@@ -317,7 +317,9 @@ impl<'b, 'a> Grid<'b, 'a> {
             panel.axes(svg);
         }
         let at = [LEFT - ROW_NAME, y + 0.5 * self.height()];
-        let style = Text::new(at, HEAD_TEXT, Anchor::Middle).bold().upwards();
+        let style = TextStyle::new(at, HEAD_TEXT, Anchor::Middle)
+            .bold()
+            .upwards();
         svg.fitted(style, row.name, self.height());
         Ok(bar)
     }

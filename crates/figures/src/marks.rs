@@ -2,7 +2,7 @@
 
 use crate::section::SegmentKind;
 use crate::sizes::{FAINT, INK};
-use crate::svg::{Anchor, Stroke, Svg, Text};
+use crate::svg::{Anchor, Stroke, Svg, TextStyle};
 
 pub(crate) const LIGHT: &str = "#f0a000";
 const GLASS: &str = "#3a9bb0";
@@ -15,7 +15,7 @@ pub(crate) const HATCH: f64 = 9.0;
 /// A plane's number, from 1, on a disk.
 pub(crate) fn badge(svg: &mut Svg, [x, y]: [f64; 2], plane: usize) {
     svg.circle([x, y], BADGE, PLANE);
-    let style = Text::new([x, y + 3.8], 10.5, Anchor::Middle)
+    let style = TextStyle::new([x, y + 3.8], 10.5, Anchor::Middle)
         .bold()
         .fill("white");
     svg.text(style, &(plane + 1).to_string());

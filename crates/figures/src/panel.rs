@@ -5,7 +5,7 @@ use crate::color::Shading;
 use crate::figure::Error;
 use crate::image::heat_map;
 use crate::sizes::{LABEL_BASELINE, LABEL_TEXT, TICK, TICK_BASELINE, TICK_TEXT};
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::width;
 use ndarray::ArrayView2;
 
@@ -67,14 +67,14 @@ impl Panel<'_> {
             if !self.label_x {
                 continue;
             }
-            let style = Text::new([at, bottom + TICK_BASELINE], size, Anchor::Middle);
+            let style = TextStyle::new([at, bottom + TICK_BASELINE], size, Anchor::Middle);
             svg.text(style, &tick.text);
         }
         if !self.label_x {
             return;
         }
         let [middle, _] = self.area.middle();
-        let style = Text::new(
+        let style = TextStyle::new(
             [middle, bottom + LABEL_BASELINE],
             LABEL_TEXT,
             Anchor::Middle,
@@ -90,7 +90,7 @@ impl Panel<'_> {
             let [_, at] = self.point(0.0, tick.value);
             svg.line([left - TICK, at], [left, at], Stroke::FRAME);
             if self.label_y {
-                let style = Text::new([left - TICK - 3.0, at + 4.0], TICK_TEXT, Anchor::End);
+                let style = TextStyle::new([left - TICK - 3.0, at + 4.0], TICK_TEXT, Anchor::End);
                 svg.text(style, &tick.text);
                 widest = widest.max(width(&tick.text, TICK_TEXT));
             }
@@ -98,7 +98,7 @@ impl Panel<'_> {
         if self.label_y {
             let [_, middle] = self.area.middle();
             let at = [left - TICK - 3.0 - widest - 8.0, middle];
-            let style = Text::new(at, LABEL_TEXT, Anchor::Middle).upwards();
+            let style = TextStyle::new(at, LABEL_TEXT, Anchor::Middle).upwards();
             let label = self.y.quantity.label(self.y.exponent());
             svg.fitted(style, &label, self.area.height + OVERHANG[1]);
         }

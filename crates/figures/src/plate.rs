@@ -4,11 +4,11 @@ use crate::axis::{Axis, Quantity, minus};
 use crate::bar;
 use crate::color::Scale;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{Grid, LEFT, Picture, PictureRow, RIGHT, inner};
+use crate::grid::{LEFT, PageGrid, Picture, PictureRow, RIGHT, inner};
 use crate::panel::Panel;
 use crate::sizes::{FAINT, HEAD_TEXT, INK, SOFT, THEORY_COLOR, TICK_TEXT};
 use crate::style::Style;
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use crate::text::{lines, plain};
 use etendue_field::uncertain;
 
@@ -78,7 +78,7 @@ const TITLE: f64 = 440.0;
 /// When a row has not a picture for each head.
 pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     let rows = plate.rows.iter().map(row);
-    let grid = Grid::new(rows.collect(), plate.heads.len(), MIN_WIDTH, style);
+    let grid = PageGrid::new(rows.collect(), plate.heads.len(), MIN_WIDTH, style);
     let mut svg = Svg::default();
     let inner = grid.width().max(TITLE.min(inner(style)));
     let room = inner + 0.8 * RIGHT;
@@ -86,7 +86,7 @@ pub fn plate(plate: &Plate<'_>, style: &Style) -> Result<Figure, Error> {
     for block in 0..grid.blocks() {
         let top = bottom + if block == 0 { 26.0 } else { 40.0 };
         for (column, middle, room) in grid.columns(block) {
-            let style = Text::new([middle, top - 9.0], HEAD_TEXT, Anchor::Middle).bold();
+            let style = TextStyle::new([middle, top - 9.0], HEAD_TEXT, Anchor::Middle).bold();
             svg.fitted(style, &plate.heads[column], room);
         }
         bottom = grid.draw(&mut svg, block, top)?;
@@ -141,7 +141,7 @@ fn row<'b, 'a>(row: &'b PlateRow<'a>) -> PictureRow<'b, 'a> {
 pub(crate) fn feet(
     svg: &mut Svg,
     feet: &[Vec<String>],
-    grid: &Grid<'_, '_>,
+    grid: &PageGrid<'_, '_>,
     block: usize,
     baseline: f64,
 ) -> f64 {
@@ -153,7 +153,7 @@ pub(crate) fn feet(
         most = most.max(lines.len());
         for (line, text) in lines.iter().enumerate() {
             let at = [middle, baseline + 21.0 + 16.0 * line as f64];
-            svg.fitted(Text::new(at, TICK_TEXT, Anchor::Middle), text, room);
+            svg.fitted(TextStyle::new(at, TICK_TEXT, Anchor::Middle), text, room);
         }
     }
     baseline + 6.0 + 16.0 * most as f64
@@ -194,7 +194,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
         if let (Some(value), Some(error)) = (value, bars.errors[column]) {
             let above = [x, at(value + error) - 5.0];
             let text = minus(&uncertain(*value, error));
-            svg.text(Text::new(above, TICK_TEXT, Anchor::Middle), &text);
+            svg.text(TextStyle::new(above, TICK_TEXT, Anchor::Middle), &text);
             svg.line(
                 [x, at((value - error).max(0.0))],
                 [x, at((value + error).max(0.0))],
@@ -215,7 +215,7 @@ fn draw_bars(svg: &mut Svg, bars: &Bars, area: Area, middles: &[f64]) -> f64 {
     for line in lines(&key, TICK_TEXT, area.width + 0.8 * RIGHT) {
         y += 15.0;
         svg.markup(
-            Text::new([area.x, y], TICK_TEXT, Anchor::Start).fill(SOFT),
+            TextStyle::new([area.x, y], TICK_TEXT, Anchor::Start).fill(SOFT),
             &line,
         );
     }

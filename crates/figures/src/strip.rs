@@ -5,12 +5,12 @@ use crate::bar;
 use crate::color::{Colors, Scale, hex};
 use crate::cut::SectionLayout;
 use crate::figure::{Error, Figure, csv_text, decimal};
-use crate::grid::{GAPS, GUIDE, Grid, Guide, LEFT, Picture, RIGHT, inner};
+use crate::grid::{GAPS, GUIDE, Guide, LEFT, PageGrid, Picture, RIGHT, inner};
 use crate::plate::feet;
 use crate::section::Section;
 use crate::sizes::{SOFT, TICK_TEXT};
 use crate::style::Style;
-use crate::svg::{Anchor, Area, Svg, Text};
+use crate::svg::{Anchor, Area, Svg, TextStyle};
 
 /// What is shown under a virtual plane.
 #[derive(Clone, Debug)]
@@ -57,7 +57,7 @@ pub struct Strip<'a> {
 
 /// A row of pictures.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum PictureRow {
+enum StripRow {
     LightField,
     Across,
     Spectrum,
@@ -67,7 +67,7 @@ enum PictureRow {
     OffChain,
 }
 
-impl PictureRow {
+impl StripRow {
     /// Those of a strip.
     fn of(strip: &Strip<'_>) -> Vec<Self> {
         let predicted = strip
@@ -188,41 +188,41 @@ pub fn strip(strip: &Strip<'_>, style: &Style) -> Result<Figure, Error> {
 }
 
 /// The pictures under the cut.
-fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> Grid<'b, 'a> {
-    let row = |row: PictureRow| {
+fn grid<'b, 'a>(strip: &'b Strip<'a>, style: &Style) -> PageGrid<'b, 'a> {
+    let row = |row: StripRow| {
         let cell = |column: &'b Column<'a>| {
             let guides = match row {
-                PictureRow::Spectrum | PictureRow::Predicted => &column.guides[..],
+                StripRow::Spectrum | StripRow::Predicted => &column.guides[..],
                 _ => &[],
             };
             (row.picture(column), guides)
         };
         crate::grid::PictureRow {
             name: row.name(),
-            bar: if row == PictureRow::OffChain {
+            bar: if row == StripRow::OffChain {
                 ["|*S* − chain|".to_owned(), "% of the peak".to_owned()]
             } else {
                 ["of each peak".to_owned(), String::new()]
             },
             scale: match row {
-                PictureRow::LightField | PictureRow::Across | PictureRow::OffChain => Scale::Linear,
+                StripRow::LightField | StripRow::Across | StripRow::OffChain => Scale::Linear,
                 _ => Scale::Decibel { floor: strip.floor },
             },
-            shared: row == PictureRow::OffChain,
+            shared: row == StripRow::OffChain,
             cells: strip.columns.iter().map(cell).collect(),
         }
     };
-    let rows = PictureRow::of(strip).into_iter().map(row).collect();
+    let rows = StripRow::of(strip).into_iter().map(row).collect();
     // Two stand side by side on the narrowest page.
     let half = 0.5 * (inner(style) - GAPS[1]);
-    Grid::new(rows, strip.columns.len(), MIN_WIDTH.min(half), style)
+    PageGrid::new(rows, strip.columns.len(), MIN_WIDTH.min(half), style)
 }
 
 /// The keys to dashed lines and to cells without a value; returns the lowest baseline.
 fn keys(
     svg: &mut Svg,
     strip: &Strip<'_>,
-    grid: &Grid<'_, '_>,
+    grid: &PageGrid<'_, '_>,
     [right, bottom]: [f64; 2],
     style: &Style,
 ) -> f64 {
@@ -249,7 +249,7 @@ fn guide_key(svg: &mut Svg, [x, y]: [f64; 2], style: &Style) {
     for stroke in GUIDE {
         svg.line([x, y - 4.0], [swatch.right(), y - 4.0], stroke);
     }
-    let style = Text::new([swatch.right() + 7.0, y], TICK_TEXT, Anchor::Start).fill(SOFT);
+    let style = TextStyle::new([swatch.right() + 7.0, y], TICK_TEXT, Anchor::Start).fill(SOFT);
     svg.text(style, "predicted shear");
 }
 
@@ -272,7 +272,7 @@ fn numbers(strip: &Strip<'_>) -> Result<String, Error> {
             Some(plane) => (plane.name.clone(), decimal(&plane.distance)),
             None => ((index + 1).to_string(), String::new()),
         };
-        for row in PictureRow::of(strip) {
+        for row in StripRow::of(strip) {
             let Picture { x, y, values } = row.picture(column);
             let (columns, lines) = values.dim();
             let heads = [x, y].map(|axis| axis.quantity.heading());

@@ -37,7 +37,7 @@ pub(crate) enum Anchor {
 
 /// Position and style of a text; the position is on the baseline.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Text {
+pub(crate) struct TextStyle {
     at: [f64; 2],
     size: f64,
     anchor: Anchor,
@@ -46,7 +46,7 @@ pub(crate) struct Text {
     upwards: bool,
 }
 
-impl Text {
+impl TextStyle {
     pub(crate) fn new(at: [f64; 2], size: f64, anchor: Anchor) -> Self {
         Self {
             at,
@@ -176,22 +176,22 @@ impl Svg {
     }
 
     /// Text shown as it is.
-    pub(crate) fn text(&mut self, style: Text, text: &str) {
+    pub(crate) fn text(&mut self, style: TextStyle, text: &str) {
         self.write(style, &escape(text));
     }
 
     /// Text with markup.
-    pub(crate) fn markup(&mut self, style: Text, markup: &str) {
+    pub(crate) fn markup(&mut self, style: TextStyle, markup: &str) {
         self.write(style, &spans(markup, style.size));
     }
 
     /// Text with markup in at most `room`: smaller if need be, and as a last resort cut short, without its styles.
-    pub(crate) fn fitted(&mut self, style: Text, markup: &str, room: f64) {
+    pub(crate) fn fitted(&mut self, style: TextStyle, markup: &str, room: f64) {
         let plain = plain(markup);
         // Bold letters are about 12 % wider than the estimate for regular ones.
         let room = if style.bold { room / 1.12 } else { room };
         let (text, size) = fit(&plain, style.size, room);
-        let style = Text { size, ..style };
+        let style = TextStyle { size, ..style };
         if text == plain {
             self.markup(style, markup);
         } else {
@@ -199,7 +199,7 @@ impl Svg {
         }
     }
 
-    fn write(&mut self, style: Text, content: &str) {
+    fn write(&mut self, style: TextStyle, content: &str) {
         if content.is_empty() {
             return;
         }
@@ -238,13 +238,13 @@ impl Svg {
         let mut y = 8.0;
         if !title.is_empty() {
             y += 18.0;
-            let style = Text::new([x, y], TITLE_TEXT, Anchor::Start).bold();
+            let style = TextStyle::new([x, y], TITLE_TEXT, Anchor::Start).bold();
             self.fitted(style, title, room);
         }
         y += 4.0;
         for line in lines(note, TICK_TEXT, room) {
             y += 15.0;
-            let style = Text::new([x, y], TICK_TEXT, Anchor::Start).fill(SOFT);
+            let style = TextStyle::new([x, y], TICK_TEXT, Anchor::Start).fill(SOFT);
             self.fitted(style, &line, room);
         }
         y + 6.0

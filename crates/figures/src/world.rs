@@ -3,7 +3,7 @@
 use crate::marks::{BADGE, Hatching, PLANE, badge, line_of};
 use crate::section::{Object, SegmentKind, World};
 use crate::sizes::{INK, LABEL_TEXT, SOFT, STROKE, TICK_TEXT};
-use crate::svg::{Anchor, Area, Stroke, Svg, Text};
+use crate::svg::{Anchor, Area, Stroke, Svg, TextStyle};
 use etendue_field::tidy;
 
 /// Height of the drawing, and of what is written above it.
@@ -22,7 +22,7 @@ impl World {
             width,
             height: DRAWING,
         };
-        let title = Text::new([area.middle()[0], y + 22.0], LABEL_TEXT, Anchor::Middle);
+        let title = TextStyle::new([area.middle()[0], y + 22.0], LABEL_TEXT, Anchor::Middle);
         svg.text(title, "to scale");
         let (scale, middle) = self.scale(area);
         let [cx, cy] = area.middle();
@@ -128,6 +128,6 @@ fn bar(svg: &mut Svg, area: Area, scale: f64) {
     for end in [x, right] {
         svg.line([end, y - 3.0], [end, y + 3.0], stroke);
     }
-    let style = Text::new([right + 6.0, y + 4.0], TICK_TEXT, Anchor::Start).fill(SOFT);
+    let style = TextStyle::new([right + 6.0, y + 4.0], TICK_TEXT, Anchor::Start).fill(SOFT);
     svg.text(style, &format!("{} m", tidy(length)));
 }

@@ -6,7 +6,7 @@ use etendue_figures::{
     stacked,
 };
 use etendue_store::Failure;
-use etendue_theory::shading::{Fresnel, cosine_hat, energy_below, g_hat, g_hat_3d};
+use etendue_theory::shading::{FresnelFactor, cosine_hat, energy_below, g_hat, g_hat_3d};
 use etendue_transform::gauss_legendre;
 use ndarray::Array2;
 use std::f64::consts::FRAC_PI_2;
@@ -119,7 +119,7 @@ const MAX_FREQUENCY: f64 = 6.0;
 /// The cosine, or the cosine times a Fresnel factor.
 struct Material {
     name: &'static str,
-    fresnel: Option<Fresnel>,
+    fresnel: Option<FresnelFactor>,
 }
 
 impl Material {
@@ -145,9 +145,9 @@ impl Material {
 /// cos₊ and cos₊ times the Fresnel factors of two dielectrics and a conductor (Fig. 12), with the frequencies below which their energy lies.
 pub(crate) fn fresnel(taken: &FigureData<'_>) -> Result<Figure, Failure> {
     let material = |name, fresnel| Material { name, fresnel };
-    let dielectric = |index| Some(Fresnel::Dielectric { index });
+    let dielectric = |index| Some(FresnelFactor::Dielectric { index });
     // Aluminium at 650 nm, as in the figures of microfacet papers.
-    let metal = Fresnel::Conductor {
+    let metal = FresnelFactor::Conductor {
         index: 1.488,
         extinction: 7.821,
     };

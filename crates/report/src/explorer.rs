@@ -1,6 +1,6 @@
 //! The explorer beside the results of a run whose scene it knows, and the link to it.
 
-use etendue_explorer::{Setting, Setup, scene};
+use etendue_explorer::{SettingKey, Setup, scene};
 use etendue_field::Profile;
 use etendue_scene::{
     BlockersFile, EventFile, FormFile, LightFile, LobeFile, SceneFile, ShapeFile, SurfaceFile,
@@ -120,21 +120,21 @@ fn setup(file: &SceneFile) -> Option<Setup> {
     let spacing = |axis: &etendue_scene::AxisFile, half: f64| axis.spacing.unwrap_or(0.5 / half);
     let (rho, nu) = (&file.frequencies.rho, &file.frequencies.nu);
     for (key, value) in [
-        (Setting::Travel, place(surface)[2]),
-        (Setting::Width, size[0]),
-        (Setting::Position, center[0]),
-        (Setting::WindowX, x),
-        (Setting::WindowU, u),
-        (Setting::RhoMax, rho.max),
-        (Setting::RhoStep, spacing(rho, x)),
-        (Setting::NuMax, nu.max),
-        (Setting::NuStep, spacing(nu, u)),
+        (SettingKey::Travel, place(surface)[2]),
+        (SettingKey::Width, size[0]),
+        (SettingKey::Position, center[0]),
+        (SettingKey::WindowX, x),
+        (SettingKey::WindowU, u),
+        (SettingKey::RhoMax, rho.max),
+        (SettingKey::RhoStep, spacing(rho, x)),
+        (SettingKey::NuMax, nu.max),
+        (SettingKey::NuStep, spacing(nu, u)),
     ] {
         setup.set(key, value);
     }
     reflection(surface, &mut setup)?;
     match &file.blockers[..] {
-        [] => setup.set(Setting::Fill, 0.0),
+        [] => setup.set(SettingKey::Fill, 0.0),
         [blockers] => stopped(blockers, &mut setup)?,
         _ => return None,
     }
@@ -151,7 +151,7 @@ fn place(surface: &SurfaceFile) -> [f64; 3] {
 
 fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
     match surface {
-        SurfaceFile::Rectangle { albedo, .. } => setup.set(Setting::Albedo, *albedo),
+        SurfaceFile::Rectangle { albedo, .. } => setup.set(SettingKey::Albedo, *albedo),
         SurfaceFile::Smooth {
             form,
             event: EventFile::Reflects { brdf, .. },
@@ -160,15 +160,15 @@ fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
             let LobeFile::Phong(exponent) = brdf.lobe else {
                 return None;
             };
-            setup.set(Setting::Glossy, 1.0);
-            setup.set(Setting::Exponent, exponent);
-            setup.set(Setting::Albedo, brdf.albedo);
+            setup.set(SettingKey::Glossy, 1.0);
+            setup.set(SettingKey::Exponent, exponent);
+            setup.set(SettingKey::Albedo, brdf.albedo);
             let curvature = match form {
                 FormFile::Plane => 0.0,
                 FormFile::Sphere(curvature) => *curvature,
                 _ => return None,
             };
-            setup.set(Setting::Curvature, curvature);
+            setup.set(SettingKey::Curvature, curvature);
         }
         _ => return None,
     }
@@ -181,10 +181,10 @@ fn reflection(surface: &SurfaceFile, setup: &mut Setup) -> Option<()> {
 )]
 fn stopped(blockers: &BlockersFile, setup: &mut Setup) -> Option<()> {
     let mut set = |distance: f64, count: usize, pitch: f64, fill: f64| {
-        setup.set(Setting::Distance, distance);
-        setup.set(Setting::Count, count as f64);
-        setup.set(Setting::Pitch, pitch);
-        setup.set(Setting::Fill, fill);
+        setup.set(SettingKey::Distance, distance);
+        setup.set(SettingKey::Count, count as f64);
+        setup.set(SettingKey::Pitch, pitch);
+        setup.set(SettingKey::Fill, fill);
     };
     match blockers {
         BlockersFile::JitteredSquares {
@@ -197,9 +197,9 @@ fn stopped(blockers: &BlockersFile, setup: &mut Setup) -> Option<()> {
             ..
         } => {
             set(center[2], count[0] as usize, *pitch, *fill);
-            setup.set(Setting::Squares, 1.0);
-            setup.set(Setting::Jitter, *jitter);
-            setup.set(Setting::Seed, *seed as f64);
+            setup.set(SettingKey::Squares, 1.0);
+            setup.set(SettingKey::Jitter, *jitter);
+            setup.set(SettingKey::Seed, *seed as f64);
         }
         BlockersFile::Shapes { center, shapes, .. } => {
             let [ShapeFile::Rectangle { center: a, size }, .., last] = &shapes[..] else {

@@ -18,7 +18,7 @@ use std::path::PathBuf;
 
 /// What `prediction.json` says beside the scene.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct Predicted {
+pub struct StoredPrediction {
     /// Of the measurement it is for: where there is no theory, the other method took its place.
     method: Method,
     /// One for each plane of the scene.
@@ -59,14 +59,14 @@ pub fn write(
     scene: &Scene,
     method: Method,
     predictions: &[Prediction],
-) -> Result<Predicted, Failure> {
+) -> Result<StoredPrediction, Failure> {
     let mut planes = Vec::new();
     for (plane, prediction) in scene.planes.iter().zip(predictions) {
         let (words, bytes) = stored(plane, prediction)?;
         results.write(&file_of(plane), &bytes)?;
         planes.push(words);
     }
-    Ok(Predicted { method, planes })
+    Ok(StoredPrediction { method, planes })
 }
 
 /// A prediction as bytes, for another process.
@@ -160,12 +160,12 @@ fn stacked(grid: &SliceGrid, all: &[Slices]) -> Array4<Complex> {
 
 /// Reads the predictions of the planes of a scene for a measurement by `method`.
 pub fn read(
-    stored: &Stored<Predicted>,
+    stored: &Stored<StoredPrediction>,
     scene: &Scene,
     theories: &[Applicability],
     method: Method,
 ) -> Result<Vec<Prediction>, Failure> {
-    let Predicted {
+    let StoredPrediction {
         method: predicted_for,
         planes,
     } = &stored.index.content;

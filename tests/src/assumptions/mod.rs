@@ -7,7 +7,7 @@ mod tally;
 mod trial;
 
 use crate::progress::progress;
-use crate::report::Section;
+use crate::report::ReportSection;
 use crate::scenes::emit;
 use crate::wild;
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -39,7 +39,7 @@ pub(crate) struct AssumptionOptions {
 type TriedScene = (String, Option<Vec<Trial>>);
 
 /// Tries all random scenes, and those of the repository.
-pub(crate) fn assumptions(options: &AssumptionOptions) -> io::Result<Section> {
+pub(crate) fn assumptions(options: &AssumptionOptions) -> io::Result<ReportSection> {
     let mut files = Vec::new();
     files_of(Path::new(FOLDER), &mut files)?;
     let bar = progress(options.scenes + files.len() as u64, "scenes");

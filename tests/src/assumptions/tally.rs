@@ -4,7 +4,7 @@ use super::kind::{DARK, UNKNOWN, assumptions};
 use super::trial::TrialEnding;
 use super::{AssumptionOptions, TriedScene};
 use crate::report::Bound::AtLeast;
-use crate::report::{self, Check, Section};
+use crate::report::{self, Check, ReportSection};
 use etendue_compare::Verdict;
 
 /// Scenes of a list that are named.
@@ -12,7 +12,7 @@ const NAMED: usize = 4;
 
 /// What came of the planes of which an assumption does not hold.
 #[derive(Default)]
-struct Row {
+struct AssumptionRow {
     planes: usize,
     /// Of which nothing else is broken.
     alone: usize,
@@ -27,7 +27,7 @@ struct Row {
     lit: usize,
 }
 
-impl Row {
+impl AssumptionRow {
     fn new(says: &str, tried: &[TriedScene]) -> Self {
         let mut row = Self::default();
         for (scene, trials) in tried {
@@ -82,11 +82,11 @@ pub(super) fn section(
     options: &AssumptionOptions,
     random: &[TriedScene],
     kept: &[TriedScene],
-) -> Section {
+) -> ReportSection {
     let mut rows = Vec::new();
     let (mut skipped, mut panics) = (0, 0);
     for says in assumptions() {
-        let [row, other] = [random, kept].map(|tried| Row::new(says, tried));
+        let [row, other] = [random, kept].map(|tried| AssumptionRow::new(says, tried));
         skipped += row.skipped + other.skipped;
         panics += row.panics + other.panics;
         let lit = row.lit + other.lit;
@@ -118,7 +118,7 @@ pub(super) fn section(
         rows.push(report::Row::new(cells, checks));
     }
     let drawn = random.iter().filter(|(_, trials)| trials.is_some()).count();
-    Section {
+    ReportSection {
         title: format!("Assumptions, seed {}", options.seed),
         text: format!(
             "{drawn} random scenes and {} of the repository, {} photons for each plane; {skipped} \

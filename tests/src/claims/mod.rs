@@ -7,7 +7,7 @@ mod scene;
 mod surfaces;
 
 use crate::report::Bound::AtMost;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use number::ClaimNumber;
 
 /// Photons of a scene, unless others are given.
@@ -29,13 +29,13 @@ struct Claim {
 }
 
 /// The section.
-pub(crate) fn claims(photons: Option<u64>) -> Section {
+pub(crate) fn claims(photons: Option<u64>) -> ReportSection {
     let photons = photons.unwrap_or(PHOTONS);
     let parts = [blockers::claims, surfaces::claims, locality::claims];
     let rows = parts
         .iter()
         .flat_map(|claims| claims(photons).into_iter().map(row));
-    Section {
+    ReportSection {
         title: "What the paper says in words, with photons".to_owned(),
         text: format!(
             "{photons} photons and more for each scene, seed 1. Numbers are read off measured spectra, with their jackknife errors over 64 batches; in brackets is what the prediction of the same scene \

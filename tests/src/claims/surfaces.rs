@@ -9,7 +9,7 @@ use crate::scenes::measured;
 use crate::shading::Tampered;
 use etendue_field::{Crossing, PhotonSource, Slices, VirtualPlane};
 use etendue_spectrum::bandwidth::{bandwidth_nu, bandwidth_rho};
-use etendue_theory::shading::{Criterion, Lobe};
+use etendue_theory::shading::{Criterion, PlanarLobe};
 use etendue_trace::Tracer;
 use glam::DVec3;
 use std::f64::consts::PI;
@@ -412,7 +412,7 @@ fn criteria(photons: u64) -> Claim {
         outgoing: -0.5,
         distance: 0.5,
         blocker_distance: Some(0.6),
-        lobe_cutoff: Lobe::Phong { exponent: lobe }.cutoff(0.95),
+        lobe_cutoff: PlanarLobe::Phong { exponent: lobe }.cutoff(0.95),
         environment_cutoff: f64::INFINITY,
     };
     let sizes = [0.003, 0.02, 0.05, 0.1];

@@ -3,7 +3,7 @@
 use super::{Predict, Tampered, chained, each_rectangle, scale_travel, shifted, unchanged};
 use crate::progress::progress;
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{fig9b, measured, sampled, traced};
 use etendue_compare::{Residuals, sidak};
 use etendue_field::{Crossing, VirtualPlane};
@@ -79,7 +79,7 @@ fn widened(space: f64, slope: f64) -> Box<Predict> {
 }
 
 /// Faults of 1 % and its halves: the smallest that is rejected, and all larger ones too.
-pub(crate) fn smallest(photons: u64, seed: u64) -> Section {
+pub(crate) fn smallest(photons: u64, seed: u64) -> ReportSection {
     let kinds = [Sampling::Net, Sampling::Random];
     let scenes = kinds.map(|kind| sampled(fig9b(photons, seed), kind));
     let sound: Vec<Measurement> = scenes.iter().map(traced).collect();
@@ -103,7 +103,7 @@ pub(crate) fn smallest(photons: u64, seed: u64) -> Section {
         rows.push(Row::new(cells, checks.collect()));
     }
     bar.end();
-    Section {
+    ReportSection {
         title: format!("The smallest faults at {:.0e} photons", photons as f64),
         text: format!(
             "Each fault is planted with a size of 1 % and {HALVES} times with half of the size before. The table has the smallest \

@@ -18,7 +18,7 @@ mod table;
 mod text;
 
 use crate::progress::progress;
-use crate::report::Section;
+use crate::report::ReportSection;
 use case::{Attack, CaseOutcome, InputKind};
 use dice::Dice;
 use std::fs;
@@ -85,7 +85,7 @@ impl Seeds {
 }
 
 /// Runs all cases.
-pub(crate) fn hostile(options: &HostileOptions) -> io::Result<Section> {
+pub(crate) fn hostile(options: &HostileOptions) -> io::Result<ReportSection> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let seeds = Seeds::new(&program, place.path())?;

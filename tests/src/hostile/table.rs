@@ -1,7 +1,7 @@
 //! What came of all cases: one row for each kind of input.
 
 use super::case::{CaseOutcome, HostileFault, InputKind, Reached};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use std::collections::BTreeMap;
 
 /// The cases of one kind.
@@ -43,12 +43,12 @@ impl Tallies {
     }
 
     /// The table; it has passed if nothing went wrong in any case.
-    pub(crate) fn section(&self, seed: u64) -> Section {
+    pub(crate) fn section(&self, seed: u64) -> ReportSection {
         let pairs = InputKind::ALL.iter().zip(&self.kinds);
         let rows = pairs.map(|(kind, tally)| row(*kind, tally)).collect();
         let bad: Vec<&str> = self.bad.values().map(String::as_str).collect();
         let told = bad[..bad.len().min(MOST_TOLD)].join("\n");
-        Section {
+        ReportSection {
             title: "Hostile input".into(),
             text: format!(
                 "Mutated files as input, seed {seed}. Required: a result or one clear message, at \

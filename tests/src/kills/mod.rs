@@ -9,7 +9,7 @@ mod trial;
 use crate::hostile::child;
 use crate::hostile::dice::Dice;
 use crate::progress::progress;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use disk::FullDisk;
 use std::io;
 use std::path::PathBuf;
@@ -37,7 +37,7 @@ pub(crate) struct KillOptions {
 type Counts = [[u64; Finding::COUNT]; Verb::ALL.len()];
 
 /// Makes all trials.
-pub(crate) fn kills(options: &KillOptions) -> io::Result<Section> {
+pub(crate) fn kills(options: &KillOptions) -> io::Result<ReportSection> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let tasks = task::tasks(&program, place.path())?;
@@ -78,7 +78,7 @@ pub(crate) fn kills(options: &KillOptions) -> io::Result<Section> {
 /// The most faults that are told one by one.
 const MOST_TOLD: usize = 60;
 
-fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> Section {
+fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> ReportSection {
     let rows = Verb::ALL.iter().zip(counts).map(|(verb, counts)| {
         let ended = [Finding::Before, Finding::Between, Finding::After];
         let trials: u64 = ended.iter().map(|f| counts[*f as usize]).sum();
@@ -97,7 +97,7 @@ fn section(options: &KillOptions, counts: &Counts, told: &[String]) -> Section {
         text += "\n\n";
         text += &told[..told.len().min(MOST_TOLD)].join("\n");
     }
-    Section {
+    ReportSection {
         title: "Kills".into(),
         text,
         header: vec![

@@ -3,7 +3,7 @@
 use super::draw::BlockerKind;
 use super::scene::{Measured, SceneOutcome};
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section, worse};
+use crate::report::{Check, ReportSection, Row, worse};
 use crate::statistics::{mean, uniformity};
 
 /// Standard errors of shares and means that are borne.
@@ -26,7 +26,7 @@ fn beyond(distance: f64) -> f64 {
 type Reading = fn(&SceneOutcome) -> &Measured;
 
 /// All tables, and those of planted faults.
-pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Section> {
+pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<ReportSection> {
     let sound: Reading = |outcome| &outcome.sound;
     let all = judged(outcomes, sound, 1.0);
     let is_sound = all.passes();
@@ -48,7 +48,7 @@ pub(super) fn sections(outcomes: &[SceneOutcome], left_out: usize) -> Vec<Sectio
 type Belongs = fn(BlockerKind) -> bool;
 
 /// The shares beyond 1, 2 and 3 standard errors, with errors scaled by a factor.
-fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> Section {
+fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> ReportSection {
     let mut rows = Vec::new();
     let groups: [(&str, Belongs); 3] = [
         ("all", |_| true),
@@ -62,7 +62,7 @@ fn judged(outcomes: &[SceneOutcome], reading: Reading, scale: f64) -> Section {
     }
     let [one, two, three] = [1.0, 2.0, 3.0].map(|d| 100.0 * beyond(d));
     let [a, b, c] = STUDENT.map(|share| 100.0 * share);
-    Section {
+    ReportSection {
         title: format!("{} scenes", outcomes.len()),
         text: format!(
             "Four complex numbers a scene, and the one at zero frequency; ± is the standard error \
@@ -162,7 +162,7 @@ fn put(row: &mut Row, shares: &[f64], expected: f64, numbers: f64) {
 }
 
 /// Shares and ratios of each kind of scene.
-fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> Section {
+fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> ReportSection {
     let row = |(kind, _): (BlockerKind, usize)| {
         let of_kind: Vec<&SceneOutcome> = outcomes.iter().filter(|o| o.kind == kind).collect();
         let mut ratios: Vec<f64> = of_kind.iter().map(|o| o.sound.ratio).collect();
@@ -195,7 +195,7 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> Section {
         ];
         Row::new(cells, Vec::new())
     };
-    Section {
+    ReportSection {
         title: "By kind of scene".to_owned(),
         text: format!(
             "{left_out} scenes were left out since their truth is not known to a tenth of the \
@@ -219,7 +219,7 @@ fn by_kind(outcomes: &[SceneOutcome], left_out: usize) -> Section {
 }
 
 /// The scenes with the largest ratios.
-fn worst(outcomes: &[SceneOutcome]) -> Section {
+fn worst(outcomes: &[SceneOutcome]) -> ReportSection {
     let mut all: Vec<&SceneOutcome> = outcomes.iter().collect();
     all.sort_by(|a, b| b.sound.ratio.total_cmp(&a.sound.ratio));
     let row = |outcome: &&SceneOutcome| {
@@ -234,7 +234,7 @@ fn worst(outcomes: &[SceneOutcome]) -> Section {
         ];
         Row::new(cells, Vec::new())
     };
-    Section {
+    ReportSection {
         title: "The scenes farthest off".to_owned(),
         text:
             "By L2 ratio. A number makes the same scene again. Required: nothing more than above."

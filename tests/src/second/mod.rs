@@ -25,7 +25,7 @@ mod views;
 mod world;
 
 use crate::hostile::dice::Dice;
-use crate::report::{self, Row, Section};
+use crate::report::{self, ReportSection, Row};
 use check::SecondCheck;
 use std::io;
 use std::rc::Rc;
@@ -34,10 +34,10 @@ use std::rc::Rc;
 const SEED: u64 = 1;
 
 /// Every shared function against its second implementation.
-pub(crate) fn second() -> io::Result<Section> {
+pub(crate) fn second() -> io::Result<ReportSection> {
     let checks = checks()?;
     let named = checks.iter().all(|check| !check.faults.is_empty());
-    Ok(Section {
+    Ok(ReportSection {
         title: "Second implementation".to_owned(),
         text: format!(
             "What theory and the tracers share, and the BRDFs of each, against a second \

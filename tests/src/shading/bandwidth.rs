@@ -2,8 +2,8 @@
 
 use super::eye::EyeScene;
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
-use etendue_theory::shading::{Criterion, Lobe};
+use crate::report::{Check, ReportSection, Row};
+use etendue_theory::shading::{Criterion, PlanarLobe};
 
 /// Six digits.
 const DIGITS: f64 = 1e-6;
@@ -40,12 +40,18 @@ fn sweeps() -> Vec<(&'static str, Criterion)> {
     let lobes = [
         (
             "lobe, Gaussian σ = 0.05",
-            Lobe::Gaussian { deviation: 0.05 },
+            PlanarLobe::Gaussian { deviation: 0.05 },
         ),
-        ("lobe, Phong n = 50", Lobe::Phong { exponent: 50.0 }),
-        ("lobe, Phong n = 1000", Lobe::Phong { exponent: 1000.0 }),
-        ("lobe, Beckmann α = 0.1", Lobe::Beckmann { roughness: 0.1 }),
-        ("lobe, GGX α = 0.1", Lobe::Ggx { roughness: 0.1 }),
+        ("lobe, Phong n = 50", PlanarLobe::Phong { exponent: 50.0 }),
+        (
+            "lobe, Phong n = 1000",
+            PlanarLobe::Phong { exponent: 1000.0 },
+        ),
+        (
+            "lobe, Beckmann α = 0.1",
+            PlanarLobe::Beckmann { roughness: 0.1 },
+        ),
+        ("lobe, GGX α = 0.1", PlanarLobe::Ggx { roughness: 0.1 }),
     ];
     for (name, lobe) in lobes {
         let lobe_cutoff = lobe.cutoff(0.99);
@@ -85,7 +91,7 @@ fn sweeps() -> Vec<(&'static str, Criterion)> {
 }
 
 /// The section.
-pub(super) fn bandwidths() -> Section {
+pub(super) fn bandwidths() -> ReportSection {
     let mut rows = Vec::new();
     for (name, criterion) in sweeps() {
         let scene = EyeScene { criterion };
@@ -132,7 +138,7 @@ pub(super) fn bandwidths() -> Section {
         ];
         rows.push(Row::new(cells, checks));
     }
-    Section {
+    ReportSection {
         title: "Sampling criteria against traced rays (section 6.2)".to_owned(),
         text: format!(
             "No photons. Bandwidth in slope at an eye d from a glossy circle seen in the mirror direction (beside it in the rows `aside`), with a blocker at d' and an environment cut off at \

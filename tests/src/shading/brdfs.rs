@@ -1,14 +1,14 @@
 //! Reflections: separable BRDFs, their sums, textures, and BRDFs that vary in space.
 
-use super::light::{Surface, frequencies, light, light_hat};
-use super::operators::Comparison;
+use super::light::{PrimalSurface, frequencies, light, light_hat};
+use super::operators::OperatorComparison;
 use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::{AngleTable, Complex};
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::{
-    Factor, Fresnel, Lattice, Lobe, Reflection, Step, Term, TextureWave, cosine_hat,
-    cosine_squared_hat, semi_convolution, texture,
+    Factor, FresnelFactor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm,
+    TextureWave, cosine_hat, cosine_squared_hat, semi_convolution, texture,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -16,15 +16,15 @@ pub(super) const THETA0: f64 = 0.5;
 pub(super) const THETA1: f64 = -0.4;
 pub(super) const K: f64 = 0.5;
 
-const GLOSS: Lobe = Lobe::Gaussian { deviation: 0.12 };
-const PHONG: Lobe = Lobe::Phong { exponent: 30.0 };
-const SCHLICK: Fresnel = Fresnel::Schlick {
+const GLOSS: PlanarLobe = PlanarLobe::Gaussian { deviation: 0.12 };
+const PHONG: PlanarLobe = PlanarLobe::Phong { exponent: 30.0 };
+const SCHLICK: FresnelFactor = FresnelFactor::Schlick {
     normal_reflectance: 0.04,
 };
 
 /// The theory's reflection by a sum of terms.
-pub(super) fn reflection(terms: Vec<Term<'_>>) -> Reflection<'_> {
-    Reflection {
+pub(super) fn reflection(terms: Vec<SeparableTerm<'_>>) -> PlanarReflection<'_> {
+    PlanarReflection {
         incidence: THETA0,
         outgoing: THETA1,
         curvature: K,
@@ -35,8 +35,8 @@ pub(super) fn reflection(terms: Vec<Term<'_>>) -> Reflection<'_> {
 }
 
 /// The same surface in the primal, with a clamped cosine.
-pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> Surface<'a> {
-    Surface {
+pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> PrimalSurface<'a> {
+    PrimalSurface {
         theta0: THETA0,
         theta1: THETA1,
         k: K,
@@ -49,7 +49,7 @@ pub(super) fn surface<'a>(lobe: Option<&'a dyn Fn(f64, f64) -> f64>) -> Surface<
     }
 }
 
-pub(super) fn primal(surface: &Surface<'_>) -> Vec<Complex> {
+pub(super) fn primal(surface: &PrimalSurface<'_>) -> Vec<Complex> {
     let each = frequencies().into_iter();
     each.map(|omega| surface.transform(&light, omega)).collect()
 }
@@ -58,12 +58,12 @@ pub(super) fn said(f: impl Fn([f64; 2]) -> Complex) -> Vec<Complex> {
     frequencies().into_iter().map(f).collect()
 }
 
-pub(super) fn chain(reflection: &Reflection<'_>) -> Vec<Complex> {
-    said(|omega| reflection.spectrum(Step::Outgoing, omega, &light_hat))
+pub(super) fn chain(reflection: &PlanarReflection<'_>) -> Vec<Complex> {
+    said(|omega| reflection.spectrum(ReflectionStep::Outgoing, omega, &light_hat))
 }
 
-pub(super) const fn term(before: Factor<'_>, lobe: Option<Lobe>) -> Term<'_> {
-    Term {
+pub(super) const fn term(before: Factor<'_>, lobe: Option<PlanarLobe>) -> SeparableTerm<'_> {
+    SeparableTerm {
         before,
         lobe,
         after: Factor::One,
@@ -83,7 +83,7 @@ pub(super) fn lopsided_hat(q: f64) -> Complex {
 }
 
 /// Rows with a surface.
-pub(super) fn all() -> Vec<Comparison> {
+pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = separable();
     rows.extend(listed());
     rows.push(sum());
@@ -93,11 +93,16 @@ pub(super) fn all() -> Vec<Comparison> {
     rows
 }
 
-fn separable() -> Vec<Comparison> {
+fn separable() -> Vec<OperatorComparison> {
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
-    let row = |line, operator, surface: &Surface<'_>, right: Term<'_>, name, wrong: Term<'_>| {
+    let row = |line,
+               operator,
+               surface: &PrimalSurface<'_>,
+               right: SeparableTerm<'_>,
+               name,
+               wrong: SeparableTerm<'_>| {
         let traced = primal(surface);
-        Comparison {
+        OperatorComparison {
             operator,
             line: Some(line),
             compared: "reflection, step 7".to_owned(),
@@ -114,7 +119,7 @@ fn separable() -> Vec<Comparison> {
         row(
             Line::Mirror,
             "ideal mirror, δ/cos θ",
-            &Surface {
+            &PrimalSurface {
                 before: &|_| 1.0,
                 horizon: PI,
                 ..surface(None)
@@ -137,12 +142,12 @@ fn separable() -> Vec<Comparison> {
             &surface(Some(&|_, d| PHONG.value(d))),
             term(Factor::Cosine, Some(PHONG)),
             "exponent 5 % off",
-            term(Factor::Cosine, Some(Lobe::Phong { exponent: 31.5 })),
+            term(Factor::Cosine, Some(PlanarLobe::Phong { exponent: 31.5 })),
         ),
         row(
             Line::Separable,
             "separable, f(θ_i') = Schlick",
-            &Surface {
+            &PrimalSurface {
                 before: &schlick,
                 ..surface(Some(&gaussian))
             },
@@ -153,7 +158,7 @@ fn separable() -> Vec<Comparison> {
         row(
             Line::Separable,
             "separable, asymmetric f(θ_i')",
-            &Surface {
+            &PrimalSurface {
                 before: &lopsided,
                 ..surface(Some(&gaussian))
             },
@@ -164,11 +169,11 @@ fn separable() -> Vec<Comparison> {
         row(
             Line::Separable,
             "separable, h(θ_o') = cos²",
-            &Surface {
+            &PrimalSurface {
                 after: Some(&after),
                 ..surface(Some(&gaussian))
             },
-            Term {
+            SeparableTerm {
                 after: Factor::Other(&squared),
                 ..glossy(Factor::Cosine)
             },
@@ -194,7 +199,7 @@ fn separable() -> Vec<Comparison> {
 }
 
 /// f and h by lists of values over |θ|, with kinks.
-fn listed() -> [Comparison; 2] {
+fn listed() -> [OperatorComparison; 2] {
     let table = AngleTable {
         values: [1.0, 0.9, 0.2, 0.3, 0.8].into(),
     };
@@ -207,31 +212,31 @@ fn listed() -> [Comparison; 2] {
     };
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
     let with_cosine = |t: f64| value(t) * t.cos();
-    let f = Term {
+    let f = SeparableTerm {
         before: Factor::TableCosine(&table),
         ..term(Factor::Cosine, Some(GLOSS))
     };
-    let h = Term {
+    let h = SeparableTerm {
         after: Factor::Table(&table),
         ..term(Factor::Cosine, Some(GLOSS))
     };
     let kinks = [-3.0, -2.0, -1.0, 0.0, 1.0, 2.0, 3.0].map(|i| FRAC_PI_2 * i / 4.0);
-    let off = |term: Term<'_>, surface: &Surface<'_>| {
+    let off = |term: SeparableTerm<'_>, surface: &PrimalSurface<'_>| {
         apart(&chain(&reflection(vec![term])), &primal(surface))
     };
     let [by_f, by_h] = [
-        Surface {
+        PrimalSurface {
             before: &with_cosine,
             kinks: &kinks,
             ..surface(Some(&gaussian))
         },
-        Surface {
+        PrimalSurface {
             after: Some(&value),
             kinks: &kinks,
             ..surface(Some(&gaussian))
         },
     ];
-    let row = |operator, off, fault| Comparison {
+    let row = |operator, off, fault| OperatorComparison {
         operator,
         line: Some(Line::Separable),
         compared: "reflection, step 7".to_owned(),
@@ -253,7 +258,7 @@ fn listed() -> [Comparison; 2] {
 }
 
 /// Two lobes with weights ½ (1 + 0.9 cos(2π 1.5 s + 0.4)) and what is left of them.
-fn weighted() -> Comparison {
+fn weighted() -> OperatorComparison {
     let weight = |s: f64| 0.5 * (1.0 + 0.9 * (TAU * 1.5 * s + 0.4).cos());
     let both = |s: f64, d: f64| weight(s) * GLOSS.value(d) + (1.0 - weight(s)) * PHONG.value(d);
     let traced = primal(&surface(Some(&both)));
@@ -268,14 +273,14 @@ fn weighted() -> Comparison {
     };
     let [one, rest] = [1.0, -1.0].map(waves);
     let by = |one: &[TextureWave], rest: &[TextureWave]| {
-        let of = |lobe, weight| Term {
+        let of = |lobe, weight| SeparableTerm {
             weight: Some(weight),
             ..term(Factor::Cosine, Some(lobe))
         };
         let terms = vec![of(GLOSS, one), of(PHONG, rest)];
         apart(&chain(&reflection(terms)), &traced)
     };
-    Comparison {
+    OperatorComparison {
         operator: "weighted sum of two lobes",
         line: Some(Line::SpaceVarying),
         compared: "reflection, step 7".to_owned(),
@@ -284,17 +289,17 @@ fn weighted() -> Comparison {
     }
 }
 
-fn sum() -> Comparison {
+fn sum() -> OperatorComparison {
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
     let phong = |_: f64, d: f64| PHONG.value(d);
     let schlick = |t: f64| SCHLICK.reflectance(t) * t.cos();
     let parts = [
         surface(Some(&gaussian)),
-        Surface {
+        PrimalSurface {
             before: &schlick,
             ..surface(Some(&phong))
         },
-        Surface {
+        PrimalSurface {
             before: &lopsided,
             ..surface(None)
         },
@@ -310,7 +315,7 @@ fn sum() -> Comparison {
     ];
     let right = chain(&reflection(terms.clone()));
     terms.remove(1);
-    Comparison {
+    OperatorComparison {
         operator: "sum of three separable terms",
         line: Some(Line::Separable),
         compared: "reflection, step 7".to_owned(),
@@ -323,9 +328,9 @@ fn sum() -> Comparison {
 }
 
 /// 1 + 0.7 cos(2π 1.5 s + 0.4) after a glossy reflection.
-fn textured() -> Comparison {
+fn textured() -> OperatorComparison {
     let gaussian = |_: f64, d: f64| GLOSS.value(d);
-    let traced = primal(&Surface {
+    let traced = primal(&PrimalSurface {
         texture: &|s| 1.0 + 0.7 * (TAU * 1.5 * s + 0.4).cos(),
         ..surface(Some(&gaussian))
     });
@@ -341,12 +346,12 @@ fn textured() -> Comparison {
             frequency,
             amplitude,
         });
-        let back = |w: [f64; 2]| gloss.spectrum(Step::Back, w, &light_hat);
+        let back = |w: [f64; 2]| gloss.spectrum(ReflectionStep::Back, w, &light_hat);
         said(|omega| {
             AffineMap::<2>::outgoing(THETA1).spectrum(omega, &|w| texture(&waves, w, &back))
         })
     };
-    Comparison {
+    OperatorComparison {
         operator: "texture",
         line: Some(Line::Texture),
         compared: "reflection times 1 + 0.7 cos(2π 1.5 s + 0.4)".to_owned(),
@@ -356,7 +361,7 @@ fn textured() -> Comparison {
 }
 
 /// ρ(s, δ) = exp(−½ zᵀ C⁻¹ z)/√2π σ: its lobe turns along the surface.
-fn varying() -> Comparison {
+fn varying() -> OperatorComparison {
     let bell = super::light::Bell {
         amplitude: 3.0,
         mean: [0.1, 0.02],
@@ -365,7 +370,7 @@ fn varying() -> Comparison {
     let lobe = |s: f64, d: f64| bell.value([s, d]);
     let traced = primal(&surface(Some(&lobe)));
     let mirror = reflection(vec![term(Factor::Cosine, None)]);
-    let lit = |w: [f64; 2]| mirror.spectrum(Step::Mirror, w, &light_hat);
+    let lit = |w: [f64; 2]| mirror.spectrum(ReflectionStep::Mirror, w, &light_hat);
     // Light 0.3 m wide and copies of it 8 m apart.
     let lattice = Lattice {
         spacing: 0.125,
@@ -382,7 +387,7 @@ fn varying() -> Comparison {
         };
         upright.spectrum([x, t])
     };
-    Comparison {
+    OperatorComparison {
         operator: "space-varying BRDF, semi-convolution",
         line: Some(Line::SpaceVarying),
         compared: "reflection by a lobe that turns along s".to_owned(),

@@ -2,7 +2,7 @@
 
 use super::scenes::{alone, changed};
 use crate::predicted;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{compared, traced};
 use etendue_compare::{
     Applicability, FirstOrder, FirstOrderChain, FirstOrderReport, Prediction, Verdict, scattered,
@@ -54,7 +54,7 @@ fn row(map: &mut AffineMap<4>, row: usize, by: f64) {
 }
 
 /// The section.
-pub(super) fn chains(photons: Option<u64>) -> Section {
+pub(super) fn chains(photons: Option<u64>) -> ReportSection {
     let photons = photons.unwrap_or(PHOTONS);
     let mut rows = Vec::new();
     for plane in ["texture", "outgoing"] {
@@ -100,7 +100,7 @@ pub(super) fn chains(photons: Option<u64>) -> Section {
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    Section {
+    ReportSection {
         title: "Faults planted in the first-order chain of shading".to_owned(),
         text: format!(
             "The affine maps onto the glossy sphere and off it, each changed alone, at {:.0e} photons. Judged as a run judges: rejected when a part of the error above 10⁻⁵ stays as the neighbourhood of the \

@@ -5,16 +5,18 @@ use super::brdfs::{
     self, K, chain, lopsided, lopsided_hat, primal, reflection, said, surface, term,
 };
 use super::eye::EyeScene;
-use super::light::{Surface, light_hat};
+use super::light::{PrimalSurface, light_hat};
 use super::primal::{between, integral, transform, wave};
 use super::small;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::environment::{Glow, mirrored_differential_irradiance};
-use etendue_theory::shading::{Criterion, Factor, Lobe, Step, cosine_hat, g_hat, g_hat_3d};
+use etendue_theory::shading::{
+    Criterion, Factor, PlanarLobe, ReflectionStep, cosine_hat, g_hat, g_hat_3d,
+};
 use std::f64::consts::{FRAC_PI_2, PI};
 
 /// What corrected formulas may be off by: both sides are quadratures good to 10⁻¹², or traced to six digits.
@@ -36,7 +38,7 @@ struct Erratum {
 }
 
 /// The section.
-pub(super) fn errata() -> Section {
+pub(super) fn errata() -> ReportSection {
     let mut all = irradiance();
     all.extend(brdf());
     all.extend(environment());
@@ -61,7 +63,7 @@ pub(super) fn errata() -> Section {
         Row::new(cells, checks)
     });
     let rows = rows.collect();
-    Section {
+    ReportSection {
         title: "Errata of shading".to_owned(),
         text: "No photons. What the paper prints and what should stand there, held against quadratures of the primal (up to Eq. 17: two wide Gaussians reflected at k = 0.5 /m, θ₀ = 0.5; \
                section 6.1: two Gaussians in an environment, k = 0.6 /m) and rays traced off a circle (section 6.2, Eqs. 20, 21). Required beforehand: the print off by at least, what is corrected by \
@@ -113,7 +115,7 @@ fn irradiance() -> Vec<Erratum> {
 }
 
 fn brdf() -> Vec<Erratum> {
-    let lobe = Lobe::Gaussian { deviation: 0.12 };
+    let lobe = PlanarLobe::Gaussian { deviation: 0.12 };
     let fixed = |_: f64, d: f64| lobe.value(d);
     // θ_o = θ_o' + k s: from the normal at the centre, not from that at s.
     let global = |s: f64, d: f64| lobe.value(d + K * s);
@@ -125,10 +127,10 @@ fn brdf() -> Vec<Erratum> {
     let mirror = reflection(vec![term(Factor::Cosine, None)]);
     let hatless = said(|omega| {
         off.spectrum(omega, &|w| {
-            mirror.spectrum(Step::Mirror, w, &light_hat) * lobe.value(w[1])
+            mirror.spectrum(ReflectionStep::Mirror, w, &light_hat) * lobe.value(w[1])
         })
     });
-    let uneven = primal(&Surface {
+    let uneven = primal(&PrimalSurface {
         before: &lopsided,
         ..surface(Some(&fixed))
     });
@@ -137,7 +139,7 @@ fn brdf() -> Vec<Erratum> {
         let factor = Factor::Other(hat);
         apart(&chain(&reflection(vec![term(factor, Some(lobe))])), &uneven)
     };
-    let free = primal(&Surface {
+    let free = primal(&PrimalSurface {
         before: &|_| 1.0,
         horizon: PI,
         ..surface(None)

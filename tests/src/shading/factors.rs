@@ -1,13 +1,14 @@
 //! Cosines, Fresnel factors and lobes by themselves, diffuse irradiance, and environments.
 
-use super::operators::Comparison;
+use super::operators::OperatorComparison;
 use super::primal::{about, between, transform, wave};
 use crate::rows::Line;
 use crate::table1::apart;
 use etendue_field::Complex;
 use etendue_theory::shading::environment::{Glow, irradiance, mirrored_differential_irradiance};
 use etendue_theory::shading::{
-    Fresnel, Lattice, Lobe, angular_product, cosine_hat, cosine_series, cosine_squared_hat, g_hat,
+    FresnelFactor, Lattice, PlanarLobe, angular_product, cosine_hat, cosine_series,
+    cosine_squared_hat, g_hat,
 };
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
@@ -40,7 +41,7 @@ fn plain(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> Vec<Complex> {
 }
 
 /// Rows without a surface.
-pub(super) fn all() -> Vec<Comparison> {
+pub(super) fn all() -> Vec<OperatorComparison> {
     let mut rows = cosines();
     rows.extend(fresnel());
     rows.extend(lobes());
@@ -49,7 +50,7 @@ pub(super) fn all() -> Vec<Comparison> {
     rows
 }
 
-fn cosines() -> Vec<Comparison> {
+fn cosines() -> Vec<OperatorComparison> {
     let clamped = plain(FRAC_PI_2, 1.0, &f64::cos);
     let squared = plain(FRAC_PI_2, 1.0, &|t| t.cos().powi(2));
     let orders = 0..24;
@@ -65,21 +66,21 @@ fn cosines() -> Vec<Comparison> {
         .map(|n| cosine_hat(f64::from(n) / TAU).into())
         .collect();
     vec![
-        Comparison {
+        OperatorComparison {
             operator: "clamped cosine",
             line: Some(Line::Cosine),
             compared: "cos⁺^(Ω), ∫ cos θ e^(−2πiΩθ)".to_owned(),
             off: apart(&curve(cosine_hat), &clamped),
             fault: ("cosine twice", apart(&curve(cosine_squared_hat), &clamped)),
         },
-        Comparison {
+        OperatorComparison {
             operator: "cosine along latitudes",
             line: Some(Line::Cosine),
             compared: "C₂(Ω), ∫ cos² φ e^(−2πiΩφ)".to_owned(),
             off: apart(&curve(cosine_squared_hat), &squared),
             fault: ("cosine once", apart(&curve(cosine_hat), &squared)),
         },
-        Comparison {
+        OperatorComparison {
             operator: "full-circle series",
             line: Some(Line::Cosine),
             compared: "24 coefficients of cos⁺".to_owned(),
@@ -89,22 +90,22 @@ fn cosines() -> Vec<Comparison> {
     ]
 }
 
-fn fresnel() -> Vec<Comparison> {
-    let glass = Fresnel::Dielectric { index: 1.5 };
-    let metal = Fresnel::Conductor {
+fn fresnel() -> Vec<OperatorComparison> {
+    let glass = FresnelFactor::Dielectric { index: 1.5 };
+    let metal = FresnelFactor::Conductor {
         index: 0.96,
         extinction: 6.69,
     };
-    let schlick = Fresnel::Schlick {
+    let schlick = FresnelFactor::Schlick {
         normal_reflectance: 0.04,
     };
     let row = |operator,
-               fresnel: Fresnel,
+               fresnel: FresnelFactor,
                share: &dyn Fn(f64) -> f64,
                name,
                wrong: &dyn Fn(f64) -> f64| {
         let primal = plain(FRAC_PI_2, 0.5, &|t| share(t) * t.cos());
-        Comparison {
+        OperatorComparison {
             operator,
             line: Some(Line::Separable),
             compared: "transform of F cos⁺".to_owned(),
@@ -155,7 +156,7 @@ fn fresnel() -> Vec<Comparison> {
             &approximation,
             "F₀ 5 % off",
             &|w| {
-                let off = Fresnel::Schlick {
+                let off = FresnelFactor::Schlick {
                     normal_reflectance: 0.042,
                 };
                 off.cosine_hat(w)
@@ -164,52 +165,56 @@ fn fresnel() -> Vec<Comparison> {
     ]
 }
 
-fn lobes() -> Vec<Comparison> {
+fn lobes() -> Vec<OperatorComparison> {
     // Shapes written out anew, normalised by their own quadrature; end and scale.
-    let row =
-        |operator, lobe: Lobe, off: Lobe, end: f64, inner: f64, shape: &dyn Fn(f64) -> f64| {
-            let area = 2.0 * plain_integral(end, inner, shape);
-            let primal = plain(end, inner, &|t| shape(t) / area);
-            Comparison {
-                operator,
-                line: Some(Line::Brdf),
-                compared: "ρ̂'(Ω) of a lobe of unit integral".to_owned(),
-                off: apart(&curve(|w| lobe.spectrum(w)), &primal),
-                fault: (
-                    "width or exponent 5 % off",
-                    apart(&curve(|w| off.spectrum(w)), &primal),
-                ),
-            }
-        };
+    let row = |operator,
+               lobe: PlanarLobe,
+               off: PlanarLobe,
+               end: f64,
+               inner: f64,
+               shape: &dyn Fn(f64) -> f64| {
+        let area = 2.0 * plain_integral(end, inner, shape);
+        let primal = plain(end, inner, &|t| shape(t) / area);
+        OperatorComparison {
+            operator,
+            line: Some(Line::Brdf),
+            compared: "ρ̂'(Ω) of a lobe of unit integral".to_owned(),
+            off: apart(&curve(|w| lobe.spectrum(w)), &primal),
+            fault: (
+                "width or exponent 5 % off",
+                apart(&curve(|w| off.spectrum(w)), &primal),
+            ),
+        }
+    };
     vec![
         row(
             "lobe, Phong n = 20",
-            Lobe::Phong { exponent: 20.0 },
-            Lobe::Phong { exponent: 21.0 },
+            PlanarLobe::Phong { exponent: 20.0 },
+            PlanarLobe::Phong { exponent: 21.0 },
             FRAC_PI_2,
             0.2,
             &|t| t.cos().powi(20),
         ),
         row(
             "lobe, Phong n = 3",
-            Lobe::Phong { exponent: 3.0 },
-            Lobe::Phong { exponent: 3.15 },
+            PlanarLobe::Phong { exponent: 3.0 },
+            PlanarLobe::Phong { exponent: 3.15 },
             FRAC_PI_2,
             0.5,
             &|t| t.cos().powi(3),
         ),
         row(
             "lobe, Gaussian σ = 0.08",
-            Lobe::Gaussian { deviation: 0.08 },
-            Lobe::Gaussian { deviation: 0.084 },
+            PlanarLobe::Gaussian { deviation: 0.08 },
+            PlanarLobe::Gaussian { deviation: 0.084 },
             0.72,
             0.09,
             &|t| (-0.5 * (t / 0.08).powi(2)).exp(),
         ),
         row(
             "lobe, Beckmann α = 0.1",
-            Lobe::Beckmann { roughness: 0.1 },
-            Lobe::Beckmann { roughness: 0.105 },
+            PlanarLobe::Beckmann { roughness: 0.1 },
+            PlanarLobe::Beckmann { roughness: 0.105 },
             PI,
             0.1,
             &|t| {
@@ -219,8 +224,8 @@ fn lobes() -> Vec<Comparison> {
         ),
         row(
             "lobe, GGX α = 0.1",
-            Lobe::Ggx { roughness: 0.1 },
-            Lobe::Ggx { roughness: 0.105 },
+            PlanarLobe::Ggx { roughness: 0.1 },
+            PlanarLobe::Ggx { roughness: 0.105 },
             PI,
             0.1,
             // Walter et al.: 1/(cos⁴ τ (α² + tan² τ)²) in cosines of δ.
@@ -242,7 +247,7 @@ fn plain_integral(end: f64, inner: f64, f: &dyn Fn(f64) -> f64) -> f64 {
 }
 
 /// dE = ℓ g, in slopes: the convolution of Eq. 7.
-fn differential_irradiance() -> Comparison {
+fn differential_irradiance() -> OperatorComparison {
     let bell = &super::light::LIGHT[0];
     let omegas = [[0.0, 0.0], [0.4, 0.2], [-0.3, 0.5], [0.6, -0.9]];
     let g = |v: f64| (1.0 + v * v).powf(-1.5);
@@ -270,7 +275,7 @@ fn differential_irradiance() -> Comparison {
             .collect()
     };
     let area = |q: f64| Complex::from(2.0 * g_hat(q));
-    Comparison {
+    OperatorComparison {
         operator: "differential irradiance, g",
         line: None,
         compared: "L ⊗ ĝ, transform of ℓ (1 + v²)^(−3/2)".to_owned(),
@@ -279,7 +284,7 @@ fn differential_irradiance() -> Comparison {
     }
 }
 
-fn environments() -> Vec<Comparison> {
+fn environments() -> Vec<OperatorComparison> {
     let glows = [(1.0, 0.3, 0.4), (0.5, -0.5, 0.25)].map(|(amplitude, mean, deviation)| Glow {
         amplitude,
         mean,
@@ -319,7 +324,7 @@ fn environments() -> Vec<Comparison> {
         };
         let traced = of(&primal);
         let right = |w| mirrored_differential_irradiance(k, w, &hat);
-        rows.push(Comparison {
+        rows.push(OperatorComparison {
             operator,
             line: Some(Line::Environment),
             compared: format!("dE'_r^ at k = {k} /m"),
@@ -331,7 +336,7 @@ fn environments() -> Vec<Comparison> {
         });
         let floor = of(&|[x, _]| primal([x, 0.0]));
         let turned = |[x, _]: [f64; 2]| irradiance(-k, x, &hat);
-        rows.push(Comparison {
+        rows.push(OperatorComparison {
             operator: diffuse,
             line: Some(Line::Environment),
             compared: format!("E^ at k = {k} /m"),

@@ -1,7 +1,7 @@
 //! The sampling criteria of section 6.2 against photons: sweeps through every length and angle they hold.
 
 use crate::report::Bound::{Above, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Applicability, criterion, exact_bandwidth, measured_bandwidth};
 use etendue_figures::{Curve, CurveKind, CurvePanel, Curves, Quantity};
 use etendue_scene::{Scene, SceneFile, resolve};
@@ -337,7 +337,7 @@ fn sweeps() -> Vec<GlossySweep> {
 ///
 /// # Panics
 /// When a scene cannot be measured.
-pub(crate) fn glossy(photons: Option<u64>) -> (Section, Curves) {
+pub(crate) fn glossy(photons: Option<u64>) -> (ReportSection, Curves) {
     let photons = photons.unwrap_or(PHOTONS);
     let mut rows = Vec::new();
     let mut panels = Vec::new();
@@ -413,7 +413,7 @@ pub(crate) fn glossy(photons: Option<u64>) -> (Section, Curves) {
     // Two-sided, of normal errors.
     let one = libm::erfc(worst / SQRT_2);
     let all = 1.0 - (1.0 - one).powi(count);
-    let section = Section {
+    let section = ReportSection {
         title: "Sampling criteria against photons (section 6.2)".to_owned(),
         text: format!(
             "{photons} photons for each of {count} points, seeds 1 to {count}. Bandwidth in slope at a fixed point of a plane across the ray to the eye: what holds 95 % of the energy, in cycles per unit slope. A sphere with a glossy BRDF \

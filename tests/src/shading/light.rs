@@ -70,7 +70,7 @@ pub(super) fn frequencies() -> Vec<[f64; 2]> {
 }
 
 /// A surface and its reflection, in the primal.
-pub(super) struct Surface<'a> {
+pub(super) struct PrimalSurface<'a> {
     pub(super) theta0: f64,
     pub(super) theta1: f64,
     pub(super) k: f64,
@@ -88,7 +88,7 @@ pub(super) struct Surface<'a> {
     pub(super) texture: &'a dyn Fn(f64) -> f64,
 }
 
-impl Surface<'_> {
+impl PrimalSurface<'_> {
     /// Nodes up to an angle on both sides, with so many on each side of the middle of each piece between corners.
     fn pieces(&self, end: f64, count: i32) -> Vec<(f64, f64)> {
         let ends = [&[-end], self.kinks, &[end]].concat();

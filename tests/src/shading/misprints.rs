@@ -5,7 +5,7 @@ use super::bench::Bench;
 use super::scenes::{alone, changed};
 use crate::predicted::traced;
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{sidak, system};
 use etendue_field::{Complex, Light, Quantity, Slices};
 use etendue_scene::Scene;
@@ -26,7 +26,7 @@ struct Misprint {
 }
 
 /// The section.
-pub(super) fn misprints(photons: Option<u64>) -> Section {
+pub(super) fn misprints(photons: Option<u64>) -> ReportSection {
     let photons = photons.or(Some(PHOTONS));
     let all = [diffuse(photons), mirror(photons), environment(photons)];
     let count = all.len();
@@ -56,7 +56,7 @@ pub(super) fn misprints(photons: Option<u64>) -> Section {
             rows.push(Row::new(cells, checks));
         }
     }
-    Section {
+    ReportSection {
         title: "Errata of shading, with photons".to_owned(),
         text: format!(
             "The misprints of the table in 2D that a spectrum of photons can tell, in 4D, at {:.0e} photons. Eq. 6 on a diffuse sphere; a mirror as a BRDF without 1/cos θ, which leaves \

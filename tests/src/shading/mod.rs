@@ -28,10 +28,10 @@ mod words;
 pub(crate) use bench::Tampered;
 pub(crate) use glossy::glossy;
 
-use crate::report::Section;
+use crate::report::ReportSection;
 
 /// All sections. Those in 2D need no photons; the others have those of their files, or `photons` for each scene.
-pub(crate) fn shading(photons: Option<u64>) -> Vec<Section> {
+pub(crate) fn shading(photons: Option<u64>) -> Vec<ReportSection> {
     let mut sections = vec![
         operators::operators(),
         traced::traced(),
@@ -44,7 +44,7 @@ pub(crate) fn shading(photons: Option<u64>) -> Vec<Section> {
 }
 
 /// Sections that trace photons.
-fn with_photons(photons: Option<u64>) -> Vec<Section> {
+fn with_photons(photons: Option<u64>) -> Vec<ReportSection> {
     vec![
         photons::photons(photons),
         planted::planted(photons),

@@ -2,7 +2,7 @@
 
 use super::{brdfs, factors, small, visibility};
 use crate::report::Bound::{Above, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 
 /// Both sides are good to 10⁻¹² or so.
@@ -11,7 +11,7 @@ const REQUIRED: f64 = 1e-9;
 const SEEN: f64 = 1e-3;
 
 /// An operator held against the primal.
-pub(super) struct Comparison {
+pub(super) struct OperatorComparison {
     pub(super) operator: &'static str,
     /// What it is in the paper's Table 1, if it is there.
     pub(super) line: Option<Line>,
@@ -23,8 +23,8 @@ pub(super) struct Comparison {
 }
 
 /// All operators of shading in 2D.
-pub(super) fn operators() -> Section {
-    let row = |found: Comparison| {
+pub(super) fn operators() -> ReportSection {
+    let row = |found: OperatorComparison| {
         let cells = vec![
             found.operator.to_owned(),
             found.compared,
@@ -40,7 +40,7 @@ pub(super) fn operators() -> Section {
         Row::new(cells, checks).of(found.line)
     };
     let factors = visibility::all().into_iter().chain(factors::all());
-    Section {
+    ReportSection {
         title: "Operators of shading in 2D: theory against quadrature".to_owned(),
         text: format!(
             "No photons. The spectrum the theory states against a plain quadrature of the primal: what passes a mask, at 12 frequencies; factors and lobes alone over 24 frequencies up to 6 cycles per \

@@ -2,7 +2,7 @@
 
 use super::scenes;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use crate::scenes::{compared, predicted, referred, traced, traced_backwards};
 use etendue_compare::{PlaneComparison, Verdict, sidak};
@@ -24,7 +24,7 @@ struct ShadedRun {
 }
 
 /// The section, with the photons of the files or with `photons` for each scene.
-pub(super) fn photons(photons: Option<u64>) -> Section {
+pub(super) fn photons(photons: Option<u64>) -> ReportSection {
     let all = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();
     let level = sidak(ALPHA, planes);
@@ -43,7 +43,7 @@ pub(super) fn photons(photons: Option<u64>) -> Section {
             );
         }
     }
-    Section {
+    ReportSection {
         title:
             "Shading in 4D: photons against the exact prediction and against the first-order chain"
                 .to_owned(),

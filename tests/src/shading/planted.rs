@@ -6,7 +6,7 @@ use super::misprints;
 use super::scenes::{alone, changed};
 use super::tamper::{around_the_normal, cosine, polarised, scaled, textured_here};
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use etendue_compare::sidak;
 use etendue_field::{Crossing, Fresnel, Light, Lobe, Pattern, Reflectance, Slices, Term, Weight};
 use etendue_scene::Scene;
@@ -40,7 +40,7 @@ struct Stand {
 }
 
 /// The section.
-pub(super) fn planted(photons: Option<u64>) -> Section {
+pub(super) fn planted(photons: Option<u64>) -> ReportSection {
     let stands = stands();
     // And the one in the light that arrives.
     let count = stands.len() + 1;
@@ -66,7 +66,7 @@ pub(super) fn planted(photons: Option<u64>) -> Section {
         let judged = (p, bench.apart(&said, &bench.sound));
         rows.push(row([name, "prediction"], &bench, sound, judged, level));
     }
-    Section {
+    ReportSection {
         title: "Planted faults of shading".to_owned(),
         text: format!(
             "Each fault alone, in the prediction or in the photons, of a scene with one of its planes, at {:.0e} photons; p sound is of the same plane without a fault. \

@@ -4,7 +4,7 @@ use super::bench::reflectance;
 use super::planted::swapped;
 use super::scenes::changed;
 use crate::report::Bound::{Above, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use crate::scenes::{predicted, traced};
 use etendue_field::{Complex, FrequencyAxis, Grating, Lobe, Pattern, Reflectance, Slices, Weight};
@@ -143,7 +143,7 @@ fn axes(scene: &Scene) -> [[f64; 2]; 2] {
 }
 
 /// The section.
-pub(super) fn semi(photons: Option<u64>) -> Section {
+pub(super) fn semi(photons: Option<u64>) -> ReportSection {
     let mut scene = changed(SCENE, photons, &[]);
     let [photons, rays] = [Sides::measured(&scene), Sides::of_rays(&scene)];
     let axes = axes(&scene);
@@ -173,7 +173,7 @@ pub(super) fn semi(photons: Option<u64>) -> Section {
             row
         }
     });
-    Section {
+    ReportSection {
         title: "The semi-convolution in 4D".to_owned(),
         text: format!(
             "The spectrum behind a sphere with two lobes, whose weights are a cosine along x and what is left of it, against the operator of Durand et al. 2005, section 4.5, \

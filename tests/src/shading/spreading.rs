@@ -8,7 +8,9 @@ use crate::table1::slope;
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
 use etendue_theory::shading::environment::{Glow, irradiance};
-use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term};
+use etendue_theory::shading::{
+    Factor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm,
+};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 pub(super) fn statements() -> Vec<Statement> {
@@ -43,14 +45,14 @@ fn discontinuity(n: i32) -> Statement {
 }
 
 /// The reflection of the other sections at a curvature, with a cosine or without.
-fn reflection(curvature: f64, before: Factor<'static>) -> Reflection<'static> {
-    Reflection {
+fn reflection(curvature: f64, before: Factor<'static>) -> PlanarReflection<'static> {
+    PlanarReflection {
         incidence: THETA0,
         outgoing: THETA1,
         curvature,
-        terms: vec![Term {
+        terms: vec![SeparableTerm {
             before,
-            lobe: Some(Lobe::Gaussian { deviation: 0.12 }),
+            lobe: Some(PlanarLobe::Gaussian { deviation: 0.12 }),
             after: Factor::One,
             weight: None,
         }],
@@ -77,7 +79,7 @@ fn curvature() -> Vec<Statement> {
         high / low - 1.0
     };
     // Of the whole light field: all positions, |L|² summed over Ωx.
-    let everywhere = |step: Step, before: Factor<'static>| {
+    let everywhere = |step: ReflectionStep, before: Factor<'static>| {
         change(&|k| {
             let chain = reflection(k, before);
             spread(|t| {
@@ -95,7 +97,7 @@ fn curvature() -> Vec<Statement> {
             let along = about(0.0, 24.0, 480);
             let sum: Complex = along
                 .map(|(x, w)| {
-                    let off = |w| chain.spectrum(Step::Outgoing, w, &light_hat);
+                    let off = |w| chain.spectrum(ReflectionStep::Outgoing, w, &light_hat);
                     AffineMap::<2>::travel(1.5).spectrum([x, t], &off) * w
                 })
                 .sum();
@@ -106,21 +108,21 @@ fn curvature() -> Vec<Statement> {
         Statement {
             said: "curvature leaves the angular bandwidth unchanged (4.2)",
             measured: "relative change of the rms Ωθ over k = −1 … 1 /m, light field on the surface, step 2".to_owned(),
-            number: everywhere(Step::Curvature, Factor::One),
+            number: everywhere(ReflectionStep::Curvature, Factor::One),
             expected: [0.0, 1e-9],
             holds: "holds for each step on the surface",
         },
         Statement {
             said: "the same, of the light that leaves",
             measured: "the same after step 7, without cosine".to_owned(),
-            number: everywhere(Step::Outgoing, Factor::One),
+            number: everywhere(ReflectionStep::Outgoing, Factor::One),
             expected: [0.0, 1e-9],
             holds: "holds on the surface, as a whole",
         },
         Statement {
             said: "the same, of light that is cut by the cosine",
             measured: "the same after step 7, with the cosine".to_owned(),
-            number: everywhere(Step::Outgoing, Factor::Cosine),
+            number: everywhere(ReflectionStep::Outgoing, Factor::Cosine),
             expected: [1e-6, 0.1],
             holds: "nearly: the cosine counts from normals that turn",
         },

@@ -3,12 +3,15 @@
 use super::light::Bell;
 use super::primal::{about, wave};
 use crate::report::Bound::{Above, Below};
-use crate::report::{Check, Row, Section, worse};
+use crate::report::{Check, ReportSection, Row, worse};
 use crate::rows::Line;
 use crate::table1::{ORDER, apart, order, slope};
 use etendue_field::Complex;
 use etendue_theory::geometry::AffineMap;
-use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term, cosine_squared_hat};
+use etendue_theory::shading::{
+    Factor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm,
+    cosine_squared_hat,
+};
 use std::f64::consts::TAU;
 
 /// Sizes of the neighbourhood.
@@ -29,7 +32,7 @@ struct Circle {
 const SEEN: f64 = 3.0;
 
 /// A change to the theory's chain.
-type ChainChange = dyn Fn(&mut Reflection<'static>);
+type ChainChange = dyn Fn(&mut PlanarReflection<'static>);
 
 /// Faults, each alone, and what they do to the spectrum after the last step.
 fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
@@ -44,7 +47,7 @@ fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
         (
             "lobe 5 % wider",
             Box::new(|r| {
-                if let Some(Lobe::Gaussian { deviation }) = &mut r.terms[0].lobe {
+                if let Some(PlanarLobe::Gaussian { deviation }) = &mut r.terms[0].lobe {
                     *deviation *= 1.05;
                 }
             }),
@@ -53,7 +56,7 @@ fn planted() -> Vec<(&'static str, Box<ChainChange>)> {
 }
 
 /// The section.
-pub(super) fn traced() -> Section {
+pub(super) fn traced() -> ReportSection {
     let circle = |theta0, k, lobe| Circle { theta0, k, lobe };
     let cases = [
         ("convex", circle(0.0, 0.5, Some(0.6))),
@@ -65,7 +68,7 @@ pub(super) fn traced() -> Section {
     ];
     let mut rows = Vec::new();
     for (name, case) in &cases {
-        for step in Step::ALL {
+        for step in ReflectionStep::ALL {
             let errors = SIZES.map(|size| case.error(step, size, &|_| ()));
             let logs = [0, 1, 2, 3].map(|i: usize| [SIZES[i].ln(), errors[i].ln()]);
             let fitted = slope(&logs);
@@ -91,9 +94,9 @@ pub(super) fn traced() -> Section {
         }
     }
     let convex = circle(0.65, 0.5, Some(0.6));
-    let right = convex.error(Step::Outgoing, SIZES[3], &|_| ());
+    let right = convex.error(ReflectionStep::Outgoing, SIZES[3], &|_| ());
     for (name, plant) in planted() {
-        let errors = SIZES.map(|size| convex.error(Step::Outgoing, size, &*plant));
+        let errors = SIZES.map(|size| convex.error(ReflectionStep::Outgoing, size, &*plant));
         let reason = "of a right chain the error falls with the size";
         let check = Check::new("seen", errors[3], Above(SEEN * right), reason);
         let cells = vec![
@@ -108,7 +111,7 @@ pub(super) fn traced() -> Section {
         ];
         rows.push(Row::new(cells, vec![check]));
     }
-    Section {
+    ReportSection {
         title: "A glossy circle, all steps, against traced rays".to_owned(),
         text: format!(
             "No photons. A Gaussian field e wide and a Gaussian lobe of 0.6 e, cosine included, at 24 frequencies with content: the spectrum after every step \
@@ -132,23 +135,23 @@ pub(super) fn traced() -> Section {
     }
 }
 
-const fn line(step: Step) -> Line {
+const fn line(step: ReflectionStep) -> Line {
     match step {
-        Step::Incidence => Line::Incidence,
-        Step::Curvature | Step::Back => Line::Curvature,
-        Step::Cosine => Line::Cosine,
-        Step::Mirror => Line::Mirror,
-        Step::Brdf => Line::Brdf,
-        Step::Outgoing => Line::Outgoing,
+        ReflectionStep::Incidence => Line::Incidence,
+        ReflectionStep::Curvature | ReflectionStep::Back => Line::Curvature,
+        ReflectionStep::Cosine => Line::Cosine,
+        ReflectionStep::Mirror => Line::Mirror,
+        ReflectionStep::Brdf => Line::Brdf,
+        ReflectionStep::Outgoing => Line::Outgoing,
     }
 }
 
 impl Circle {
     /// What is known beforehand; `None` where nothing is left out.
-    fn known(&self, step: Step) -> Option<f64> {
+    fn known(&self, step: ReflectionStep) -> Option<f64> {
         match step {
             _ if self.theta0 != 0.0 => Some(1.0),
-            Step::Incidence => None,
+            ReflectionStep::Incidence => None,
             _ => Some(2.0),
         }
     }
@@ -163,16 +166,16 @@ impl Circle {
     }
 
     /// ‖chain − rays‖/‖rays‖, with a fault planted in the chain.
-    fn error(&self, step: Step, size: f64, plant: &ChainChange) -> f64 {
+    fn error(&self, step: ReflectionStep, size: f64, plant: &ChainChange) -> f64 {
         let bell = Self::light(size);
         let lobe = self.lobe.map(|lobe| lobe * size);
-        let mut reflection = Reflection {
+        let mut reflection = PlanarReflection {
             incidence: self.theta0,
             outgoing: -self.theta0,
             curvature: self.k,
-            terms: vec![Term {
+            terms: vec![SeparableTerm {
                 before: Factor::Cosine,
-                lobe: lobe.map(|deviation| Lobe::Gaussian { deviation }),
+                lobe: lobe.map(|deviation| PlanarLobe::Gaussian { deviation }),
                 after: Factor::One,
                 weight: None,
             }],
@@ -195,16 +198,16 @@ impl Circle {
     }
 
     /// The steps of a mirror, for where content goes.
-    fn map(&self, step: Step) -> AffineMap<2> {
+    fn map(&self, step: ReflectionStep) -> AffineMap<2> {
         let mut map = AffineMap::identity();
-        for next in Step::ALL {
+        for next in ReflectionStep::ALL {
             map = map.then(&match next {
-                Step::Incidence => AffineMap::<2>::incidence(self.theta0),
-                Step::Curvature => AffineMap::<2>::curvature(self.k),
-                Step::Cosine | Step::Brdf => AffineMap::identity(),
-                Step::Mirror => AffineMap::mirror(),
-                Step::Back => AffineMap::<2>::back(self.k),
-                Step::Outgoing => AffineMap::<2>::outgoing(-self.theta0),
+                ReflectionStep::Incidence => AffineMap::<2>::incidence(self.theta0),
+                ReflectionStep::Curvature => AffineMap::<2>::curvature(self.k),
+                ReflectionStep::Cosine | ReflectionStep::Brdf => AffineMap::identity(),
+                ReflectionStep::Mirror => AffineMap::mirror(),
+                ReflectionStep::Back => AffineMap::<2>::back(self.k),
+                ReflectionStep::Outgoing => AffineMap::<2>::outgoing(-self.theta0),
             });
             if next == step {
                 break;
@@ -214,7 +217,7 @@ impl Circle {
     }
 
     /// Transforms of the field traced, by trapezoids over rays where they hit.
-    fn rays(&self, step: Step, size: f64, omegas: &[[f64; 2]]) -> Vec<Complex> {
+    fn rays(&self, step: ReflectionStep, size: f64, omegas: &[[f64; 2]]) -> Vec<Complex> {
         let bell = Self::light(size);
         let mut sums = vec![Complex::from(0.0); omegas.len()];
         let mut add = |[a, b]: [f64; 2], weight: f64| {
@@ -223,18 +226,18 @@ impl Circle {
             }
         };
         let deviation = match step {
-            Step::Brdf | Step::Back | Step::Outgoing => self.lobe,
+            ReflectionStep::Brdf | ReflectionStep::Back | ReflectionStep::Outgoing => self.lobe,
             _ => None,
         };
         for (s, ds) in about(0.0, REACH * size / self.theta0.cos(), 26) {
             // On the tangent the first step has s, the others are on the arc.
-            let turn = if step == Step::Incidence {
+            let turn = if step == ReflectionStep::Incidence {
                 0.0
             } else {
                 self.k * s
             };
             let point = match step {
-                Step::Incidence => [s, 0.0],
+                ReflectionStep::Incidence => [s, 0.0],
                 _ => [turn.sin() / self.k, (turn.cos() - 1.0) / self.k],
             };
             for (theta, dt) in about(0.0, REACH * size, 26) {
@@ -243,9 +246,11 @@ impl Circle {
                 let incident = self.theta0 + theta - turn;
                 let weight = radiance * ds * dt;
                 match step {
-                    Step::Incidence | Step::Curvature => add([s, incident], weight),
-                    Step::Cosine => add([s, incident], weight * incident.cos()),
-                    Step::Mirror => add([s, -incident], weight * incident.cos()),
+                    ReflectionStep::Incidence | ReflectionStep::Curvature => {
+                        add([s, incident], weight)
+                    }
+                    ReflectionStep::Cosine => add([s, incident], weight * incident.cos()),
+                    ReflectionStep::Mirror => add([s, -incident], weight * incident.cos()),
                     _ => {
                         let weight = weight * incident.cos();
                         let Some(lobe) = deviation else {
@@ -267,11 +272,11 @@ impl Circle {
     }
 
     /// Where light that leaves at arc length s in a local direction is, and how areas of its coordinates exceed ds dθ.
-    fn leaves(&self, step: Step, s: f64, local: f64) -> ([f64; 2], f64) {
+    fn leaves(&self, step: ReflectionStep, s: f64, local: f64) -> ([f64; 2], f64) {
         let turn = self.k * s;
         match step {
-            Step::Brdf => ([s, local], 1.0),
-            Step::Back => ([s, local + turn], 1.0),
+            ReflectionStep::Brdf => ([s, local], 1.0),
+            ReflectionStep::Back => ([s, local + turn], 1.0),
             _ => {
                 let theta = local + turn + self.theta0;
                 let point = [turn.sin() / self.k, (turn.cos() - 1.0) / self.k];

@@ -1,6 +1,6 @@
 //! Visibility: what theory says of light behind a mask, against the light field itself.
 
-use super::operators::Comparison;
+use super::operators::OperatorComparison;
 use super::primal::{between, wave};
 use crate::rows::Line;
 use crate::table1::apart;
@@ -17,7 +17,7 @@ const WINDOW: [f64; 2] = [0.4, 0.5];
 const NODES: i32 = 30;
 
 /// A rectangle and a half-plane in the light's way.
-pub(super) fn all() -> Vec<Comparison> {
+pub(super) fn all() -> Vec<OperatorComparison> {
     let rectangle = Rectangle {
         center: [0.1, -0.05],
         size: [0.2, 0.16],
@@ -48,7 +48,7 @@ pub(super) fn all() -> Vec<Comparison> {
     ]
 }
 
-fn row(operator: &'static str, mask: &Mask, blocked: [[f64; 2]; 2]) -> Comparison {
+fn row(operator: &'static str, mask: &Mask, blocked: [[f64; 2]; 2]) -> OperatorComparison {
     let theory = |masks: &[&Mask]| -> Vec<Complex> {
         let travel = |distance| Operator::Travel {
             from: "a".to_owned(),
@@ -93,7 +93,7 @@ fn row(operator: &'static str, mask: &Mask, blocked: [[f64; 2]; 2]) -> Compariso
             product([everywhere; 2]) - product(blocked)
         })
         .collect();
-    Comparison {
+    OperatorComparison {
         operator,
         line: Some(Line::Visibility),
         compared: "spectrum behind the mask, transform of what passes it".to_owned(),

@@ -2,7 +2,7 @@
 
 use super::{blockers, spreading};
 use crate::report::Bound::{AtLeast, AtMost};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 
 /// A statement, and what was measured.
 pub(super) struct Statement {
@@ -16,7 +16,7 @@ pub(super) struct Statement {
 }
 
 /// The section.
-pub(super) fn words() -> Section {
+pub(super) fn words() -> ReportSection {
     let all = blockers::statements()
         .into_iter()
         .chain(spreading::statements());
@@ -34,7 +34,7 @@ pub(super) fn words() -> Section {
         Row::new(cells, checks.into())
     });
     let rows = rows.collect();
-    Section {
+    ReportSection {
         title: "What the paper says in words".to_owned(),
         text: "No photons: quadratures of the primal and closed forms of strips. Where a statement holds only in part, the rows after it show where it does not. Required beforehand: the \
                number within the bounds beside it."

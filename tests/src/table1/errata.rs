@@ -4,7 +4,7 @@ use super::bench::MirrorBench;
 use super::steps::Steps;
 use super::{TableRun, number, percent};
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{FirstOrderReport, Verdict};
 use etendue_theory::geometry::{AffineMap, Edition, Matrix};
 use std::f64::consts::TAU;
@@ -156,8 +156,8 @@ fn rows(outcome: &TableRun) -> Vec<Row> {
 }
 
 /// The errata.
-fn section(outcomes: &[&TableRun]) -> Section {
-    Section {
+fn section(outcomes: &[&TableRun]) -> ReportSection {
+    ReportSection {
         title: "Errata: each misprint alone".to_owned(),
         text: "One step of the chain as the paper prints it, all others as they should be, held against the photons of the file by the rule for first-order \
                chains; and the corrected chain. Excess: disagreement with the photons beyond noise, of what is predicted; where a missing 2π moves all \
@@ -182,12 +182,12 @@ fn section(outcomes: &[&TableRun]) -> Section {
 }
 
 /// On the hollow mirror and the plane one.
-pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> Section {
+pub(super) fn misprints(sphere: &TableRun, flat: &TableRun) -> ReportSection {
     section(&[sphere, flat])
 }
 
 /// The scene files that ask for the printed formulas: `--expect disagreement`.
-pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> Section {
+pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     let mut checks = Vec::new();
     for outcome in outcomes {
@@ -211,7 +211,7 @@ pub(super) fn as_printed(outcomes: &[&TableRun], level: f64) -> Section {
         let reason = "some plane of each scene shows the misprint";
         checks.push(Check::new("rejected", rejected, AtLeast(1.0), reason));
     }
-    Section {
+    ReportSection {
         title: "Scenes predicted as printed".to_owned(),
         text: format!(
             "What `etendue run --expect disagreement` sees. Required: the first-order chain rejected on some plane of each, the exact prediction on \

@@ -3,7 +3,7 @@
 use super::TableRun;
 use crate::predicted;
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use etendue_compare::system;
 use etendue_field::{Crossing, PhotonSource, Profile, VirtualPlane, Window};
 use etendue_scene::{Emission, LightFile, Scene, resolve};
@@ -19,7 +19,7 @@ const MOST: f64 = 4.0;
 type CrossingSums = [[f64; 3]; 2];
 
 /// Where the beam is narrowest in the plane of incidence and across.
-pub(super) fn foci(outcome: &TableRun) -> Section {
+pub(super) fn foci(outcome: &TableRun) -> ReportSection {
     let theta0: f64 = 0.7;
     let radius = 2.0;
     let known = [0.5 * radius * theta0.cos(), 0.5 * radius / theta0.cos()];
@@ -58,7 +58,7 @@ pub(super) fn foci(outcome: &TableRun) -> Section {
             rows.push(Row::new(cells, checks));
         }
     }
-    Section {
+    ReportSection {
         title: "Foci of a hollow mirror at θ₀ = 0.7 (Fig. 11)".to_owned(),
         text: format!(
             "R = 2 m. Photons of `solar_oven` on all its planes, emitted as the light emits; the variance of their positions is a parabola over the distance from the mirror, and \

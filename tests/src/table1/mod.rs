@@ -16,7 +16,7 @@ mod volume;
 pub(crate) use order::{ORDER, check as order, slope};
 pub(crate) use quadrature::apart;
 
-use crate::report::Section;
+use crate::report::ReportSection;
 use crate::scenes::{compared, predicted, traced};
 use etendue_compare::{PlaneComparison, Prediction, sidak, system};
 use etendue_scene::Scene;
@@ -56,7 +56,7 @@ impl TableRun {
 }
 
 /// All sections, with the photons of the files or with `photons` for each scene.
-pub(crate) fn table1(photons: Option<u64>) -> Vec<Section> {
+pub(crate) fn table1(photons: Option<u64>) -> Vec<ReportSection> {
     let all: Vec<Scene> = scenes::all(photons);
     let planes = all.iter().map(|scene| scene.planes.len()).sum();
     let level = sidak(ALPHA, planes);

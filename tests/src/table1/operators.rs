@@ -5,7 +5,7 @@ use super::path::{MirrorPath, PathStage};
 use super::planar::StageFound;
 use super::{TableRun, number, percent};
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section, worse};
+use crate::report::{Check, ReportSection, Row, worse};
 use crate::rows::Line;
 use etendue_compare::Verdict;
 use etendue_field::{Orientation, Specular};
@@ -17,13 +17,13 @@ use etendue_theory::{Model, Observed, Parameter};
 const QUADRATURE: f64 = 2e-4;
 
 /// The 4D half of the table.
-pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> Section {
+pub(super) fn operators(outcomes: &[&TableRun], planes: usize, level: f64) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
         let planes = 0..outcome.planes.len();
         rows.extend(planes.map(|index| row(outcome, index, level)));
     }
-    Section {
+    ReportSection {
         title: format!(
             "Operators in 4D: {} scenes, {} planes",
             outcomes.len(),

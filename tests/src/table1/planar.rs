@@ -5,7 +5,7 @@ use super::path::MirrorPath;
 use super::path::PathStage::{self, Back, Beyond, Curvature, Event, Incidence, Outgoing, Travel};
 use super::quadrature::{apart, of_field, of_rays};
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::rows::Line;
 use etendue_field::Complex;
 use etendue_theory::geometry::covariance::gaussian_spectrum;
@@ -55,7 +55,7 @@ fn paths() -> Vec<(&'static str, MirrorPath)> {
 }
 
 /// The 2D half of the table.
-pub(super) fn planar() -> Section {
+pub(super) fn planar() -> ReportSection {
     let mut rows = Vec::new();
     for (name, path) in paths() {
         for stage in [Travel, Incidence, Curvature, Event, Back, Outgoing, Beyond] {
@@ -74,7 +74,7 @@ pub(super) fn planar() -> Section {
             rows.push(Row::new(cells, found.checks()).of([line(stage)]));
         }
     }
-    Section {
+    ReportSection {
         title: "Operators in 2D: theory against quadrature".to_owned(),
         text: format!(
             "A Gaussian field e wide through travel over 1 m, a circle of curvature k met at θ₀, and travel over 0.7 m; 24 frequencies. Map: the \

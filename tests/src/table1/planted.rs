@@ -6,7 +6,7 @@ use super::errata::{percent_or_dark, word};
 use super::steps::Steps;
 use crate::predicted;
 use crate::report::Bound::{AtLeast, Below};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Residuals, Verdict};
 use etendue_field::Specular;
 use etendue_theory::geometry::{AffineMap, SpectrumMap};
@@ -82,7 +82,7 @@ fn swapped(bench: &MirrorBench<'_>, sign: f64) -> AffineMap<4> {
 }
 
 /// Faults of the affine maps, judged by the rule for first-order chains.
-pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> Section {
+pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in [oblique, normal] {
         let bench = MirrorBench::new(outcome);
@@ -145,7 +145,7 @@ pub(super) fn first_order(oblique: &TableRun, normal: &TableRun) -> Section {
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    Section {
+    ReportSection {
         title: "Faults planted in the affine maps".to_owned(),
         text: "Judged as a run judges: rejected when a part of the error above 10⁻⁵ stays as the neighbourhood of the central ray shrinks. The plane of which most \
                stays, its excess over the photons of the file, what stays, and how many of the planes that the fault touches reject it. Required: rejected every \
@@ -190,7 +190,7 @@ fn numbers() -> Vec<(&'static str, Tamper)> {
 }
 
 /// Wrong numbers in the exact prediction, judged by p.
-pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> Section {
+pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
         for (name, tamper) in numbers() {
@@ -231,7 +231,7 @@ pub(super) fn exact(outcomes: &[&TableRun], level: f64) -> Section {
             rows.push(Row::new(cells, vec![check]));
         }
     }
-    Section {
+    ReportSection {
         title: "Wrong numbers in the exact prediction".to_owned(),
         text: format!(
             "Judged by the smallest p of the planes after the surface at the photons of the file, against {level:.6}, of what is beyond the stated error of the \

@@ -2,7 +2,7 @@
 
 use super::TableRun;
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section, worse};
+use crate::report::{Check, ReportSection, Row, worse};
 use etendue_field::{Frame, Orientation};
 use etendue_theory::Observed;
 use etendue_theory::geometry::Edition;
@@ -22,7 +22,7 @@ struct VolumeRay {
 }
 
 /// Phase-space volume and reversibility on every scene with surfaces.
-pub(super) fn volume(outcomes: &[&TableRun]) -> Section {
+pub(super) fn volume(outcomes: &[&TableRun]) -> ReportSection {
     let mut rows = Vec::new();
     for outcome in outcomes {
         let planes = outcome.scene.planes.iter();
@@ -60,7 +60,7 @@ pub(super) fn volume(outcomes: &[&TableRun]) -> Section {
         let checks = found.map(|(id, d)| Check::new(id, d, Below(ROUNDING), "rounding of steps"));
         rows.push(Row::new(cells, checks.into()));
     }
-    Section {
+    ReportSection {
         title: "Étendue and the way back".to_owned(),
         text: format!(
             "Rays followed through the real surfaces, 16 about the central ray, from the light's plane to the last plane across the path, in positions and \

@@ -28,7 +28,7 @@ pub(crate) use small::{SmallOptions, small};
 
 use crate::hostile::{child, on_threads};
 use crate::progress::progress;
-use crate::report::Section;
+use crate::report::ReportSection;
 use judge::{JudgedScene, judge};
 use run::Runner;
 use std::fs;
@@ -75,7 +75,7 @@ pub(crate) struct WildOptions {
 }
 
 /// Runs all scenes.
-pub(crate) fn wild(options: &WildOptions) -> io::Result<Section> {
+pub(crate) fn wild(options: &WildOptions) -> io::Result<ReportSection> {
     let program = child::program(options.etendue.as_deref())?;
     let place = tempfile::tempdir()?;
     let bar = progress(options.scenes, "scenes");

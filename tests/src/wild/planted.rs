@@ -1,7 +1,7 @@
 //! Faults planted in predictions of light that two glossy surfaces send on.
 
 use crate::report::Bound::Below;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::{named, traced};
 use etendue_compare::{Applicability, Prediction, Test, Theory, compare};
 use etendue_field::{Frame, Lobe, ProjectionGrid};
@@ -71,7 +71,7 @@ fn tilt(system: &mut ReflectionSystem, angle: f64) {
 }
 
 /// The section.
-pub(super) fn planted() -> Section {
+pub(super) fn planted() -> ReportSection {
     let scene = named(SCENE, Some(PHOTONS), None);
     let number = scene.planes.iter().position(|plane| plane.name == PLANE);
     let scene = scene.seen_at(&[number.unwrap_or_default()]);
@@ -97,7 +97,7 @@ pub(super) fn planted() -> Section {
             vec![Check::new("p", p, Below(SEEN), "the fault is planted")],
         )
     }));
-    Section {
+    ReportSection {
         title: "Faults planted behind two glossy surfaces".to_owned(),
         text: format!(
             "Each fault alone, in the prediction of plane `{PLANE}` of `{SCENE}`, at {PHOTONS} photons. \

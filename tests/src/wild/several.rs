@@ -6,7 +6,7 @@ use super::planted::planted;
 use super::scene;
 use super::small::{SmallEnding, SmallOptions, ending, keep, object, plane, sharpen};
 use crate::progress::progress;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use etendue_compare::{Applicability, Class, Theory, Verdict};
 use etendue_scene::{Event, Object, Scene, SceneFile, resolve};
 use rayon::prelude::*;
@@ -32,7 +32,7 @@ struct Tried {
 }
 
 /// Plants faults, or tries all scenes.
-pub(crate) fn several(options: &SmallOptions) -> io::Result<Section> {
+pub(crate) fn several(options: &SmallOptions) -> io::Result<ReportSection> {
     if options.planted {
         return Ok(planted());
     }
@@ -112,7 +112,7 @@ fn scatterers(scene: &Scene) -> usize {
     hits.filter(|hit| scatters(hit.object)).count()
 }
 
-fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> Section {
+fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
     let tried: Vec<&Tried> = tried.iter().flatten().collect();
     let row = |scatterers: usize| {
         let of_kind = || {
@@ -152,7 +152,7 @@ fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> Section {
         ];
         Row::new(cells, vec![Check::none("rejected", rejected.len())])
     };
-    Section {
+    ReportSection {
         title: format!("Several surfaces in a row, seed {}", options.seed),
         text: format!(
             "{} random scenes of two or three surfaces, with masks on any leg and a plane behind two \

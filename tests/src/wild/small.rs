@@ -5,7 +5,7 @@ use super::draw::SceneDraw;
 use super::run::text;
 use super::scene;
 use crate::progress::progress;
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use crate::scenes::traced;
 use etendue_compare::{Applicability, Class, Prediction, Test, Verdict, compare, seconds};
 use etendue_field::{Orientation, Profile, Quantity, VirtualPlane};
@@ -76,7 +76,7 @@ pub(super) enum SmallEnding {
 }
 
 /// Tries all scenes.
-pub(crate) fn small(options: &SmallOptions) -> io::Result<Section> {
+pub(crate) fn small(options: &SmallOptions) -> io::Result<ReportSection> {
     let bar = progress(options.scenes, "scenes");
     let numbers = options.first..options.first + options.scenes;
     let tried: io::Result<Vec<Option<Tried>>> = numbers
@@ -298,7 +298,7 @@ pub(super) fn ending(scene: &Scene, classes: bool) -> SmallEnding {
     SmallEnding::Judged(class, verdict)
 }
 
-fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> Section {
+fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> ReportSection {
     let tried: Vec<&Tried> = tried.iter().flatten().collect();
     let row = |(kind, says): (usize, &&str)| {
         let of_kind: Vec<&&Tried> = tried.iter().filter(|tried| tried.kind == kind).collect();
@@ -329,7 +329,7 @@ fn section(options: &SmallOptions, tried: &[Option<Tried>]) -> Section {
         ];
         Row::new(cells, vec![Check::none("rejected", rejected.len())])
     };
-    Section {
+    ReportSection {
         title: format!("Small objects, seed {}", options.seed),
         text: format!(
             "{} random scenes with one small object in the light of one plane, {} photons each. \

@@ -1,7 +1,7 @@
 //! What all scenes come to, as a table.
 
 use super::judge::{Culprit, JudgedScene, SceneTrouble};
-use crate::report::{Check, Row, Section};
+use crate::report::{Check, ReportSection, Row};
 use std::collections::BTreeMap;
 
 /// Counts over scenes.
@@ -57,7 +57,7 @@ impl Tally {
         }
     }
 
-    pub(super) fn section(mut self, seed: u64) -> Section {
+    pub(super) fn section(mut self, seed: u64) -> ReportSection {
         let mut rows = Vec::new();
         let mut row = |what: String, count: usize, which: &mut Vec<u64>| {
             which.sort_unstable();
@@ -97,7 +97,7 @@ impl Tally {
             let what = format!("**wrong**, fail again: {}", culprit.says());
             row(what, which.len(), which);
         }
-        Section {
+        ReportSection {
             title: format!("Wild scenes, seed {seed}"),
             text: "Scenes drawn from the whole vocabulary of scene files. One that fails is run \
                    with two other seeds; required are no panic, no hang and no plane that fails \

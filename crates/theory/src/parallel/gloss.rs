@@ -14,7 +14,7 @@
 use super::{projection, slices};
 use crate::Chain;
 use crate::numerics::sinc::sinc;
-use crate::shading::Lobe;
+use crate::shading::PlanarLobe;
 use etendue_field::{
     FrequencyAxis, Profile, Projection, ProjectionGrid, SliceGrid, Slices, Window, whole,
 };
@@ -36,7 +36,12 @@ const MAX_FREQUENCIES: usize = 512;
 /// # Panics
 /// When the grid has more than the one azimuth.
 #[must_use]
-pub fn blurred_slices(chain: &Chain, lobe: &Lobe, window: &Window, grid: &SliceGrid) -> Slices {
+pub fn blurred_slices(
+    chain: &Chain,
+    lobe: &PlanarLobe,
+    window: &Window,
+    grid: &SliceGrid,
+) -> Slices {
     assert_eq!(grid.azimuths, 1, "flatland has one azimuth");
     let blur = Blur::new(lobe, &window.u);
     let sharp = SliceGrid {
@@ -66,7 +71,7 @@ pub fn blurred_slices(chain: &Chain, lobe: &Lobe, window: &Window, grid: &SliceG
 }
 
 /// What is left of all light when its slopes along y are blurred.
-fn share(chain: &Chain, lobe: &Lobe, window: &Window) -> f64 {
+fn share(chain: &Chain, lobe: &PlanarLobe, window: &Window) -> f64 {
     let blur = Blur::new(lobe, &window.v);
     let none = FrequencyAxis {
         half: 0,
@@ -111,7 +116,7 @@ struct Blur {
 }
 
 impl Blur {
-    fn new(lobe: &Lobe, window: &Profile) -> Self {
+    fn new(lobe: &PlanarLobe, window: &Profile) -> Self {
         let reach = reach(lobe, TAIL);
         let half = window.half_width() + reach;
         let period = 2.0 * APART * half;
@@ -145,7 +150,7 @@ impl Blur {
 #[must_use]
 pub fn blurred_projection(
     chain: &Chain,
-    lobe: &Lobe,
+    lobe: &PlanarLobe,
     window: &Window,
     grid: &ProjectionGrid,
 ) -> Projection {
@@ -167,7 +172,7 @@ pub fn blurred_projection(
 }
 
 /// The angle beyond which a lobe is below a share of its peak.
-fn reach(lobe: &Lobe, share: f64) -> f64 {
+fn reach(lobe: &PlanarLobe, share: f64) -> f64 {
     let least = share * lobe.value(0.0);
     let (mut inside, mut outside) = (0.0, FRAC_PI_2);
     for _ in 0..20 {
@@ -234,7 +239,7 @@ mod tests {
         let (chain, window, grid) = (behind_blockers(), seen(), grid(8, 1.0));
         let plain = slices(&chain, &window, &grid);
         let off = |deviation: f64| {
-            let lobe = Lobe::Gaussian { deviation };
+            let lobe = PlanarLobe::Gaussian { deviation };
             let blurred = blurred_slices(&chain, &lobe, &window, &grid);
             largest(&Slices {
                 half: &blurred.half - &plain.half,
@@ -251,7 +256,7 @@ mod tests {
     #[test]
     fn a_square_light_loses_as_much_along_y_as_along_x() {
         let (chain, window, grid) = (chain(0.2, &[(1.0, vec![])]), seen(), grid(0, 1.0));
-        let lobe = Lobe::Phong { exponent: 30.0 };
+        let lobe = PlanarLobe::Phong { exponent: 30.0 };
         let plain = slices(&chain, &window, &grid).at_zero();
         let left = blurred_slices(&chain, &lobe, &window, &grid).at_zero() / plain;
         let along_y = share(&chain, &lobe, &window);
@@ -262,7 +267,7 @@ mod tests {
     #[test]
     fn pictures_add_up_to_the_spectrum() {
         for exponent in [5.0, 12.0, 60.0, 400.0] {
-            let lobe = Lobe::Phong { exponent };
+            let lobe = PlanarLobe::Phong { exponent };
             let (chain, window, grid) = (behind_blockers(), seen(), grid(3, 1.5));
             let spectrum = blurred_slices(&chain, &lobe, &window, &grid);
             let cells = ProjectionGrid::new(&window, 256);

@@ -8,8 +8,8 @@
 use super::*;
 use crate::shading::environment::{Glow, irradiance, mirrored_differential_irradiance};
 use crate::shading::{
-    Criterion, Factor, Fresnel, Lattice, Lobe, Reflection, Step, Term, cosine_hat,
-    cosine_squared_hat,
+    Criterion, Factor, FresnelFactor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep,
+    SeparableTerm, cosine_hat, cosine_squared_hat,
 };
 use std::f64::consts::{PI, TAU};
 
@@ -54,7 +54,7 @@ fn phong_lobes() {
     let off = |scale: f64| {
         let pairs = samples(&block["samples"]).iter().map(|sample| {
             let exponent = scale * number(&sample["n"]);
-            let got = Lobe::Phong { exponent }.spectrum(number(&sample["omega"]));
+            let got = PlanarLobe::Phong { exponent }.spectrum(number(&sample["omega"]));
             (got.into(), number(&sample["value"]).into())
         });
         deviation(8, pairs)
@@ -70,9 +70,9 @@ fn fresnel_and_cosine() {
         let p = |name: &str| number(&material[name]);
         let (index, extinction) = (p("n"), p("k"));
         let fresnel = if extinction > 0.0 {
-            Fresnel::Conductor { index, extinction }
+            FresnelFactor::Conductor { index, extinction }
         } else {
-            Fresnel::Dielectric { index }
+            FresnelFactor::Dielectric { index }
         };
         let pairs = samples(&material["reflectance"]).iter().map(|sample| {
             let got = fresnel.reflectance(number(&sample["theta"]));
@@ -98,7 +98,7 @@ fn fresnel_and_cosine() {
     }
     let schlick = &block["schlick"];
     let hat = |f0| {
-        let fresnel = Fresnel::Schlick {
+        let fresnel = FresnelFactor::Schlick {
             normal_reflectance: f0,
         };
         move |omega| fresnel.cosine_hat(omega)
@@ -149,13 +149,17 @@ impl GaussianField {
 }
 
 /// The block's reflection with some factor before and lobe.
-fn reflection<'a>(parameters: &Value, before: Factor<'a>, lobe: Option<Lobe>) -> Reflection<'a> {
+fn reflection<'a>(
+    parameters: &Value,
+    before: Factor<'a>,
+    lobe: Option<PlanarLobe>,
+) -> PlanarReflection<'a> {
     let p = |name: &str| number(&parameters[name]);
-    Reflection {
+    PlanarReflection {
         incidence: p("th0"),
         outgoing: p("th1"),
         curvature: p("k"),
-        terms: vec![Term {
+        terms: vec![SeparableTerm {
             before,
             lobe,
             after: Factor::One,
@@ -173,10 +177,10 @@ fn every_step_of_a_reflection() {
     let parameters = &block["params"];
     let bells = GaussianField::all(&block["input"]);
     let light = |omega: [f64; 2]| -> Complex { bells.iter().map(|b| b.spectrum(omega)).sum() };
-    let lobe = Lobe::Gaussian {
+    let lobe = PlanarLobe::Gaussian {
         deviation: number(&parameters["lobe"]),
     };
-    let off = |chain: &Reflection<'_>, step: Step, name: &str| {
+    let off = |chain: &PlanarReflection<'_>, step: ReflectionStep, name: &str| {
         let pairs = samples(&block["samples"]).iter().map(|sample| {
             let omega = ["ox", "oth"].map(|name| number(&sample[name]));
             (chain.spectrum(step, omega, &light), complex(&sample[name]))
@@ -184,15 +188,16 @@ fn every_step_of_a_reflection() {
         deviation(5, pairs)
     };
     let gloss = reflection(parameters, Factor::Cosine, Some(lobe));
-    for (i, step) in Step::ALL.into_iter().enumerate() {
+    for (i, step) in ReflectionStep::ALL.into_iter().enumerate() {
         let name = format!("step{}", i + 1);
         assert_near(&format!("{step:?}"), off(&gloss, step, &name));
     }
     // The block's mirror keeps the cosine: a Dirac that is not divided by it.
     let dirac = reflection(parameters, Factor::Cosine, None);
-    let mirror = |chain: &Reflection<'_>| off(chain, Step::Outgoing, "step7_mirror_brdf");
+    let mirror =
+        |chain: &PlanarReflection<'_>| off(chain, ReflectionStep::Outgoing, "step7_mirror_brdf");
     assert_near("Outgoing, mirror", mirror(&dirac));
-    let last = |chain: &Reflection<'_>| off(chain, Step::Outgoing, "step7");
+    let last = |chain: &PlanarReflection<'_>| off(chain, ReflectionStep::Outgoing, "step7");
     let without = reflection(parameters, Factor::One, Some(lobe));
     assert_seen("no cosine", last(&without));
     let squared = |q| Complex::from(cosine_squared_hat(q));
@@ -200,12 +205,12 @@ fn every_step_of_a_reflection() {
     assert_seen("the cosine twice", last(&twice));
     let ideal = reflection(parameters, Factor::One, None);
     assert_seen("an ideal mirror for the Dirac", mirror(&ideal));
-    let hollow = Reflection {
+    let hollow = PlanarReflection {
         curvature: -gloss.curvature,
         ..gloss.clone()
     };
     assert_seen("the sign of the curvature", last(&hollow));
-    let wider = Lobe::Gaussian {
+    let wider = PlanarLobe::Gaussian {
         deviation: 1.05 * number(&parameters["lobe"]),
     };
     let wider = reflection(parameters, Factor::Cosine, Some(wider));
@@ -294,12 +299,12 @@ fn rays_off_the_circle() {
         println!("{name}, traced: {off:.1e} of the largest value");
         // The chain is of first order: a few per cent at this size, and it is seen.
         let light = |w: [f64; 2]| -> Complex { bells.iter().map(|b| b.spectrum(w)).sum() };
-        let lobe = lobe.map(|deviation| Lobe::Gaussian { deviation });
+        let lobe = lobe.map(|deviation| PlanarLobe::Gaussian { deviation });
         let chain = reflection(parameters, Factor::Cosine, lobe);
         let pairs = expected.iter().map(|sample| {
             let omega = ["ox", "oth"].map(|name| number(&sample[name]));
             (
-                chain.spectrum(Step::Outgoing, omega, &light),
+                chain.spectrum(ReflectionStep::Outgoing, omega, &light),
                 complex(sample),
             )
         });

@@ -15,7 +15,7 @@ use glam::DVec3;
 /// and the longitude and latitude of a direction away from the surface about the local normal, T
 /// lying in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
-pub struct FirstOrderChain {
+pub struct ReflectionChain {
     /// The scattering surfaces, in the order of light.
     pub scatterers: Vec<ScatteringSurface>,
     /// One more than there are scatterers. The first leads from (x, y, u, v) at the light to local
@@ -44,10 +44,10 @@ pub struct ScatteringSurface {
 ///
 /// Its maps are the derivatives of where rays go.
 #[must_use]
-pub fn chain(view: &Observed<ReflectionSystem>) -> Option<FirstOrderChain> {
+pub fn chain(view: &Observed<ReflectionSystem>) -> Option<ReflectionChain> {
     let scatterers = scatterers(view)?;
     let maps = (0..=scatterers.len()).map(|leg| map(view, &scatterers, leg));
-    Some(FirstOrderChain {
+    Some(ReflectionChain {
         maps: maps.collect::<Option<_>>()?,
         steps: steps(view, &scatterers)?,
         scatterers,
@@ -57,13 +57,13 @@ pub fn chain(view: &Observed<ReflectionSystem>) -> Option<FirstOrderChain> {
 /// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
 /// them: zero for that of [`chain`].
 #[must_use]
-pub fn defect(view: &Observed<ReflectionSystem>, tried: &FirstOrderChain) -> Option<f64> {
+pub fn defect(view: &Observed<ReflectionSystem>, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;
     let pairs = tried.maps.iter().zip(&traced.maps);
     Some(pairs.fold(0.0, |most, (a, b)| a.apart(b, &[1.0; 4]).max(most)))
 }
 
-impl FirstOrderChain {
+impl ReflectionChain {
     /// A of the rays from the light to the plane by way of the mirror directions, z' = A z.
     #[must_use]
     pub fn rays(&self) -> AffineMap<4> {

@@ -31,7 +31,7 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{FirstOrderChain, chain, defect};
+pub use chain::{ReflectionChain, chain, defect};
 
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Patch, Reflectance, Specular};

@@ -1,7 +1,7 @@
 //! One path from the light to the plane, drawn at a point of the unit cube.
 
 use super::aim::DirectionCoordinates;
-use super::chain::{FirstOrderChain, ScatteringSurface, chain};
+use super::chain::{ReflectionChain, ScatteringSurface, chain};
 use super::guide::{Conditional, Gaussian, GuideMixture, HeavyTailedGaussian};
 use super::{PathSurface, ReflectionSystem};
 use crate::model::Observed;
@@ -19,7 +19,7 @@ pub(super) struct FieldPaths<'a> {
     view: &'a Observed<ReflectionSystem>,
     window: &'a Window,
     obstacles: PreparedObstacles<'a>,
-    chain: FirstOrderChain,
+    chain: ReflectionChain,
     /// Rays of the light, and directions away from each scatterer, that come into the window.
     guides: Vec<Conditional>,
     /// Of the leg from the light, and from each scatterer.

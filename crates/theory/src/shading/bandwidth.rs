@@ -23,7 +23,7 @@ pub struct Criterion {
     pub distance: f64,
     /// d', metres from the surface to what blocks the light; `None` if nothing does.
     pub blocker_distance: Option<f64>,
-    /// Ω_ρ, the cutoff of the BRDF in cycles per radian: [`Lobe::cutoff`](super::Lobe::cutoff).
+    /// Ω_ρ, the cutoff of the BRDF in cycles per radian: [`PlanarLobe::cutoff`](super::PlanarLobe::cutoff).
     pub lobe_cutoff: f64,
     /// Ω_e, the cutoff of the environment in cycles per radian.
     pub environment_cutoff: f64,

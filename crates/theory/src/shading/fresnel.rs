@@ -14,7 +14,7 @@ const CRITICAL: i32 = 40;
 /// An interface that reflects unpolarised light by its angle of incidence alone: the factor f(θ) of
 /// a separable BRDF.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Fresnel {
+pub enum FresnelFactor {
     /// A transparent medium. An index below 1 is that of light inside a denser one, all of which is
     /// reflected beyond asin(index).
     Dielectric {
@@ -35,7 +35,7 @@ pub enum Fresnel {
     },
 }
 
-impl Fresnel {
+impl FresnelFactor {
     /// The share of unpolarised radiance that is reflected: the mean of both polarisations (Born
     /// and Wolf 1999, section 1.5). θ from the normal, in radians, |θ| ≤ π/2.
     #[must_use]
@@ -102,19 +102,19 @@ mod tests {
 
     #[test]
     fn brewster_and_total_reflection() {
-        let glass = Fresnel::Dielectric { index: 1.5 };
+        let glass = FresnelFactor::Dielectric { index: 1.5 };
         let at = libm::atan(1.5_f64);
         // At Brewster's angle one polarisation is not reflected: half of (n² − 1)²/(n² + 1)².
         let expected = 0.5 * (1.25_f64 / 3.25).powi(2);
         assert!((glass.reflectance(at) - expected).abs() < 1e-15); // rounding
-        let inside = Fresnel::Dielectric { index: 1.0 / 1.5 };
+        let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };
         assert!((inside.reflectance(0.8) - 1.0).abs() < 1e-15); // all is reflected beyond 0.7297
         assert!((inside.reflectance(0.0) - 0.04).abs() < 1e-15); // rounding
     }
 
     #[test]
     fn from_inside_the_transform_at_zero_is_the_integral() {
-        let inside = Fresnel::Dielectric { index: 1.0 / 1.5 };
+        let inside = FresnelFactor::Dielectric { index: 1.0 / 1.5 };
         let critical = libm::asin(1.0_f64 / 1.5);
         // Substituting a square on both sides of the critical angle takes the root away.
         let below = crate::numerics::quadrature::integrate(60, [0.0, critical.sqrt()], |t| {
@@ -128,7 +128,7 @@ mod tests {
     #[test]
     fn metals_of_any_index_have_panels_enough() {
         for (index, extinction) in [(0.05, 4.0), (3.0, 3.0), (500.0, 1000.0)] {
-            let metal = Fresnel::Conductor { index, extinction };
+            let metal = FresnelFactor::Conductor { index, extinction };
             let halved = (1..=40).map(|n| FRAC_PI_2 * (1.0 - 0.5_f64.powi(n)));
             let ends: Vec<f64> = [0.0].into_iter().chain(halved).chain([FRAC_PI_2]).collect();
             let finer = even_transform(&ends, 0.7, |t| metal.reflectance(t) * libm::cos(t));

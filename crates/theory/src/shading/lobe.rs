@@ -11,10 +11,10 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Beckmann and GGX are models of narrow lobes: ρ' ∝ D(δ/2), where D is the distribution of
 /// microfacet normals, whose tilt is half of δ. The factor 1/(4 cos θ_i' cos θ_o') and the
 /// shadowing of a microfacet BRDF are left out, which makes it depend on more than δ, and so is the
-/// Fresnel factor, for which there is [`Fresnel`](super::Fresnel). The distributions are the slices
+/// Fresnel factor, for which there is [`FresnelFactor`](super::FresnelFactor). The distributions are the slices
 /// through the plane of incidence of those in 3D.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Lobe {
+pub enum PlanarLobe {
     /// cosⁿ δ on |δ| < π/2.
     Phong {
         /// n > 0.
@@ -37,7 +37,7 @@ pub enum Lobe {
     },
 }
 
-impl Lobe {
+impl PlanarLobe {
     /// ρ'(δ), per radian.
     #[must_use]
     pub fn value(&self, angle: f64) -> f64 {
@@ -165,15 +165,15 @@ fn slope(angle: f64) -> Option<f64> {
 mod tests {
     use super::*;
 
-    const LOBES: [Lobe; 8] = [
-        Lobe::Phong { exponent: 1.0 },
-        Lobe::Phong { exponent: 40.0 },
-        Lobe::Gaussian { deviation: 0.1 },
-        Lobe::Beckmann { roughness: 0.05 },
-        Lobe::Beckmann { roughness: 0.4 },
-        Lobe::Ggx { roughness: 0.02 },
-        Lobe::Ggx { roughness: 0.3 },
-        Lobe::Ggx { roughness: 1.0 },
+    const LOBES: [PlanarLobe; 8] = [
+        PlanarLobe::Phong { exponent: 1.0 },
+        PlanarLobe::Phong { exponent: 40.0 },
+        PlanarLobe::Gaussian { deviation: 0.1 },
+        PlanarLobe::Beckmann { roughness: 0.05 },
+        PlanarLobe::Beckmann { roughness: 0.4 },
+        PlanarLobe::Ggx { roughness: 0.02 },
+        PlanarLobe::Ggx { roughness: 0.3 },
+        PlanarLobe::Ggx { roughness: 1.0 },
     ];
 
     #[test]
@@ -183,7 +183,8 @@ mod tests {
             for omega in [0.0, 0.3, 2.0, 11.0] {
                 // Trapezoids: exponentially good for what vanishes at the ends, or is periodic at
                 // whole 2πΩ.
-                if matches!(lobe, Lobe::Ggx { .. } | Lobe::Phong { .. }) && omega != 0.0 {
+                if matches!(lobe, PlanarLobe::Ggx { .. } | PlanarLobe::Phong { .. }) && omega != 0.0
+                {
                     continue;
                 }
                 let count = 20_000;
@@ -206,7 +207,7 @@ mod tests {
         // 1/(p − q cos δ)² has the Fourier coefficients of a Poisson kernel's derivative: rⁿ (1 + n
         // s), s = √(p² − q²)/p.
         let alpha: f64 = 0.3;
-        let lobe = Lobe::Ggx { roughness: alpha };
+        let lobe = PlanarLobe::Ggx { roughness: alpha };
         let a = alpha * alpha;
         let (p, q) = (0.5 * (1.0 + a), 0.5 * (1.0 - a));
         let root = (p * p - q * q).sqrt();
@@ -220,20 +221,20 @@ mod tests {
 
     #[test]
     fn cutoffs_of_a_gaussian() {
-        let lobe = Lobe::Gaussian { deviation: 0.05 };
+        let lobe = PlanarLobe::Gaussian { deviation: 0.05 };
         // The quantiles of the normal distribution at 99 % and 95 %, over 2√2 πσ.
         for (fraction, quantile) in [(0.99, 2.575_829_303_5), (0.95, 1.959_963_984_5)] {
             let expected = quantile / (2.0 * 2.0_f64.sqrt() * PI * 0.05);
             assert!((lobe.cutoff(fraction) / expected - 1.0).abs() < 1e-9); // as promised
         }
         // A Phong lobe is nearly a Gaussian of σ² = 1/n.
-        let phong = Lobe::Phong { exponent: 400.0 }.cutoff(0.99);
+        let phong = PlanarLobe::Phong { exponent: 400.0 }.cutoff(0.99);
         assert!((phong / (0.29 * 20.0) - 1.0).abs() < 5e-3); // 0.27/n of ρ̂ in the tail
     }
 
     #[test]
     fn beyond_the_poles_a_phong_lobe_still_has_a_spectrum() {
-        let lobe = Lobe::Phong { exponent: 5.0 };
+        let lobe = PlanarLobe::Phong { exponent: 5.0 };
         let at = |omega| even_transform(&[0.0, 0.8, 1.4, FRAC_PI_2], omega, |t| lobe.value(t));
         for omega in [1.0, 1.2, 2.0, 7.5 / PI, 9.5 / PI] {
             assert!((lobe.spectrum(omega) - at(omega)).abs() < 1e-13, "{omega}"); // rounding

@@ -9,12 +9,12 @@
 //! | step | here | in Durand et al. 2005 |
 //! |---|---|---|
 //! | cosine | [`cosine_hat`] | Eq. 12, 13 |
-//! | Fresnel factor | [`Fresnel`] | section 4.3 |
+//! | Fresnel factor | [`FresnelFactor`] | section 4.3 |
 //! | factor by a list of values | [`table_hat`] | section 4.3 |
-//! | BRDF lobe about the mirror direction | [`Lobe`] | Eq. 15, 16 |
-//! | separable BRDFs and their weighted sums | [`Term`] | Eq. 17, section 4.5 |
+//! | BRDF lobe about the mirror direction | [`PlanarLobe`] | Eq. 15, 16 |
+//! | separable BRDFs and their weighted sums | [`SeparableTerm`] | Eq. 17, section 4.5 |
 //! | texture, BRDF that varies in space | [`texture`], [`semi_convolution`] | Eq. 18, section 4.5 |
-//! | all seven steps of a reflection | [`Reflection`] | section 4.1 |
+//! | all seven steps of a reflection | [`PlanarReflection`] | section 4.1 |
 //! | an environment map on a curved surface | [`environment`] | section 6.1, Fig. 14 |
 //! | how many samples a glossy reflection asks for | [`Criterion`] | Eq. 20, 21 |
 //! | diffuse receivers, in slopes | [`g_hat`], [`g_hat_3d`] | Eq. 7 and section 5.1 |
@@ -22,11 +22,11 @@
 //!
 //! ```
 //! use etendue_field::Complex;
-//! use etendue_theory::shading::{Factor, Lattice, Lobe, Reflection, Step, Term};
+//! use etendue_theory::shading::{Factor, Lattice, PlanarLobe, PlanarReflection, ReflectionStep, SeparableTerm};
 //!
 //! // A glossy cylinder, R = 2 m, in light that is a Gaussian of 0.1 m and 0.1 rad.
-//! let gloss = Term { before: Factor::Cosine, lobe: Some(Lobe::Phong { exponent: 50.0 }), after: Factor::One, weight: None };
-//! let reflection = Reflection {
+//! let gloss = SeparableTerm { before: Factor::Cosine, lobe: Some(PlanarLobe::Phong { exponent: 50.0 }), after: Factor::One, weight: None };
+//! let reflection = PlanarReflection {
 //!     incidence: 0.4,
 //!     outgoing: -0.4,
 //!     curvature: 0.5,
@@ -34,7 +34,7 @@
 //!     lattice: Lattice::circle(20.0),
 //! };
 //! let light = |[x, t]: [f64; 2]| Complex::from((-0.2 * (x * x + t * t)).exp());
-//! let [soft, sharp] = [0.0, 3.0].map(|t| reflection.spectrum(Step::Outgoing, [0.0, t], &light).norm());
+//! let [soft, sharp] = [0.0, 3.0].map(|t| reflection.spectrum(ReflectionStep::Outgoing, [0.0, t], &light).norm());
 //! assert!(sharp < soft);
 //! ```
 
@@ -57,8 +57,8 @@ pub use cosine::{cosine_hat, cosine_power_hat, cosine_series, cosine_squared_hat
 pub use diffuse::{g_hat, g_hat_3d};
 pub use energy::energy_below;
 pub use flatland::{DiffuseStep, Flatland};
-pub use fresnel::Fresnel;
-pub use lobe::Lobe;
+pub use fresnel::FresnelFactor;
+pub use lobe::PlanarLobe;
 pub use product::{Lattice, TextureWave, angular_product, semi_convolution, texture};
-pub use reflection::{Factor, Reflection, Step, Term};
+pub use reflection::{Factor, PlanarReflection, ReflectionStep, SeparableTerm};
 pub use table::table_hat;

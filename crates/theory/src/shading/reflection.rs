@@ -1,17 +1,17 @@
 //! The seven steps of a reflection.
 
 use super::product::{Lattice, TextureWave, angular_product, texture};
-use super::{Fresnel, Lobe, cosine_hat, table_hat};
+use super::{FresnelFactor, PlanarLobe, cosine_hat, table_hat};
 use crate::geometry::AffineMap;
 use etendue_field::{AngleTable, Complex};
 use std::fmt;
 
 /// The spectrum of a light field, L(Ωx, Ωθ).
-type Spectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
+type PlanarSpectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
 
 /// Steps of a reflection in the order of light (Durand et al. 2005, section 4.1 and Fig. 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Step {
+pub enum ReflectionStep {
     /// 1, onto the surface: [`AffineMap::incidence`](Map::<2>::incidence).
     Incidence,
     /// 2, into the frames of the local normals: [`AffineMap::curvature`](Map::<2>::curvature).
@@ -28,7 +28,7 @@ pub enum Step {
     Outgoing,
 }
 
-impl Step {
+impl ReflectionStep {
     /// All, in order.
     pub const ALL: [Self; 7] = [
         Self::Incidence,
@@ -44,13 +44,13 @@ impl Step {
 /// A factor of a local direction, as its transform.
 #[derive(Clone, Copy)]
 pub enum Factor<'a> {
-    /// 1: none. With no [`Lobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine.
+    /// 1: none. With no [`PlanarLobe`] this is an ideal mirror, whose BRDF δ/cos θ_i' cancels the cosine.
     /// Nothing ends at the horizon then.
     One,
     /// cos⁺.
     Cosine,
     /// Fresnel reflectance times cos⁺.
-    Fresnel(Fresnel),
+    Fresnel(FresnelFactor),
     /// The values of a table over |θ|.
     Table(&'a AngleTable),
     /// The values of a table times cos⁺.
@@ -75,7 +75,7 @@ impl fmt::Debug for Factor<'_> {
 
 impl Factor<'_> {
     /// The spectrum of the product at Ω.
-    fn times(&self, lattice: &Lattice, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
+    fn times(&self, lattice: &Lattice, omega: [f64; 2], before: PlanarSpectrum<'_>) -> Complex {
         match self {
             Self::One => before(omega),
             Self::Cosine => product(lattice, omega, &|q| cosine_hat(q).into(), before),
@@ -97,11 +97,11 @@ use angular_product as product;
 
 /// One separable term of a BRDF, w(s) f(θ_i') ρ'(θ_o' − θ_r') h(θ_o').
 #[derive(Clone, Copy, Debug)]
-pub struct Term<'a> {
+pub struct SeparableTerm<'a> {
     /// f(θ_i') with the cosine.
     pub before: Factor<'a>,
     /// ρ'; `None` is a Dirac.
-    pub lobe: Option<Lobe>,
+    pub lobe: Option<PlanarLobe>,
     /// h(θ_o').
     pub after: Factor<'a>,
     /// w, how much of it there is at each place, as a sum of waves; `None` is 1.
@@ -110,7 +110,7 @@ pub struct Term<'a> {
 
 /// Reflection in 2D, from the light frame before to the light frame after.
 #[derive(Clone, Debug)]
-pub struct Reflection<'a> {
+pub struct PlanarReflection<'a> {
     /// θ₀, where the central light comes from; radians from the normal.
     pub incidence: f64,
     /// θ₁, where the central ray leaves; −θ₀ for a mirror.
@@ -118,13 +118,13 @@ pub struct Reflection<'a> {
     /// k, in 1/m, convex positive.
     pub curvature: f64,
     /// The BRDF, as a sum.
-    pub terms: Vec<Term<'a>>,
+    pub terms: Vec<SeparableTerm<'a>>,
     /// Frequencies along Ωθ at which products are summed. Its reach covers the content of the light
     /// in the frames of the local normals.
     pub lattice: Lattice,
 }
 
-impl Reflection<'_> {
+impl PlanarReflection<'_> {
     /// The spectrum at Ω after a step, of light with the spectrum `before` in the light frame.
     ///
     /// To first order in the size of the neighbourhood, as are the [maps](crate::geometry); cosine,
@@ -135,37 +135,57 @@ impl Reflection<'_> {
     /// h (docs/theory.md (36)). For an asymmetric f that is f̂(−Ωθ), of which Table 1 of Durand
     /// et al. 2005 drops the sign, and the hat of ρ̂'; their Eqs. 15 and 17 lack primes.
     #[must_use]
-    pub fn spectrum(&self, step: Step, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
+    pub fn spectrum(
+        &self,
+        step: ReflectionStep,
+        omega: [f64; 2],
+        before: PlanarSpectrum<'_>,
+    ) -> Complex {
         let k = self.curvature;
-        let until = |step: Step| move |w: [f64; 2]| self.spectrum(step, w, before);
+        let until = |step: ReflectionStep| move |w: [f64; 2]| self.spectrum(step, w, before);
         match step {
-            Step::Incidence => AffineMap::<2>::incidence(self.incidence).spectrum(omega, before),
-            Step::Curvature => {
-                AffineMap::<2>::curvature(k).spectrum(omega, &until(Step::Incidence))
+            ReflectionStep::Incidence => {
+                AffineMap::<2>::incidence(self.incidence).spectrum(omega, before)
             }
-            Step::Cosine => self.sum(|term| self.lit(term, omega, before)),
-            Step::Mirror => AffineMap::mirror().spectrum(omega, &until(Step::Cosine)),
-            Step::Brdf => self.sum(|term| self.reflected(term, omega, before)),
-            Step::Back => AffineMap::<2>::back(k).spectrum(omega, &until(Step::Brdf)),
-            Step::Outgoing => {
-                AffineMap::<2>::outgoing(self.outgoing).spectrum(omega, &until(Step::Back))
+            ReflectionStep::Curvature => {
+                AffineMap::<2>::curvature(k).spectrum(omega, &until(ReflectionStep::Incidence))
             }
+            ReflectionStep::Cosine => self.sum(|term| self.lit(term, omega, before)),
+            ReflectionStep::Mirror => {
+                AffineMap::mirror().spectrum(omega, &until(ReflectionStep::Cosine))
+            }
+            ReflectionStep::Brdf => self.sum(|term| self.reflected(term, omega, before)),
+            ReflectionStep::Back => {
+                AffineMap::<2>::back(k).spectrum(omega, &until(ReflectionStep::Brdf))
+            }
+            ReflectionStep::Outgoing => AffineMap::<2>::outgoing(self.outgoing)
+                .spectrum(omega, &until(ReflectionStep::Back)),
         }
     }
 
-    fn sum(&self, of: impl Fn(&Term<'_>) -> Complex) -> Complex {
+    fn sum(&self, of: impl Fn(&SeparableTerm<'_>) -> Complex) -> Complex {
         self.terms.iter().map(of).sum()
     }
 
     /// Step 3 of a term.
-    fn lit(&self, term: &Term<'_>, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
-        let local = |w| self.spectrum(Step::Curvature, w, before);
+    fn lit(
+        &self,
+        term: &SeparableTerm<'_>,
+        omega: [f64; 2],
+        before: PlanarSpectrum<'_>,
+    ) -> Complex {
+        let local = |w| self.spectrum(ReflectionStep::Curvature, w, before);
         term.before.times(&self.lattice, omega, &local)
     }
 
     /// Steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005, the
     /// weights of a sum are textures (section 4.5).
-    fn reflected(&self, term: &Term<'_>, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
+    fn reflected(
+        &self,
+        term: &SeparableTerm<'_>,
+        omega: [f64; 2],
+        before: PlanarSpectrum<'_>,
+    ) -> Complex {
         let mirrored = |w| AffineMap::mirror().spectrum(w, &|w| self.lit(term, w, before));
         let blurred = |w: [f64; 2]| match &term.lobe {
             Some(lobe) => mirrored(w) * lobe.spectrum(w[1]),
@@ -195,19 +215,23 @@ mod tests {
         Complex::new(cosine_hat(q), -0.3 * side)
     }
 
-    fn spectrum(terms: Vec<Term<'_>>) -> Complex {
-        let reflection = Reflection {
+    fn spectrum(terms: Vec<SeparableTerm<'_>>) -> Complex {
+        let reflection = PlanarReflection {
             incidence: 0.3,
             outgoing: -0.2,
             curvature: 0.4,
             terms,
             lattice: Lattice::circle(9.0),
         };
-        reflection.spectrum(Step::Outgoing, [0.2, -0.3], &light)
+        reflection.spectrum(ReflectionStep::Outgoing, [0.2, -0.3], &light)
     }
 
-    fn term<'a>(before: Factor<'a>, lobe: Option<Lobe>, after: Factor<'a>) -> Term<'a> {
-        Term {
+    fn term<'a>(
+        before: Factor<'a>,
+        lobe: Option<PlanarLobe>,
+        after: Factor<'a>,
+    ) -> SeparableTerm<'a> {
+        SeparableTerm {
             before,
             lobe,
             after,
@@ -228,7 +252,7 @@ mod tests {
 
     #[test]
     fn terms_add_up() {
-        let phong = Some(Lobe::Phong { exponent: 20.0 });
+        let phong = Some(PlanarLobe::Phong { exponent: 20.0 });
         let parts = [
             term(Factor::Cosine, phong, Factor::One),
             term(Factor::Other(&uneven), phong, Factor::Cosine),

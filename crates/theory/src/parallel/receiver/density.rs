@@ -141,13 +141,13 @@ impl Integrator {
 
 /// The lobe times the gratings seen from one point.
 #[derive(Debug)]
-pub(crate) struct LobeDensity<'a> {
+pub(crate) struct ReceiverDensity<'a> {
     pub(crate) integrator: &'a Integrator,
     /// Gratings as functions of the slope: frequencies in cycles per slope, phases of this point.
     pub(crate) gratings: Vec<Grating>,
 }
 
-impl LobeDensity<'_> {
+impl ReceiverDensity<'_> {
     /// At one slope.
     pub(crate) fn value(&self, u: f64, v: f64) -> f64 {
         let gratings = self.gratings.iter().map(|g| g.transmittance(u, v));
@@ -282,15 +282,15 @@ mod tests {
     use super::*;
     use crate::numerics::quadrature::integrate;
 
-    fn density(integrator: &Integrator) -> LobeDensity<'_> {
-        LobeDensity {
+    fn density(integrator: &Integrator) -> ReceiverDensity<'_> {
+        ReceiverDensity {
             integrator,
             gratings: vec![],
         }
     }
 
     /// The same integral by many panels of many nodes.
-    fn brute(density: &LobeDensity<'_>, [u, v]: Bounds) -> f64 {
+    fn brute(density: &ReceiverDensity<'_>, [u, v]: Bounds) -> f64 {
         let cut = |[low, high]: [f64; 2], i: u32| {
             let step = (high - low) / 20.0;
             [low + step * f64::from(i), low + step * f64::from(i + 1)]
@@ -336,7 +336,7 @@ mod tests {
                 grating(0, frequency, 0.4),
                 grating(1, -0.3 * frequency, 1.1),
             ];
-            let density = LobeDensity {
+            let density = ReceiverDensity {
                 integrator: &integrator,
                 gratings,
             };

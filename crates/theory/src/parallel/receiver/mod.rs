@@ -18,7 +18,7 @@ mod work;
 
 use crate::barrier::{Barrier, Bounds};
 use crate::parallel::chain::{MaskLayer, ParallelEmitter};
-use density::{Integrator, LobeDensity};
+use density::{Integrator, ReceiverDensity};
 use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};
@@ -202,7 +202,7 @@ impl<'a> Receiver<'a> {
         bundle: &SlopeProjection,
         region: ReceiverRegion,
         barriers: &[Barrier<'_>],
-        density: &LobeDensity<'_>,
+        density: &ReceiverDensity<'_>,
     ) -> f64 {
         let Some((barrier, rest)) = barriers.split_first() else {
             return region.integral(density);
@@ -222,11 +222,11 @@ impl<'a> Receiver<'a> {
     }
 
     /// What is integrated over slopes behind the gratings of some barriers.
-    fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> LobeDensity<'_> {
+    fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> ReceiverDensity<'_> {
         let gratings = barriers
             .iter()
             .filter_map(|b| b.mask.grating().map(|g| bundle.grating(g, b.distance)));
-        LobeDensity {
+        ReceiverDensity {
             integrator: &self.integrator,
             gratings: gratings.collect(),
         }

@@ -1,6 +1,6 @@
 //! What the light that leaves a receiver takes to predict, counted at some places of it.
 
-use super::density::LobeDensity;
+use super::density::ReceiverDensity;
 use super::kernel::KernelAxis;
 use super::region::ReceiverRegion;
 use super::{Receiver, SlopeProjection, exitant};
@@ -93,7 +93,7 @@ impl Receiver<'_> {
         bundle: &SlopeProjection,
         region: &ReceiverRegion,
         barriers: &[Barrier<'_>],
-        density: &LobeDensity<'_>,
+        density: &ReceiverDensity<'_>,
         steps: &mut f64,
     ) {
         let Some((barrier, rest)) = barriers.split_first() else {
