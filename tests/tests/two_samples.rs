@@ -1,15 +1,11 @@
 //! Two results of one scene, photon against photon: the test of `etendue diff` over many seeds.
 
-#[path = "../src/statistics.rs"]
-#[allow(dead_code, reason = "one of its functions is enough here")]
-mod statistics;
-
+use crate::statistics::uniformity;
 use etendue_compare::{Sample, TwoSamples, noise_dof};
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_spectrum::{estimate, measure};
 use etendue_trace::{Backward, Tracer};
-use statistics::uniformity;
 
 /// fig9b with few photons, on few frequencies.
 fn scene(seed: u64) -> Scene {

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, call, refused, scene};
+use crate::common::{SCENE, call, refused, scene};
 use std::fs;
 
 /// The scene of the repository as `glossy.ron`, and one without a glossy surface as `small.ron`.

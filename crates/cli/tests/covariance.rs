@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{call, etendue, files, json, refused};
+use crate::common::{call, etendue, files, json, refused};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{array, call, json, refused, sealed, stages};
+use crate::common;
+use crate::common::{array, call, json, refused, sealed, stages};
 use etendue_field::Complex;
 use ndarray::{Array4, ArrayD};
 use ndarray_npy::{NpzReader, WritableElement, WriteNpyExt};

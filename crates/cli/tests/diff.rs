@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, call, etendue, json, refused, sealed};
+use crate::common;
+use crate::common::{SCENE, call, etendue, json, refused, sealed};
 use std::fs;
 use std::path::Path;
 use tempfile::TempDir;

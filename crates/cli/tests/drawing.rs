@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::etendue;
+use crate::common;
+use crate::common::etendue;
 use std::fs;
 
 /// The drawing of a scene of the repository, as SVG.

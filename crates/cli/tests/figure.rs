@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, array, call, files, json, refused};
+use crate::common::{SCENE, array, call, files, json, refused};
 use etendue_field::Complex;
 use ndarray::{Array1, Array2};
 use std::fs;

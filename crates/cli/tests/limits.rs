@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{etendue, scene};
+use crate::common::{etendue, scene};
 use std::process::Output;
 
 fn refused(arguments: &[&str]) -> Output {

@@ -2,9 +2,8 @@
 #![cfg(unix)]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{call, etendue, files, json};
+use crate::common;
+use crate::common::{call, etendue, files, json};
 use std::fs;
 use std::os::unix::fs::symlink;
 use std::path::Path;

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, call};
+use crate::common;
+use crate::common::{SCENE, call};
 use etendue_rays::{Format, PowerUnit, RayFile, RaySet, Wavelengths, convert};
 use std::f64::consts::PI;
 use std::fs;

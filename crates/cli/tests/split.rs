@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, etendue, files};
+use crate::common::{SCENE, etendue, files};
 use std::fs;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, array, call, files, json, refused, stages};
+use crate::common::{SCENE, array, call, files, json, refused, stages};
 use etendue_field::Complex;
 use ndarray::{Array0, Array1, Array2, Array3, Array4};
 use std::fs;

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, array, call, files, json, refused, scene};
+use crate::common;
+use crate::common::{SCENE, array, call, files, json, refused, scene};
 use ndarray::{Array2, Array4};
 use ndarray_npy::ReadNpyExt;
 use std::fs::{self, File};

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{SCENE, call, files};
+use crate::common::{SCENE, call, files};
 use etendue::command_of_workers;
 use etendue_pipeline::Workers;
 use std::ffi::OsString;

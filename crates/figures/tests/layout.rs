@@ -2,9 +2,7 @@
 
 #![expect(clippy::unwrap_used, reason = "a fault here fails the test")]
 
-mod common;
-
-use common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
+use crate::common::{DECIBEL, compare, corner, grid, path, scene, uneven_grid};
 use etendue_field::Side;
 use etendue_figures::{
     Curve, CurveKind, CurvePanel, Curves, Figure, Quantity, Scale, Style, curves, section, stacked,

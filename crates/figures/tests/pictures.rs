@@ -1,8 +1,6 @@
 //! What is seen in the finished figures, where and in which color, and the numbers beside it.
 
-mod common;
-
-use common::{DECIBEL, Pixels, compare, corner, images, path, scene};
+use crate::common::{DECIBEL, Pixels, compare, corner, images, path, scene};
 use etendue_figures::{Scale, Section, section};
 use ndarray::Array2;
 

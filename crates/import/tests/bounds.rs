@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{causes, folder, notes, read_in};
+use crate::common::{causes, folder, notes, read_in};
 use etendue_import::{Color, Options, import};
 use flate2::Compression;
 use flate2::write::ZlibEncoder;

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{assert_close, causes, notes, world};
+use crate::common::{assert_close, causes, notes, world};
 use etendue_world::Camera;
 
 const FILM: &str = "<film type=\"hdrfilm\"><integer name=\"width\" value=\"40\"/><integer name=\"height\" value=\"20\"/><rfilter type=\"box\"/></film>";

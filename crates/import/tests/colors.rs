@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{assert_close, folder, read_in};
+use crate::common;
+use crate::common::{assert_close, folder, read_in};
 use etendue_import::Color;
 use etendue_world::{Light, Material, Texture};
 use glam::DVec2;

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{folder, read_in, scene};
+use crate::common;
+use crate::common::{folder, read_in, scene};
 use etendue_import::{Color, Options, import};
 use std::fs;
 

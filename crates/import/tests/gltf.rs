@@ -2,13 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-mod gltf_scene;
-
-use common::assert_close;
+use crate::common::assert_close;
+use crate::gltf_scene::{BASE, causes, mesh, notes, with, world};
 use etendue_world::{Distribution, Light, Material, Projection, Texture};
 use glam::{DVec2, DVec3};
-use gltf_scene::{BASE, causes, mesh, notes, with, world};
 
 /// The value of a texture that is the same everywhere.
 fn constant(texture: &Texture) -> f64 {

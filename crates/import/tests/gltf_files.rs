@@ -1,9 +1,7 @@
 //! Files of glTF that are binary, or do not hold what they say.
 
-mod common;
-mod gltf_scene;
-
-use gltf_scene::{causes, mesh, read};
+use crate::gltf_scene;
+use crate::gltf_scene::{causes, mesh, read};
 
 #[test]
 fn accessors_stay_within_their_buffers() {

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{assert_close, causes, folder, read_in, world};
+use crate::common::{assert_close, causes, folder, read_in, world};
 use etendue_import::Color;
 use etendue_world::Light;
 

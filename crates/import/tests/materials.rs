@@ -1,8 +1,6 @@
 //! Materials.
 
-mod common;
-
-use common::world;
+use crate::common::world;
 use etendue_world::{Material, Texture};
 use glam::DVec2;
 

@@ -2,10 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-mod gltf_scene;
-
-use common::folder;
+use crate::common::folder;
+use crate::gltf_scene;
 use etendue_import::{Options, import, import_mitsuba, import_pbrt};
 use std::fs;
 

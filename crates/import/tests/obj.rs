@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{assert_close, folder};
+use crate::common::{assert_close, folder};
 use etendue_import::{Imported, Options, import};
 use etendue_world::{Geometry, Material, Texture, Triangles};
 use glam::DVec2;

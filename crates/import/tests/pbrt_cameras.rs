@@ -2,12 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-mod pbrt_scenes;
-
-use common::assert_close;
+use crate::common::assert_close;
+use crate::pbrt_scenes::{notes, set_up, unsettled};
 use etendue_world::{Camera, Look};
-use pbrt_scenes::{notes, set_up, unsettled};
 
 const WIDE: &str = "Film \"rgb\" \"integer xresolution\" 40 \"integer yresolution\" 20";
 const TALL: &str = "Film \"rgb\" \"integer xresolution\" 20 \"integer yresolution\" 40";

@@ -2,12 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-mod pbrt_scenes;
-
-use common::folder;
+use crate::common::folder;
+use crate::pbrt_scenes::{causes, notes, read_in, scene, unsettled, world};
 use etendue_import::{Color, Options, import};
-use pbrt_scenes::{causes, notes, read_in, scene, unsettled, world};
 
 #[test]
 fn unused_parameters_are_noted_with_their_line() {

@@ -2,14 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-mod pbrt_scenes;
-
-use common::{assert_close, folder};
+use crate::common::{assert_close, folder};
+use crate::pbrt_scenes::{causes, light, notes, read_in, scene, world};
 use etendue_import::Color;
 use etendue_world::{Falloff, Light, Texture};
 use glam::DVec3;
-use pbrt_scenes::{causes, light, notes, read_in, scene, world};
 use std::f64::consts::PI;
 
 fn intensity(inside: &str) -> f64 {

@@ -2,14 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-mod pbrt_scenes;
-
-use common::{assert_close, folder};
+use crate::common::{assert_close, folder};
+use crate::pbrt_scenes::{causes, material, notes, read_in, scene, world};
 use etendue_import::Color;
 use etendue_world::{Distribution, Material, Texture};
 use glam::DVec2;
-use pbrt_scenes::{causes, material, notes, read_in, scene, world};
 
 fn constant(texture: &Texture) -> f64 {
     match texture {

@@ -2,14 +2,11 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-mod pbrt_scenes;
-
-use common::{assert_close, folder};
+use crate::common::{assert_close, folder};
+use crate::pbrt_scenes::{causes, notes, read_in, scene, shape, world};
 use etendue_import::Color;
 use etendue_world::{Geometry, Material, Shape, Triangles};
 use glam::{DMat4, DVec2, DVec3};
-use pbrt_scenes::{causes, notes, read_in, scene, shape, world};
 
 fn mesh(shape: &Shape) -> &Triangles {
     match &shape.geometry {

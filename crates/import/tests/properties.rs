@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{causes, notes, world};
+use crate::common;
+use crate::common::{causes, notes, world};
 
 #[test]
 fn what_nobody_reads_is_noted_with_its_line() {

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{causes, folder, world};
+use crate::common::{causes, folder, world};
 use etendue_import::{Options, import, import_pbrt};
 use std::fs;
 

@@ -2,9 +2,8 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{assert_close, folder, read_in, world};
+use crate::common;
+use crate::common::{assert_close, folder, read_in, world};
 use etendue_import::Color;
 use etendue_world::{Geometry, Material, Shape, Texture, Triangles, World};
 use flate2::{Compression, write::ZlibEncoder};

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "helpers of tests")]
 
-mod common;
-
-use common::{assert_close, causes, world};
+use crate::common::{assert_close, causes, world};
 
 /// Rows of the matrix of a rectangle's `to_world`.
 fn rows(steps: &str) -> Vec<f64> {

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::{Shower, boxed, grid, hann, plane};
+use crate::common::{Shower, boxed, grid, hann, plane};
 use etendue_field::{Crossing, Ledger, PhotonSource, VirtualPlane};
 use etendue_spectrum::{
     Measurement, MergeError, PartialBatch, Watch, estimate, measure, measure_watched,

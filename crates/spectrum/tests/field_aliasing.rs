@@ -1,8 +1,6 @@
 //! What a 4D grid costs against the plain sum over the same rays.
 
-mod common;
-
-use common::{Random, boxed, grid, hann};
+use crate::common::{Random, boxed, grid, hann};
 use etendue_field::{Assignment, Complex, Crossing, FieldGrid, TwoPlane, Window};
 use etendue_spectrum::field::{FieldSpectrum, FieldTransform};
 use etendue_transform::SliceTransform;

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod common;
-
-use common::{Random, grid, plane};
+use crate::common::{Random, grid, plane};
 use etendue_field::{Crossing, Ledger, PhotonSource, Profile, TwoPlane, VirtualPlane, Window};
 use etendue_spectrum::field::{
     FieldMeasurement, FieldOptions, FieldSpectrum, Moments, measure_field,

@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod common;
-
-use common::{Random, Shower, boxed, grid, hann, plane};
+use crate::common::{Random, Shower, boxed, grid, hann, plane};
 use etendue_field::{Assignment, Crossing, Ledger, PhotonSource, Quantity, TwoPlane, VirtualPlane};
 use etendue_spectrum::field::{
     FieldMeasurement, FieldOptions, RadialBins, full_radial_of, measure_field,

@@ -1,8 +1,6 @@
 //! What photons' noise does to spectra, and what is done about it.
 
-mod common;
-
-use common::{Shower, boxed, grid, plane};
+use crate::common::{Shower, boxed, grid, plane};
 use etendue_field::{Ledger, PhotonSource, SliceGrid, VirtualPlane};
 use etendue_spectrum::{CrossPower, Measurement, estimate, measure, moments};
 use ndarray::{Axis, Slice};

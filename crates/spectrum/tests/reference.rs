@@ -2,9 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may panic")]
 
-mod common;
-
-use common::{hann, plane};
+use crate::common::{hann, plane};
 use etendue_field::{
     Complex, Crossing, FrequencyAxis, Ledger, PlaneTally, Projection, ProjectionGrid, SliceGrid,
     Slices, TwoPlane,

@@ -3,9 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-mod common;
-
-use common::estimates;
+use crate::common::estimates;
 use etendue_field::PhotonSource;
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Emitter, Tracer, finds};

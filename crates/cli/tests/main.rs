@@ -1,0 +1,26 @@
+//! The tests of `etendue`, one program for all.
+
+mod bandwidth;
+mod command;
+mod common;
+mod covariance;
+mod damaged;
+mod diff;
+mod drawing;
+mod explorer;
+mod figure;
+mod first_scenes;
+mod interruption;
+mod limits;
+mod ownership;
+mod ray_light;
+mod rays;
+mod report;
+mod resume;
+mod schema;
+mod split;
+mod stages;
+mod sweep;
+mod vocabulary;
+mod workers;
+mod worlds;

@@ -1,0 +1,7 @@
+//! The tests of `etendue-compare`, one program for all.
+
+mod applicability;
+mod comparison;
+mod small_objects;
+mod two_samples;
+mod work;

@@ -1,0 +1,24 @@
+//! The tests of `etendue-import`, one program for all.
+
+mod bounds;
+mod cameras;
+mod colors;
+mod common;
+mod files;
+mod gltf;
+mod gltf_files;
+mod gltf_scene;
+mod lights;
+mod materials;
+mod mutations;
+mod obj;
+mod pbrt_cameras;
+mod pbrt_files;
+mod pbrt_lights;
+mod pbrt_materials;
+mod pbrt_scenes;
+mod pbrt_shapes;
+mod properties;
+mod ranges;
+mod shapes;
+mod transforms;

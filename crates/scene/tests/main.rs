@@ -1,0 +1,14 @@
+//! The tests of `etendue-scene`, one program for all.
+
+mod book;
+mod detailed;
+mod json;
+mod limits;
+mod mesh;
+mod meshes_refused;
+mod pictures;
+mod places;
+mod reading;
+mod scene_file;
+mod smooth;
+mod vocabulary;

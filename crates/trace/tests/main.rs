@@ -1,0 +1,13 @@
+//! The tests of `etendue-trace`, one program for all.
+
+mod brdfs;
+mod common;
+mod environment;
+mod legs;
+mod memory;
+mod meshes;
+mod narrow;
+mod on_surfaces;
+mod tracer;
+mod vocabulary;
+mod world;
