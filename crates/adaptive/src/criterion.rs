@@ -146,7 +146,8 @@ mod tests {
     use crate::cutoffs::Cutoffs;
     use etendue_paths::Paths;
     use etendue_world::{
-        Camera, Distribution, Geometry, Material, Projection, Roughness, Shape, Texture, World,
+        Camera, Geometry, Material, MicrofacetDistribution, Projection, Roughness, Shape, Texture,
+        World,
     };
     use glam::{DAffine3, DVec3};
 
@@ -169,7 +170,7 @@ mod tests {
                 index: None,
                 reflectance: Texture::Constant(1.0),
                 roughness: Some(Roughness {
-                    distribution: Distribution::Beckmann,
+                    distribution: MicrofacetDistribution::Beckmann,
                     alpha: [Texture::Constant(ALPHA), Texture::Constant(ALPHA)],
                 }),
             })],

@@ -117,6 +117,26 @@ impl Lobe {
     }
 }
 
+/// A distribution of the normals of microfacets (Walter et al. 2007).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MicrofacetDistribution {
+    /// Gaussian slopes.
+    Beckmann,
+    /// With longer tails (Trowbridge and Reitz 1975).
+    Ggx,
+}
+
+impl MicrofacetDistribution {
+    /// The lobe of such microfacets with this roughness.
+    #[must_use]
+    pub fn lobe(self, roughness: f64) -> Lobe {
+        match self {
+            Self::Beckmann => Lobe::Beckmann { roughness },
+            Self::Ggx => Lobe::Ggx { roughness },
+        }
+    }
+}
+
 /// The share of light that is reflected, unpolarised, as it depends on the angle of incidence.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub enum Fresnel {

@@ -32,7 +32,7 @@ mod shape;
 mod slices;
 mod window;
 
-pub use brdf::{AngleTable, Brdf, Fresnel, Lobe};
+pub use brdf::{AngleTable, Brdf, Fresnel, Lobe, MicrofacetDistribution};
 pub use crossing::{Crossing, Ledger, PhotonSource, PlaneTally};
 pub use environment::{Environment, EnvironmentMap, LatLong, SphericalGaussian};
 pub use field_grid::{Assignment, FieldGrid};

@@ -4,7 +4,7 @@
 
 use crate::common::assert_close;
 use crate::gltf_scene::{BASE, causes, mesh, notes, with, world};
-use etendue_world::{Distribution, Light, Material, Projection, Texture};
+use etendue_world::{Light, Material, MicrofacetDistribution, Projection, Texture};
 use glam::{DVec2, DVec3};
 
 /// The value of a texture that is the same everywhere.
@@ -144,7 +144,7 @@ fn alpha_is_the_square_of_roughness() {
         panic!("{:?}", world.materials);
     };
     let roughness = metal.roughness.as_ref().unwrap();
-    assert_eq!(roughness.distribution, Distribution::Ggx);
+    assert_eq!(roughness.distribution, MicrofacetDistribution::Ggx);
     assert_close(&[constant(&roughness.alpha[0])], &[0.25], 1e-12);
     assert!(metal.index.is_none());
 }

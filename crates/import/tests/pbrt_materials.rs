@@ -5,7 +5,7 @@
 use crate::common::{assert_close, folder};
 use crate::pbrt_scenes::{causes, material, notes, read_in, scene, world};
 use etendue_import::Color;
-use etendue_world::{Distribution, Material, Texture};
+use etendue_world::{Material, MicrofacetDistribution, Texture};
 use glam::DVec2;
 
 fn constant(texture: &Texture) -> f64 {
@@ -19,7 +19,7 @@ fn constant(texture: &Texture) -> f64 {
 fn alpha(parameters: &str) -> Option<[f64; 2]> {
     match material(&format!("Material \"conductor\" {parameters}")) {
         Material::Conductor(metal) => metal.roughness.map(|rough| {
-            assert_eq!(rough.distribution, Distribution::Ggx);
+            assert_eq!(rough.distribution, MicrofacetDistribution::Ggx);
             [constant(&rough.alpha[0]), constant(&rough.alpha[1])]
         }),
         other => panic!("{other:?}"),

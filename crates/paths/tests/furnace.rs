@@ -7,8 +7,8 @@
 
 use etendue_paths::{Paths, Picture};
 use etendue_world::{
-    Camera, Conductor, Dielectric, Distribution, Geometry, Light, Material, Plastic, Projection,
-    Roughness, Shape, Texture, Triangles, World,
+    Camera, Conductor, Dielectric, Geometry, Light, Material, MicrofacetDistribution, Plastic,
+    Projection, Roughness, Shape, Texture, Triangles, World,
 };
 use glam::{DAffine3, DMat3, DVec3};
 use std::sync::Arc;
@@ -22,7 +22,7 @@ fn constant(value: f64) -> Texture {
     Texture::Constant(value)
 }
 
-fn roughness(distribution: Distribution, alpha: [f64; 2]) -> Option<Roughness> {
+fn roughness(distribution: MicrofacetDistribution, alpha: [f64; 2]) -> Option<Roughness> {
     Some(Roughness {
         distribution,
         alpha: alpha.map(constant),
@@ -102,8 +102,8 @@ struct Case {
 
 fn cases() -> Vec<Case> {
     use Behind::{Medium, Nothing, Same};
-    let ggx = |alpha| roughness(Distribution::Ggx, [alpha, alpha]);
-    let beckmann = || roughness(Distribution::Beckmann, [0.3, 0.15]);
+    let ggx = |alpha| roughness(MicrofacetDistribution::Ggx, [alpha, alpha]);
+    let beckmann = || roughness(MicrofacetDistribution::Beckmann, [0.3, 0.15]);
     let mirror = || two_sided(metal(None, None));
     let phong = Material::Phong {
         diffuse: constant(0.4),

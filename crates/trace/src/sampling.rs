@@ -1,18 +1,10 @@
 //! Points and directions from even random numbers.
 
 use etendue_field::Shape;
-use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 
 /// π: the flux a Lambertian surface sends out per radiance and area.
 pub(crate) const LAMBERTIAN: f64 = PI;
-
-/// A direction about Z with a density in proportion to its cosine, from two numbers in (0, 1).
-pub(crate) fn by_cosine([a, b]: [f64; 2]) -> DVec3 {
-    let (sin, cos) = libm::sincos(TAU * b);
-    let [across, up] = [a.sqrt(), (1.0 - a).sqrt()];
-    DVec3::new(across * cos, across * sin, up)
-}
 
 /// A uniform point of a shape, from two numbers in (0, 1).
 pub(crate) fn point(shape: &Shape, r: [f64; 2]) -> [f64; 2] {

@@ -1,8 +1,9 @@
 //! Directions in proportion to the radiance of an environment.
 
 use crate::line::{direction, ray_through};
-use crate::sampling::{LAMBERTIAN, by_cosine};
+use crate::sampling::LAMBERTIAN;
 use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian, TwoPlane};
+use etendue_scatter::lambertian;
 use etendue_transform::random::{self, Stream};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
@@ -157,7 +158,7 @@ impl Sky {
     /// The slopes of a direction; `None` when it does not go forward.
     pub(crate) fn slopes(&self, r: [f64; 4]) -> Option<[f64; 2]> {
         let along = if r[0] < self.by_cosine {
-            by_cosine([r[2], r[1]])
+            lambertian::sample([r[2], r[1]])
         } else {
             let first = (r[0] - self.by_cosine) / (1.0 - self.by_cosine);
             self.sample([first, r[1], r[2], r[3]])
@@ -191,7 +192,7 @@ impl Sky {
         incident: impl FnOnce(&TwoPlane, f64) -> f64,
     ) -> f64 {
         let towards = if r[3] < 0.5 {
-            let towards = by_cosine([r[0], r[1]]);
+            let towards = lambertian::sample([r[0], r[1]]);
             Frame::IDENTITY.turned_to(normal).vector_to_world(towards)
         } else {
             -self.sample([r[0], r[1], r[2], 2.0 * r[3] - 1.0])

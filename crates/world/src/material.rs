@@ -1,6 +1,7 @@
 //! What surfaces of a world do to light.
 
 use crate::Texture;
+use etendue_field::MicrofacetDistribution;
 
 /// What a surface does to light.
 ///
@@ -90,16 +91,7 @@ pub struct Plastic {
 #[derive(Clone, Debug)]
 pub struct Roughness {
     /// The distribution.
-    pub distribution: Distribution,
+    pub distribution: MicrofacetDistribution,
     /// α along the tangents of u and v: for Beckmann √2 times the root mean square slope.
     pub alpha: [Texture; 2],
-}
-
-/// A distribution of normals (Walter et al. 2007).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Distribution {
-    /// Gaussian slopes.
-    Beckmann,
-    /// With longer tails (Trowbridge and Reitz 1975).
-    Ggx,
 }

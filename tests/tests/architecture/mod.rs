@@ -19,19 +19,17 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("spectrum", &["field", "transform"]),
     ("figures", &["field"]),
     ("world", &["field"]),
+    ("scatter", &["field"]),
     ("explorer", &["field", "theory", "transform"]),
     ("scene", &["bvh", "field", "rays", "transform"]),
-    ("trace", &["bvh", "field", "scene", "transform"]),
+    ("trace", &["bvh", "field", "scatter", "scene", "transform"]),
     ("export", &["field", "scene"]),
     (
         "compare",
         &["field", "scene", "spectrum", "theory", "transform"],
     ),
     ("import", &["field", "scene", "world"]),
-    (
-        "paths",
-        &["bvh", "field", "scene", "trace", "transform", "world"],
-    ),
+    ("paths", &["bvh", "field", "scatter", "transform", "world"]),
     (
         "adaptive",
         &["compare", "field", "paths", "theory", "transform", "world"],

@@ -3,7 +3,7 @@
 use super::level::TextureChannel;
 use super::reader::GltfReader;
 use super::surface::Draft;
-use etendue_world::{Conductor, Distribution, Material, Plastic, Roughness, Texture};
+use etendue_world::{Conductor, Material, MicrofacetDistribution, Plastic, Roughness, Texture};
 
 /// Index of refraction, if nothing is said.
 const INDEX: f64 = 1.5;
@@ -175,7 +175,7 @@ pub(super) fn roughness(alpha: Texture) -> Option<Roughness> {
     match alpha {
         Texture::Constant(..=0.0) => None,
         alpha => Some(Roughness {
-            distribution: Distribution::Ggx,
+            distribution: MicrofacetDistribution::Ggx,
             alpha: [alpha.clone(), alpha],
         }),
     }

@@ -7,7 +7,9 @@ use super::texture::as_number;
 use crate::range::MAX_SHARE;
 use crate::report::quoted;
 use crate::spectrum::Role;
-use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness, Texture};
+use etendue_world::{
+    Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Roughness, Texture,
+};
 
 /// Materials within one another.
 const MAX_DEPTH: usize = 8;
@@ -223,8 +225,8 @@ impl<'a> MitsubaReader<'a> {
             object,
             "distribution",
             &[
-                ("beckmann", Distribution::Beckmann),
-                ("ggx", Distribution::Ggx),
+                ("beckmann", MicrofacetDistribution::Beckmann),
+                ("ggx", MicrofacetDistribution::Ggx),
             ],
         );
         let both = ["alpha_u", "alpha_v"].map(|name| self.has(object, name));

@@ -7,7 +7,9 @@ use super::scene::MaterialOf;
 use super::texture::Ask;
 use crate::report::quoted;
 use crate::spectrum::Role;
-use etendue_world::{Conductor, Dielectric, Distribution, Material, Plastic, Roughness, Texture};
+use etendue_world::{
+    Conductor, Dielectric, Material, MicrofacetDistribution, Plastic, Roughness, Texture,
+};
 
 /// Materials within one another.
 const MAX_DEPTH: usize = 8;
@@ -260,7 +262,7 @@ impl PbrtReader<'_> {
         let [u, v] = alpha;
         let rough = |v: f64| v.max(1e-4);
         Ok(Some(Roughness {
-            distribution: Distribution::Ggx,
+            distribution: MicrofacetDistribution::Ggx,
             alpha: [
                 self.mapped(entity, u, rough)?,
                 self.mapped(entity, v, rough)?,

@@ -3,31 +3,25 @@
 //! Directions are unit vectors away from the surface, in a frame with its normal along Z. Values are BSDFs times |cos| of wi, and carry radiance:
 //! behind an interface it is that of the other side over the squared index.
 
-mod bounce;
-mod fresnel;
-mod microfacet;
-mod phong;
-mod plastic;
+mod place;
 mod reflects;
 
-pub(crate) use bounce::Bounce;
-use bounce::{by_cosine, cosine_density, mirrored};
-use etendue_field::{Fresnel, Lobe};
-use etendue_trace::brdf::reflected_share;
-use etendue_world::{Conductor, Dielectric, Material, Roughness, Texture};
-use fresnel::dielectric;
+use etendue_field::Lobe;
+pub(crate) use etendue_scatter::Bounce;
+use etendue_scatter::{Bsdf, lambertian, mirror};
+use etendue_world::{self as world, Material, Roughness, Texture};
 use glam::{DVec2, DVec3};
-use microfacet::{Microfacets, RoughInterface};
-use plastic::Coated;
+use place::{
+    Coated, conductor, facets, factor, fresnel, phong, rough_dielectric, share, smooth_dielectric,
+};
 pub use reflects::Reflects;
-use std::f64::consts::PI;
 
 /// A material, ready to scatter.
 #[derive(Clone, Debug)]
 pub(crate) enum Scatter {
     Diffuse(Texture),
-    Conductor(Conductor),
-    Dielectric(Dielectric),
+    Conductor(world::Conductor),
+    Dielectric(world::Dielectric),
     Plastic(Box<Coated>),
     Phong([Texture; 3]),
     TwoSided(Box<[Self; 2]>),
@@ -69,18 +63,18 @@ impl Scatter {
                 let ([a, b], share) = (&**of, weight.value(uv).clamp(0.0, 1.0));
                 (1.0 - share) * a.value(uv, wi, wo) + share * b.value(uv, wi, wo)
             }
-            Self::Dielectric(of) => rough_interface(of, uv, wo).map_or(0.0, |(rough, turned)| {
+            Self::Dielectric(of) => rough_dielectric(of, uv, wo).map_or(0.0, |rough| {
+                let turned = to_front(wo);
                 let (wi, wo) = (turned(wi), turned(wo));
-                factor(of, uv, wi) * rough.value(wi, wo)
+                factor(of, uv, wi) * rough.value(wi, wo) * wi.z.abs()
             }),
             _ if !is_front => 0.0,
-            Self::Diffuse(reflectance) => reflectance.value(uv) * wi.z / PI,
-            Self::Conductor(of) => facets(of.roughness.as_ref(), uv).map_or(0.0, |facets| {
-                let (value, normal) = facets.reflected(wi, wo);
-                value * metal(of, uv, wo.dot(normal))
+            Self::Diffuse(reflectance) => reflectance.value(uv) * lambertian::density(wi),
+            Self::Conductor(of) => conductor(of, uv).map_or(0.0, |rough| {
+                of.reflectance.value(uv) * rough.value(wi, wo) * wi.z
             }),
-            Self::Plastic(of) => of.value(uv, wi, wo),
-            Self::Phong(of) => phong::value(of, uv, wi, wo),
+            Self::Plastic(of) => of.at(uv).value(wi, wo) * wi.z,
+            Self::Phong(of) => phong(of, uv).value(wi, wo) * wi.z,
         }
     }
 
@@ -97,14 +91,17 @@ impl Scatter {
                 let ([a, b], share) = (&**of, weight.value(uv).clamp(0.0, 1.0));
                 (1.0 - share) * a.density(uv, wi, wo) + share * b.density(uv, wi, wo)
             }
-            Self::Dielectric(of) => rough_interface(of, uv, wo)
-                .map_or(0.0, |(rough, turned)| rough.density(turned(wi), turned(wo))),
+            Self::Dielectric(of) => rough_dielectric(of, uv, wo).map_or(0.0, |rough| {
+                let turned = to_front(wo);
+                rough.density(turned(wi), turned(wo))
+            }),
             _ if !is_front => 0.0,
-            Self::Diffuse(_) => cosine_density(wi),
-            Self::Conductor(of) => facets(of.roughness.as_ref(), uv)
-                .map_or(0.0, |facets| facets.reflected_density(wi, wo)),
-            Self::Plastic(of) => of.density(uv, wi, wo),
-            Self::Phong(of) => phong::density(of, uv, wi, wo),
+            Self::Diffuse(_) => lambertian::density(wi),
+            Self::Conductor(of) => {
+                facets(of.roughness.as_ref(), uv).map_or(0.0, |facets| facets.density(wi, wo))
+            }
+            Self::Plastic(of) => of.at(uv).density(wi, wo),
+            Self::Phong(of) => phong(of, uv).density(wi, wo),
         }
     }
 
@@ -123,11 +120,7 @@ impl Scatter {
             Self::Mask(opacity, of) => {
                 let opacity = opacity.value(uv).clamp(0.0, 1.0);
                 if c >= opacity {
-                    return Some(Bounce {
-                        wi: -wo,
-                        weight: 1.0,
-                        density: None,
-                    });
+                    return Some(Bounce::only(-wo, 1.0));
                 }
                 let bounce = of.sample(uv, wo, [a, b, c / opacity])?;
                 let density = bounce.density.map(|density| opacity * density);
@@ -136,51 +129,40 @@ impl Scatter {
             Self::Blend(weight, of) => {
                 self.blended(weight.value(uv).clamp(0.0, 1.0), of, uv, wo, random)
             }
-            Self::Dielectric(of) => match rough_interface(of, uv, wo) {
-                Some((rough, turned)) => {
-                    let bounce = rough.sample(turned(wo), random)?;
-                    let weight = bounce.weight * factor(of, uv, bounce.wi);
-                    Some(Bounce {
-                        wi: turned(bounce.wi),
-                        weight,
-                        ..bounce
-                    })
-                }
-                None => smooth_interface(of, uv, wo, c),
-            },
+            Self::Dielectric(of) => {
+                let turned = to_front(wo);
+                let bounce = match rough_dielectric(of, uv, wo) {
+                    Some(rough) => rough.sample(turned(wo), random)?,
+                    None => smooth_dielectric(of, wo).sample(turned(wo), c),
+                };
+                Some(Bounce {
+                    wi: turned(bounce.wi),
+                    weight: bounce.weight * factor(of, uv, bounce.wi),
+                    ..bounce
+                })
+            }
             _ if wo.z <= 0.0 => None,
             Self::Diffuse(reflectance) => {
-                let wi = by_cosine([a, b]);
+                let wi = lambertian::sample([a, b]);
                 Some(Bounce {
                     wi,
                     weight: reflectance.value(uv),
-                    density: Some(cosine_density(wi)),
+                    density: Some(lambertian::density(wi)),
                 })
             }
-            Self::Conductor(of) => match facets(of.roughness.as_ref(), uv) {
-                Some(facets) => self.weighed(uv, facets.reflect(wo, [a, b]), wo),
-                None => {
-                    let wi = mirrored(wo, DVec3::Z);
-                    Some(Bounce {
-                        wi,
-                        weight: metal(of, uv, wo.z),
-                        density: None,
-                    })
-                }
-            },
-            Self::Plastic(of) => of.sample(uv, wo, random),
-            Self::Phong(of) => self.weighed(uv, phong::sample(of, uv, wo, random), wo),
+            Self::Conductor(of) => {
+                let bounce = match conductor(of, uv) {
+                    Some(rough) => rough.sample(wo, random)?,
+                    None => mirror(&fresnel(of), wo),
+                };
+                Some(Bounce {
+                    weight: of.reflectance.value(uv) * bounce.weight,
+                    ..bounce
+                })
+            }
+            Self::Plastic(of) => of.at(uv).sample(wo, random),
+            Self::Phong(of) => phong(of, uv).sample(wo, random),
         }
-    }
-
-    /// A sampled direction with its weight; `None` below the front.
-    fn weighed(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> Option<Bounce> {
-        let density = self.density(uv, wi, wo);
-        (wi.z > 0.0 && density > 0.0).then(|| Bounce {
-            wi,
-            weight: self.value(uv, wi, wo) / density,
-            density: Some(density),
-        })
     }
 
     /// One of two, each by its share; the density is that of both.
@@ -234,7 +216,7 @@ impl Scatter {
                 let [a, b] = [0, 1].map(|axis: usize| of.alpha[axis].value(uv));
                 // Of the same area as the ellipse of both.
                 let roughness = (a * b).sqrt();
-                Reflects::facets(of.distribution, roughness)
+                Reflects::Lobe(of.distribution.lobe(roughness))
             })
         };
         match self {
@@ -245,7 +227,9 @@ impl Scatter {
             _ if wo.z <= 0.0 => Reflects::Nothing,
             Self::Diffuse(_) => Reflects::Diffuse,
             Self::Conductor(of) => rough(of.roughness.as_ref()),
-            Self::Plastic(of) => of.kind(),
+            Self::Plastic(of) => of.coat.facets().map_or(Reflects::Mirror, |facets| {
+                Reflects::Lobe(facets.distribution.lobe(facets.alpha[0]))
+            }),
             Self::Phong([_, _, exponent]) => Reflects::Lobe(Lobe::Phong {
                 exponent: exponent.value(uv),
             }),
@@ -261,7 +245,7 @@ impl Scatter {
             }
             Self::Diffuse(reflectance) => [reflectance.value(uv), 0.0],
             Self::Conductor(of) => [of.reflectance.value(uv), 0.0],
-            Self::Plastic(of) => of.factors(uv),
+            Self::Plastic(of) => [of.at(uv).base_albedo(), of.specular.value(uv)],
             Self::Phong([diffuse, specular, _]) => [diffuse.value(uv), specular.value(uv)],
             _ => [1.0, 0.0],
         }
@@ -275,7 +259,10 @@ impl Scatter {
                 side.base_share(uv, turned(wi), turned(wo))
             }
             Self::Plastic(of) => of.base_share(uv, wi, wo),
-            Self::Phong(of) => phong::base_share(of, uv, wi, wo),
+            Self::Phong(of) => {
+                let phong = phong(of, uv);
+                share(phong.diffuse * lambertian::VALUE, phong.value(wi, wo))
+            }
             _ => 1.0,
         }
     }
@@ -283,7 +270,7 @@ impl Scatter {
     /// Whether some of what leaves it goes one way only.
     pub(crate) fn has_mirror(&self) -> bool {
         match self {
-            Self::Plastic(of) => of.is_smooth(),
+            Self::Plastic(of) => of.coat.facets().is_none(),
             Self::TwoSided(of) | Self::Blend(_, of) => of.iter().any(Self::has_mirror),
             Self::Mask(..) => true,
             _ => self.is_smooth(),
@@ -302,93 +289,21 @@ impl Scatter {
     }
 }
 
-/// Turns directions so that a side is above.
+/// Turns directions so that a side is in front.
 type Turn = fn(DVec3) -> DVec3;
+
+/// How directions are turned so that `wo` is in front.
+fn to_front(wo: DVec3) -> Turn {
+    if wo.z > 0.0 {
+        |v| v
+    } else {
+        |v| v.with_z(-v.z)
+    }
+}
 
 /// The side of a two-sided material that a direction sees, and how directions are turned to its frame.
 fn side_of(sides: &[Scatter; 2], wo: DVec3) -> (&Scatter, Turn) {
-    if wo.z > 0.0 {
-        (&sides[0], |v| v)
-    } else {
-        (&sides[1], turned)
-    }
-}
-
-fn turned(v: DVec3) -> DVec3 {
-    v.with_z(-v.z)
-}
-
-/// The microfacets at a place; `None` for a smooth surface.
-fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
-    roughness.map(|of| Microfacets {
-        distribution: of.distribution,
-        // As small as directions in f64 still tell.
-        alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(uv).max(1e-4)),
-    })
-}
-
-/// What a metal reflects at an angle.
-fn metal(of: &Conductor, uv: DVec2, cosine: f64) -> f64 {
-    let fresnel = of
-        .index
-        .map_or(Fresnel::White, |[n, k]| Fresnel::Conductor { n, k });
-    of.reflectance.value(uv) * reflected_share(&fresnel, cosine.clamp(0.0, 1.0))
-}
-
-/// A rough interface as wo sees it, and how directions are turned so that wo is above; `None` for a smooth one.
-fn rough_interface(of: &Dielectric, uv: DVec2, wo: DVec3) -> Option<(RoughInterface, Turn)> {
-    let facets = facets(of.roughness.as_ref().filter(|_| !of.is_thin), uv)?;
-    let (index, to_above): (f64, Turn) = if wo.z > 0.0 {
-        (of.index, |v| v)
-    } else {
-        (1.0 / of.index, turned)
-    };
-    Some((RoughInterface { facets, index }, to_above))
-}
-
-/// The factor on what is reflected or goes through, wo being above.
-fn factor(of: &Dielectric, uv: DVec2, wi: DVec3) -> f64 {
-    if wi.z > 0.0 {
-        of.reflectance.value(uv)
-    } else {
-        of.transmittance.value(uv)
-    }
-}
-
-/// Reflects or refracts at a smooth interface, each as often as light does.
-fn smooth_interface(of: &Dielectric, uv: DVec2, wo: DVec3, random: f64) -> Option<Bounce> {
-    // A thin sheet has the same medium on both sides.
-    let index = if of.is_thin || wo.z > 0.0 {
-        of.index
-    } else {
-        1.0 / of.index
-    };
-    let normal = DVec3::Z * wo.z.signum();
-    let mut at = dielectric(index, wo.z.abs());
-    if of.is_thin && at.reflected < 1.0 {
-        // Reflections within, summed: R + T² R / (1 − R²).
-        let once = at.reflected;
-        at.reflected += (1.0 - once).powi(2) * once / (1.0 - once * once);
-    }
-    if random < at.reflected {
-        let (wi, weight) = (mirrored(wo, normal), of.reflectance.value(uv));
-        return Some(Bounce {
-            wi,
-            weight,
-            density: None,
-        });
-    }
-    let transmittance = of.transmittance.value(uv);
-    let (wi, weight) = if of.is_thin {
-        (-wo, transmittance)
-    } else {
-        (at.refracted(wo, normal), transmittance / (index * index))
-    };
-    Some(Bounce {
-        wi,
-        weight,
-        density: None,
-    })
+    (&sides[usize::from(wo.z <= 0.0)], to_front(wo))
 }
 
 #[cfg(test)]

@@ -1,7 +1,6 @@
 //! What a surface does to light, in a word.
 
 use etendue_field::Lobe;
-use etendue_world::Distribution;
 
 /// What a surface does to light, in a word.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -14,13 +13,4 @@ pub enum Reflects {
     Mirror,
     /// It has a lobe about the mirror direction, perhaps above a diffuse base.
     Lobe(Lobe),
-}
-
-impl Reflects {
-    pub(super) fn facets(distribution: Distribution, roughness: f64) -> Self {
-        Self::Lobe(match distribution {
-            Distribution::Beckmann => Lobe::Beckmann { roughness },
-            Distribution::Ggx => Lobe::Ggx { roughness },
-        })
-    }
 }

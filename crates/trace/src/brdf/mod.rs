@@ -1,21 +1,12 @@
-//! BRDFs at one place: their value, and beside it a way to sample a direction with its density.
+//! BRDFs as scenes have them, by the lobes of `etendue_scatter`: light comes from wi and goes to wo.
 //!
-//! Directions are unit vectors away from the surface, in a frame with the normal along Z: light comes from wi and goes to wo.
-//! [`Brdf`] says what each lobe is.
+//! Directions are unit vectors away from the surface, in a frame with the normal along Z. [`Brdf`] says what each lobe is.
 
-mod fresnel;
-mod lambertian;
-mod microfacet;
 mod mixture;
-mod phong;
 
-#[cfg(test)]
-mod tests;
-
-use etendue_field::{AngleTable, Brdf, Lobe};
-pub use fresnel::reflected_share;
+use etendue_field::{AngleTable, Brdf, Lobe, MicrofacetDistribution};
+use etendue_scatter::{Microfacets, Phong, lambertian, reflectance};
 use glam::DVec3;
-use microfacet::{Distribution, Microfacets};
 pub use mixture::sum;
 pub(crate) use mixture::{densities, towards};
 
@@ -27,17 +18,14 @@ pub fn value(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
         return 0.0;
     }
     let (lobe, cosine) = match brdf.lobe {
-        Lobe::Lambertian => (lambertian::value(), wi.z),
-        Lobe::Phong { exponent } => (phong::value(exponent, wi, wo), wi.z),
-        Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-            let half = (wi + wo).normalize();
-            let cosine = half.dot(wi).min(1.0);
-            (microfacets(brdf).map_or(0.0, |m| m.value(wi, wo)), cosine)
-        }
+        Lobe::Lambertian => (lambertian::VALUE, wi.z),
+        Lobe::Phong { exponent } => (Phong { exponent }.value(wo, wi), wi.z),
+        Lobe::Beckmann { roughness } => beckmann(roughness).value(wo, wi),
+        Lobe::Ggx { roughness } => ggx(roughness).value(wo, wi),
     };
     brdf.albedo
         * lobe
-        * reflected_share(&brdf.fresnel, cosine)
+        * reflectance(&brdf.fresnel, cosine)
         * factor(brdf.incoming.as_ref(), wi)
         * factor(brdf.outgoing.as_ref(), wo)
 }
@@ -55,10 +43,9 @@ fn factor(table: Option<&AngleTable>, direction: DVec3) -> f64 {
 pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
     match brdf.lobe {
         Lobe::Lambertian => lambertian::sample(random),
-        Lobe::Phong { exponent } => phong::sample(exponent, wi, random),
-        Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-            microfacets(brdf).map_or(DVec3::Z, |m| m.sample(wi, random))
-        }
+        Lobe::Phong { exponent } => Phong { exponent }.sample(wi, random),
+        Lobe::Beckmann { roughness } => beckmann(roughness).sample_unmasked(wi, random),
+        Lobe::Ggx { roughness } => ggx(roughness).sample(wi, random),
     }
 }
 
@@ -67,21 +54,18 @@ pub(crate) fn sample(brdf: &Brdf, wi: DVec3, random: [f64; 2]) -> DVec3 {
 pub(crate) fn density(brdf: &Brdf, wi: DVec3, wo: DVec3) -> f64 {
     match brdf.lobe {
         Lobe::Lambertian => lambertian::density(wo),
-        Lobe::Phong { exponent } => phong::density(exponent, wi, wo),
-        Lobe::Beckmann { .. } | Lobe::Ggx { .. } => {
-            microfacets(brdf).map_or(0.0, |m| m.density(wi, wo))
-        }
+        Lobe::Phong { exponent } => Phong { exponent }.value(wo, wi),
+        Lobe::Beckmann { roughness } => beckmann(roughness).unmasked_density(wo, wi),
+        Lobe::Ggx { roughness } => ggx(roughness).density(wo, wi),
     }
 }
 
-fn microfacets(brdf: &Brdf) -> Option<Microfacets> {
-    let (distribution, roughness) = match brdf.lobe {
-        Lobe::Beckmann { roughness } => (Distribution::Beckmann, roughness),
-        Lobe::Ggx { roughness } => (Distribution::Ggx, roughness),
-        Lobe::Lambertian | Lobe::Phong { .. } => return None,
-    };
-    Some(Microfacets {
-        distribution,
-        roughness,
-    })
+#[inline]
+fn beckmann(roughness: f64) -> Microfacets {
+    Microfacets::isotropic(MicrofacetDistribution::Beckmann, roughness)
+}
+
+#[inline]
+fn ggx(roughness: f64) -> Microfacets {
+    Microfacets::isotropic(MicrofacetDistribution::Ggx, roughness)
 }

@@ -1,0 +1,127 @@
+//! Materials at a place of a surface, as BSDFs of `etendue_scatter`.
+
+use etendue_field::Fresnel;
+use etendue_scatter::{
+    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, RoughDielectric,
+    SmoothDielectric,
+};
+use etendue_world::{self as world, Roughness, Texture};
+use glam::{DVec2, DVec3};
+
+/// The microfacets at a place; `None` for a smooth surface.
+pub(super) fn facets(roughness: Option<&Roughness>, uv: DVec2) -> Option<Microfacets> {
+    roughness.map(|of| Microfacets {
+        distribution: of.distribution,
+        // As small as directions in f64 still tell.
+        alpha: [0, 1].map(|axis: usize| of.alpha[axis].value(uv).max(1e-4)),
+    })
+}
+
+/// A rough metal at a place; `None` for a mirror.
+pub(super) fn conductor(of: &world::Conductor, uv: DVec2) -> Option<Conductor> {
+    facets(of.roughness.as_ref(), uv).map(|facets| Conductor {
+        facets,
+        fresnel: fresnel(of),
+    })
+}
+
+/// What a metal reflects.
+pub(super) fn fresnel(of: &world::Conductor) -> Fresnel {
+    of.index
+        .map_or(Fresnel::White, |[n, k]| Fresnel::Conductor { n, k })
+}
+
+/// The modified Phong BRDF at a place.
+pub(super) fn phong([diffuse, specular, exponent]: &[Texture; 3], uv: DVec2) -> ModifiedPhong {
+    ModifiedPhong {
+        diffuse: diffuse.value(uv),
+        specular: specular.value(uv),
+        lobe: Phong {
+            exponent: exponent.value(uv),
+        },
+    }
+}
+
+/// The index behind an interface over that on the side of `wo`. A thin sheet has the same medium on both sides.
+fn index(of: &world::Dielectric, wo: DVec3) -> f64 {
+    if of.is_thin || wo.z > 0.0 {
+        of.index
+    } else {
+        1.0 / of.index
+    }
+}
+
+/// A rough interface as `wo` sees it; `None` for a smooth one.
+pub(super) fn rough_dielectric(
+    of: &world::Dielectric,
+    uv: DVec2,
+    wo: DVec3,
+) -> Option<RoughDielectric> {
+    let facets = facets(of.roughness.as_ref().filter(|_| !of.is_thin), uv)?;
+    let index = index(of, wo);
+    Some(RoughDielectric { facets, index })
+}
+
+/// A smooth interface as `wo` sees it.
+pub(super) fn smooth_dielectric(of: &world::Dielectric, wo: DVec3) -> SmoothDielectric {
+    SmoothDielectric {
+        index: index(of, wo),
+        is_thin: of.is_thin,
+    }
+}
+
+/// The factor on what is reflected or goes through, wo being in front.
+pub(super) fn factor(of: &world::Dielectric, uv: DVec2, wi: DVec3) -> f64 {
+    if wi.z > 0.0 {
+        of.reflectance.value(uv)
+    } else {
+        of.transmittance.value(uv)
+    }
+}
+
+/// A diffuse base below a dielectric coat.
+#[derive(Clone, Debug)]
+pub(crate) struct Coated {
+    pub(super) coat: Coat,
+    diffuse: Texture,
+    pub(super) specular: Texture,
+    is_nonlinear: bool,
+}
+
+impl Coated {
+    pub(super) fn new(plastic: &world::Plastic) -> Self {
+        // A table is made for the coat, which has the same roughness everywhere.
+        let facets = facets(plastic.roughness.as_ref(), DVec2::ZERO);
+        Self {
+            coat: Coat::new(plastic.index, facets),
+            diffuse: plastic.diffuse.clone(),
+            specular: plastic.specular.clone(),
+            is_nonlinear: plastic.is_nonlinear,
+        }
+    }
+
+    /// What it is at a place.
+    pub(super) fn at(&self, uv: DVec2) -> Plastic<'_> {
+        Plastic {
+            coat: &self.coat,
+            diffuse: self.diffuse.value(uv),
+            specular: self.specular.value(uv),
+            is_nonlinear: self.is_nonlinear,
+        }
+    }
+
+    /// The share of the base in what leaves; of light in the mirror direction of a smooth coat none is the base's, but for what has no size.
+    pub(super) fn base_share(&self, uv: DVec2, wi: DVec3, wo: DVec3) -> f64 {
+        let is_mirrored = (wi + wo).truncate().length_squared() < 1e-24;
+        if self.coat.facets().is_none() && is_mirrored {
+            return 0.0;
+        }
+        let plastic = self.at(uv);
+        share(plastic.base_value(wi, wo), plastic.value(wi, wo))
+    }
+}
+
+/// A part of a value, as a share of it.
+pub(super) fn share(part: f64, value: f64) -> f64 {
+    if value > 0.0 { part / value } else { 0.0 }
+}

@@ -1,0 +1,44 @@
+//! Metals: a mirror, or microfacets that are mirrors.
+
+use crate::bsdf::before;
+use crate::{Bounce, Bsdf, Microfacets, fresnel};
+use etendue_field::Fresnel;
+use glam::DVec3;
+
+/// What a smooth mirror sends along wo, before it.
+#[inline]
+#[must_use]
+pub fn mirror(fresnel: &Fresnel, wo: DVec3) -> Bounce {
+    let weight = fresnel::reflectance(fresnel, wo.z.min(1.0));
+    Bounce::only(DVec3::new(-wo.x, -wo.y, wo.z), weight)
+}
+
+/// A rough mirror, whose facets are drawn as wo sees them.
+#[derive(Clone, Copy, Debug)]
+pub struct Conductor {
+    /// Its facets.
+    pub facets: Microfacets,
+    /// What each of them reflects.
+    pub fresnel: Fresnel,
+}
+
+impl Bsdf for Conductor {
+    #[inline]
+    fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z <= 0.0 {
+            return 0.0;
+        }
+        let (value, cosine) = self.facets.value(wi, wo);
+        value * fresnel::reflectance(&self.fresnel, cosine)
+    }
+
+    #[inline]
+    fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        before(wi).map_or(0.0, |wi| self.facets.density(wi, wo))
+    }
+
+    #[inline]
+    fn direction(&self, wo: DVec3, [a, b, _]: [f64; 3]) -> Option<DVec3> {
+        before(self.facets.sample(wo, [a, b]))
+    }
+}

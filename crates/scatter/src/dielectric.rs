@@ -1,0 +1,125 @@
+//! Interfaces of two media that let light through, smooth or rough. wo is before them; `index` is that of the far side over that of the side of wo.
+//!
+//! Values carry radiance: that of the far side is larger by the squared index.
+
+use crate::bsdf::mirrored;
+use crate::fresnel::Interface;
+use crate::{Bounce, Bsdf, Microfacets};
+use glam::DVec3;
+
+/// A smooth interface, or a thin sheet with such an interface on both sides.
+#[derive(Clone, Copy, Debug)]
+pub struct SmoothDielectric {
+    /// Relative index of refraction.
+    pub index: f64,
+    /// Whether it is a sheet: light goes straight through, and all reflections within are summed.
+    pub is_thin: bool,
+}
+
+impl SmoothDielectric {
+    /// Reflects or refracts, each as often as light does.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, wo: DVec3, random: f64) -> Bounce {
+        let at = Interface::new(self.index, wo.z);
+        let once = at.reflected;
+        let reflected = if self.is_thin && once < 1.0 {
+            // R + T² R / (1 − R²).
+            once + (1.0 - once).powi(2) * once / (1.0 - once * once)
+        } else {
+            once
+        };
+        if random < reflected {
+            Bounce::only(mirrored(wo, DVec3::Z), 1.0)
+        } else if self.is_thin {
+            Bounce::only(-wo, 1.0)
+        } else {
+            let weight = 1.0 / (self.index * self.index);
+            Bounce::only(at.refracted(wo, DVec3::Z), weight)
+        }
+    }
+}
+
+/// A rough interface (Walter et al. 2007, section 4).
+#[derive(Clone, Copy, Debug)]
+pub struct RoughDielectric {
+    /// Its facets.
+    pub facets: Microfacets,
+    /// Relative index of refraction.
+    pub index: f64,
+}
+
+/// A facet that reflects or refracts between two directions.
+#[derive(Clone, Copy, Debug)]
+struct Facet {
+    normal: DVec3,
+    /// Cosines of wi and wo to the normal.
+    cosines: [f64; 2],
+    /// The share of light that it reflects.
+    reflected: f64,
+}
+
+impl RoughDielectric {
+    /// The facet at which wo is mirrored or refracted to wi; `None` if there is none that faces the front (Walter et al., Eqs. 13 and 16).
+    #[inline]
+    fn facet(&self, wi: DVec3, wo: DVec3) -> Option<Facet> {
+        let eta = if wi.z > 0.0 { 1.0 } else { self.index };
+        let normal = (wo + eta * wi).try_normalize()?;
+        let normal = if normal.z < 0.0 { -normal } else { normal };
+        let [i, o] = [wi.dot(normal), wo.dot(normal)];
+        // Both must see it from their own side.
+        (o > 0.0 && i * wi.z > 0.0).then(|| Facet {
+            normal,
+            cosines: [i, o],
+            reflected: Interface::new(self.index, o).reflected,
+        })
+    }
+}
+
+impl Bsdf for RoughDielectric {
+    /// Walter et al., Eqs. 20 and 21.
+    #[inline]
+    fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(facet) = self.facet(wi, wo) else {
+            return 0.0;
+        };
+        let [i, o] = facet.cosines;
+        let masking = self.facets.g1(wi) * self.facets.g1(wo);
+        let common = self.facets.d(facet.normal) * masking / (wi.z.abs() * wo.z);
+        if wi.z > 0.0 {
+            return 0.25 * facet.reflected * common;
+        }
+        let sum = o + self.index * i;
+        // Radiance is that of the far side over the squared index, and solid angles there are smaller by as much.
+        (1.0 - facet.reflected) * common * (o * i).abs() / (sum * sum)
+    }
+
+    /// Walter et al., Eqs. 14 and 17.
+    #[inline]
+    fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let Some(facet) = self.facet(wi, wo) else {
+            return 0.0;
+        };
+        let [i, o] = facet.cosines;
+        let of_normal = self.facets.normal_density(wo, facet.normal);
+        if wi.z > 0.0 {
+            return facet.reflected * of_normal / (4.0 * o);
+        }
+        let sum = o + self.index * i;
+        (1.0 - facet.reflected) * of_normal * self.index * self.index * i.abs() / (sum * sum)
+    }
+
+    /// Mirrored or refracted at a facet, each as often as light does; `None` where light would meet another facet.
+    #[inline]
+    fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
+        let normal = self.facets.sample_normal(wo, [a, b]);
+        let at = Interface::new(self.index, wo.dot(normal));
+        let is_reflected = c < at.reflected;
+        let wi = if is_reflected {
+            mirrored(wo, normal)
+        } else {
+            at.refracted(wo, normal)
+        };
+        ((wi.z > 0.0) == is_reflected).then_some(wi)
+    }
+}

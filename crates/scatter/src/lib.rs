@@ -1,0 +1,28 @@
+//! What surfaces do to light, for the tracers of bench scenes and of worlds: the value of each BSDF, and beside it how a direction is drawn and the
+//! density of such directions.
+//!
+//! Directions are unit vectors away from the surface, in a frame with its normal along Z: light comes from `wi` and leaves along `wo`. `wo` is given and
+//! `wi` is drawn, as for a ray from a camera. A tracer of photons exchanges the two, which reciprocal BSDFs allow.
+//!
+//! Values are per steradian and without the cosine of `wi`; densities are per solid angle of `wi`. Random numbers are in (0, 1).
+//! Patterns, textures and mixtures belong to the tracers: all numbers here are those of one place.
+
+mod bsdf;
+mod conductor;
+mod dielectric;
+mod fresnel;
+pub mod lambertian;
+mod microfacet;
+mod phong;
+mod plastic;
+
+pub use bsdf::{Bounce, Bsdf};
+pub use conductor::{Conductor, mirror};
+pub use dielectric::{RoughDielectric, SmoothDielectric};
+pub use fresnel::reflectance;
+pub use microfacet::Microfacets;
+pub use phong::{ModifiedPhong, Phong};
+pub use plastic::{Coat, Plastic};
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,176 @@
+//! Microfacets with a roughness along each of two axes (Walter, Marschner, Li, Torrance 2007, *Microfacet models for refraction through rough surfaces*;
+//! along two axes: Heitz 2014, *Understanding the masking-shadowing function in microfacet-based BRDFs*).
+
+use crate::bsdf::mirrored;
+use etendue_field::MicrofacetDistribution;
+use glam::DVec3;
+use std::f64::consts::{PI, TAU};
+
+/// Small mirrors whose normals are distributed about Z, with Smith's masking.
+#[derive(Clone, Copy, Debug)]
+pub struct Microfacets {
+    /// The distribution of their normals.
+    pub distribution: MicrofacetDistribution,
+    /// α along X and Y, above 0; equal where the surface is isotropic.
+    pub alpha: [f64; 2],
+}
+
+/// The least z of a visible normal before it is stretched: normals at the horizon are kept above it.
+const MIN_HEIGHT: f64 = 1e-12;
+
+impl Microfacets {
+    /// The same roughness along both axes.
+    #[inline]
+    #[must_use]
+    pub fn isotropic(distribution: MicrofacetDistribution, roughness: f64) -> Self {
+        Self {
+            distribution,
+            alpha: [roughness; 2],
+        }
+    }
+
+    /// The BRDF of perfect mirrors, both directions being before the surface (Walter et al., Eq. 20), and the cosine of the angle of incidence on
+    /// them, for a Fresnel factor.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, wi: DVec3, wo: DVec3) -> (f64, f64) {
+        let normal = (wi + wo).normalize();
+        let masking = self.g1(wi) * self.g1(wo);
+        let value = self.d(normal) * masking / (4.0 * wi.z * wo.z);
+        (value, normal.dot(wo).min(1.0))
+    }
+
+    /// The mirror direction of wo at a normal that it sees. Near grazing some of them lie below the surface.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, wo: DVec3, random: [f64; 2]) -> DVec3 {
+        mirrored(wo, self.sample_normal(wo, random))
+    }
+
+    /// The density of [`Self::sample`], over the whole sphere: that of the normal over 4 h · ωo (Walter et al., Eq. 14).
+    #[inline]
+    #[must_use]
+    pub fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        match (wi + wo).try_normalize() {
+            Some(normal) if normal.z > 0.0 => {
+                ggx_g1(self.slope(wo)) * self.ggx_d(normal) / (4.0 * wo.z)
+            }
+            _ => 0.0,
+        }
+    }
+
+    /// The mirror direction of wo at any normal, whether wo sees it or not, by D cos θ (Walter et al., Eqs. 28 f. and 35 f.).
+    ///
+    /// Weights of Beckmann's facets are closer to 1 than by [`Self::sample`] where light comes from near the normal, but grow without bound towards
+    /// grazing.
+    #[inline]
+    #[must_use]
+    pub fn sample_unmasked(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+        let tangent = match self.distribution {
+            MicrofacetDistribution::Beckmann => (-libm::log(a)).sqrt(),
+            MicrofacetDistribution::Ggx => (a / (1.0 - a)).sqrt(),
+        };
+        let (sin, cos) = libm::sincos(TAU * b);
+        let [x, y] = self.alpha.map(|alpha| alpha * tangent);
+        mirrored(wo, DVec3::new(x * cos, y * sin, 1.0).normalize())
+    }
+
+    /// The density of [`Self::sample_unmasked`], over the whole sphere. A normal that is seen from behind mirrors as its opposite does.
+    #[inline]
+    #[must_use]
+    pub fn unmasked_density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let normal = (wi + wo).try_normalize();
+        normal.map_or(0.0, |normal| {
+            self.d(normal) * normal.z.abs() / (4.0 * normal.dot(wo))
+        })
+    }
+
+    /// D of a normal of unit length or of its opposite, per steradian (Walter et al., Eqs. 25 and 33, with slopes divided by α along each axis).
+    #[inline]
+    pub(crate) fn d(&self, normal: DVec3) -> f64 {
+        match self.distribution {
+            MicrofacetDistribution::Beckmann => {
+                let squared = normal.z * normal.z;
+                let area = self.alpha[0] * self.alpha[1];
+                libm::exp(-self.spread(normal) / squared) / (PI * area * squared * squared)
+            }
+            MicrofacetDistribution::Ggx => self.ggx_d(normal),
+        }
+    }
+
+    /// Smith's G₁: the share of the normals facing a direction that it sees (Walter et al., Eqs. 26 f. and 34).
+    #[inline]
+    pub(crate) fn g1(&self, direction: DVec3) -> f64 {
+        let slope = self.slope(direction);
+        match self.distribution {
+            MicrofacetDistribution::Beckmann => {
+                let a = 1.0 / slope;
+                // Nothing is left to subtract beyond: erfc(6) is below rounding.
+                if a > 6.0 {
+                    return 1.0;
+                }
+                2.0 / (1.0 + libm::erf(a) + libm::exp(-a * a) / (a * PI.sqrt()))
+            }
+            MicrofacetDistribution::Ggx => ggx_g1(slope),
+        }
+    }
+
+    /// A normal with z > 0 that wo sees, of GGX (Heitz 2018, *Sampling the GGX distribution of visible normals*, Listing 1).
+    ///
+    /// Beckmann's normals are drawn by it too: D is at most 4/e times that of GGX, and G₁ at most √π times.
+    #[inline]
+    pub(crate) fn sample_normal(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+        // To the hemisphere that the ellipsoid of normals is stretched from.
+        let stretch = DVec3::new(self.alpha[0], self.alpha[1], 1.0);
+        let view = (stretch * wo).normalize();
+        let across = DVec3::new(-view.y, view.x, 0.0).try_normalize();
+        let across = across.unwrap_or(DVec3::X);
+        let up = view.cross(across);
+        // A point of the projected hemisphere: half of a disc, and what is seen of the other half.
+        let (sin, cos) = libm::sincos(TAU * b);
+        let radius = a.sqrt();
+        let t1 = radius * cos;
+        let seen = 0.5 * (1.0 + view.z);
+        let t2 = (1.0 - seen) * (1.0 - t1 * t1).max(0.0).sqrt() + seen * radius * sin;
+        let t3 = (1.0 - t1 * t1 - t2 * t2).max(0.0).sqrt();
+        let normal = t1 * across + t2 * up + t3 * view;
+        (stretch * normal.with_z(normal.z.max(MIN_HEIGHT))).normalize()
+    }
+
+    /// The density of [`Self::sample_normal`] per solid angle of normals: D G₁ ωo · n / cos θo of GGX (Heitz 2018).
+    #[inline]
+    pub(crate) fn normal_density(&self, wo: DVec3, normal: DVec3) -> f64 {
+        let facing = wo.dot(normal);
+        if normal.z <= 0.0 || facing <= 0.0 {
+            return 0.0;
+        }
+        ggx_g1(self.slope(wo)) * facing * self.ggx_d(normal) / wo.z
+    }
+
+    /// D of GGX with these roughnesses.
+    #[inline]
+    fn ggx_d(&self, normal: DVec3) -> f64 {
+        let sum = self.spread(normal) + normal.z * normal.z;
+        1.0 / (PI * self.alpha[0] * self.alpha[1] * sum * sum)
+    }
+
+    /// (x/αx)² + (y/αy)². Unlike 1 − z² it keeps its digits where normals are close to Z.
+    #[inline]
+    fn spread(&self, normal: DVec3) -> f64 {
+        let [x, y] = [normal.x / self.alpha[0], normal.y / self.alpha[1]];
+        x * x + y * y
+    }
+
+    /// α tan θ along the azimuth of a direction (Heitz 2014).
+    #[inline]
+    fn slope(&self, direction: DVec3) -> f64 {
+        let [x, y] = [self.alpha[0] * direction.x, self.alpha[1] * direction.y];
+        (x * x + y * y).sqrt() / direction.z.abs()
+    }
+}
+
+/// G₁ of GGX for a direction with this α tan θ.
+#[inline]
+fn ggx_g1(slope: f64) -> f64 {
+    2.0 / (1.0 + (1.0 + slope * slope).sqrt())
+}

@@ -1,0 +1,94 @@
+//! Phong's lobe: a power of the cosine of the angle to the mirror direction.
+
+use crate::bsdf::before;
+use crate::{Bsdf, lambertian};
+use etendue_field::{Frame, power};
+use glam::DVec3;
+use std::f64::consts::TAU;
+
+/// Phong's lobe (Phong 1975) with integral 1 over all directions of wi.
+#[derive(Clone, Copy, Debug)]
+pub struct Phong {
+    /// n, at least 0.
+    pub exponent: f64,
+}
+
+impl Phong {
+    /// (n + 1)/(2π) cosⁿ α of the angle α between wi and the mirror direction of wo; 0 from 90° on, for n = 0 too.
+    #[inline]
+    #[must_use]
+    pub fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        let cosine = mirror_direction(wo).dot(wi).min(1.0);
+        if cosine <= 0.0 {
+            return 0.0;
+        }
+        (self.exponent + 1.0) / TAU * power(cosine, self.exponent)
+    }
+
+    /// A direction by the lobe. Near grazing some of them lie below the surface.
+    #[inline]
+    #[must_use]
+    pub fn sample(&self, wo: DVec3, [a, b]: [f64; 2]) -> DVec3 {
+        let (sin, cos) = libm::sincos(TAU * b);
+        let along = power(a, 1.0 / (self.exponent + 1.0));
+        let across = ((1.0 - along) * (1.0 + along)).sqrt();
+        let around = Frame::IDENTITY.turned_to(mirror_direction(wo));
+        around.vector_to_world(DVec3::new(across * cos, across * sin, along))
+    }
+}
+
+#[inline]
+fn mirror_direction(wo: DVec3) -> DVec3 {
+    DVec3::new(-wo.x, -wo.y, wo.z)
+}
+
+/// The modified Phong BRDF: kd / π + ks (n + 2)/(2π) cosⁿ α (Lafortune and Willems 1994, *Using the modified Phong reflectance model for physically
+/// based rendering*).
+#[derive(Clone, Copy, Debug)]
+pub struct ModifiedPhong {
+    /// kd.
+    pub diffuse: f64,
+    /// ks.
+    pub specular: f64,
+    /// The lobe, with n.
+    pub lobe: Phong,
+}
+
+impl ModifiedPhong {
+    /// The share of directions that the lobe draws: that of ks. The others are drawn by the cosine.
+    #[inline]
+    fn specular_share(&self) -> f64 {
+        let sum = self.diffuse + self.specular;
+        if sum > 0.0 { self.specular / sum } else { 0.5 }
+    }
+}
+
+impl Bsdf for ModifiedPhong {
+    #[inline]
+    fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z <= 0.0 {
+            return 0.0;
+        }
+        let n = self.lobe.exponent;
+        let lobe = (n + 2.0) / (n + 1.0) * self.lobe.value(wi, wo);
+        self.diffuse * lambertian::VALUE + self.specular * lobe
+    }
+
+    #[inline]
+    fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z <= 0.0 {
+            return 0.0;
+        }
+        let share = self.specular_share();
+        share * self.lobe.value(wi, wo) + (1.0 - share) * lambertian::density(wi)
+    }
+
+    #[inline]
+    fn direction(&self, wo: DVec3, [a, b, c]: [f64; 3]) -> Option<DVec3> {
+        before(if c < self.specular_share() {
+            self.lobe.sample(wo, [a, b])
+        } else {
+            lambertian::sample([a, b])
+        })
+    }
+}

@@ -1,0 +1,162 @@
+//! Every model of the crate, narrow and wide.
+
+use crate::{
+    Bsdf, Coat, Conductor, Microfacets, ModifiedPhong, Phong, Plastic, RoughDielectric, lambertian,
+};
+use etendue_field::{Fresnel, MicrofacetDistribution};
+use glam::DVec3;
+
+/// A model of what a surface does to light.
+pub(super) struct Model {
+    pub(super) name: String,
+    pub(super) bsdf: Box<dyn Bsdf>,
+    /// The index of what is behind over that of what is in front.
+    pub(super) index: f64,
+    /// A bound of weights.
+    pub(super) max_weight: f64,
+}
+
+fn model(name: String, max_weight: f64, bsdf: impl Bsdf + 'static) -> Model {
+    Model {
+        name,
+        bsdf: Box::new(bsdf),
+        index: 1.0,
+        max_weight,
+    }
+}
+
+/// A lobe by its functions.
+struct Lobe<V, S, D>(V, S, D);
+
+impl<V, S, D> Bsdf for Lobe<V, S, D>
+where
+    V: Fn(DVec3, DVec3) -> f64,
+    S: Fn(DVec3, [f64; 2]) -> DVec3,
+    D: Fn(DVec3, DVec3) -> f64,
+{
+    fn value(&self, wi: DVec3, wo: DVec3) -> f64 {
+        if wi.z > 0.0 { self.0(wi, wo) } else { 0.0 }
+    }
+
+    fn density(&self, wi: DVec3, wo: DVec3) -> f64 {
+        self.2(wi, wo)
+    }
+
+    fn direction(&self, wo: DVec3, [a, b, _]: [f64; 3]) -> Option<DVec3> {
+        Some(self.1(wo, [a, b]))
+    }
+}
+
+/// Largest weight of facets that are drawn as they are seen: for GGX Smith's masking of one direction, and rounding; for Beckmann, which is drawn by
+/// GGX, that times the ratios of D, 4/e, and of G₁, √π.
+fn masked(facets: Microfacets) -> f64 {
+    match facets.distribution {
+        MicrofacetDistribution::Beckmann => 2.61,
+        MicrofacetDistribution::Ggx => 1.0 + 1e-9,
+    }
+}
+
+fn lambert() -> Model {
+    let value = |_, _| lambertian::VALUE;
+    let sample = |_, random| lambertian::sample(random);
+    let density = |wi, _| lambertian::density(wi);
+    model(
+        "Lambertian".to_owned(),
+        1.0 + 1e-9,
+        Lobe(value, sample, density),
+    )
+}
+
+pub(super) fn phong(exponent: f64) -> Model {
+    let lobe = Phong { exponent };
+    let value = move |wi, wo| lobe.value(wi, wo);
+    let sample = move |wo, random| lobe.sample(wo, random);
+    model(format!("{lobe:?}"), 1.0 + 1e-9, Lobe(value, sample, value))
+}
+
+/// Perfect mirrors, drawn whether they are seen or not.
+fn unmasked(facets: Microfacets) -> Model {
+    let value = move |wi, wo| facets.value(wi, wo).0;
+    let sample = move |wo, random| facets.sample_unmasked(wo, random);
+    let density = move |wi, wo| facets.unmasked_density(wi, wo);
+    // h·ωi/(cos θi cos θh) is left, and G₁ ≤ 2√π/(α tan θi) bounds it by 3.5 tan θh/α; of 32-bit numbers tan θh/α is at most 4.8.
+    model(
+        format!("{facets:?}, unmasked"),
+        17.0,
+        Lobe(value, sample, density),
+    )
+}
+
+pub(super) fn conductor(facets: Microfacets, fresnel: Fresnel) -> Model {
+    let metal = Conductor { facets, fresnel };
+    model(format!("{metal:?}"), masked(facets), metal)
+}
+
+pub(super) fn modified_phong(diffuse: f64, specular: f64, exponent: f64) -> Model {
+    let phong = ModifiedPhong {
+        diffuse,
+        specular,
+        lobe: Phong { exponent },
+    };
+    // kd over its share for the cosine, and (n + 2)/(n + 1) of that for the lobe.
+    let bound = (diffuse + specular) * (exponent + 2.0) / (exponent + 1.0) + 1e-9;
+    model(format!("{phong:?}"), bound, phong)
+}
+
+pub(super) fn dielectric(facets: Microfacets, index: f64) -> Model {
+    let glass = RoughDielectric { facets, index };
+    let bound = masked(facets) * (1.0_f64).max(1.0 / (index * index));
+    Model {
+        index,
+        ..model(format!("{glass:?}"), bound, glass)
+    }
+}
+
+pub(super) fn plastic(facets: Option<Microfacets>, is_nonlinear: bool) -> Model {
+    let plastic = Plastic {
+        coat: Box::leak(Box::new(Coat::new(1.5, facets))),
+        diffuse: 1.0,
+        specular: 1.0,
+        is_nonlinear,
+    };
+    let name = format!("plastic of {facets:?}, nonlinear: {is_nonlinear}");
+    // Of coat or base over its share of samples, which is about its share of the light.
+    model(name, 4.0, plastic)
+}
+
+pub(super) fn beckmann(alpha: [f64; 2]) -> Microfacets {
+    Microfacets {
+        distribution: MicrofacetDistribution::Beckmann,
+        alpha,
+    }
+}
+
+pub(super) fn ggx(alpha: [f64; 2]) -> Microfacets {
+    Microfacets {
+        distribution: MicrofacetDistribution::Ggx,
+        alpha,
+    }
+}
+
+/// Every model.
+pub(super) fn all() -> Vec<Model> {
+    let mut models = vec![
+        lambert(),
+        modified_phong(0.3, 0.5, 20.0),
+        modified_phong(0.0, 1.0, 3.0),
+        plastic(None, true),
+        plastic(Some(ggx([0.2, 0.2])), true),
+        plastic(Some(beckmann([0.4, 0.3])), false),
+        dielectric(ggx([0.3, 0.3]), 1.5),
+        dielectric(ggx([0.3, 0.1]), 1.0 / 1.5),
+        dielectric(beckmann([0.5, 0.2]), 1.3),
+        conductor(ggx([0.2, 0.2]), Fresnel::Conductor { n: 0.2, k: 3.9 }),
+    ];
+    models.extend([0.0, 1.0, 30.0, 1e4].map(phong));
+    let isotropic = [0.01, 0.1, 0.5, 1.0].map(|alpha| [alpha, alpha]);
+    for alpha in isotropic.into_iter().chain([[0.3, 0.1], [0.2, 0.7]]) {
+        models.extend([beckmann, ggx].map(|of| conductor(of(alpha), Fresnel::White)));
+        models.push(unmasked(beckmann(alpha)));
+    }
+    models
+}
