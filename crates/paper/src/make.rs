@@ -10,7 +10,7 @@ use crate::subject::{FigureData, Subject};
 use etendue_compare::{FullRadialReport, HighFrequencyShare, Verdict};
 use etendue_figures::Style;
 use etendue_pipeline::table::word;
-use etendue_pipeline::{Reporter, Work};
+use etendue_pipeline::{Reporter, Stopwatch, Work};
 use etendue_report::shell_word;
 use etendue_scene::{Scene, SceneFile};
 use etendue_store::sealed::json;
@@ -18,7 +18,6 @@ use etendue_store::stored::VERSION;
 use etendue_store::{ArgumentStyle, FIGURE, Failure, Plan, Results};
 use serde::Serialize;
 use std::collections::BTreeMap;
-use std::time::Instant;
 
 /// The figures that are asked for: those of the paper, or one of scene files.
 pub fn subjects(request: &Request) -> Result<Vec<Subject>, Failure> {
@@ -110,13 +109,14 @@ pub fn make_all(
     let mut worst = Verdict::Pass;
     for subject in subjects {
         bar.name(subject.name());
-        let begun = Instant::now();
+        let mut watch = Stopwatch::start();
         let verdict = make(request, subject, reporter)?;
+        watch.lap("figure");
         reporter.note(&format!(
             "figure {}: {}, {:.1} s: {}",
             subject.name(),
             word(verdict),
-            begun.elapsed().as_secs_f64(),
+            watch.seconds("figure").unwrap_or_default(),
             subject.about
         ));
         worst = worst.and(verdict);
