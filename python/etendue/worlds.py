@@ -159,7 +159,7 @@ def render(
     `look_from` and `look_at` add a camera, with `up` and `fov`, the angle from side to side in degrees.
 
     `force` replaces files in `out` that Étendue did not write. `progress` is whether a bar is shown, or a function that is told how many
-    pixels are done. Raises `SceneError` with all causes for which the scene is refused.
+    pixels are done. Ctrl-C stops it at the end of a row. Raises `SceneError` with all causes for which the scene is refused.
     """
     arguments = given(
         camera=camera,

@@ -232,7 +232,7 @@ def test_the_command_writes_the_same_bytes(tmp_path):
 @pytest.mark.parametrize(
     "call",
     [
-        "etendue.render(sys.argv[2], out=out, size=(2048, 2048), samples=2**10, progress=told)",
+        "etendue.render(sys.argv[2], out=out, size=(64, 4096), samples=2**8, progress=told)",
         "etendue.probe(sys.argv[2], (70, 95), out=out, rays=2**32, progress=told)",
         "etendue.figure([etendue.Scene(sys.argv[1], photons=2**32)], out=out, progress=told)",
         "etendue.sweep(sys.argv[1], {'blockers.0.pitch': [0.1, 0.2]}, photons=2**32, out=out, progress=told)",
