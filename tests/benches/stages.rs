@@ -8,12 +8,13 @@
 #![allow(clippy::unwrap_used, reason = "a benchmark may panic")]
 
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
-use etendue_field::random::Stream;
-use etendue_field::transform::SliceTransform;
-use etendue_field::{Crossing, Net, PhotonSource};
+use etendue_field::{Crossing, PhotonSource};
 use etendue_scene::{Scene, SceneFile, resolve};
-use etendue_spectrum::field::RealFft4;
 use etendue_trace::{ABREAST, Emitter, Tracer};
+use etendue_transform::Net;
+use etendue_transform::RealFft4;
+use etendue_transform::SliceTransform;
+use etendue_transform::random::Stream;
 use std::hint::black_box;
 use std::path::Path;
 

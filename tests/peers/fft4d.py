@@ -2,7 +2,7 @@
 
 usage: fft4d.py PROGRAM [ROUNDS] [SIZE ...]        e.g. fft4d.py target/release/examples/fft4d 9 64 96
 
-PROGRAM is the example `fft4d` of etendue-spectrum. Needs numpy, scipy and pyfftw. Two threads for all.
+PROGRAM is the example `fft4d` of etendue-transform. Needs numpy, scipy and pyfftw. Two threads for all.
 Every contender is a process of its own that does one transform at a time when asked to, so the rounds alternate.
 """
 import itertools, os, statistics, subprocess, sys, tempfile, time

@@ -2,10 +2,10 @@
 
 use etendue_compare::{Applicability, Prediction, Test, compare};
 use etendue_field::Mask;
-use etendue_field::random::{self, Stream};
 use etendue_scene::{Scene, SceneFile, Triangles, resolve};
 use etendue_spectrum::measure;
 use etendue_trace::Tracer;
+use etendue_transform::random::{self, Stream};
 use rayon::prelude::*;
 
 /// A scene of each kind of light, blockers and planes; the first is fuzzed most.

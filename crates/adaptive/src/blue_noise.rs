@@ -4,7 +4,7 @@
 //! asked for. Distances are those of the metric, in which the density is 1 everywhere.
 
 use crate::metric::Metric;
-use etendue_field::random::{Stream, unit, words};
+use etendue_transform::random::{Stream, unit, words};
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 

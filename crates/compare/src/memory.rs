@@ -6,7 +6,8 @@ use crate::theories::Theory;
 use crate::work;
 use etendue_field::{ProjectionGrid, SliceGrid, VirtualPlane};
 use etendue_scene::Scene;
-use etendue_spectrum::{PROJECTION_BINS, SliceTransform};
+use etendue_spectrum::PROJECTION_BINS;
+use etendue_transform::SliceTransform;
 
 /// The parts of what a run holds, in bytes.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Measured minus predicted, batch by batch, and the tests made on it.
 
-use etendue_field::random::{self, Stream};
 use etendue_field::{Complex, SliceGrid, Slices, modulus};
 use etendue_spectrum::{Measurement, PlaneBatch};
+use etendue_transform::random::{self, Stream};
 use ndarray::{Array2, Array3, Axis};
 
 /// Measured minus predicted slices, in independent parts.
@@ -21,7 +21,7 @@ pub struct Residuals {
 /// Rounds of random signs: the p-value is known to a part in 20,000.
 pub(crate) const ROUNDS: u64 = 19_999;
 /// Error of the fast transform of photons, as a share of the largest value
-/// (`etendue_field::transform`).
+/// (`etendue_transform`).
 const TRANSFORM: f64 = 2e-7;
 /// What rounding may leave of shares that add up to one.
 const ROUNDING: f64 = 1e-9;

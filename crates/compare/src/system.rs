@@ -2,9 +2,9 @@
 
 use crate::chain::stands_before;
 use etendue_field::{Light, Mask, Orientation, Patch, Side, Specular, VirtualPlane};
-use etendue_scene::{BlockerLayer, Event, Hit, Object, PatchObject, Scene, Surface};
+use etendue_scene::{BlockerLayer, Event, Hit, Object, PatchObject, Scene, PathSurface};
 use etendue_theory::geometry::Edition;
-use etendue_theory::rays::{Element, Plane, System};
+use etendue_theory::rays::{SpecularSurface, Plane, System};
 use etendue_theory::{Observed, Obstacle, ObstacleForm, reflections, scattering};
 
 /// The light, masks and specular surfaces through which rays reach a plane, and the plane. `None`
@@ -16,14 +16,14 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
     }
     let path = &scene.path;
     let hits = path.legs[..=plane.leg].iter().filter_map(|leg| leg.leaves);
-    let elements: Option<Vec<Element>> = hits
+    let elements: Option<Vec<SpecularSurface>> = hits
         .map(|hit| match hit.object {
             Object::Patch(i) => {
                 let object = &scene.patches[i];
                 let Event::Specular(event) = object.event else {
                     return None;
                 };
-                Some(Element {
+                Some(SpecularSurface {
                     name: object.name.clone(),
                     patch: object.patch,
                     event,
@@ -31,7 +31,7 @@ pub fn system(scene: &Scene, plane: &VirtualPlane) -> Option<Observed<System>> {
             }
             Object::Mesh(i) => {
                 let mesh = &scene.meshes[i];
-                Some(Element {
+                Some(SpecularSurface {
                     name: mesh.name.clone(),
                     patch: mesh.osculating(&hit)?,
                     event: seen_from(mesh.smooth.as_ref()?.event, mesh.is_met_on_its_back(&hit)),
@@ -111,7 +111,7 @@ pub(crate) fn reflected(
     let visited = plane.leg;
     let surfaces = hits.iter().map(|hit| visited_surface(scene, hit));
     // A mesh that ends the last leg, or stands beside the path, is no surface of it.
-    let surfaces: Vec<reflections::Surface> = surfaces.map_while(|surface| surface).collect();
+    let surfaces: Vec<reflections::PathSurface> = surfaces.map_while(|surface| surface).collect();
     let scatterers = surfaces
         .iter()
         .take(visited)
@@ -140,9 +140,9 @@ pub(crate) fn reflected(
 }
 
 /// A surface of the path; `None` for a mesh.
-fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::Surface> {
+fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::PathSurface> {
     let name = scene.name_of(hit.object).to_owned();
-    let of = |patch, outline, interaction| reflections::Surface {
+    let of = |patch, outline, interaction| reflections::PathSurface {
         name,
         patch,
         outline,
@@ -161,7 +161,7 @@ fn visited_surface(scene: &Scene, hit: &Hit) -> Option<reflections::Surface> {
             Some(of(*patch, None, interaction))
         }
         Object::Surface(i) => {
-            let Surface {
+            let PathSurface {
                 frame,
                 size,
                 albedo,

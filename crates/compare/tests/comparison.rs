@@ -5,12 +5,12 @@
 use etendue_compare::{
     Applicability, Class, PredictedParameter, Prediction, Residuals, Test, Verdict, compare, sidak,
 };
-use etendue_field::random::{self, Stream};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Ledger, PlaneTally, Profile, Projection, ProjectionGrid,
     Quantity, Side, SliceGrid, Slices, VirtualPlane, Window,
 };
 use etendue_spectrum::{Batch, Measurement, PROJECTION_BINS, PlaneBatch};
+use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 
 const BATCHES: u32 = 64;

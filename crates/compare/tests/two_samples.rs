@@ -3,7 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
 use etendue_compare::{Estimate, Sample, TwoSamples, noise_dof, pull};
-use etendue_field::random::{self, Stream};
 use etendue_field::{
     Complex, Frame, FrequencyAxis, Ledger, Orientation, PlaneTally, Profile, Projection,
     ProjectionGrid, Quantity, Side, SliceGrid, Slices, VirtualPlane, Window,
@@ -11,6 +10,7 @@ use etendue_field::{
 use etendue_spectrum::{
     Batch, Measurement, PROJECTION_BINS, PlaneBatch, RayMoments, estimate::slices,
 };
+use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 use ndarray::Array3;
 

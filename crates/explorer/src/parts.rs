@@ -1,9 +1,9 @@
 //! The light, blockers, lobe, window and frequencies of a setup.
 
 use crate::setup::{Key, Setup};
-use etendue_field::random::{self, Stream};
 use etendue_field::{FrequencyAxis, Light, Profile, Rectangle, Shape, SliceGrid, Window, whole};
 use etendue_theory::shading::Lobe;
+use etendue_transform::random::{self, Stream};
 
 /// Length of a slat along Y, metres: more than any window sees.
 pub(crate) const SLAT: f64 = 8.0;

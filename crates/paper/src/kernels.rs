@@ -1,13 +1,13 @@
 //! Curves of kernels that the paper draws: cosines and Fresnel factors, and their transforms.
 
 use crate::subject::FigureData;
-use etendue_field::gauss_legendre;
 use etendue_figures::{
     Axis, Curve, CurveKind, CurvePanel, Curves, Figure, Picture, Plate, PlateRow, Quantity, Scale,
     stacked,
 };
 use etendue_store::Failure;
 use etendue_theory::shading::{Fresnel, cosine_hat, energy_below, g_hat, g_hat_3d};
+use etendue_transform::gauss_legendre;
 use ndarray::Array2;
 use std::f64::consts::FRAC_PI_2;
 

@@ -1,7 +1,7 @@
 //! The random numbers of a path.
 
-use etendue_field::Net;
-use etendue_field::random::{Stream, unit, words};
+use etendue_transform::Net;
+use etendue_transform::random::{Stream, unit, words};
 
 /// The random numbers of one path, in (0, 1), drawn one after another.
 #[derive(Debug)]

@@ -4,8 +4,8 @@ use crate::numbers::{JOINT, Numbers};
 use crate::paths::Paths;
 use crate::scatter::Reflects;
 use crate::space::{Hit, Ray};
-use etendue_field::Net;
-use etendue_field::random::Stream;
+use etendue_transform::Net;
+use etendue_transform::random::Stream;
 use etendue_world::Look;
 use glam::DVec3;
 

@@ -7,8 +7,9 @@ mod common;
 use common::{Shower, boxed, grid, hann, plane};
 use etendue_field::{Crossing, Ledger, PhotonSource, VirtualPlane};
 use etendue_spectrum::{
-    Measurement, MergeError, PartialBatch, Watch, direct, estimate, measure, measure_watched,
+    Measurement, MergeError, PartialBatch, Watch, estimate, measure, measure_watched,
 };
+use etendue_transform::direct;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
 

@@ -4,9 +4,9 @@ mod common;
 
 use common::{Random, boxed, grid, hann};
 use etendue_field::{Assignment, Complex, Crossing, FieldGrid, TwoPlane, Window};
-use etendue_spectrum::SliceTransform;
-use etendue_spectrum::direct;
 use etendue_spectrum::field::{FieldSpectrum, FieldTransform};
+use etendue_transform::SliceTransform;
+use etendue_transform::direct;
 
 const ALL: [Assignment; 3] = [Assignment::Nearest, Assignment::Cic, Assignment::Tsc];
 

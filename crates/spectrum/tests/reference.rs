@@ -9,7 +9,8 @@ use etendue_field::{
     Complex, Crossing, FrequencyAxis, Ledger, PlaneTally, Projection, ProjectionGrid, SliceGrid,
     Slices, TwoPlane,
 };
-use etendue_spectrum::{Batch, CrossPower, Measurement, PlaneBatch, direct, estimate};
+use etendue_spectrum::{Batch, CrossPower, Measurement, PlaneBatch, estimate};
+use etendue_transform::direct;
 use serde::Deserialize;
 use std::f64::consts::PI;
 

@@ -85,4 +85,4 @@ pub use parallel::{
 pub use parameter::Parameter;
 pub use predicted::Predicted;
 pub use shading::{g_hat, g_hat_3d};
-pub use work::Work;
+pub use work::PredictionWork;

@@ -1,7 +1,7 @@
 //! Masks on the way from the light, and what else stands in the way.
 
 use crate::barrier::Barrier;
-use crate::obstacle::{Obstacle, Obstacles};
+use crate::obstacle::{Obstacle, PreparedObstacles};
 use etendue_field::Mask;
 use glam::DVec3;
 
@@ -9,7 +9,7 @@ use glam::DVec3;
 #[derive(Debug)]
 pub(crate) struct Masks<'a> {
     first_leg: Vec<Barrier<'a>>,
-    pub(crate) obstacles: Obstacles<'a>,
+    pub(crate) obstacles: PreparedObstacles<'a>,
 }
 
 impl<'a> Masks<'a> {
@@ -18,7 +18,7 @@ impl<'a> Masks<'a> {
         let barriers = layers.iter();
         Self {
             first_leg: barriers.map(|(at, mask)| Barrier::new(*at, mask)).collect(),
-            obstacles: Obstacles::new(obstacles),
+            obstacles: PreparedObstacles::new(obstacles),
         }
     }
 

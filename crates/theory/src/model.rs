@@ -4,7 +4,7 @@ use crate::nets::{Budget, RayNets};
 use crate::parameter::{New, Parameter};
 use crate::plane::Plane;
 use crate::predicted::Predicted;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use etendue_field::{Light, ProjectionGrid, SliceGrid, Window};
 
 /// What a prediction is over: a window, frequencies and the cells of a picture.
@@ -33,7 +33,7 @@ pub trait Model: Clone {
     fn with_rays(&self, over: Over<'_>, budget: Budget, then: &mut dyn FnMut(&dyn RayNets));
 
     /// What a prediction takes.
-    fn work(&self, over: Over<'_>, budget: Budget) -> Work;
+    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork;
 
     /// The unit of a parameter; empty if it is a pure number.
     fn unit(&self, parameter: Parameter) -> &'static str {
@@ -70,7 +70,7 @@ pub struct Observed<S> {
 
 /// A model with a little more and a little less of a parameter.
 #[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Moved<M> {
+pub(crate) struct ShiftedModels<M> {
     /// How far apart the values are, in the parameter's unit.
     pub(crate) apart: f64,
     /// With more, and with less.
@@ -80,7 +80,7 @@ pub(crate) struct Moved<M> {
 /// Step of a derivative, as a share of the parameter's scale.
 const STEP: f64 = 1e-3;
 
-impl<M: Model> Moved<M> {
+impl<M: Model> ShiftedModels<M> {
     /// A model moved by a small step to both sides.
     pub(crate) fn nearby(model: &M, parameter: Parameter) -> Option<Self> {
         let step = STEP * parameter.scale(model.value(parameter)?);
@@ -88,7 +88,7 @@ impl<M: Model> Moved<M> {
     }
 }
 
-impl<M> Moved<M> {
+impl<M> ShiftedModels<M> {
     /// A model moved by a step to both sides, each made into another.
     pub(crate) fn new<A: Model>(
         model: &A,

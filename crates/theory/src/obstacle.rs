@@ -1,7 +1,7 @@
 //! What stands in the way of rays beside the masks of the first leg.
 
 use crate::barrier::Barrier;
-use crate::rays::Ray;
+use crate::rays::LegRay;
 use etendue_field::{Frame, Mask, Patch};
 use glam::DVec3;
 
@@ -42,7 +42,7 @@ pub enum ObstacleForm {
 
 /// Obstacles made ready for many rays.
 #[derive(Debug)]
-pub(crate) struct Obstacles<'a>(Vec<Ready<'a>>);
+pub(crate) struct PreparedObstacles<'a>(Vec<Ready<'a>>);
 
 #[derive(Debug)]
 enum Ready<'a> {
@@ -60,7 +60,7 @@ enum Ready<'a> {
 /// Share of a distance that rounding may make.
 pub(crate) const ROUNDING: f64 = 1e-9;
 
-impl<'a> Obstacles<'a> {
+impl<'a> PreparedObstacles<'a> {
     pub(crate) fn new(obstacles: &'a [Obstacle]) -> Self {
         let ready = obstacles.iter().map(|obstacle| match &obstacle.form {
             ObstacleForm::Mask {
@@ -76,7 +76,7 @@ impl<'a> Obstacles<'a> {
     }
 
     /// The share of a ray of this leg that passes on its first metres.
-    pub(crate) fn passes(&self, leg: usize, ray: &Ray, length: f64) -> f64 {
+    pub(crate) fn passes(&self, leg: usize, ray: &LegRay, length: f64) -> f64 {
         let start = ROUNDING * ray.point.length();
         let is_between = |t: f64| start < t && t < length;
         let mut passes = 1.0;
@@ -132,12 +132,12 @@ fn around(triangles: &[[DVec3; 3]]) -> Ready<'_> {
     }
 }
 
-fn is_near(center: DVec3, radius: f64, ray: &Ray) -> bool {
+fn is_near(center: DVec3, radius: f64, ray: &LegRay) -> bool {
     let beside = (center - ray.point).cross(ray.direction);
     beside.length_squared() <= radius * radius
 }
 
-fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &Ray) -> Option<f64> {
+fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &LegRay) -> Option<f64> {
     let point = frame.to_local(ray.point);
     let direction = frame.vector_to_local(ray.direction);
     let t = -point.z / direction.z;
@@ -147,7 +147,7 @@ fn on_rectangle(frame: &Frame, size: [f64; 2], ray: &Ray) -> Option<f64> {
 }
 
 /// Both points of the quadric that belong to the patch.
-pub(crate) fn on_patch(patch: &Patch, ray: &Ray) -> [Option<f64>; 2] {
+pub(crate) fn on_patch(patch: &Patch, ray: &LegRay) -> [Option<f64>; 2] {
     let point = patch.frame.to_local(ray.point);
     let direction = patch.frame.vector_to_local(ray.direction);
     let curved = DVec3::from(patch.curvature) * direction;
@@ -162,7 +162,7 @@ pub(crate) fn on_patch(patch: &Patch, ray: &Ray) -> [Option<f64>; 2] {
 
 /// How far along a ray it meets a triangle: where the volumes that it spans with the edges have one
 /// sign (Plücker's coordinates).
-fn on([a, b, c]: &[DVec3; 3], ray: &Ray) -> Option<f64> {
+fn on([a, b, c]: &[DVec3; 3], ray: &LegRay) -> Option<f64> {
     let [p, q, r] = [*a, *b, *c].map(|corner| corner - ray.point);
     let volumes = [p.cross(q), q.cross(r), r.cross(p)].map(|face| face.dot(ray.direction));
     let one_sign = volumes.iter().all(|v| *v >= 0.0) || volumes.iter().all(|v| *v <= 0.0);
@@ -176,17 +176,17 @@ mod tests {
     use super::*;
     use etendue_field::{Rectangle, Shape};
 
-    const RAY: Ray = Ray {
+    const RAY: LegRay = LegRay {
         point: DVec3::new(0.1, 0.2, 1.0),
         direction: DVec3::NEG_Z,
     };
 
-    fn stops(form: &ObstacleForm, leg: usize, ray: &Ray, length: f64) -> bool {
+    fn stops(form: &ObstacleForm, leg: usize, ray: &LegRay, length: f64) -> bool {
         let obstacle = Obstacle {
             name: String::new(),
             form: form.clone(),
         };
-        Obstacles::new(&[obstacle]).passes(leg, ray, length) < 0.5
+        PreparedObstacles::new(&[obstacle]).passes(leg, ray, length) < 0.5
     }
 
     #[test]
@@ -229,7 +229,7 @@ mod tests {
             ObstacleForm::Patch(bowl(-0.1)),
             ObstacleForm::Mesh(square),
         ];
-        let beside = Ray {
+        let beside = LegRay {
             point: RAY.point + 0.3 * DVec3::X,
             ..RAY
         };

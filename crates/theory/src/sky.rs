@@ -6,7 +6,7 @@ use std::f64::consts::{PI, TAU};
 
 /// A density over directions in proportion to the radiance from there, or nearly.
 #[derive(Clone, Debug)]
-pub(crate) enum Sky<'a> {
+pub(crate) enum SkyDensity<'a> {
     /// Of spherical Gaussians.
     Lobes(Lobes),
     /// Of a map.
@@ -37,7 +37,7 @@ pub(crate) struct Pixels<'a> {
 /// Least cosine with which light counts that meets the surface, in the density over a map.
 const GRAZING: f64 = 0.05;
 
-impl<'a> Sky<'a> {
+impl<'a> SkyDensity<'a> {
     /// The density for a surface with this normal, which is in the frame at the light; `None` where
     /// nothing shines.
     pub(crate) fn new(environment: &'a Environment, normal: DVec3) -> Option<Self> {
@@ -219,7 +219,7 @@ mod tests {
                 frame: Frame::new(DVec3::ZERO, front, DVec3::Y).unwrap(),
                 map: EnvironmentMap::LatLong(Arc::new(map)),
             };
-            let sky = Sky::new(&environment, DVec3::NEG_Z).unwrap();
+            let sky = SkyDensity::new(&environment, DVec3::NEG_Z).unwrap();
             for i in 0..4000 {
                 let t = f64::from(i);
                 let (s, c) = libm::sincos(2.4 * t);

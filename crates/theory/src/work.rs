@@ -2,7 +2,7 @@
 
 /// The work of a prediction.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Work {
+pub struct PredictionWork {
     /// A core does one in about a nanosecond.
     pub steps: f64,
     /// Bytes held once.
@@ -13,7 +13,7 @@ pub struct Work {
     pub drivers: String,
 }
 
-impl Work {
+impl PredictionWork {
     /// Of what needs no prediction.
     #[must_use]
     pub fn none() -> Self {

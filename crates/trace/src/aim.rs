@@ -4,8 +4,9 @@ use crate::footprint_sampler::FootprintSampler;
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::proposal::{ProfileDensity, Proposal};
 use crate::sky::Sky;
-use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane, random};
+use etendue_field::{Environment, Orientation, Profile, TwoPlane, VirtualPlane};
 use etendue_scene::{Emission, Scene};
+use etendue_transform::random;
 
 /// A mixture, with equal shares, of strategies in which rays of an environment are drawn: a density over (x, y, u, v) at the beginning of the first leg.
 ///

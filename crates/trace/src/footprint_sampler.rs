@@ -106,8 +106,8 @@ impl FootprintSampler {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etendue_field::random::{self, Stream};
     use etendue_scene::{SceneFile, resolve};
+    use etendue_transform::random::{self, Stream};
 
     fn scene(surface: &str) -> Scene {
         let text = format!(

@@ -109,8 +109,8 @@ impl Grid {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etendue_field::random::{Stream, unit, words};
     use etendue_field::{Disc, Rectangle};
+    use etendue_transform::random::{Stream, unit, words};
 
     /// Shapes of all sizes up to `size`, strewn over the unit square.
     fn strewn(count: u64, size: f64) -> Vec<Shape> {

@@ -158,7 +158,7 @@ impl Mesh {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etendue_field::random::{self, Stream};
+    use etendue_transform::random::{self, Stream};
 
     /// Across a leg that begins far from the light, and across that at the light.
     fn legs() -> [Frame; 2] {

@@ -1,8 +1,8 @@
 //! The numbers that photons are drawn from.
 
-use etendue_field::Net;
-use etendue_field::random::{self, Stream};
 use etendue_scene::{Run, Sampling};
+use etendue_transform::Net;
+use etendue_transform::random::{self, Stream};
 
 /// Which numbers, and for what they are.
 #[derive(Clone, Copy, Debug)]

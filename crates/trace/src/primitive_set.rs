@@ -165,9 +165,9 @@ impl<T: Clone> PrimitiveSet<T> {
 mod tests {
     use super::*;
     use crate::mesh::Mesh;
-    use etendue_field::random::{self, Stream};
     use etendue_field::{Disc, Frame, Rectangle, Shape};
     use etendue_scene::Triangles;
+    use etendue_transform::random::{self, Stream};
 
     fn mesh(triangles: Vec<[DVec3; 3]>) -> Primitive {
         let triangles = Triangles::new(triangles, 0.0);

@@ -281,7 +281,7 @@ impl Proposal {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etendue_field::random::{self, Stream};
+    use etendue_transform::random::{self, Stream};
 
     /// χ² of samples against the density integrated over 24 × 24 cells, and the density's whole integral.
     #[test]

@@ -5,8 +5,9 @@ use crate::plane_on_leg::{PlaneOnLeg, SurfaceCoordinates};
 use crate::proposal::{Aim, ProfileDensity};
 use crate::reach::{looks_at_surface, outline, reach, reflects};
 use crate::sampling::LAMBERTIAN;
-use etendue_field::{Frame, Mixture, Profile, random};
+use etendue_field::{Frame, Mixture, Profile};
 use etendue_scene::{Emission, Scene};
+use etendue_transform::random;
 use glam::DVec3;
 use std::f64::consts::TAU;
 

@@ -2,8 +2,8 @@
 
 use crate::line::{direction, ray_through};
 use crate::sampling::{LAMBERTIAN, by_cosine};
-use etendue_field::random::{self, Stream};
 use etendue_field::{Environment, EnvironmentMap, Frame, LatLong, SphericalGaussian, TwoPlane};
+use etendue_transform::random::{self, Stream};
 use glam::{DVec2, DVec3};
 use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
@@ -223,7 +223,7 @@ const FORWARD: f64 = 1e-6;
 mod tests {
     use super::*;
     use etendue_field::LatLong;
-    use etendue_field::random::{self, Stream};
+    use etendue_transform::random::{self, Stream};
     use std::sync::Arc;
 
     fn environments() -> Vec<Environment> {

@@ -10,9 +10,9 @@ use crate::numbers::{Numbers, PhotonNumbers};
 use crate::obstacles::{HitKind, Material, Obstacles};
 use crate::plane_on_leg::PlaneOnLeg;
 use crate::primitive_set::PrimitiveHit;
-use etendue_field::random::Stream;
 use etendue_field::{Crossing, Frame, Ledger, PhotonSource, Side, TwoPlane, VirtualPlane};
 use etendue_scene::{Object, Scene};
+use etendue_transform::random::Stream;
 use std::ops::Range;
 
 /// The forward tracer of a scene.

@@ -6,9 +6,9 @@ mod common;
 
 use common::estimates;
 use etendue_field::PhotonSource;
-use etendue_field::random::{Stream, unit, words};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
+use etendue_transform::random::{Stream, unit, words};
 use glam::DVec3;
 use std::f64::consts::PI;
 

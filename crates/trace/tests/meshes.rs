@@ -3,10 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on should stop")]
 
-use etendue_field::random::{self, Stream};
 use etendue_field::{Frame, PhotonSource};
 use etendue_scene::{Scene, SceneError, SceneFile, resolve};
 use etendue_trace::{Backward, Tracer};
+use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 use std::cell::Cell;
 use std::fmt::Write as _;

@@ -7,9 +7,9 @@ mod common;
 
 use common::estimates;
 use etendue_field::PhotonSource;
-use etendue_field::random::{Stream, words};
 use etendue_scene::{Scene, SceneFile, resolve};
 use etendue_trace::{Backward, Emitter, Tracer, finds};
+use etendue_transform::random::{Stream, words};
 
 const LIGHTS: [&str; 3] = [
     "Point(center: (0, 0, 0), intensity: 2)",

@@ -1,6 +1,6 @@
 //! Random choices of one case: a function of the seed, the case and how many were made before.
 
-use etendue_field::random::{self, Stream};
+use etendue_transform::random::{self, Stream};
 
 /// The random numbers of one case.
 #[derive(Debug)]

@@ -2,7 +2,7 @@
 //!
 //! A scene is a function of its number. Sizes are metres, slopes tangents, as in any scene file.
 
-use etendue_field::random::{self, Stream};
+use etendue_transform::random::{self, Stream};
 
 /// What stands between light and plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

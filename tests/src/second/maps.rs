@@ -10,7 +10,7 @@ use super::world::World;
 use crate::hostile::dice::Dice;
 use etendue_field::{Brdf, Frame, Fresnel, Light, Lobe, Orientation, Patch, Quantity, Specular};
 use etendue_theory::geometry::{Edition, Map};
-use etendue_theory::rays::{self, Element, Plane};
+use etendue_theory::rays::{self, SpecularSurface, Plane};
 use etendue_theory::{Observed, scattering};
 use std::path::Path;
 
@@ -145,7 +145,7 @@ fn at_mirror(dice: &mut Dice, fault: &str) -> f64 {
     let seen = *dice.pick(&PLANES);
     let smooth = met.smooth.wrong(fault);
     let looking = Looking::new(&smooth, &met.legs, seen);
-    let mirror = Element {
+    let mirror = SpecularSurface {
         name: "it".to_owned(),
         patch: met.patch,
         event: Specular::Mirror,

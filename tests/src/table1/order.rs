@@ -39,7 +39,7 @@ impl Order {
     pub(super) fn expected(view: &Observed<System>) -> Self {
         let Observed { system, plane } = view;
         let across = plane.orientation == Orientation::Orthogonal;
-        let flat = |e: &rays::Element| {
+        let flat = |e: &rays::SpecularSurface| {
             let flat = e.patch.curvature.iter().all(|k| k.abs() <= 0.0);
             flat && matches!(e.event, Specular::Mirror)
         };

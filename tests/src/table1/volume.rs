@@ -6,7 +6,7 @@ use crate::report::{Check, Row, Section, worse};
 use etendue_field::{Frame, Orientation};
 use etendue_theory::Observed;
 use etendue_theory::geometry::Edition;
-use etendue_theory::rays::{self, Element, System};
+use etendue_theory::rays::{self, SpecularSurface, System};
 use glam::DVec3;
 
 /// Step of the differences, metres and direction cosines; their error is of its sixth power.
@@ -97,7 +97,7 @@ fn index_ratio(system: &System) -> f64 {
 }
 
 /// Index before over index after.
-fn crossed(element: &Element, direction: DVec3) -> f64 {
+fn crossed(element: &SpecularSurface, direction: DVec3) -> f64 {
     let etendue_field::Specular::Refraction { front, back } = element.event else {
         return 1.0;
     };
@@ -193,11 +193,11 @@ fn start([x, y, p, q]: [f64; 4]) -> Ray {
     }
 }
 
-fn through(elements: &[Element], ray: &Ray) -> Option<Ray> {
+fn through(elements: &[SpecularSurface], ray: &Ray) -> Option<Ray> {
     elements.iter().try_fold(*ray, |ray, e| follow(e, &ray))
 }
 
-fn follow(element: &Element, ray: &Ray) -> Option<Ray> {
+fn follow(element: &SpecularSurface, ray: &Ray) -> Option<Ray> {
     let frame = &element.patch.frame;
     let (start, along) = (
         frame.to_local(ray.point),

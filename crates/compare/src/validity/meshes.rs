@@ -4,9 +4,9 @@ use super::coordinates::coordinates;
 use super::mesh_error::OffPatches;
 use super::rays::{Draw, Ray, bright, density, offset_of};
 use super::specular::{Arrival, Follower, on};
-use etendue_field::transform::SliceTransform;
 use etendue_field::{Complex, Light, Profile, TwoPlane, interpolated_normal};
 use etendue_scene::{MeshObject, Object};
+use etendue_transform::SliceTransform;
 use glam::DVec3;
 use ndarray::Array3;
 

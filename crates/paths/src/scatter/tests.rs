@@ -2,7 +2,7 @@
 //! weights' mean is the integral of its value.
 
 use super::*;
-use etendue_field::random::{Stream, unit, words};
+use etendue_transform::random::{Stream, unit, words};
 use etendue_world::{Distribution, Plastic};
 
 fn constant(value: f64) -> Texture {

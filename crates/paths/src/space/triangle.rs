@@ -58,7 +58,7 @@ fn turned(v: DVec3, last: usize) -> DVec3 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use etendue_field::random::{self, Stream};
+    use etendue_transform::random::{self, Stream};
 
     fn numbers(index: u64, block: u32) -> DVec3 {
         let [x, y, z, _] = random::words(1, Stream::Photon, index, block).map(random::unit);

@@ -1,7 +1,7 @@
 //! Jittered squares.
 
 use etendue_field::Rectangle;
-use etendue_field::random::{self, Stream};
+use etendue_transform::random::{self, Stream};
 
 /// Squares of side fill · pitch at (i − (n−1)/2) · pitch + U(−jitter/2, jitter/2) · pitch.
 pub(super) fn jittered_squares(

@@ -1,9 +1,9 @@
 //! Sums of weighted rays on a 4D grid.
 
-use super::fft::{RealFft4, real, real_mut};
 use super::spectrum::FieldSpectrum;
 use super::spline::{taps, transform};
 use etendue_field::{Assignment, Complex, FieldGrid, TwoPlane};
+use etendue_transform::{RealFft4, real, real_mut};
 use ndarray::Array4;
 use rayon::prelude::*;
 

@@ -9,7 +9,7 @@
 //!
 //! | what light meets | operator | what becomes of C |
 //! |---|---|---|
-//! | travel, lens, projection, curvature, mirror, refraction | [`mapped`](SpectralCovariance::mapped) by any [`Map`](crate::geometry::Map) z' = A z + t | A⁻ᵀ C A⁻¹ |
+//! | travel, lens, projection, curvature, mirror, refraction | [`mapped`](SpectralCovariance::mapped) by any [`AffineMap`](crate::geometry::AffineMap) z' = A z + t | A⁻ᵀ C A⁻¹ |
 //! | cosine, blocker, texture, the plane's window | [`multiplied`](SpectralCovariance::multiplied) | C + W |
 //! | lobe of a BRDF | [`convolved`](SpectralCovariance::convolved) | (C⁻¹ + B⁻¹)⁻¹ |
 //! | diffuse reflection | [`diffused`](SpectralCovariance::diffused) | the same with B = 0 along both angles |

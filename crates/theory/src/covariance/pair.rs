@@ -1,6 +1,6 @@
 //! Pairs of matrices whose quotient is a covariance.
 
-use crate::geometry::{Map, Matrix, diagonal, from_fn, inverse, product, sum, times, transpose};
+use crate::geometry::{AffineMap, Matrix, diagonal, from_fn, inverse, product, sum, times, transpose};
 use std::f64::consts::PI;
 
 /// S⁻¹ = 8π² C, of the power; of |L| it would be 4π² C.
@@ -42,7 +42,7 @@ impl SpectralCovariance {
     /// After a change z' = A z + t of ray coordinates: A⁻ᵀ C A⁻¹. Where light is does not matter to
     /// its power. `None` if A has no inverse.
     #[must_use]
-    pub fn mapped(&self, map: &Map<4>) -> Option<Self> {
+    pub fn mapped(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = transpose(&inverse(&map.matrix)?);
         Some(Self {
             p: product(&back, &self.p),

@@ -2,7 +2,7 @@
 
 use super::factors;
 use super::pair::SpectralCovariance;
-use crate::geometry::{Edition, Map, Matrix, diagonal};
+use crate::geometry::{Edition, AffineMap, Matrix, diagonal};
 use crate::model::Observed;
 use crate::parallel::{Chain, Operator};
 use crate::{rays, scattering};
@@ -53,11 +53,11 @@ impl Traced for Chain {
         let mut light = of_light(&self.source.light)?;
         for operator in &self.operators {
             light = match operator {
-                Operator::Travel { distance, .. } => moved(&light, &Map::travel(*distance))?,
+                Operator::Travel { distance, .. } => moved(&light, &AffineMap::travel(*distance))?,
                 Operator::Visibility { mask, .. } => masked(&light, mask)?,
                 Operator::Cosine { .. } => light.multiplied(&factors::slope_cosine()),
                 Operator::Diffuse { .. } => {
-                    let back = Map::linear(diagonal([-1.0, 1.0, -1.0, 1.0]));
+                    let back = AffineMap::linear(diagonal([-1.0, 1.0, -1.0, 1.0]));
                     moved(&light.diffused(), &back)?
                 }
             };
@@ -66,7 +66,7 @@ impl Traced for Chain {
     }
 }
 
-impl Traced for Observed<rays::System> {
+impl Traced for Observed<rays::SpecularSystem> {
     fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
         let Self { system, plane } = self;
         let chain = rays::chain(self, Edition::Corrected).ok_or(Untraced::Lost)?;
@@ -74,13 +74,13 @@ impl Traced for Observed<rays::System> {
             return Err(Untraced::Obstacles);
         }
         let (light, travelled) = past_masks(&system.light, &system.layers)?;
-        let rest = Map::travel(-travelled).then(&chain.map.rays());
+        let rest = AffineMap::travel(-travelled).then(&chain.map.rays());
         let light = moved(&light, &rest)?;
         Ok(counted(&light, plane.quantity, plane.orientation))
     }
 }
 
-impl Traced for Observed<scattering::System> {
+impl Traced for Observed<scattering::ScatteringSystem> {
     fn spectral_covariance(&self) -> Result<SpectralCovariance, Untraced> {
         let Self { system, plane } = self;
         let chain = scattering::chain(self).ok_or(Untraced::Lost)?;
@@ -93,9 +93,9 @@ impl Traced for Observed<scattering::System> {
             return Err(Untraced::Obstacles);
         }
         let (light, travelled) = past_masks(&system.light, &system.layers)?;
-        let onto = Map::travel(-travelled).then(&chain.onto);
+        let onto = AffineMap::travel(-travelled).then(&chain.onto);
         let arriving = moved(&light, &onto)?.multiplied(&factors::cosine());
-        let turned = moved(&arriving, &Map::mirror())?;
+        let turned = moved(&arriving, &AffineMap::mirror())?;
         let mut leaving = match factors::lobe(&brdf.lobe, chain.incidence) {
             Some(lobe) => turned.convolved(&lobe),
             None => turned.diffused(),
@@ -174,7 +174,7 @@ fn past_masks(
     layers
         .iter()
         .try_fold(start, |(light, at), (distance, mask)| {
-            let arriving = moved(&light, &Map::travel(distance - at))?;
+            let arriving = moved(&light, &AffineMap::travel(distance - at))?;
             Ok((masked(&arriving, mask)?, *distance))
         })
 }
@@ -184,7 +184,7 @@ fn masked(light: &SpectralCovariance, mask: &Mask) -> Result<SpectralCovariance,
     Ok(light.multiplied(&factor))
 }
 
-fn moved(light: &SpectralCovariance, map: &Map<4>) -> Result<SpectralCovariance, Untraced> {
+fn moved(light: &SpectralCovariance, map: &AffineMap<4>) -> Result<SpectralCovariance, Untraced> {
     light.mapped(map).ok_or(Untraced::Lost)
 }
 

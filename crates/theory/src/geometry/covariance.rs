@@ -2,7 +2,7 @@
 //! followed.
 //!
 //! A field exp(−½ zᵀ S⁻¹ z) has the covariance S, and every step keeps it Gaussian: a
-//! [`Map`](super::Map) by [`covariance`](super::Map::covariance), a product by [`gaussian_window`],
+//! [`AffineMap`](super::AffineMap) by [`covariance`](super::AffineMap::covariance), a product by [`gaussian_window`],
 //! a convolution over angle by [`gaussian_lobe`].
 
 use super::matrix::{self, Matrix, congruent, diagonal, dot, product, sum, times};

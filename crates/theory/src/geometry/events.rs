@@ -1,8 +1,8 @@
 //! What happens at a surface from light frame to light frame, made of the steps.
 
-use super::{Map, Matrix, Media};
+use super::{AffineMap, Matrix, Media};
 
-impl Map<2> {
+impl AffineMap<2> {
     /// Reflection by a mirror of curvature k, in 1/m (convex positive), met at the angle θ₀.
     ///
     /// Incidence, curvature, mirror, back, outgoing at −θ₀. The product is x' = −x, θ' = −θ −
@@ -42,7 +42,7 @@ impl Map<2> {
     }
 }
 
-impl Map<4> {
+impl AffineMap<4> {
     /// Reflection by a mirror with the shape operator M (see [`curvature`](Self::curvature)), met
     /// at the angle θ₀.
     ///

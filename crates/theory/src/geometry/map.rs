@@ -9,7 +9,7 @@ use etendue_field::Complex;
 /// Coordinates are positions, then slopes or angles: (x, u) for N = 2, (x, y, u, v) for N = 4. No
 /// other N has constructors.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Map<const N: usize> {
+pub struct AffineMap<const N: usize> {
     /// A, as rows.
     pub matrix: Matrix<N>,
     /// t.
@@ -19,7 +19,7 @@ pub struct Map<const N: usize> {
 /// Step of the differences that a map is read off with, metres and radians.
 const STEP: f64 = 1e-5;
 
-impl<const N: usize> Map<N> {
+impl<const N: usize> AffineMap<N> {
     /// The affine map that touches another map of rays at zero, by differences of fourth order:
     /// good to some 10⁻¹⁰ per metre and radian. `None` where a ray near zero does not arrive.
     pub(crate) fn touching(map: impl Fn([f64; N]) -> Option<[f64; N]>) -> Option<Self> {
@@ -190,7 +190,7 @@ impl<const N: usize> Map<N> {
     }
 }
 
-impl Map<2> {
+impl AffineMap<2> {
     /// The distance after which rays that were parallel before the map meet, −A₀₀/A₁₀ metres;
     /// negative if behind. `None` if they stay parallel.
     #[must_use]
@@ -201,10 +201,10 @@ impl Map<2> {
     }
 }
 
-impl Map<4> {
+impl AffineMap<4> {
     /// The map that takes (x, u) by one map and (y, v) by another.
     #[must_use]
-    pub fn sections(x: &Map<2>, y: &Map<2>) -> Self {
+    pub fn sections(x: &AffineMap<2>, y: &AffineMap<2>) -> Self {
         let [[x0, u0], [y0, v0]] = [x.offset, y.offset];
         Self {
             matrix: matrix::sections(&x.matrix, &y.matrix),

@@ -2,21 +2,21 @@
 //!
 //! A ray is a point z of 2 or 4 coordinates, positions first: (x, u) or (x, y, u, v). A step turns
 //! it into z' = A z + t and keeps its radiance, and so turns the spectrum L into L'(Ω) = |det A|
-//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). That is a [`Map`]; everything else here makes one,
-//! or says what one does to rays, spectra and covariances. Steps are chained by [`Map::then`] in
+//! e^(−2πi Ω·t) L(Aᵀ Ω) (docs/theory.md (1)). That is a [`AffineMap`]; everything else here makes one,
+//! or says what one does to rays, spectra and covariances. Steps are chained by [`AffineMap::then`] in
 //! the order in which light meets them:
 //!
 //! | step | constructor | in Durand et al. 2005 |
 //! |---|---|---|
-//! | travel | [`Map::travel`] | Eq. 3 |
-//! | thin lens | [`Map::thin_lens`] | – |
+//! | travel | [`AffineMap::travel`] | Eq. 3 |
+//! | thin lens | [`AffineMap::thin_lens`] | – |
 //! | light incidence: onto the surface | [`incidence`](Map::<2>::incidence) | Eq. 9 |
 //! | curvature: into local frames | [`2D`](Map::<2>::curvature), [`4D`](Map::<4>::curvature) | 11, 19 |
-//! | mirror | [`Map::mirror`] | Eq. 14 |
+//! | mirror | [`AffineMap::mirror`] | Eq. 14 |
 //! | refraction | [`refraction`](Map::<2>::refraction) | – |
 //! | back from the local normals | [`back`](Map::<2>::back) | step 6 |
 //! | outgoing angle: off the surface | [`outgoing`](Map::<2>::outgoing) | Eq. 10 |
-//! | turning the axes | [`Map::rotation`] | section 5.2 |
+//! | turning the axes | [`AffineMap::rotation`] | section 5.2 |
 //!
 //! In the frame of a light ray the last coordinates are slopes or angles to the central ray; to the
 //! order at which these maps hold, both are the same ([`plane_sphere`] has the exact change).
@@ -62,7 +62,7 @@ mod tests;
 mod travel;
 
 pub use kernel::plane_sphere_kernel;
-pub use map::Map;
+pub use map::AffineMap;
 pub use matrix::Matrix;
 pub(crate) use matrix::{congruent, diagonal, from_fn, inverse, product, sum, times, transpose};
 pub use printed::Edition;

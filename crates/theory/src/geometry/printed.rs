@@ -1,6 +1,6 @@
 //! The geometric operators as the paper prints them.
 
-use super::{Map, Matrix, SpectrumMap};
+use super::{AffineMap, Matrix, SpectrumMap};
 use std::f64::consts::TAU;
 
 /// Which print of the geometric operators is asked for (docs/theory.md, section 7).
@@ -22,7 +22,7 @@ impl Edition {
     /// Light incidence. Eq. 9: e^(−iΩθ θ₀) c₀ L(−c₀ Ωx, Ωθ); Table 1: e^(−iΩθ θ₀)/c₀ L(−c₀ Ωx, Ωθ).
     #[must_use]
     pub fn incidence(self, theta0: f64) -> SpectrumMap<2> {
-        let right = Map::<2>::incidence(theta0).spectrum_map();
+        let right = AffineMap::<2>::incidence(theta0).spectrum_map();
         let c0 = libm::cos(theta0);
         let factor = match self {
             Self::Corrected => return right,
@@ -39,20 +39,20 @@ impl Edition {
     /// Curvature, into the frames of the local normals. Eq. 11: L(Ωx + k Ωθ, Ωθ).
     #[must_use]
     pub fn curvature(self, k: f64) -> SpectrumMap<2> {
-        Map::<2>::curvature(self.sign() * k).spectrum_map()
+        AffineMap::<2>::curvature(self.sign() * k).spectrum_map()
     }
 
     /// Back from the frames of the local normals: the inverse of [`curvature`](Self::curvature), as
     /// step 6 says.
     #[must_use]
     pub fn back(self, k: f64) -> SpectrumMap<2> {
-        Map::<2>::back(self.sign() * k).spectrum_map()
+        AffineMap::<2>::back(self.sign() * k).spectrum_map()
     }
 
     /// Outgoing angle. Eq. 10 and Table 1: e^(iΩθ θ₁) c₁ L(Ωx/c₁, Ωθ).
     #[must_use]
     pub fn outgoing(self, theta1: f64) -> SpectrumMap<2> {
-        let right = Map::<2>::outgoing(theta1).spectrum_map();
+        let right = AffineMap::<2>::outgoing(theta1).spectrum_map();
         match self {
             Self::Corrected => right,
             Self::Equations | Self::Table => SpectrumMap {
@@ -68,7 +68,7 @@ impl Edition {
     pub fn mirror_reflection(self, theta0: f64, k: f64) -> SpectrumMap<2> {
         self.incidence(theta0)
             .then(&self.curvature(k))
-            .then(&Map::mirror().spectrum_map())
+            .then(&AffineMap::mirror().spectrum_map())
             .then(&self.back(k))
             .then(&self.outgoing(-theta0))
     }
@@ -77,25 +77,25 @@ impl Edition {
     /// which no print gets wrong.
     #[must_use]
     pub fn incidence_4d(self, theta0: f64) -> SpectrumMap<4> {
-        SpectrumMap::sections(&self.incidence(theta0), &Map::mirror().spectrum_map())
+        SpectrumMap::sections(&self.incidence(theta0), &AffineMap::mirror().spectrum_map())
     }
 
     /// Curvature in 4D. The text after Eq. 19: a shear by M, without the cosine.
     #[must_use]
     pub fn curvature_4d(self, shape: Matrix<2>, theta0: f64) -> SpectrumMap<4> {
-        Map::<4>::curvature(self.signed(shape), self.longitude(theta0)).spectrum_map()
+        AffineMap::<4>::curvature(self.signed(shape), self.longitude(theta0)).spectrum_map()
     }
 
     /// Back from the frames of the local normals in 4D.
     #[must_use]
     pub fn back_4d(self, shape: Matrix<2>, theta1: f64) -> SpectrumMap<4> {
-        Map::<4>::back(self.signed(shape), self.longitude(theta1)).spectrum_map()
+        AffineMap::<4>::back(self.signed(shape), self.longitude(theta1)).spectrum_map()
     }
 
     /// Outgoing angle in 4D: (x, θ) as in 2D.
     #[must_use]
     pub fn outgoing_4d(self, theta1: f64) -> SpectrumMap<4> {
-        SpectrumMap::sections(&self.outgoing(theta1), &Map::identity().spectrum_map())
+        SpectrumMap::sections(&self.outgoing(theta1), &AffineMap::identity().spectrum_map())
     }
 
     /// Incidence, curvature, mirror, back, outgoing at −θ₀ in 4D.
@@ -103,7 +103,7 @@ impl Edition {
     pub fn mirror_reflection_4d(self, theta0: f64, shape: Matrix<2>) -> SpectrumMap<4> {
         self.incidence_4d(theta0)
             .then(&self.curvature_4d(shape, theta0))
-            .then(&Map::mirror().spectrum_map())
+            .then(&AffineMap::mirror().spectrum_map())
             .then(&self.back_4d(shape, -theta0))
             .then(&self.outgoing_4d(-theta0))
     }

@@ -1,6 +1,6 @@
 //! Refraction at an interface.
 
-use super::Map;
+use super::AffineMap;
 
 /// The refractive indices on both sides of an interface, positive.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -12,7 +12,7 @@ pub struct Media {
 }
 
 impl Media {
-    /// n₁/n₂: what [`Map::symplectic_defect`] asks for, and how étendue in (x, u) changes along
+    /// n₁/n₂: what [`AffineMap::symplectic_defect`] asks for, and how étendue in (x, u) changes along
     /// each axis.
     #[must_use]
     pub fn index_ratio(&self) -> f64 {
@@ -40,7 +40,7 @@ impl Media {
     }
 }
 
-impl Map<2> {
+impl AffineMap<2> {
     /// Refraction of local directions, Snell's law made linear at θ₀: θ' = θ₂ + (θ − θ₀) n₁ cos
     /// θ₀/(n₂ cos θ₂).
     ///
@@ -59,7 +59,7 @@ impl Map<2> {
     }
 }
 
-impl Map<4> {
+impl AffineMap<4> {
     /// Refraction of local directions: the longitude as in 2D, and n₁ φ = n₂ φ' out of the plane of
     /// incidence.
     ///
@@ -67,8 +67,8 @@ impl Map<4> {
     /// n cos φ sin θ, where cos φ is 1 to first order (docs/theory.md (27)).
     #[must_use]
     pub fn refraction(theta0: f64, media: &Media) -> Option<Self> {
-        let in_plane = Map::<2>::refraction(theta0, media)?;
-        let across = Map::<2>::refraction(0.0, media)?;
+        let in_plane = AffineMap::<2>::refraction(theta0, media)?;
+        let across = AffineMap::<2>::refraction(0.0, media)?;
         Some(Self::sections(&in_plane, &across))
     }
 }

@@ -1,13 +1,13 @@
 //! What an affine step does to spectra.
 
-use super::Map;
+use super::AffineMap;
 use super::matrix::{Matrix, dot, plus, product, sections, times, transpose};
 use etendue_field::{Complex, cis};
 use std::f64::consts::TAU;
 
 /// What a step does to spectra: L'(Ω) = factor · e^(−2πi Ω·phase) L(matrix · Ω).
 ///
-/// A [`Map`] has one, with factor |det A|, matrix Aᵀ and phase t. One that was printed
+/// A [`AffineMap`] has one, with factor |det A|, matrix Aᵀ and phase t. One that was printed
 /// wrong need not be that of any map of rays, which is why it has a type of its own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpectrumMap<const N: usize> {
@@ -32,8 +32,8 @@ impl<const N: usize> SpectrumMap<N> {
 
     /// What it does to rays, z' = A z + t: A is the transpose of its matrix, t its phase.
     #[must_use]
-    pub fn rays(&self) -> Map<N> {
-        Map {
+    pub fn rays(&self) -> AffineMap<N> {
+        AffineMap {
             matrix: transpose(&self.matrix),
             offset: self.phase,
         }

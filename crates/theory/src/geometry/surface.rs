@@ -5,9 +5,9 @@
 //! infinite. Signs are those of the [module](super): with N up, positive angles lie to the right,
 //! and a mirror has θ₁ = −θ₀.
 
-use super::Map;
+use super::AffineMap;
 
-impl Map<2> {
+impl AffineMap<2> {
     /// Light incidence: s = −x/cos θ₀, θᵢ = θ + θ₀. Light comes from the direction θ₀ and its
     /// directions are flipped.
     ///
@@ -52,14 +52,14 @@ impl Map<2> {
     }
 }
 
-impl Map<4> {
+impl AffineMap<4> {
     /// Light incidence in the plane of (X, D): s_x = −x/cos θ₀, s_y = y, θᵢ = θ + θ₀, φᵢ = −φ.
     ///
     /// Flipping directions turns the latitude over, which section 5.2 of Durand et al. 2005 does
     /// not say. In 2D this is its Eq. 9.
     #[must_use]
     pub fn incidence(theta0: f64) -> Self {
-        Self::sections(&Map::<2>::incidence(theta0), &Map::mirror())
+        Self::sections(&AffineMap::<2>::incidence(theta0), &AffineMap::mirror())
     }
 
     /// Curvature, into the frames of the local normals: (θ', φ') = (θ, φ) − diag(1, cos θ₀) M s for
@@ -94,7 +94,7 @@ impl Map<4> {
     /// Outgoing angle: x = s_x cos θ₁, y = s_y, θ = θₒ − θ₁, φ = φₒ.
     #[must_use]
     pub fn outgoing(theta1: f64) -> Self {
-        Self::sections(&Map::<2>::outgoing(theta1), &Map::identity())
+        Self::sections(&AffineMap::<2>::outgoing(theta1), &AffineMap::identity())
     }
 }
 

@@ -1,10 +1,10 @@
 //! Steps in the frame of the central ray.
 
-use super::Map;
+use super::AffineMap;
 use super::matrix::{diagonal, from_fn};
 use std::array;
 
-impl<const N: usize> Map<N> {
+impl<const N: usize> AffineMap<N> {
     /// Travel by a distance d, in metres: x' = x + d u, y' = y + d v.
     ///
     /// Exact where (u, v) are slopes; where they are angles it holds to first order. L'(Ωx, Ωu) =
@@ -48,7 +48,7 @@ impl<const N: usize> Map<N> {
     }
 }
 
-impl Map<4> {
+impl AffineMap<4> {
     /// The axes turned by an angle, in radians, from the first to the second: x' = x cos + y sin,
     /// y' = −x sin + y cos, and alike for directions. A is orthogonal.
     ///

@@ -9,7 +9,7 @@ const SHARES: usize = 4;
 
 /// A density on an interval: linear between values at equal steps.
 #[derive(Clone, Debug)]
-pub(crate) struct Density {
+pub(crate) struct LinearDensity {
     low: f64,
     step: f64,
     /// At the ends of the cells.
@@ -20,7 +20,7 @@ pub(crate) struct Density {
     first: Vec<usize>,
 }
 
-impl Density {
+impl LinearDensity {
     /// The density in proportion to a function, none of whose values is negative; `None` where it
     /// vanishes.
     pub(crate) fn new([low, high]: [f64; 2], function: impl Fn(f64) -> f64) -> Option<Self> {
@@ -123,7 +123,7 @@ impl Density {
 /// so it is wider than the window, and it ends nowhere.
 #[derive(Clone, Debug)]
 pub(crate) struct Target {
-    near: Density,
+    near: LinearDensity,
     half: f64,
 }
 
@@ -138,9 +138,9 @@ impl Target {
         let half = profile.half_width();
         let reach = 1.2 * WIDER * half;
         let around = |t: f64| profile.value(t / WIDER) + 0.05;
-        let near = Density::new([-reach, reach], around);
+        let near = LinearDensity::new([-reach, reach], around);
         Self {
-            near: near.unwrap_or_else(|| Density::of(profile)),
+            near: near.unwrap_or_else(|| LinearDensity::of(profile)),
             half,
         }
     }
@@ -188,7 +188,7 @@ mod tests {
     #[test]
     fn quantiles_are_drawn_by_the_density() {
         let profile = Profile::Hann(0.5);
-        let density = Density::of(&profile);
+        let density = LinearDensity::of(&profile);
         let n = 100_000;
         // The mean of f/density over quantiles is the integral of f.
         let sum: f64 = (0..n)

@@ -10,16 +10,16 @@ mod density;
 mod rays;
 mod sobol;
 
-pub(crate) use density::{Density, Target};
+pub(crate) use density::{LinearDensity, Target};
 pub use rays::RayNets;
-pub(crate) use rays::Sampled;
-pub(crate) use sobol::{DIMENSIONS, Net};
+pub(crate) use rays::SampledNets;
+pub(crate) use sobol::{DIMENSIONS, NetPoints};
 
 use crate::geometry::Matrix;
 use crate::predicted::Predicted;
-use crate::work::Work;
-use etendue_field::transform::SliceTransform;
+use crate::work::PredictionWork;
 use etendue_field::{Complex, Projection, ProjectionGrid, SliceGrid, Slices, TwoPlane, Window};
+use etendue_transform::SliceTransform;
 use ndarray::{Array2, Array3};
 use rayon::prelude::*;
 
@@ -52,14 +52,14 @@ pub struct Budget {
 
 /// A ray at a plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Node {
+pub(crate) struct RayNode {
     /// (x, y, u, v), or what stands for them.
     pub(crate) z: [f64; 4],
     /// What it adds to the windowed radiance space, over the density with which it was drawn.
     pub(crate) weight: f64,
 }
 
-impl Node {
+impl RayNode {
     /// A ray that adds nothing.
     pub(crate) const DARK: Self = Self {
         z: [0.0; 4],
@@ -80,7 +80,7 @@ pub(crate) trait Integrand: Sync {
         1
     }
     /// The rays of each at a point, field by field. All are dark before the call.
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]);
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]);
 }
 
 impl Predicted {
@@ -104,11 +104,11 @@ impl Predicted {
 
 /// One net on its way.
 struct Running {
-    net: Net,
+    net: NetPoints,
     /// Sums of each field so far.
     slices: Vec<Slices>,
     projection: Array2<f64>,
-    moments: Moments,
+    moments: WeightedMoments,
     /// Nodes so far.
     count: f64,
 }
@@ -221,7 +221,7 @@ const TRANSFORM: f64 = 300.0;
 
 /// What a prediction by nets takes that ends with its budget: rays, and the transforms of all nets.
 #[must_use]
-pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
+pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> PredictionWork {
     let cells: f64 = grid.half_shape().iter().map(|n| *n as f64).product();
     let azimuths = grid.azimuths as f64;
     let replicates = REPLICATES as f64;
@@ -232,7 +232,7 @@ pub(crate) fn work_of_nets(grid: &SliceGrid, budget: Budget) -> Work {
     let rays = rays * (RAY + SPREAD * azimuths);
     let transforms = TRANSFORM * cells * (rounds * replicates + derivatives);
     let slice = 16.0 * cells;
-    Work {
+    PredictionWork {
         steps: rays + transforms,
         // Sums of all nets, means of those that end, and the fine grids of a thread.
         bytes: slice * (2.0 * replicates).max(derivatives),
@@ -252,10 +252,10 @@ fn begin(
     replicates: usize,
 ) -> Vec<Running> {
     let running = |replicate| Running {
-        net: Net::new(replicate, integrand.dimensions()),
+        net: NetPoints::new(replicate, integrand.dimensions()),
         slices: vec![Slices::zeros(*grid); integrand.fields()],
         projection: Array2::zeros((bins, bins)),
-        moments: Moments::default(),
+        moments: WeightedMoments::default(),
         count: 0.0,
     };
     (0..).skip(first).take(replicates).map(running).collect()
@@ -276,18 +276,18 @@ impl Running {
             .map(|_| transform.accumulator())
             .collect();
         let rays = integrand.rays();
-        let mut nodes = vec![Node::DARK; sums.len() * rays];
+        let mut nodes = vec![RayNode::DARK; sums.len() * rays];
         for _ in 0..count {
-            nodes.fill(Node::DARK);
+            nodes.fill(RayNode::DARK);
             integrand.nodes(&self.net.point(), &mut nodes);
             for (nodes, sum) in nodes.chunks(rays).zip(&mut sums) {
-                for Node { z, weight } in nodes.iter().filter(|node| node.weight != 0.0) {
+                for RayNode { z, weight } in nodes.iter().filter(|node| node.weight != 0.0) {
                     let [x, y, u, v] = *z;
                     sum.deposit(&TwoPlane { x, y, u, v }, *weight);
                 }
             }
             // There may be no field: no derivative was asked for.
-            let Node { z, weight } = nodes.first().copied().unwrap_or(Node::DARK);
+            let RayNode { z, weight } = nodes.first().copied().unwrap_or(RayNode::DARK);
             if let Some(cell) = picture.cell(z[0], z[2]).filter(|_| weight != 0.0) {
                 self.projection[cell] += weight;
             }
@@ -302,7 +302,7 @@ impl Running {
 fn finished(running: Vec<Running>, grid: ProjectionGrid, error: f64) -> Predicted {
     let each = running[0].count;
     let mut values = Array2::zeros((grid.bins, grid.bins));
-    let mut moments = Moments::default();
+    let mut moments = WeightedMoments::default();
     let mut replicates = Vec::with_capacity(running.len());
     for mut net in running {
         values += &net.projection;
@@ -358,13 +358,13 @@ fn relative_error<'a>(slices: impl ExactSizeIterator<Item = &'a Slices> + Clone)
 
 /// Weighted sums of 1, z and z zᵀ.
 #[derive(Clone, Copy, Debug, Default)]
-struct Moments {
+struct WeightedMoments {
     total: f64,
     first: [f64; 4],
     second: Matrix<4>,
 }
 
-impl Moments {
+impl WeightedMoments {
     fn add(&mut self, z: [f64; 4], weight: f64) {
         self.total += weight;
         for (i, row) in self.second.iter_mut().enumerate() {
@@ -405,7 +405,7 @@ mod tests {
             2
         }
 
-        fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+        fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
             for (i, node) in nodes.iter_mut().enumerate() {
                 node.z = std::array::from_fn(|k| at[k + i] - 0.5);
                 node.weight = libm::cos(3.0 * at[4]) + i as f64;
@@ -431,9 +431,9 @@ mod tests {
         };
         let found = sums(&Waves, (&window, &grid), 4, budget);
         let replicate = 5;
-        let mut net = Net::new(replicate, DIMENSIONS);
-        let mut nodes = [Node::DARK; 2];
-        let rays: Vec<Node> = (0..FIRST_NODES)
+        let mut net = NetPoints::new(replicate, DIMENSIONS);
+        let mut nodes = [RayNode::DARK; 2];
+        let rays: Vec<RayNode> = (0..FIRST_NODES)
             .map(|_| {
                 Waves.nodes(&net.point(), &mut nodes);
                 nodes[0]
@@ -442,7 +442,7 @@ mod tests {
         let slices = &found.replicates[replicate as usize];
         for ((k, m, n), value) in slices.half.indexed_iter() {
             let omega = grid.frequency(k, m as f64 * grid.rho.spacing, grid.nu.value(n));
-            let term = |node: &Node| {
+            let term = |node: &RayNode| {
                 let phase: f64 = omega.iter().zip(node.z).map(|(o, z)| o * z).sum();
                 Complex::from_polar(node.weight, -TAU * phase)
             };

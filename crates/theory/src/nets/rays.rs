@@ -1,6 +1,6 @@
 //! The rays of nets one by one, for sums other than slices.
 
-use super::{Budget, DIMENSIONS, Integrand, Net, Node, REPLICATES};
+use super::{Budget, DIMENSIONS, Integrand, NetPoints, RayNode, REPLICATES};
 use etendue_field::TwoPlane;
 
 /// A light field at a plane as weighted rays, in independent nets that each stand for all of it.
@@ -13,7 +13,7 @@ pub trait RayNets: Sync {
 }
 
 /// The nets over which [`sums`](super::sums) adds the first field, all of the same number of nodes.
-pub(crate) struct Sampled<'a, I> {
+pub(crate) struct SampledNets<'a, I> {
     integrand: &'a I,
     nodes: u32,
 }
@@ -21,7 +21,7 @@ pub(crate) struct Sampled<'a, I> {
 /// Most nodes of a net.
 const MAX_NODES: f64 = (1_u32 << 29) as f64;
 
-impl<'a, I: Integrand> Sampled<'a, I> {
+impl<'a, I: Integrand> SampledNets<'a, I> {
     /// The largest power of two of nodes that a budget allows.
     #[expect(
         clippy::cast_possible_truncation,
@@ -35,22 +35,22 @@ impl<'a, I: Integrand> Sampled<'a, I> {
     }
 }
 
-impl<I: Integrand> RayNets for Sampled<'_, I> {
+impl<I: Integrand> RayNets for SampledNets<'_, I> {
     fn count(&self) -> usize {
         REPLICATES
     }
 
     #[expect(clippy::cast_possible_truncation, reason = "below REPLICATES")]
     fn emit(&self, net: usize, each: &mut dyn FnMut(&TwoPlane, f64)) {
-        let mut net = Net::new(net as u32, self.integrand.dimensions());
+        let mut net = NetPoints::new(net as u32, self.integrand.dimensions());
         let share = 1.0 / f64::from(self.nodes);
-        let mut nodes = vec![Node::DARK; self.integrand.fields() * self.integrand.rays()];
+        let mut nodes = vec![RayNode::DARK; self.integrand.fields() * self.integrand.rays()];
         for _ in 0..self.nodes {
-            nodes.fill(Node::DARK);
+            nodes.fill(RayNode::DARK);
             let at: [f64; DIMENSIONS] = net.point();
             self.integrand.nodes(&at, &mut nodes);
             let of_first = nodes.iter().take(self.integrand.rays());
-            for Node { z, weight } in of_first.filter(|node| node.weight != 0.0) {
+            for RayNode { z, weight } in of_first.filter(|node| node.weight != 0.0) {
                 let [x, y, u, v] = *z;
                 each(&TwoPlane { x, y, u, v }, share * weight);
             }

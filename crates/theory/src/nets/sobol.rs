@@ -4,8 +4,8 @@
 //! turn divides it. Scrambling moves each point at random and keeps that, so that the mean over a
 //! net is an unbiased estimate, and nets scrambled with different keys are independent (Owen 1997).
 
-use etendue_field::random::unit;
-use etendue_field::sobol_directions;
+use etendue_transform::random::unit;
+use etendue_transform::sobol_directions;
 
 /// The most coordinates of a point.
 pub(crate) const DIMENSIONS: usize = 10;
@@ -23,14 +23,14 @@ static DIRECTIONS: [[u32; 32]; DIMENSIONS] = {
 
 /// The points of a scrambled net, one after the other.
 #[derive(Clone, Debug)]
-pub(crate) struct Net {
+pub(crate) struct NetPoints {
     keys: [u32; DIMENSIONS],
     unscrambled: [u32; DIMENSIONS],
     next: u32,
     dimensions: usize,
 }
 
-impl Net {
+impl NetPoints {
     /// The net scrambled with key `replicate`, with so many coordinates; the rest are 0.
     pub(crate) fn new(replicate: u32, dimensions: usize) -> Self {
         let key = |dimension: u32| {
@@ -93,7 +93,7 @@ mod tests {
     #[test]
     fn pairs_of_first_coordinates_are_nets() {
         for replicate in 0..3 {
-            let mut net = Net::new(replicate, DIMENSIONS);
+            let mut net = NetPoints::new(replicate, DIMENSIONS);
             for _ in 0..4 {
                 let points: Vec<_> = (0..256).map(|_| net.point()).collect();
                 for columns in [1_usize, 4, 16, 256] {
@@ -122,7 +122,7 @@ mod tests {
         let f = |p: &[f64; DIMENSIONS]| p.iter().map(|x| 1.0 + 0.5 * (x - 0.5)).product::<f64>();
         let n = 1 << 12;
         let errors = (0..32).map(|replicate| {
-            let mut net = Net::new(replicate, DIMENSIONS);
+            let mut net = NetPoints::new(replicate, DIMENSIONS);
             let mean = (0..n).map(|_| f(&net.point())).sum::<f64>() / f64::from(n);
             mean - 1.0
         });

@@ -1,6 +1,6 @@
 //! Integrals by Gauss–Legendre rules.
 
-pub(crate) use etendue_field::gauss_legendre;
+pub(crate) use etendue_transform::gauss_legendre;
 
 /// ∫ f over (low, high), with n nodes.
 pub(crate) fn integrate<T>(n: usize, [low, high]: [f64; 2], f: impl Fn(f64) -> T) -> T

@@ -16,7 +16,7 @@ pub struct Source {
 pub enum Operator {
     /// Free travel (docs/theory.md (2)): ℓ'(x, u) = ℓ(x − d u, u), ℓ̂'(Ωx, Ωu) = ℓ̂(Ωx, Ωu + d
     /// Ωx) (Durand et al. 2005, Eq. 3). As a map it is
-    /// [`Map::travel`](crate::geometry::Map::travel); here distances add up, and polygons are
+    /// [`AffineMap::travel`](crate::geometry::AffineMap::travel); here distances add up, and polygons are
     /// sheared.
     Travel {
         /// Where the light comes from.
@@ -67,16 +67,16 @@ pub struct Chain {
     pub operators: Vec<Operator>,
 }
 
-/// A plane with a mask, seen from the end of a [`Path`].
+/// A plane with a mask, seen from the end of a [`ChainSegment`].
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Layer<'a> {
+pub(crate) struct MaskLayer<'a> {
     /// Distance the light has travelled since it, in metres: the ray (x, u) was at x − distance · u
     /// there.
     pub(crate) distance: f64,
     pub(crate) mask: &'a Mask,
 }
 
-/// What a diffuse surface at the end of a [`Path`] does.
+/// What a diffuse surface at the end of a [`ChainSegment`] does.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct DiffuseReflection {
     pub(crate) albedo: f64,
@@ -86,7 +86,7 @@ pub(crate) struct DiffuseReflection {
 
 /// A light whose field has closed forms between parallel planes.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Emitter {
+pub(crate) struct ParallelEmitter {
     /// What shines; `None` for a point on the central ray.
     pub(crate) shape: Option<Shape>,
     /// Radiance or intensity along the central ray.
@@ -96,7 +96,7 @@ pub(crate) struct Emitter {
     pub(crate) power: f64,
 }
 
-impl Emitter {
+impl ParallelEmitter {
     /// # Panics
     /// When light goes through a picture or comes from far away: `rays` and `scattering` predict
     /// that.
@@ -118,12 +118,12 @@ impl Emitter {
 
 /// A chain up to its end, or up to its diffuse surface, seen from there.
 #[derive(Clone, Debug)]
-pub(crate) struct Path<'a> {
-    pub(crate) light: Emitter,
+pub(crate) struct ChainSegment<'a> {
+    pub(crate) light: ParallelEmitter,
     /// Distance from the light, in metres.
     pub(crate) distance: f64,
     /// The masks on the way, in the order of light.
-    pub(crate) layers: Vec<Layer<'a>>,
+    pub(crate) layers: Vec<MaskLayer<'a>>,
     /// How many factors G there are.
     pub(crate) cosines: u32,
     pub(crate) reflection: Option<DiffuseReflection>,
@@ -134,9 +134,9 @@ impl Chain {
     ///
     /// # Panics
     /// When anything but travel follows a diffuse reflection.
-    pub(crate) fn path(&self) -> Path<'_> {
-        let mut path = Path {
-            light: Emitter::new(&self.source.light),
+    pub(crate) fn path(&self) -> ChainSegment<'_> {
+        let mut path = ChainSegment {
+            light: ParallelEmitter::new(&self.source.light),
             distance: 0.0,
             layers: Vec::new(),
             cosines: 0,
@@ -145,7 +145,7 @@ impl Chain {
         for operator in self.operators.iter().rev() {
             match operator {
                 Operator::Travel { distance, .. } => path.distance += distance,
-                Operator::Visibility { mask, .. } => path.layers.push(Layer {
+                Operator::Visibility { mask, .. } => path.layers.push(MaskLayer {
                     distance: path.distance,
                     mask,
                 }),
@@ -167,7 +167,7 @@ impl Chain {
     }
 }
 
-impl Path<'_> {
+impl ChainSegment<'_> {
     /// Shapes of the light: one, or none of a point.
     pub(crate) fn light_shapes(&self) -> &[Shape] {
         self.light.shape.as_slice()

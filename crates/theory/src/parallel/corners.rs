@@ -17,10 +17,10 @@
 //! Where a (k ± s)·d is nearly zero the corners cancel and [`Polygon::transform`] takes their
 //! place.
 
-use crate::parallel::expansion::Section;
+use crate::parallel::expansion::AxisSection;
 use crate::parallel::polygon::{self, Polygon, cross, dot};
-use crate::parallel::row::{FrequencyRow, Parts, add_product, add_scaled};
-use crate::parallel::wave::Wave;
+use crate::parallel::row::{FrequencyRow, ComplexRow, add_product, add_scaled};
+use crate::parallel::wave::SectionWave;
 use etendue_field::Complex;
 use std::f64::consts::{PI, TAU};
 
@@ -45,8 +45,8 @@ struct Corner {
 /// The corners of all polygons of a section, under a sum of waves.
 #[derive(Debug)]
 pub(crate) struct Corners<'a> {
-    section: &'a Section,
-    waves: &'a [Wave],
+    section: &'a AxisSection,
+    waves: &'a [SectionWave],
     corners: Vec<Corner>,
     /// (cos θ, sin θ) of each corner and wave, [corner, wave].
     phases: Vec<[f64; 2]>,
@@ -61,13 +61,13 @@ pub(crate) struct Corners<'a> {
 struct Quotients {
     /// weight · (c₊ + c₋) and weight · (c₋ − c₊), [pair, wave, n]; `re` and `im` as they will
     /// multiply.
-    values: Parts,
+    values: ComplexRow,
     /// Cells left to the plain transform: n, the shifted frequency, its weight.
     left: Vec<(usize, [f64; 2], Complex)>,
 }
 
 impl<'a> Corners<'a> {
-    pub(crate) fn new(section: &'a Section, waves: &'a [Wave]) -> Self {
+    pub(crate) fn new(section: &'a AxisSection, waves: &'a [SectionWave]) -> Self {
         let mut pairs = Vec::new();
         let polygons = section.polygons.iter().enumerate();
         let corners: Vec<_> = polygons
@@ -96,7 +96,7 @@ impl<'a> Corners<'a> {
     pub(crate) fn row(&self, row: &FrequencyRow) -> Vec<Complex> {
         let count = row.count();
         let polygons = &self.section.polygons;
-        let mut sums = Parts::zeros(polygons.len() * count);
+        let mut sums = ComplexRow::zeros(polygons.len() * count);
         let mut plain = vec![Complex::ZERO; polygons.len() * count];
         let waves = self.waves.len();
         for first in (0..waves).step_by(WAVES_AT_A_TIME) {
@@ -121,10 +121,10 @@ impl<'a> Corners<'a> {
             .collect()
     }
 
-    fn quotients(&self, row: &FrequencyRow, waves: &[Wave]) -> Quotients {
+    fn quotients(&self, row: &FrequencyRow, waves: &[SectionWave]) -> Quotients {
         let count = row.count();
         let mut quotients = Quotients {
-            values: Parts::zeros(self.pairs.len() * waves.len() * count),
+            values: ComplexRow::zeros(self.pairs.len() * waves.len() * count),
             left: Vec::new(),
         };
         for (w, wave) in waves.iter().enumerate() {
@@ -172,12 +172,12 @@ impl<'a> Corners<'a> {
         row: &FrequencyRow,
         quotients: &Quotients,
         chunk: std::ops::Range<usize>,
-        sums: &mut Parts,
+        sums: &mut ComplexRow,
     ) {
         let count = row.count();
         let all = self.waves.len();
-        let mut exponentials = Parts::zeros(count);
-        let mut inner = Parts::zeros(count);
+        let mut exponentials = ComplexRow::zeros(count);
+        let mut inner = ComplexRow::zeros(count);
         for (corner, phases) in self.corners.iter().zip(self.phases.chunks_exact(all)) {
             row.exponentials(corner.at, corner.sign, &mut exponentials);
             inner.re.fill(0.0);
@@ -196,7 +196,7 @@ impl<'a> Corners<'a> {
     }
 }
 
-impl Wave {
+impl SectionWave {
     /// (cos θ, sin θ), θ = 2π s·p + phase.
     fn phase(&self, p: [f64; 2]) -> [f64; 2] {
         let (sin, cos) = libm::sincos(self.angle(p));

@@ -1,6 +1,6 @@
 //! How finely the discs of a chain are taken apart.
 
-use crate::parallel::chain::Path;
+use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc::Discs;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::slope::Slope;
@@ -27,7 +27,7 @@ pub(crate) struct DiscResolution(pub(crate) Vec<Discs>);
 
 impl DiscResolution {
     /// For spectra up to `frequency`, along position and slope (docs/theory.md, after Eq. 5b).
-    pub(crate) fn for_spectrum(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+    pub(crate) fn for_spectrum(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> Self {
         let nodes = Self::wanted(path, window, frequency);
         if path.has_discs() {
             nodes.affordable(path, window)
@@ -38,7 +38,7 @@ impl DiscResolution {
 
     /// Whether discs may be taken apart about as finely as spectra up to `frequency` need it. A wide
     /// one behind a narrow window is not, and finer rules tell nothing of the error then.
-    pub(crate) fn is_enough(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> bool {
+    pub(crate) fn is_enough(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> bool {
         if !path.has_discs() {
             return true;
         }
@@ -55,7 +55,7 @@ impl DiscResolution {
         both.all(|(wanted, affordable)| wanted.count() <= 2 * affordable.count())
     }
 
-    fn wanted(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+    fn wanted(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> Self {
         let rates = EdgeBandwidth::new(path, window, frequency);
         Self::of(path, |radius, plane| {
             let nodes = (PI * radius * rates.at(plane)).ceil() + SPARE_NODES;
@@ -64,12 +64,12 @@ impl DiscResolution {
     }
 
     /// Discs as one patch each.
-    pub(crate) fn single(path: &Path<'_>) -> Self {
+    pub(crate) fn single(path: &ChainSegment<'_>) -> Self {
         Self(vec![Discs::Rule(1); path.planes().len()])
     }
 
     /// Fewer nodes where discs in several planes would make too many terms.
-    fn affordable(self, path: &Path<'_>, window: &Window) -> Self {
+    fn affordable(self, path: &ChainSegment<'_>, window: &Window) -> Self {
         let slope = Slope::new([&window.u, &window.v], 0.0);
         let single = Self::single(path);
         let seen = Expansion::new(path, window, &slope, &single.0).terms.len();
@@ -94,7 +94,7 @@ impl DiscResolution {
     }
 
     /// For the light field on a grid of `bins` positions.
-    pub(crate) fn for_projection(path: &Path<'_>, window: &Window, bins: usize) -> Self {
+    pub(crate) fn for_projection(path: &ChainSegment<'_>, window: &Window, bins: usize) -> Self {
         let cell = 2.0 * window.x.half_width() / bins as f64;
         Self::of(path, |radius, _| {
             let strips = (8.0 * radius / cell).ceil().clamp(8.0, MOST_STRIPS);
@@ -103,7 +103,7 @@ impl DiscResolution {
     }
 
     /// `discs` chooses from the largest radius in a plane and the index of the plane.
-    fn of(path: &Path<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
+    fn of(path: &ChainSegment<'_>, discs: impl Fn(f64, usize) -> Discs) -> Self {
         let planes = path.planes().into_iter().enumerate();
         Self(
             planes
@@ -139,7 +139,7 @@ struct EdgeBandwidth {
 }
 
 impl EdgeBandwidth {
-    fn new(path: &Path<'_>, window: &Window, frequency: [f64; 2]) -> Self {
+    fn new(path: &ChainSegment<'_>, window: &Window, frequency: [f64; 2]) -> Self {
         let [x, y, u, v] = [&window.x, &window.y, &window.u, &window.v].map(Profile::half_width);
         // A spot is as narrow as 1/√n.
         let lobe = 1.0 / (-2.0 * path.slope_power()).max(1e-9).sqrt();

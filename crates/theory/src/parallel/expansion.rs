@@ -1,10 +1,10 @@
 //! Light fields as sums of polygons times waves.
 
-use crate::parallel::chain::Path;
+use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc::{Discs, patches_of};
 use crate::parallel::polygon::Polygon;
 use crate::parallel::slope::Slope;
-use crate::parallel::wave::Wave;
+use crate::parallel::wave::SectionWave;
 use crate::parallel::weighted_rectangle::WeightedRectangle;
 use etendue_field::{Complex, Mask, Profile, Window};
 use std::collections::HashMap;
@@ -19,7 +19,7 @@ const EVERYWHERE: [f64; 2] = [f64::NEG_INFINITY, f64::INFINITY];
 /// The (position, slope) plane of one axis: the polygons that light fills in it, in units of the
 /// half-widths of the window.
 #[derive(Debug)]
-pub(crate) struct Section {
+pub(crate) struct AxisSection {
     /// Half-widths in position (metres) and slope.
     pub(crate) half: [f64; 2],
     /// Unit of the polygons' measure: metre · slope, or slope of the segments that a point light
@@ -51,7 +51,7 @@ pub(crate) type Sum = Vec<(f64, usize)>;
 
 /// Terms added up along y first: Σ 1_P(x, u) · a sum of sums of polygons of (y, v).
 #[derive(Debug)]
-pub(crate) struct Columns {
+pub(crate) struct SectionColumns {
     /// Sums of polygons of (y, v).
     pub(crate) sums: Vec<Sum>,
     /// Sums of such sums, one for each polygon of (x, u).
@@ -68,18 +68,18 @@ pub(crate) struct Columns {
 #[derive(Debug)]
 pub(crate) struct Expansion {
     /// (x, u) and (y, v).
-    pub(crate) sections: [Section; 2],
+    pub(crate) sections: [AxisSection; 2],
     pub(crate) terms: Vec<PolygonTerm>,
     /// Products of the waves of both sections, to be added: the window and gratings; more than one
     /// for a factor of slope.
-    pub(crate) products: Vec<[Vec<Wave>; 2]>,
+    pub(crate) products: Vec<[Vec<SectionWave>; 2]>,
     /// The radiance, or the intensity of a point.
     pub(crate) brightness: f64,
     /// Columns of terms so far.
     columns: usize,
 }
 
-impl Section {
+impl AxisSection {
     fn new(position: &Profile, slope: &Profile) -> Self {
         let half = [position.half_width(), slope.half_width()];
         Self {
@@ -136,9 +136,9 @@ impl Section {
 
     /// ∫∫ Σ waves exp(−2πi k·(position, slope)) over a polygon, k in cycles per metre and per unit
     /// slope: one polygon transform for each exponential. Unit: metre · slope; for segments, slope.
-    pub(crate) fn value(&self, waves: &[Wave], polygon: &Polygon, k: [f64; 2]) -> Complex {
+    pub(crate) fn value(&self, waves: &[SectionWave], polygon: &Polygon, k: [f64; 2]) -> Complex {
         let k = self.reduced(k);
-        let shifts = waves.iter().flat_map(Wave::shifts);
+        let shifts = waves.iter().flat_map(SectionWave::shifts);
         let sum: Complex = shifts
             .map(|s| polygon.transform([k[0] + s.frequency[0], k[1] + s.frequency[1]]) * s.weight)
             .sum();
@@ -152,7 +152,7 @@ impl Section {
 }
 
 impl Expansion {
-    pub(crate) fn new(path: &Path<'_>, window: &Window, slope: &Slope, fineness: &[Discs]) -> Self {
+    pub(crate) fn new(path: &ChainSegment<'_>, window: &Window, slope: &Slope, fineness: &[Discs]) -> Self {
         let mut expansion = Self::empty(window);
         expansion.products = products(path, window, slope, &expansion.sections);
         expansion.multiply_out(path, fineness, usize::MAX);
@@ -161,7 +161,7 @@ impl Expansion {
 
     /// The polygons and terms alone; `None` if there are more of either than `most`.
     pub(crate) fn within(
-        path: &Path<'_>,
+        path: &ChainSegment<'_>,
         window: &Window,
         fineness: &[Discs],
         most: usize,
@@ -174,8 +174,8 @@ impl Expansion {
     /// The window, in which nothing shines yet.
     fn empty(window: &Window) -> Self {
         let sections = [
-            Section::new(&window.x, &window.u),
-            Section::new(&window.y, &window.v),
+            AxisSection::new(&window.x, &window.u),
+            AxisSection::new(&window.y, &window.v),
         ];
         Self {
             sections,
@@ -192,7 +192,7 @@ impl Expansion {
 
     /// The light and the opaque masks; stops and says no where there are more terms or polygons
     /// than `most`.
-    fn multiply_out(&mut self, path: &Path<'_>, fineness: &[Discs], most: usize) -> bool {
+    fn multiply_out(&mut self, path: &ChainSegment<'_>, fineness: &[Discs], most: usize) -> bool {
         for section in &mut self.sections {
             section.has_discs = path.has_discs();
         }
@@ -226,7 +226,7 @@ impl Expansion {
     }
 
     /// The light itself.
-    fn shine(&mut self, path: &Path<'_>, discs: Discs) {
+    fn shine(&mut self, path: &ChainSegment<'_>, discs: Discs) {
         self.brightness = path.light.brightness;
         if let Some(shape) = &path.light.shape {
             self.terms = self.inside(&patches_of(shape, discs), path.distance);
@@ -279,7 +279,7 @@ impl Expansion {
     /// The terms with sums along y taken first: of n × n patches of a disc behind those of another
     /// n⁴ terms become n³ and as many summands, since what n² of them sum along y is the same for
     /// all n polygons of (x, u) that a patch's extent along x cuts.
-    pub(crate) fn columns(&self) -> Columns {
+    pub(crate) fn columns(&self) -> SectionColumns {
         let mut known = HashMap::new();
         let mut sums: Vec<Sum> = Vec::new();
         let mut beside = vec![Sum::new(); self.sections[0].polygons.len()];
@@ -296,7 +296,7 @@ impl Expansion {
             });
             beside[x].push((weight, sum));
         }
-        Columns { sums, beside }
+        SectionColumns { sums, beside }
     }
 
     /// Keeps only the polygons that terms refer to, in the order of the terms.
@@ -318,23 +318,23 @@ impl Expansion {
 
 /// The window, factors of slope included, times the gratings on the way.
 fn products(
-    path: &Path<'_>,
+    path: &ChainSegment<'_>,
     window: &Window,
     slope: &Slope,
-    sections: &[Section; 2],
-) -> Vec<[Vec<Wave>; 2]> {
+    sections: &[AxisSection; 2],
+) -> Vec<[Vec<SectionWave>; 2]> {
     let positions = [&window.x, &window.y].map(|profile| profile.cosine_terms());
     let product = |slopes: &[Vec<_>; 2]| {
         [0, 1].map(|axis| {
             let half = sections[axis].half;
-            let waves = Wave::of_terms([&positions[axis], &slopes[axis]], half);
+            let waves = SectionWave::of_terms([&positions[axis], &slopes[axis]], half);
             let gratings = path.layers.iter().filter_map(|layer| match layer.mask {
                 Mask::Grating(grating) if grating.axis == axis => {
-                    Some(Wave::of_grating(grating, layer.distance, half))
+                    Some(SectionWave::of_grating(grating, layer.distance, half))
                 }
                 _ => None,
             });
-            gratings.fold(waves, |waves, grating| Wave::products(&waves, &grating))
+            gratings.fold(waves, |waves, grating| SectionWave::products(&waves, &grating))
         })
     };
     slope.parts.iter().map(product).collect()

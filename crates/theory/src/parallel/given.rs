@@ -7,12 +7,12 @@ use crate::barrier::Barrier;
 use crate::model::Over;
 use crate::nets::RayNets;
 use crate::predicted::Predicted;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use crate::{Chain, Operator};
-use etendue_field::transform::SliceTransform;
 use etendue_field::{
     FluxRay, Light, Projection, ProjectionGrid, RayLight, SliceGrid, Slices, TwoPlane, Window,
 };
+use etendue_transform::SliceTransform;
 use ndarray::Array2;
 
 impl Chain {
@@ -26,7 +26,7 @@ impl Chain {
 }
 
 /// A step of a chain, ready for many rays.
-enum Step<'a> {
+enum RayStep<'a> {
     Travel(f64),
     Mask(Barrier<'a>),
     Cosine,
@@ -46,7 +46,7 @@ pub(super) fn predicted(
         grid,
         picture,
     );
-    let open: Vec<Step<'_>> = chain
+    let open: Vec<RayStep<'_>> = chain
         .operators
         .iter()
         .filter(|operator| !matches!(operator, Operator::Visibility { .. }))
@@ -69,7 +69,7 @@ pub(super) fn predicted(
 /// The rays of a file at the end of a chain: one net, which is all of them.
 pub(super) struct GivenRays<'a> {
     rays: &'a RayLight,
-    steps: Vec<Step<'a>>,
+    steps: Vec<RayStep<'a>>,
     window: &'a Window,
 }
 
@@ -99,10 +99,10 @@ impl RayNets for GivenRays<'_> {
 }
 
 /// What [`predicted`] takes: spreading a ray over 8 × 8 cells of each azimuth, and the transform.
-pub(super) fn work(rays: &RayLight, grid: &SliceGrid) -> Work {
+pub(super) fn work(rays: &RayLight, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, columns] = grid.half_shape().map(|n| n as f64);
     let spread = 100.0 * azimuths * rays.rays().len() as f64;
-    Work {
+    PredictionWork {
         steps: spread + 1e3 * azimuths * rows * columns,
         bytes: SliceTransform::new(grid).bytes(),
         bytes_each: 0.0,
@@ -110,11 +110,11 @@ pub(super) fn work(rays: &RayLight, grid: &SliceGrid) -> Work {
     }
 }
 
-fn step(operator: &Operator) -> Step<'_> {
+fn step(operator: &Operator) -> RayStep<'_> {
     match operator {
-        Operator::Travel { distance, .. } => Step::Travel(*distance),
-        Operator::Visibility { mask, .. } => Step::Mask(Barrier::new(0.0, mask)),
-        Operator::Cosine { .. } => Step::Cosine,
+        Operator::Travel { distance, .. } => RayStep::Travel(*distance),
+        Operator::Visibility { mask, .. } => RayStep::Mask(Barrier::new(0.0, mask)),
+        Operator::Cosine { .. } => RayStep::Cosine,
         Operator::Diffuse { name, .. } => panic!("rays of a file end at the diffuse {name}"),
     }
 }
@@ -122,7 +122,7 @@ fn step(operator: &Operator) -> Step<'_> {
 /// A ray at the end of a chain with what it adds to the windowed light field; `None` where that is nothing.
 fn arrives(
     FluxRay { ray, flux }: &FluxRay,
-    steps: &[Step<'_>],
+    steps: &[RayStep<'_>],
     window: &Window,
 ) -> Option<(TwoPlane, f64)> {
     // Radiance is flux over dx dy cos θ dω, and cos θ dω = du dv / (1 + u² + v²)² (docs/conventions.md).
@@ -131,12 +131,12 @@ fn arrives(
     let (mut ray, mut weight) = (*ray, flux * measure);
     for step in steps {
         match step {
-            Step::Travel(distance) => {
+            RayStep::Travel(distance) => {
                 ray.x += distance * ray.u;
                 ray.y += distance * ray.v;
             }
-            Step::Mask(barrier) => weight *= barrier.transmittance(ray.x, ray.y),
-            Step::Cosine => weight /= measure,
+            RayStep::Mask(barrier) => weight *= barrier.transmittance(ray.x, ray.y),
+            RayStep::Cosine => weight /= measure,
         }
         if weight == 0.0 {
             return None;

@@ -1,8 +1,8 @@
 //! The spectrum of a chain on a 4D grid of frequencies.
 
-use super::wave::Wave;
+use super::wave::SectionWave;
 use crate::Chain;
-use crate::parallel::chain::Path;
+use crate::parallel::chain::ChainSegment;
 use crate::parallel::corners::Corners;
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::expansion::Expansion;
@@ -74,7 +74,7 @@ impl Harmonics {
         (spacing, half): ([f64; 4], [usize; 4]),
         folded: Option<Assignment>,
     ) -> Option<Self> {
-        let path: Path<'_> = chain.path();
+        let path: ChainSegment<'_> = chain.path();
         if path.receiver().is_some() {
             return None;
         }
@@ -92,7 +92,7 @@ impl Harmonics {
         if size(0) + size(1) > MAX_NUMBERS {
             return None;
         }
-        let table = |waves: &[Vec<Wave>; 2], axis: usize| {
+        let table = |waves: &[Vec<SectionWave>; 2], axis: usize| {
             let along = [spacing[axis], spacing[axis + 2]];
             HarmonicTable::new(
                 &expansion,
@@ -137,7 +137,7 @@ impl Harmonics {
 impl HarmonicTable {
     fn new(
         expansion: &Expansion,
-        waves: &[Wave],
+        waves: &[SectionWave],
         axis: usize,
         spacing: [f64; 2],
         half: [usize; 2],

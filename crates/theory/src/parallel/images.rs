@@ -67,21 +67,21 @@ fn travel(distance: f64) -> Operator {
 }
 
 /// Where the image of a plane is, and how large things are on it.
-struct Image {
+struct PlaneImage {
     distance: f64,
     scale: f64,
 }
 
-fn seen(power: f64, distance: f64) -> Image {
+fn seen(power: f64, distance: f64) -> PlaneImage {
     let shrink = 1.0 + power * distance;
     let shrink = shrink.abs().max(NEAREST).copysign(shrink);
-    Image {
+    PlaneImage {
         distance: distance / shrink,
         scale: 1.0 / shrink,
     }
 }
 
-impl Image {
+impl PlaneImage {
     fn of_shape(&self, shape: &Shape) -> Shape {
         let place = |center: [f64; 2]| center.map(|c| c * self.scale);
         match *shape {
@@ -127,7 +127,7 @@ impl Image {
 #[cfg(test)]
 mod tests {
     use crate::at;
-    use crate::geometry::Map;
+    use crate::geometry::AffineMap;
     use crate::testing::*;
     use etendue_field::{Profile, Window};
 
@@ -153,7 +153,7 @@ mod tests {
         for power in [0.7, -0.4, -2.5] {
             let imaged = chain.imaged(power).unwrap();
             let window = open(0.3);
-            let sheared = Map::<2>::back(power);
+            let sheared = AffineMap::<2>::back(power);
             for [rho, nu] in [[0.0, 0.0], [1.3, 0.8], [2.0, -1.7]] {
                 // In both sections at once, as the image is.
                 let [x, u] = sheared.transpose_apply([rho, nu]);

@@ -6,7 +6,7 @@ use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::{at, derivative, given, projection, quadrature_error, slices, work};
 use crate::parameter::{New, Parameter, resize, size_word};
 use crate::predicted::Predicted;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use crate::{Chain, Operator, Source};
 use etendue_field::{Light, Mask, Window};
 
@@ -115,7 +115,7 @@ impl Model for Chain {
         }
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
         if let Some(rays) = self.given() {
             given::work(rays, over.1)
         } else if self.is_sampled(over, budget) {
@@ -146,7 +146,7 @@ impl Chain {
         }
         let path = self.path();
         let work = work(self, window, grid, picture);
-        let fits = |work: &Work| work.bytes + work.bytes_each <= MAX_BYTES;
+        let fits = |work: &PredictionWork| work.bytes + work.bytes_each <= MAX_BYTES;
         let max_steps = if fits(&work_of_nets(grid, budget)) {
             MAX_STEPS.max(MAX_STEPS_PER_RAY * budget.nodes)
         } else {

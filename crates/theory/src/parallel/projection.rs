@@ -3,11 +3,11 @@
 use super::expansion::Expansion;
 use crate::Chain;
 use crate::numerics::quadrature::gauss_legendre;
-use crate::parallel::chain::Path;
+use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::polygon::{Polygon, cross};
 use crate::parallel::slope::Slope;
-use crate::parallel::wave::Wave;
+use crate::parallel::wave::SectionWave;
 use etendue_field::{CosineTerm, Grating, Mask, Projection, ProjectionGrid, Window, whole};
 use ndarray::Array2;
 use rayon::prelude::*;
@@ -85,7 +85,7 @@ fn densities(expansion: &Expansion, slope: &Slope) -> Vec<CellDensity> {
 }
 
 /// What the integral over y and v multiplies each polygon of (x, u) by, under some waves in (y, v).
-fn weights(expansion: &Expansion, waves: &[Wave]) -> Vec<f64> {
+fn weights(expansion: &Expansion, waves: &[SectionWave]) -> Vec<f64> {
     let [x, y] = &expansion.sections;
     let polygons = y.polygons.iter();
     let integrals: Vec<_> = polygons.map(|p| y.value(waves, p, [0.0, 0.0]).re).collect();
@@ -112,7 +112,7 @@ struct Cells<'a> {
 }
 
 /// Gratings along x, and their distances.
-fn gratings<'a>(path: &Path<'a>) -> Vec<(&'a Grating, f64)> {
+fn gratings<'a>(path: &ChainSegment<'a>) -> Vec<(&'a Grating, f64)> {
     let layers = path.layers.iter();
     let along_x = layers.filter_map(|layer| match layer.mask {
         Mask::Grating(grating) if grating.axis == 0 => Some((grating, layer.distance)),
@@ -131,12 +131,12 @@ fn nodes(gratings: &[(&Grating, f64)], grid: &ProjectionGrid) -> usize {
 }
 
 /// The same for a path: how fine its picture is made.
-pub(crate) fn nodes_of_cells(path: &Path<'_>, grid: &ProjectionGrid) -> usize {
+pub(crate) fn nodes_of_cells(path: &ChainSegment<'_>, grid: &ProjectionGrid) -> usize {
     nodes(&gratings(path), grid)
 }
 
 impl<'a> Cells<'a> {
-    fn new(path: &Path<'a>, window: &'a Window, slope: &Slope, grid: &ProjectionGrid) -> Self {
+    fn new(path: &ChainSegment<'a>, window: &'a Window, slope: &Slope, grid: &ProjectionGrid) -> Self {
         let gratings = gratings(path);
         let nodes = gauss_legendre(nodes(&gratings, grid)).into_iter();
         Self {

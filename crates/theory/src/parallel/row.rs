@@ -15,12 +15,12 @@ pub(crate) struct FrequencyRow {
 
 /// Real and imaginary parts apart, so that loops over a row become vector instructions.
 #[derive(Clone, Debug)]
-pub(crate) struct Parts {
+pub(crate) struct ComplexRow {
     pub(crate) re: Vec<f64>,
     pub(crate) im: Vec<f64>,
 }
 
-impl Parts {
+impl ComplexRow {
     pub(crate) fn zeros(len: usize) -> Self {
         Self {
             re: vec![0.0; len],
@@ -39,7 +39,7 @@ impl FrequencyRow {
     }
 
     /// scale · exp(−2πi k·p) along the row, by powers outwards from the middle.
-    pub(crate) fn exponentials(&self, p: [f64; 2], scale: impl Into<Complex>, to: &mut Parts) {
+    pub(crate) fn exponentials(&self, p: [f64; 2], scale: impl Into<Complex>, to: &mut ComplexRow) {
         let middle = cis(-TAU * self.position * p[0]) * scale.into();
         let up = cis(-TAU * self.step * p[1]);
         let (mut above, mut below) = (middle, middle);
@@ -60,7 +60,7 @@ pub(crate) fn add_scaled(to: &mut [f64], values: &[f64], factor: f64) {
 }
 
 /// to[range] += a · b.
-pub(crate) fn add_product(to: &mut Parts, range: std::ops::Range<usize>, a: &Parts, b: &Parts) {
+pub(crate) fn add_product(to: &mut ComplexRow, range: std::ops::Range<usize>, a: &ComplexRow, b: &ComplexRow) {
     let re = to.re[range.clone()].iter_mut();
     let im = to.im[range].iter_mut();
     let a = a.re.iter().zip(&a.im);

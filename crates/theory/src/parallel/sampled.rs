@@ -1,7 +1,7 @@
 //! A chain whose closed form takes too long, or does not resolve a pattern: the same light by nets
 //! of rays.
 
-use crate::model::{Model, Moved, Observed, Over};
+use crate::model::{Model, ShiftedModels, Observed, Over};
 use crate::nets::{Budget, RayNets};
 use crate::predicted::Predicted;
 use crate::rays::Plane;
@@ -12,9 +12,9 @@ use etendue_field::{
 use glam::DVec3;
 
 /// What nets sum over.
-enum Sampled {
-    Rays(Box<Observed<rays::System>>),
-    Scattering(Box<Observed<scattering::System>>),
+enum NetDomain {
+    Rays(Box<Observed<rays::SpecularSystem>>),
+    Scattering(Box<Observed<scattering::ScatteringSystem>>),
 }
 
 impl Chain {
@@ -23,17 +23,17 @@ impl Chain {
     pub fn sampled(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
         const ONE_KIND: &str = "a parameter changes no kind of chain";
         match self.followed(over.0) {
-            Sampled::Rays(view) => {
+            NetDomain::Rays(view) => {
                 let moved = self.moved(parameters, over, |chain| match chain.followed(over.0) {
-                    Sampled::Rays(view) => *view,
-                    Sampled::Scattering(_) => unreachable!("{ONE_KIND}"),
+                    NetDomain::Rays(view) => *view,
+                    NetDomain::Scattering(_) => unreachable!("{ONE_KIND}"),
                 });
                 rays::predict(&view, &moved, over, budget)
             }
-            Sampled::Scattering(view) => {
+            NetDomain::Scattering(view) => {
                 let moved = self.moved(parameters, over, |chain| match chain.followed(over.0) {
-                    Sampled::Scattering(view) => *view,
-                    Sampled::Rays(_) => unreachable!("{ONE_KIND}"),
+                    NetDomain::Scattering(view) => *view,
+                    NetDomain::Rays(_) => unreachable!("{ONE_KIND}"),
                 });
                 let chain = scattering::chain(&view);
                 scattering::predict(&view, chain.as_ref(), &moved, over, budget)
@@ -49,8 +49,8 @@ impl Chain {
         then: &mut dyn FnMut(&dyn RayNets),
     ) {
         match self.followed(over.0) {
-            Sampled::Rays(view) => view.with_rays(over, budget, then),
-            Sampled::Scattering(view) => view.with_rays(over, budget, then),
+            NetDomain::Rays(view) => view.with_rays(over, budget, then),
+            NetDomain::Scattering(view) => view.with_rays(over, budget, then),
         }
     }
 
@@ -60,7 +60,7 @@ impl Chain {
         parameters: &[Parameter],
         over: Over<'_>,
         into: impl Fn(Self) -> V,
-    ) -> Vec<Moved<V>> {
+    ) -> Vec<ShiftedModels<V>> {
         // Shadows move with masks: wide enough apart that some rays see it, and so near that phases
         // turn by a third of a radian at most.
         const STEP: f64 = 1e-2;
@@ -72,14 +72,14 @@ impl Chain {
                 _ => f64::INFINITY,
             };
             let step = STEP * parameter.scale(self.value(*parameter)?);
-            Moved::new(self, *parameter, step.min(most), &into)
+            ShiftedModels::new(self, *parameter, step.min(most), &into)
         };
         let moved: Option<Vec<_>> = parameters.iter().map(moved).collect();
         moved.expect("parameters of the chain")
     }
 
     /// The chain as a system of rays, or as a flat surface that scatters.
-    fn followed(&self, window: &Window) -> Sampled {
+    fn followed(&self, window: &Window) -> NetDomain {
         let path = self.path();
         let layers = path.layers.iter();
         let distance = path.distance;
@@ -98,13 +98,13 @@ impl Chain {
             if path.cosines > 0 {
                 plane.quantity = Quantity::DifferentialIrradiance;
             }
-            let system = rays::System {
+            let system = rays::SpecularSystem {
                 light,
                 layers,
                 obstacles: Vec::new(),
                 elements: Vec::new(),
             };
-            return Sampled::Rays(Box::new(Observed { system, plane }));
+            return NetDomain::Rays(Box::new(Observed { system, plane }));
         };
         let facing = Frame {
             origin: DVec3::Z * distance,
@@ -112,7 +112,7 @@ impl Chain {
             y: DVec3::Y,
             d: DVec3::NEG_Z,
         };
-        let system = scattering::System {
+        let system = scattering::ScatteringSystem {
             light,
             layers,
             obstacles: Vec::new(),
@@ -125,7 +125,7 @@ impl Chain {
             reflectance: diffuse(reflection.albedo),
         };
         let plane = across(facing.travelled(reflection.after));
-        Sampled::Scattering(Box::new(Observed { system, plane }))
+        NetDomain::Scattering(Box::new(Observed { system, plane }))
     }
 }
 

@@ -1,13 +1,13 @@
 //! Slices of a chain.
 
-use super::expansion::{Columns, Expansion, Sum};
+use super::expansion::{SectionColumns, Expansion, Sum};
 use crate::Chain;
-use crate::parallel::chain::Path;
+use crate::parallel::chain::ChainSegment;
 use crate::parallel::corners::Corners;
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::row::FrequencyRow;
 use crate::parallel::slope::Slope;
-use crate::parallel::wave::Wave;
+use crate::parallel::wave::SectionWave;
 use etendue_field::{Complex, SliceGrid, Slices, Window};
 use rayon::prelude::*;
 
@@ -26,13 +26,13 @@ pub fn slices(chain: &Chain, window: &Window, grid: &SliceGrid) -> Slices {
 }
 
 /// How discs are taken apart for a grid.
-pub(crate) fn fineness(path: &Path<'_>, window: &Window, grid: &SliceGrid) -> DiscResolution {
+pub(crate) fn fineness(path: &ChainSegment<'_>, window: &Window, grid: &SliceGrid) -> DiscResolution {
     DiscResolution::for_spectrum(path, window, [grid.rho.max(), grid.nu.max()])
 }
 
 /// The slices with discs taken apart as told.
 pub(crate) fn slices_at_fineness(
-    path: &Path<'_>,
+    path: &ChainSegment<'_>,
     window: &Window,
     grid: &SliceGrid,
     fineness: &DiscResolution,
@@ -76,12 +76,12 @@ pub(crate) fn slices_at_fineness(
 /// The polygons of both sections under one product of waves.
 struct Product<'a> {
     expansion: &'a Expansion,
-    waves: &'a [Vec<Wave>; 2],
+    waves: &'a [Vec<SectionWave>; 2],
     corners: [Corners<'a>; 2],
 }
 
 impl<'a> Product<'a> {
-    fn new(expansion: &'a Expansion, waves: &'a [Vec<Wave>; 2]) -> Self {
+    fn new(expansion: &'a Expansion, waves: &'a [Vec<SectionWave>; 2]) -> Self {
         Self {
             expansion,
             waves,
@@ -124,7 +124,7 @@ impl Expansion {
     }
 }
 
-impl Columns {
+impl SectionColumns {
     /// The same for terms added up along y first.
     fn add(&self, brightness: f64, x: &[Complex], y: &[Complex], row: &mut [Complex]) {
         let along_y = added(&self.sums, y, row.len());

@@ -122,13 +122,13 @@ fn pivot(matrix: &[Vec<f64>]) -> (usize, usize, f64) {
 
 /// Cosine series of some functions of one variable, given at nodes: the shortest of a few periods.
 fn fit(half: f64, nodes: &[f64], functions: &[Vec<f64>]) -> Vec<Vec<CosineTerm>> {
-    let mut best: Option<Fit> = None;
+    let mut best: Option<CosineFit> = None;
     for extension in EXTENSIONS {
         let most = best
             .as_ref()
             .filter(|fit| fit.is_good())
-            .map_or(MOST_TERMS, Fit::terms);
-        let fit = Fit::new(extension * half, nodes, functions, most);
+            .map_or(MOST_TERMS, CosineFit::terms);
+        let fit = CosineFit::new(extension * half, nodes, functions, most);
         if best.as_ref().is_none_or(|best| fit.beats(best)) {
             best = Some(fit);
         }
@@ -138,7 +138,7 @@ fn fit(half: f64, nodes: &[f64], functions: &[Vec<f64>]) -> Vec<Vec<CosineTerm>>
 
 /// A least-squares fit by cosines, by modified Gram-Schmidt with the functions as further columns
 /// (Björck 1967).
-struct Fit {
+struct CosineFit {
     half_period: f64,
     /// Coefficients, [function][term].
     coefficients: Vec<Vec<f64>>,
@@ -146,7 +146,7 @@ struct Fit {
     residual: f64,
 }
 
-impl Fit {
+impl CosineFit {
     fn new(half_period: f64, nodes: &[f64], functions: &[Vec<f64>], most: usize) -> Self {
         let largest = functions.iter().map(|f| peak(f)).fold(0.0, f64::max);
         let mut rests = functions.to_vec();

@@ -5,7 +5,7 @@ use etendue_field::{Complex, CosineTerm, Grating, cis};
 /// One term amplitude · cos(2π s·p + phase) of what multiplies a section inside its box,
 /// p = (position, slope) in units of the half-widths.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Wave {
+pub(crate) struct SectionWave {
     /// The frequency s, cycles per half-width.
     pub(crate) frequency: [f64; 2],
     pub(crate) amplitude: f64,
@@ -13,7 +13,7 @@ pub(crate) struct Wave {
     pub(crate) phase: f64,
 }
 
-/// One complex exponential of a [`Wave`]: in the transform, F(k) becomes weight · F(k + s).
+/// One complex exponential of a [`SectionWave`]: in the transform, F(k) becomes weight · F(k + s).
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Shift {
     pub(crate) frequency: [f64; 2],
@@ -25,7 +25,7 @@ pub(crate) struct Shift {
     pub(crate) weight: Complex,
 }
 
-impl Wave {
+impl SectionWave {
     fn new(frequency: [f64; 2], amplitude: f64, phase: f64) -> Self {
         if is_zero(frequency) {
             return Self {
@@ -120,7 +120,7 @@ mod tests {
     use super::*;
     use etendue_field::Profile;
 
-    fn sum(waves: &[Wave], p: [f64; 2]) -> f64 {
+    fn sum(waves: &[SectionWave], p: [f64; 2]) -> f64 {
         waves
             .iter()
             .map(|w| w.amplitude * libm::cos(w.angle(p)))
@@ -138,7 +138,7 @@ mod tests {
         );
         let half = [0.7, 0.4];
         let terms = [position.cosine_terms(), slope.cosine_terms()];
-        let mut waves = Wave::of_terms([&terms[0], &terms[1]], half);
+        let mut waves = SectionWave::of_terms([&terms[0], &terms[1]], half);
         let grating = |frequency, phase| Grating {
             axis: 0,
             frequency,
@@ -160,14 +160,14 @@ mod tests {
                 assert!((got - expected).abs() < 1e-14); // rounding of a few hundred terms below 1
             }
             if let Some((grating, distance)) = gratings.get(count) {
-                waves = Wave::products(&waves, &Wave::of_grating(grating, *distance, half));
+                waves = SectionWave::products(&waves, &SectionWave::of_grating(grating, *distance, half));
             }
         }
     }
 
     #[test]
     fn shifts_are_the_exponentials_of_a_wave() {
-        let wave = Wave::new([0.7, -0.2], 1.3, 0.4);
+        let wave = SectionWave::new([0.7, -0.2], 1.3, 0.4);
         let p = [0.3, 0.8];
         let sum: Complex = wave
             .shifts()

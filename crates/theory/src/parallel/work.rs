@@ -6,13 +6,13 @@
 
 use crate::Chain;
 use crate::Model;
-use crate::parallel::chain::Path;
+use crate::parallel::chain::ChainSegment;
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::projection::nodes_of_cells;
 use crate::parallel::slices::fineness;
 use crate::parallel::slope::Slope;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use etendue_field::{CosineTerm, Mask, Profile, ProjectionGrid, SliceGrid, Window};
 
 /// Products of shapes in different planes that are counted; of more the prediction would not end.
@@ -24,7 +24,7 @@ pub(crate) fn work(
     window: &Window,
     grid: &SliceGrid,
     picture: &ProjectionGrid,
-) -> Work {
+) -> PredictionWork {
     let path = chain.path();
     let derivatives = chain.parameters().len() as f64;
     if let Some(receiver) = path.receiver() {
@@ -53,14 +53,14 @@ pub(crate) fn work(
         .then(of_projection(strips, &path, &slope, picture))
 }
 
-fn too_many() -> Work {
-    Work::endless(format!(
+fn too_many() -> PredictionWork {
+    PredictionWork::endless(format!(
         "more than {MOST_PARTS} products of shapes in different planes"
     ))
 }
 
 /// Waves that multiply the polygons of a section, in one product.
-fn waves(path: &Path<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
+fn waves(path: &ChainSegment<'_>, window: &Window, slope: &Slope, axis: usize) -> f64 {
     let position: &Profile = [&window.x, &window.y][axis];
     let position = position.cosine_terms().len() as f64;
     let terms = |part: &[Vec<CosineTerm>; 2]| part[axis].len() as f64;
@@ -83,7 +83,7 @@ const TERM: f64 = 0.6;
 /// Frequencies that take as long as the beginning of a row.
 const ROW: f64 = 40.0;
 
-fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &SliceGrid) -> Work {
+fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
     let polygons = expansion
         .sections
@@ -109,7 +109,7 @@ fn of_slices(expansion: &Expansion, waves: [f64; 2], products: f64, grid: &Slice
     let row = (ROW + count) * products * (along(0) + along(1) + TERM * terms);
     let [p, q] = polygons;
     let phases = corners[0] * waves[0] + corners[1] * waves[1];
-    Work {
+    PredictionWork {
         steps: azimuths * rows * row,
         bytes: products * (16.0 * phases + 64.0 * (waves[0] + waves[1]))
             + 48.0 * expansion.terms.len() as f64
@@ -129,10 +129,10 @@ const NODE: f64 = 12.0;
 
 fn of_projection(
     expansion: &Expansion,
-    path: &Path<'_>,
+    path: &ChainSegment<'_>,
     slope: &Slope,
     picture: &ProjectionGrid,
-) -> Work {
+) -> PredictionWork {
     let bins = picture.bins as f64;
     let nodes = nodes_of_cells(path, picture) as f64;
     let series = if slope.is_profile {
@@ -156,7 +156,7 @@ fn of_projection(
     let touched: f64 = polygons.iter().map(touched).sum();
     // A cell is two triangles or a few.
     let each = 3.0 * nodes * nodes * (NODE + 2.0 * series + 10.0 * gratings);
-    Work {
+    PredictionWork {
         steps: touched * each + expansion.terms.len() as f64 * 20.0 * slope.parts.len() as f64,
         bytes: 400.0 * polygons.len() as f64,
         bytes_each: 0.0,
@@ -166,7 +166,7 @@ fn of_projection(
     }
 }
 
-impl Work {
+impl PredictionWork {
     pub(crate) fn times(self, times: f64) -> Self {
         Self {
             steps: self.steps * times,

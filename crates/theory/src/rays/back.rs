@@ -1,7 +1,7 @@
 //! Rays of a plane, followed back to the light as they go.
 
-use super::trace::Ray;
-use super::{Element, Plane, System};
+use super::trace::LegRay;
+use super::{SpecularSurface, Plane, SpecularSystem};
 use etendue_field::Specular;
 use glam::DVec3;
 
@@ -9,11 +9,11 @@ use glam::DVec3;
 #[derive(Clone, Debug)]
 pub(super) struct Back {
     plane: Plane,
-    elements: Vec<Element>,
+    elements: Vec<SpecularSurface>,
 }
 
 impl Back {
-    pub(super) fn new(system: &System, plane: &Plane) -> Self {
+    pub(super) fn new(system: &SpecularSystem, plane: &Plane) -> Self {
         Self {
             plane: *plane,
             elements: system.elements.clone(),
@@ -38,7 +38,7 @@ impl Back {
             after = -before.direction;
             ray = Some(before);
         }
-        let ray = ray.unwrap_or(Ray {
+        let ray = ray.unwrap_or(LegRay {
             direction: -last.direction,
             ..last
         });
@@ -57,22 +57,22 @@ impl Back {
     /// What comes back of the last leg from the last surface. The leg is followed from beyond all
     /// that it can meet of that: half of a plane at an oblique surface lies behind the surface. On a
     /// curved surface itself the point is known.
-    fn off_last(&self, element: &Element, last: &Ray) -> Option<Ray> {
-        let Element { patch, .. } = element;
+    fn off_last(&self, element: &SpecularSurface, last: &LegRay) -> Option<LegRay> {
+        let SpecularSurface { patch, .. } = element;
         let back = -last.direction;
         if self.plane.patch.is_some() && !self.plane.arriving {
             let normal = patch.gradient(patch.frame.to_local(last.point));
             let normal = patch.frame.vector_to_world(normal.try_normalize()?);
             return element.turned(back, last.point, normal);
         }
-        element.follow(&Ray::back(patch, last.point, last.direction))
+        element.follow(&LegRay::back(patch, last.point, last.direction))
     }
 }
 
-impl Element {
+impl SpecularSurface {
     /// What dx dy du dv / (1 + u² + v²)² grows by where light comes back along `before` and has left
     /// along `after`.
-    fn spread(&self, before: &Ray, after: DVec3) -> f64 {
+    fn spread(&self, before: &LegRay, after: DVec3) -> f64 {
         let frame = &self.patch.frame;
         match self.event {
             Specular::Mirror => 1.0,

@@ -1,7 +1,7 @@
 //! The central ray, and how it meets each surface.
 
-use super::trace::Ray;
-use super::{Element, System};
+use super::trace::LegRay;
+use super::{SpecularSurface, SpecularSystem};
 use crate::geometry::{Matrix, Media};
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
@@ -60,7 +60,7 @@ impl Incidence {
 
 /// The central ray at an element.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Hit {
+pub(super) struct CentralHit {
     /// The frame of the leg before, at the point hit.
     pub(super) arriving: Frame,
     /// The frame of the leg after it.
@@ -70,13 +70,13 @@ pub(super) struct Hit {
     pub(super) incidence: Incidence,
 }
 
-impl System {
+impl SpecularSystem {
     /// What the central ray meets. `None` where it misses an element or does not go on from it.
-    pub(super) fn hits(&self) -> Option<Vec<Hit>> {
+    pub(super) fn hits(&self) -> Option<Vec<CentralHit>> {
         let mut frame = Frame::IDENTITY;
         let mut hits = Vec::new();
         for element in &self.elements {
-            let ray = Ray {
+            let ray = LegRay {
                 point: frame.origin,
                 direction: frame.d,
             };
@@ -84,7 +84,7 @@ impl System {
             let arriving = frame.travelled(distance);
             let after = element.follow(&ray)?;
             frame = element.leaving(&arriving, normal, after.direction);
-            hits.push(Hit {
+            hits.push(CentralHit {
                 arriving,
                 leaving: frame,
                 distance,
@@ -95,7 +95,7 @@ impl System {
     }
 }
 
-impl Element {
+impl SpecularSurface {
     /// The frame of the next leg: mirrored, (−X, Y, D), at a mirror; else turned to the new
     /// direction by the smallest angle.
     fn leaving(&self, arriving: &Frame, normal: DVec3, direction: DVec3) -> Frame {

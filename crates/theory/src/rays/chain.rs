@@ -1,8 +1,8 @@
 //! The first-order chain of a system.
 
-use super::central::{Hit, Incidence};
-use super::{Element, Plane, System};
-use crate::geometry::{Edition, Map, Matrix, SpectrumMap};
+use super::central::{CentralHit, Incidence};
+use super::{SpecularSurface, Plane, SpecularSystem};
+use crate::geometry::{Edition, AffineMap, Matrix, SpectrumMap};
 use crate::model::Observed;
 use crate::words::{self, degrees, number};
 use etendue_field::{Frame, Orientation, Quantity, Specular};
@@ -32,7 +32,7 @@ pub struct AffineChain {
 /// The paper's prints differ in incidence, curvature and outgoing angle; it has no refraction and
 /// no lens.
 #[must_use]
-pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
+pub fn chain(view: &Observed<SpecularSystem>, print: Edition) -> Option<AffineChain> {
     let Observed { system, plane } = view;
     let hits = system.hits()?;
     let mut walk = Walk {
@@ -44,7 +44,7 @@ pub fn chain(view: &Observed<System>, print: Edition) -> Option<AffineChain> {
     };
     let mut layers = system.layers.clone();
     let on_last = plane.orientation != Orientation::Orthogonal && !plane.arriving;
-    let is_lens = |element: &Element| matches!(element.event, Specular::ThinLens { .. });
+    let is_lens = |element: &SpecularSurface| matches!(element.event, Specular::ThinLens { .. });
     if on_last && system.elements.last().is_some_and(is_lens) {
         return None;
     }
@@ -121,7 +121,7 @@ impl Walk {
     fn travel(&mut self, distance: f64, to: &str) {
         if distance != 0.0 {
             let words = words::travel(distance, &self.at, to);
-            self.step(&Map::travel(distance).spectrum_map(), words);
+            self.step(&AffineMap::travel(distance).spectrum_map(), words);
         }
         self.at = to.into();
     }
@@ -130,14 +130,14 @@ impl Walk {
         // Rounding of a frame is no turn.
         if angle.abs() > 1e-12 {
             self.step(
-                &Map::rotation(angle).spectrum_map(),
+                &AffineMap::rotation(angle).spectrum_map(),
                 words::turn(angle, into),
             );
         }
     }
 
     /// Up to the light frame after a surface.
-    fn after(mut self, element: &Element, hit: &Hit) -> Option<Self> {
+    fn after(mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<Self> {
         if let Specular::ThinLens { focal_length } = element.event {
             let map = lens(&element.patch.frame, hit, focal_length)?;
             let name = &element.name;
@@ -162,7 +162,7 @@ impl Walk {
             t * cos - n * sin
         } else {
             let words = format!("map  off the other side at {}", degrees(theta1));
-            let off = Map::<4>::incidence(theta1).inverse()?;
+            let off = AffineMap::<4>::incidence(theta1).inverse()?;
             self.step(&off.spectrum_map(), words);
             -t * cos + n * sin
         };
@@ -174,7 +174,7 @@ impl Walk {
 
     /// Onto a surface, into its local normals, and the event there. The shape operator, and the
     /// longitude of the central ray afterwards (directions of refracted light stay flipped).
-    fn event(&mut self, element: &Element, hit: &Hit) -> Option<(Matrix<2>, f64)> {
+    fn event(&mut self, element: &SpecularSurface, hit: &CentralHit) -> Option<(Matrix<2>, f64)> {
         let incidence = &hit.incidence;
         let theta0 = incidence.theta0;
         self.turn(incidence.turn, "the plane of incidence");
@@ -182,7 +182,7 @@ impl Walk {
         let shape = incidence.shape(&element.patch, hit.arriving.origin);
         self.curvature(shape, theta0);
         if let Some(media) = element.media(incidence) {
-            let mut map = Map::<4>::refraction(theta0, &media)?.spectrum_map();
+            let mut map = AffineMap::<4>::refraction(theta0, &media)?.spectrum_map();
             // Étendue keeps flux; radiance grows as the square of the index (Nicodemus 1963).
             map.factor /= media.index_ratio().powi(2);
             let theta2 = media.refracted(theta0)?;
@@ -211,7 +211,7 @@ impl Walk {
 
     fn mirror(&mut self) {
         let words = "map  mirror: ℓ̂(Ωx, −Ωθ)".into();
-        self.step(&Map::mirror().spectrum_map(), words);
+        self.step(&AffineMap::mirror().spectrum_map(), words);
     }
 
     fn back(&mut self, shape: Matrix<2>, theta1: f64) {
@@ -220,7 +220,7 @@ impl Walk {
     }
 
     /// On the surface of the last element, light leaving it.
-    fn leaving_surface(&mut self, element: &Element, hit: &Hit, plane: &Plane) -> Option<()> {
+    fn leaving_surface(&mut self, element: &SpecularSurface, hit: &CentralHit, plane: &Plane) -> Option<()> {
         let (shape, theta1) = self.event(element, hit)?;
         if plane.orientation == Orientation::Tangent {
             self.back(shape, theta1);
@@ -237,7 +237,7 @@ impl Walk {
             (at.x, at.d) = (-t, -n);
             let other = crate::geometry::diagonal([-1.0, 1.0, 1.0, -1.0]);
             self.step(
-                &Map::linear(other).spectrum_map(),
+                &AffineMap::linear(other).spectrum_map(),
                 "map  seen from the other side".into(),
             );
         }
@@ -281,7 +281,7 @@ impl Walk {
         let turn = libm::atan2(axis.dot(b), axis.dot(t));
         self.turn(turn, "the plane's axes");
         if plane.longitude != 0.0 {
-            let mut map = Map::identity();
+            let mut map = AffineMap::identity();
             map.offset[2] = -plane.longitude;
             let words = format!("map  angles from {}", degrees(plane.longitude));
             self.step(&map.spectrum_map(), words);
@@ -294,7 +294,7 @@ impl Walk {
     fn reach_frame(&mut self, plane: &Frame) {
         let towards = plane.vector_to_local(self.frame.d);
         if libm::hypot(towards.x, towards.y) > 1e-9 {
-            let mut map = Map::linear(seen_across(plane, &self.frame));
+            let mut map = AffineMap::linear(seen_across(plane, &self.frame));
             let [u, v] = [towards.x, towards.y].map(|t| t / towards.z);
             let moved = plane.to_local(self.frame.origin);
             map.offset = [moved.x, moved.y, u, v];
@@ -305,7 +305,7 @@ impl Walk {
         self.turn(turn, "the plane's axes");
         let moved = plane.to_local(self.frame.origin);
         if moved.x.abs().max(moved.y.abs()) > 1e-9 {
-            let mut map = Map::identity();
+            let mut map = AffineMap::identity();
             map.offset = [moved.x, moved.y, 0.0, 0.0];
             self.step(&map.spectrum_map(), "map  origin of the plane".into());
         }
@@ -338,12 +338,12 @@ impl Walk {
 /// that may cross it anywhere at any slope.
 ///
 /// In the lens's own frame positions stay and slopes fall by position over focal length; at its
-/// centre along its axis that is [`Map::thin_lens`].
-fn lens(frame: &Frame, hit: &Hit, focal_length: f64) -> Option<Map<4>> {
+/// centre along its axis that is [`AffineMap::thin_lens`].
+fn lens(frame: &Frame, hit: &CentralHit, focal_length: f64) -> Option<AffineMap<4>> {
     let [before, after] = [&hit.arriving, &hit.leaving].map(|leg| seen_across(frame, leg));
-    let power = Map::<4>::thin_lens(focal_length);
-    let map = Map::linear(before).then(&power);
-    Some(map.then(&Map::linear(after).inverse()?))
+    let power = AffineMap::<4>::thin_lens(focal_length);
+    let map = AffineMap::linear(before).then(&power);
+    Some(map.then(&AffineMap::linear(after).inverse()?))
 }
 
 /// How positions and slopes in a plane change with those in the frame of a leg that meets it
@@ -366,7 +366,7 @@ fn seen_across(plane: &Frame, leg: &Frame) -> Matrix<4> {
 
 /// From positions and angles in the plane of a frame, `theta` being the longitude of the central ray there, to those of a plane on a
 /// surface that leans or lies beside it.
-fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> Map<4> {
+fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> AffineMap<4> {
     let local = |v: DVec3| plane.frame.vector_to_local(v);
     let (sin, cos) = libm::sincos(theta);
     let start = plane.frame.to_local(at.origin);
@@ -378,7 +378,7 @@ fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> Map<4> {
         libm::hypot(away.x, away.z),
         libm::sqrt(1.0 - away.y * away.y),
     );
-    let mut map = Map::identity();
+    let mut map = AffineMap::identity();
     for (i, axis) in [at.x, at.y].map(local).into_iter().enumerate() {
         for (row, along) in [axis.x, axis.y].into_iter().enumerate() {
             map.matrix[row][i] = along - axis.z * slope[row];
@@ -402,5 +402,5 @@ fn onto_leaning(plane: &Plane, at: &Frame, theta: f64) -> Map<4> {
 }
 
 fn identity() -> SpectrumMap<4> {
-    Map::identity().spectrum_map()
+    AffineMap::identity().spectrum_map()
 }

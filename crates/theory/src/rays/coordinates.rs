@@ -1,7 +1,7 @@
 //! A ray in the coordinates of a plane.
 
 use super::Plane;
-use super::trace::Ray;
+use super::trace::LegRay;
 use etendue_field::{Frame, Orientation, Patch, Quantity, TwoPlane};
 use glam::DVec3;
 use std::f64::consts::FRAC_PI_2;
@@ -9,7 +9,7 @@ use std::f64::consts::FRAC_PI_2;
 impl Plane {
     /// The coordinates of a ray that is on its last leg, and the quantity in ray space per flux.
     /// `None` if it does not pass.
-    pub(crate) fn coordinates(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
+    pub(crate) fn coordinates(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         match self.orientation {
             Orientation::Orthogonal => self.across(ray),
             Orientation::Tangent => {
@@ -26,7 +26,7 @@ impl Plane {
 
     /// How far along a ray of the last leg the plane is, or the surface it is on; zero where light
     /// leaves that. `None` if the ray misses it.
-    pub(crate) fn along(&self, ray: &Ray) -> Option<f64> {
+    pub(crate) fn along(&self, ray: &LegRay) -> Option<f64> {
         if self.orientation != Orientation::Orthogonal && !self.arriving {
             return Some(0.0);
         }
@@ -39,11 +39,11 @@ impl Plane {
 
     /// The inverse of [`Self::coordinates`]: a ray, light going along it, from a point of the plane,
     /// or of the surface it is on; and étendue over dx dy du dv there. `None` where there is none.
-    pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(Ray, f64)> {
+    pub(crate) fn ray(&self, [x, y, u, v]: [f64; 4]) -> Option<(LegRay, f64)> {
         let foot = self.frame.to_world(DVec3::new(x, y, 0.0));
         if self.orientation == Orientation::Orthogonal {
             let along = DVec3::new(u, v, 1.0);
-            let ray = Ray {
+            let ray = LegRay {
                 point: foot,
                 direction: self.frame.vector_to_world(along.normalize()),
             };
@@ -55,7 +55,7 @@ impl Plane {
         let direction = if self.arriving { -towards } else { towards };
         // Of a curved surface an area is seen of which dx dy is what lies below it.
         let etendue = away.z * libm::cos(v) / normal.dot(self.frame.d);
-        Some((Ray { point, direction }, etendue))
+        Some((LegRay { point, direction }, etendue))
     }
 
     /// The point at two coordinates, of the plane or of the surface it is on, and the normal there on
@@ -85,7 +85,7 @@ impl Plane {
     /// The point of a patch over one of the tangent plane, and its normal on the side of D.
     fn above(&self, foot: DVec3, patch: &Patch) -> Option<(DVec3, DVec3)> {
         let d = self.frame.d;
-        let down = Ray::back(patch, foot, d);
+        let down = LegRay::back(patch, foot, d);
         let (distance, normal) = down.met(patch)?;
         let side = normal.dot(d).signum();
         Some((down.point - distance * d, normal * side))
@@ -104,7 +104,7 @@ impl Plane {
         }
     }
 
-    fn across(&self, ray: &Ray) -> Option<([f64; 4], f64)> {
+    fn across(&self, ray: &LegRay) -> Option<([f64; 4], f64)> {
         let z = ray.across(&self.frame)?;
         let [x, y, u, v] = z;
         let secant_squared = TwoPlane { x, y, u, v }.secant_squared();
@@ -113,7 +113,7 @@ impl Plane {
 
     /// Where light leaves the surface it met last, or meets this one; and the unit normal there, on
     /// the side of the plane's D.
-    fn hit(&self, ray: &Ray) -> Option<(DVec3, DVec3)> {
+    fn hit(&self, ray: &LegRay) -> Option<(DVec3, DVec3)> {
         let Some(patch) = &self.patch else {
             let (s, t) = crossing(&self.frame, ray)?;
             let point = self.frame.to_world(DVec3::new(s, t, 0.0));
@@ -132,7 +132,7 @@ impl Plane {
     }
 
     /// Where a ray meets the surface that the plane is on from the side of the plane's D.
-    fn arrives_on(&self, patch: &Patch, ray: &Ray) -> Option<(f64, DVec3)> {
+    fn arrives_on(&self, patch: &Patch, ray: &LegRay) -> Option<(f64, DVec3)> {
         ray.met_from(patch, patch.frame.d.dot(self.frame.d).signum())
     }
 
@@ -155,7 +155,7 @@ impl Plane {
     }
 }
 
-impl Ray {
+impl LegRay {
     /// Its place and slopes across the D of a frame; `None` if it does not go forward.
     pub(super) fn across(&self, frame: &Frame) -> Option<[f64; 4]> {
         let (x, y) = crossing(frame, self)?;
@@ -166,7 +166,7 @@ impl Ray {
 }
 
 /// Where the line of a ray crosses the plane (X, Y) of a frame.
-fn crossing(frame: &Frame, ray: &Ray) -> Option<(f64, f64)> {
+fn crossing(frame: &Frame, ray: &LegRay) -> Option<(f64, f64)> {
     let (at, towards) = (
         frame.to_local(ray.point),
         frame.vector_to_local(ray.direction),

@@ -1,6 +1,6 @@
 //! Whether the maps of a first-order chain are those of the real geometry.
 
-use super::System;
+use super::SpecularSystem;
 use crate::geometry::SpectrumMap;
 use crate::model::Observed;
 use etendue_field::Window;
@@ -16,7 +16,7 @@ use etendue_field::Window;
 ///
 /// `None` where the central ray does not arrive.
 #[must_use]
-pub fn defect(view: &Observed<System>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
+pub fn defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>, window: &Window) -> Option<f64> {
     let Observed { system, plane } = view;
     let half = [window.x, window.y, window.u, window.v].map(|profile| profile.half_width());
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
@@ -27,7 +27,7 @@ pub fn defect(view: &Observed<System>, map: &SpectrumMap<4>, window: &Window) ->
 /// The part of [`defect`] that is in the factor of the chain: the radiance that it gives the central
 /// ray over the radiance that the ray has, less 1.
 #[must_use]
-pub fn radiance_defect(view: &Observed<System>, map: &SpectrumMap<4>) -> Option<f64> {
+pub fn radiance_defect(view: &Observed<SpecularSystem>, map: &SpectrumMap<4>) -> Option<f64> {
     let Observed { system, plane } = view;
     // What becomes of flux along the central ray; at the light it stands for radiance.
     let (center, per_flux) = plane.coordinates(&system.follow([0.0; 4])?)?;

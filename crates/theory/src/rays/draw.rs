@@ -7,11 +7,11 @@
 //! them: rays of all four coordinates are followed back from it as they go.
 
 use super::back::Back;
-use super::emission::{Emission, point_of};
-use super::{Plane, System};
-use crate::geometry::{Map, Matrix};
-use crate::nets::{DIMENSIONS, Density, Target};
-use crate::sky::Sky;
+use super::emission::{EmissionMeasure, point_of};
+use super::{Plane, SpecularSystem};
+use crate::geometry::{AffineMap, Matrix};
+use crate::nets::{DIMENSIONS, LinearDensity, Target};
+use crate::sky::SkyDensity;
 use etendue_field::{Environment, Light, Shape, Window};
 use glam::DVec3;
 
@@ -35,8 +35,8 @@ impl RayStrategy {
 
 /// Draws rays (x, y, u, v) of the light.
 #[derive(Clone, Debug)]
-pub(super) struct Draw<'a> {
-    emission: Emission,
+pub(super) struct RaySampler<'a> {
+    emission: EmissionMeasure,
     outer: Outer<'a>,
     by: By,
 }
@@ -49,15 +49,15 @@ enum Outer<'a> {
     /// Positions on an area light.
     Shape(Shape),
     /// Slopes of an environment.
-    Sky(&'a Environment, Box<Sky<'a>>),
+    Sky(&'a Environment, Box<SkyDensity<'a>>),
 }
 
 #[derive(Clone, Debug)]
 enum By {
-    Picture([Density; 2]),
+    Picture([LinearDensity; 2]),
     /// Positions at a plane that light reaches straight from the light.
     Straight {
-        positions: Box<[Density; 2]>,
+        positions: Box<[LinearDensity; 2]>,
         plane: Plane,
     },
     /// Two coordinates at the plane.
@@ -72,26 +72,26 @@ enum By {
     },
     /// All four, as rays go.
     Back {
-        window: Box<[Density; 4]>,
+        window: Box<[LinearDensity; 4]>,
         back: Back,
     },
     /// All four, to first order.
     Map {
         targets: Box<[Target; 4]>,
-        map: Map<4>,
+        map: AffineMap<4>,
         determinant: f64,
     },
 }
 
 impl<'a> Outer<'a> {
     /// `None` where nothing shines.
-    fn new(system: &'a System, plane: Option<&Plane>) -> Option<Self> {
+    fn new(system: &'a SpecularSystem, plane: Option<&Plane>) -> Option<Self> {
         Some(match &system.light {
             Light::Area { shape, .. } => Self::Shape(*shape),
             Light::Environment { environment } => {
                 let met = plane.filter(|plane| plane.arriving && system.elements.is_empty());
                 let normal = met.map_or(DVec3::NEG_Z, |plane| plane.frame.d);
-                Self::Sky(environment, Box::new(Sky::new(environment, normal)?))
+                Self::Sky(environment, Box::new(SkyDensity::new(environment, normal)?))
             }
             _ => Self::Center,
         })
@@ -114,11 +114,11 @@ impl<'a> Outer<'a> {
     }
 }
 
-impl<'a> Draw<'a> {
+impl<'a> RaySampler<'a> {
     /// `center` is where the central ray lands and `jacobian` how that changes with the ray; `None`
     /// where they do not tell rays apart. Without a plane all rays land as they tell.
     pub(super) fn new(
-        (system, plane): (&'a System, Option<&Plane>),
+        (system, plane): (&'a SpecularSystem, Option<&Plane>),
         window: &Window,
         (center, jacobian): &([f64; 4], Matrix<4>),
         strategy: RayStrategy,
@@ -130,7 +130,7 @@ impl<'a> Draw<'a> {
             let block = |columns: [usize; 2]| -> Matrix<2> {
                 crate::geometry::from_fn(|i, j| jacobian[row + i][columns[j]])
             };
-            let aimed = Map::linear(block(emission.inner));
+            let aimed = AffineMap::linear(block(emission.inner));
             if !tells_apart(&aimed) {
                 return None;
             }
@@ -146,7 +146,7 @@ impl<'a> Draw<'a> {
             RayStrategy::Picture => By::Picture(system.picture_densities()?),
             RayStrategy::Positions => match (&outer, plane) {
                 (Outer::Sky(..), Some(plane)) if system.elements.is_empty() => By::Straight {
-                    positions: Box::new([window.x, window.y].map(|profile| Density::of(&profile))),
+                    positions: Box::new([window.x, window.y].map(|profile| LinearDensity::of(&profile))),
                     plane: *plane,
                 },
                 _ => aim(0)?,
@@ -158,7 +158,7 @@ impl<'a> Draw<'a> {
                 }
                 if let Some(plane) = plane {
                     let back = Back::new(system, plane);
-                    let window = Box::new(profiles.map(|profile| Density::of(&profile)));
+                    let window = Box::new(profiles.map(|profile| LinearDensity::of(&profile)));
                     let by = By::Back { window, back };
                     return Some(Self {
                         emission,
@@ -166,7 +166,7 @@ impl<'a> Draw<'a> {
                         by,
                     });
                 }
-                let rays = Map {
+                let rays = AffineMap {
                     matrix: *jacobian,
                     offset: *center,
                 };
@@ -263,7 +263,7 @@ impl<'a> Draw<'a> {
 }
 
 /// Whether a map takes no direction of rays nearly to nothing, as it does at a focus.
-fn tells_apart<const N: usize>(map: &Map<N>) -> bool {
+fn tells_apart<const N: usize>(map: &AffineMap<N>) -> bool {
     let size = |row: &[f64; N]| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     let most: f64 = map.matrix.iter().map(size).product();
     map.det().abs() > 1e-8 * most

@@ -1,7 +1,7 @@
 //! What a light emits.
 
-use super::System;
-use crate::nets::Density;
+use super::SpecularSystem;
+use crate::nets::LinearDensity;
 use etendue_field::{Light, Shape};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 /// What the light's rays are counted by: two of the coordinates x, y, u, v, and for a light with
 /// extent the other two as well.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Emission {
+pub(super) struct EmissionMeasure {
     /// Indices of those two coordinates.
     pub(super) inner: [usize; 2],
     /// Where to stop looking for rays, in those coordinates.
@@ -23,15 +23,15 @@ const GAUSSIAN: f64 = 3.6;
 /// Slopes beyond which no ray is looked for, where the light has no picture.
 const STEEPEST: f64 = 30.0;
 
-impl Emission {
+impl EmissionMeasure {
     /// The other two coordinates.
     pub(super) fn outer(&self) -> [usize; 2] {
         self.inner.map(|inner| (inner + 2) % 4)
     }
 }
 
-impl System {
-    pub(super) fn emission(&self) -> Emission {
+impl SpecularSystem {
+    pub(super) fn emission(&self) -> EmissionMeasure {
         let image = self.light.image();
         let inner = if self.light.is_distant() {
             [0, 1]
@@ -52,7 +52,7 @@ impl System {
                 cycles[grating.axis] += grating.frequency.abs() * per_unit;
             }
         }
-        Emission {
+        EmissionMeasure {
             inner,
             reach: image.map_or([STEEPEST; 2], |image| image.width.map(|w| GAUSSIAN * w)),
             cycles,
@@ -61,13 +61,13 @@ impl System {
 
     /// The densities of the two coordinates of a picture, in proportion to it; `None` where there
     /// is none.
-    pub(super) fn picture_densities(&self) -> Option<[Density; 2]> {
+    pub(super) fn picture_densities(&self) -> Option<[LinearDensity; 2]> {
         let image = self.light.image()?;
         let along = |axis: usize| {
             let width = image.width[axis];
             let grating = image.grating.filter(|g| g.axis == axis);
             let reach = GAUSSIAN * width;
-            Density::new([-reach, reach], |t| {
+            LinearDensity::new([-reach, reach], |t| {
                 let [a, b] = if axis == 0 { [t, 0.0] } else { [0.0, t] };
                 let passes = grating.map_or(1.0, |g| g.transmittance(a, b));
                 // Between the values of the table no part of a grating is missed.

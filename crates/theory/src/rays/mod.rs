@@ -1,6 +1,6 @@
 //! Windowed spectra behind specular surfaces, by following rays (docs/theory.md, section 8).
 //!
-//! In goes a [`System`]: a light, masks across its first leg, obstacles in the way of any, and the
+//! In goes a [`SpecularSystem`]: a light, masks across its first leg, obstacles in the way of any, and the
 //! mirrors, refracting surfaces and lenses that the central ray visits. In goes a [`Plane`]. The [`Observed`](crate::Observed)
 //! of both is a [`Model`](crate::Model): it follows rays through the real geometry and sums them,
 //! by a rule where that converges and over scrambled nets elsewhere. Beside it are the
@@ -87,14 +87,14 @@ pub(crate) use central::Incidence;
 pub(crate) use emission::{emitted, point_of};
 pub(crate) use model::shrunk_light;
 pub(crate) use predict::{predict, with_rays};
-pub(crate) use trace::{Ray, bent};
+pub(crate) use trace::{LegRay, bent};
 
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Mask, Patch, Specular};
 
 /// A light and the specular surfaces its central ray visits, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
-pub struct System {
+pub struct SpecularSystem {
     /// What shines from the plane z = 0, along Z.
     pub light: Light,
     /// Masks across the first leg and their distances from the light, metres. Where one is
@@ -103,12 +103,12 @@ pub struct System {
     /// What else stops rays, on any leg.
     pub obstacles: Vec<Obstacle>,
     /// The surfaces, in the order of light.
-    pub elements: Vec<Element>,
+    pub elements: Vec<SpecularSurface>,
 }
 
 /// A specular surface.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Element {
+pub struct SpecularSurface {
     /// Name, for texts.
     pub name: String,
     /// Where it is.

@@ -1,20 +1,20 @@
 //! A system of specular surfaces and a plane behind it as a model: its parameters and its
 //! prediction.
 
-use super::central::Hit;
-use super::{System, predict, with_rays};
-use crate::model::{Model, Moved, Observed, Over};
+use super::central::CentralHit;
+use super::{SpecularSystem, predict, with_rays};
+use crate::model::{Model, ShiftedModels, Observed, Over};
 use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures, resize};
 use crate::predicted::Predicted;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use etendue_field::{Disc, Frame, Light, Orientation, Rectangle, Shape, Specular};
 use glam::{DQuat, DVec3};
 
 /// Metres, and whatever else parameters are in, that rounding leaves of zero.
 const ROUNDING_OF_ZERO: f64 = 1e-9;
 
-impl Model for Observed<System> {
+impl Model for Observed<SpecularSystem> {
     fn light(&self) -> &Light {
         &self.system.light
     }
@@ -47,7 +47,7 @@ impl Model for Observed<System> {
             }
             let value = self.value(*parameter);
             value.is_some_and(|value| value.abs() > ROUNDING_OF_ZERO)
-                && Moved::nearby(self, *parameter).is_some()
+                && ShiftedModels::nearby(self, *parameter).is_some()
         };
         all.retain(is_there);
         all
@@ -98,7 +98,7 @@ impl Model for Observed<System> {
 
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
         let moved = parameters.iter();
-        let moved = moved.map(|parameter| Moved::nearby(self, *parameter));
+        let moved = moved.map(|parameter| ShiftedModels::nearby(self, *parameter));
         let moved: Option<Vec<_>> = moved.collect();
         predict(
             self,
@@ -112,12 +112,12 @@ impl Model for Observed<System> {
         with_rays(self, over, budget, then);
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
         work_of_nets(over.1, budget)
     }
 }
 
-impl Observed<System> {
+impl Observed<SpecularSystem> {
     /// Gives a leg a new length: all that comes later moves.
     fn travel(&mut self, leg: usize, new: New<'_>) -> Option<()> {
         let (from, along) = self.system.leg(leg)?;
@@ -150,7 +150,7 @@ impl Observed<System> {
     }
 }
 
-impl System {
+impl SpecularSystem {
     /// The same system with a light `factor` times as large: the picture's widths over slopes or
     /// positions, or the shape about the central ray.
     ///
@@ -202,7 +202,7 @@ pub(crate) fn shrunk_light(light: &Light, factor: f64) -> Light {
 }
 
 /// A patch's frame turned about B at the central hit until θ₀ has grown by an angle.
-fn tilted(frame: &Frame, hit: &Hit, by: f64) -> Frame {
+fn tilted(frame: &Frame, hit: &CentralHit, by: f64) -> Frame {
     let turn = DQuat::from_axis_angle(hit.incidence.b, -by);
     let center = hit.arriving.origin;
     Frame {

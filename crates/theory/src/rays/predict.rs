@@ -1,14 +1,14 @@
 //! Slices behind specular surfaces.
 
-use super::draw::{Draw, RayStrategy};
+use super::draw::{RaySampler, RayStrategy};
 use super::emission::emitted;
 use super::region::{Finder, Neighbourhood, RayField, neighbourhood};
-use super::{Plane, Ray, System};
-use crate::geometry::{Map, SpectrumMap};
+use super::{Plane, LegRay, SpecularSystem};
+use crate::geometry::{AffineMap, SpectrumMap};
 use crate::mask::Masks;
-use crate::model::{Moved, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
-use crate::obstacle::Obstacles;
+use crate::model::{ShiftedModels, Observed, Over};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNode, RayNets};
+use crate::obstacle::PreparedObstacles;
 use crate::predicted::Predicted;
 use etendue_field::{Frame, FrequencyAxis, Light, Mask, SliceGrid, Slices, TwoPlane, Window};
 use glam::DVec3;
@@ -30,8 +30,8 @@ const FOR_PICTURES: Budget = Budget {
 /// and the rule converges; else over nets of rays. Derivatives are central differences, the rays of
 /// both sides drawn alike: good to about a per cent. The same bytes on any number of threads.
 pub(crate) fn predict(
-    view: &Observed<System>,
-    moved: &[Moved<Observed<System>>],
+    view: &Observed<SpecularSystem>,
+    moved: &[ShiftedModels<Observed<SpecularSystem>>],
     over: Over<'_>,
     budget: Budget,
 ) -> Predicted {
@@ -50,7 +50,7 @@ pub(crate) fn predict(
 
 /// Calls `then` with the rays that [`predict`] sums over nets.
 pub(crate) fn with_rays(
-    view: &Observed<System>,
+    view: &Observed<SpecularSystem>,
     over: Over<'_>,
     budget: Budget,
     then: &mut dyn FnMut(&dyn RayNets),
@@ -61,15 +61,15 @@ pub(crate) fn with_rays(
     let field = exact_field(view, &masks);
     let draw = neighbourhood(system, plane).and_then(|lands| {
         let strategy = best(&field, observed, &lands, over)?;
-        Draw::new(observed, over.0, &lands, strategy)
+        RaySampler::new(observed, over.0, &lands, strategy)
     });
     if let Some(draw) = draw {
-        let drawn = Drawn {
+        let drawn = SampledField {
             field: Box::new(field),
             draw: &draw,
             window: over.0,
         };
-        then(&nets::Sampled::new(&drawn, budget));
+        then(&nets::SampledNets::new(&drawn, budget));
     }
 }
 
@@ -82,7 +82,7 @@ pub(crate) fn with_rays(
 /// each leg to first order. On a surface that an environment shines on, z has angles for slopes.
 #[must_use]
 pub fn linear(
-    view: &Observed<System>,
+    view: &Observed<SpecularSystem>,
     over: Over<'_>,
     map: &SpectrumMap<4>,
     budget: Budget,
@@ -99,7 +99,7 @@ pub fn linear(
 }
 
 fn derivatives(
-    moved: &[Moved<Observed<System>>],
+    moved: &[ShiftedModels<Observed<SpecularSystem>>],
     over: Over<'_>,
     strategy: Option<RayStrategy>,
 ) -> Vec<Slices> {
@@ -111,16 +111,16 @@ fn derivatives(
     let masks: Vec<_> = sides()
         .map(|view| Masks::new(&view.system.layers, &view.system.obstacles))
         .collect();
-    let draws: Option<Vec<Draw<'_>>> = sides()
+    let draws: Option<Vec<RaySampler<'_>>> = sides()
         .map(|Observed { system, plane }| {
             let lands = neighbourhood(system, plane)?;
-            Draw::new((system, Some(plane)), over.0, &lands, strategy)
+            RaySampler::new((system, Some(plane)), over.0, &lands, strategy)
         })
         .collect();
     let Some(draws) = draws else { return zeros() };
-    let sides: Vec<Drawn<'_>> = sides()
+    let sides: Vec<SampledField<'_>> = sides()
         .zip(masks.iter().zip(&draws))
-        .map(|(view, (masks, draw))| Drawn {
+        .map(|(view, (masks, draw))| SampledField {
             field: Box::new(exact_field(view, masks)),
             draw,
             window: over.0,
@@ -133,7 +133,7 @@ fn derivatives(
     nets::means(&differences, over.0, over.1)
 }
 
-fn exact_field<'a>(view: &'a Observed<System>, masks: &'a Masks<'a>) -> impl RayField + 'a {
+fn exact_field<'a>(view: &'a Observed<SpecularSystem>, masks: &'a Masks<'a>) -> impl RayField + 'a {
     let Observed { system, plane } = view;
     // Light begins in the plane z = 0: a surface that reaches back beside it is dark there. Points
     // of a curved one are ahead that a ray meets.
@@ -153,7 +153,7 @@ fn exact_field<'a>(view: &'a Observed<System>, masks: &'a Masks<'a>) -> impl Ray
 }
 
 fn linear_field<'a>(
-    view: &'a Observed<System>,
+    view: &'a Observed<SpecularSystem>,
     masks: &'a Masks<'a>,
     map: &'a SpectrumMap<4>,
 ) -> impl RayField + 'a {
@@ -202,7 +202,7 @@ fn angles([x, y, u, v]: [f64; 4], distance: f64) -> ([f64; 4], f64) {
 /// Where rays of the light are on a leg, to first order about the central ray.
 struct AffineLeg {
     /// From (x, y, u, v) at the light to those across the leg where it begins.
-    map: Map<4>,
+    map: AffineMap<4>,
     frame: Frame,
     /// Along the central ray, metres.
     length: f64,
@@ -210,14 +210,14 @@ struct AffineLeg {
 
 impl AffineLeg {
     /// Those on which obstacles may stand; none where there are no obstacles.
-    fn all(view: &Observed<System>) -> Vec<Self> {
+    fn all(view: &Observed<SpecularSystem>) -> Vec<Self> {
         let Observed { system, plane } = view;
         let Some(hits) = system.hits().filter(|_| !system.obstacles.is_empty()) else {
             return Vec::new();
         };
         let starts = std::iter::once(Frame::IDENTITY).chain(hits.iter().map(|hit| hit.leaving));
         let leg = |(number, frame): (usize, Frame)| {
-            let ray = Ray {
+            let ray = LegRay {
                 point: frame.origin,
                 direction: frame.d,
             };
@@ -226,8 +226,8 @@ impl AffineLeg {
                 None => plane.along(&ray)?,
             };
             let before = &system.elements[..number];
-            let map = Map::touching(|emission| {
-                let start = Ray::new(emission);
+            let map = AffineMap::touching(|emission| {
+                let start = LegRay::new(emission);
                 let ray = before
                     .iter()
                     .try_fold(start, |ray, element| element.follow(&ray))?;
@@ -239,10 +239,10 @@ impl AffineLeg {
     }
 
     /// The share of a ray of the light that passes obstacles on this leg, by number.
-    fn passes(&self, obstacles: &Obstacles<'_>, number: usize, ray: [f64; 4]) -> f64 {
+    fn passes(&self, obstacles: &PreparedObstacles<'_>, number: usize, ray: [f64; 4]) -> f64 {
         let [x, y, u, v] = self.map.apply(ray);
         let along = DVec3::new(u, v, 1.0);
-        let ray = Ray {
+        let ray = LegRay {
             point: self.frame.to_world(DVec3::new(x, y, 0.0)),
             direction: self.frame.vector_to_world(along.normalize()),
         };
@@ -251,7 +251,7 @@ impl AffineLeg {
 }
 
 /// Flux per unit of the emission's coordinates of a ray that has passed the masks.
-fn flux(system: &System, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
+fn flux(system: &SpecularSystem, masks: &Masks<'_>, ray: [f64; 4]) -> f64 {
     let [x, y, u, v] = ray;
     emitted(&system.light, ray) * masks.transmittance(DVec3::new(x, y, 0.0), [u, v])
 }
@@ -269,17 +269,17 @@ const NO_FREQUENCY: FrequencyAxis = FrequencyAxis {
 
 fn summed(
     field: &impl RayField,
-    observed: (&System, Option<&Plane>),
+    observed: (&SpecularSystem, Option<&Plane>),
     way: Option<(Neighbourhood, RayStrategy)>,
     (window, grid, picture): Over<'_>,
     [of_slices, of_pictures]: [Budget; 2],
 ) -> Predicted {
-    let draw = way.and_then(|(lands, strategy)| Draw::new(observed, window, &lands, strategy));
+    let draw = way.and_then(|(lands, strategy)| RaySampler::new(observed, window, &lands, strategy));
     let (system, _) = observed;
     let (Some((lands, _)), Some(draw)) = (way, draw) else {
         return Predicted::dark(grid, picture);
     };
-    let drawn = Drawn {
+    let drawn = SampledField {
         field: Box::new(field),
         draw: &draw,
         window,
@@ -314,13 +314,13 @@ fn summed(
 /// What draws rays with the least error.
 fn best(
     field: &impl RayField,
-    observed: (&System, Option<&Plane>),
+    observed: (&SpecularSystem, Option<&Plane>),
     lands: &Neighbourhood,
     (window, grid, _): Over<'_>,
 ) -> Option<RayStrategy> {
     let tried = RayStrategy::ALL.iter().filter_map(|&strategy| {
-        let draw = Draw::new(observed, window, lands, strategy)?;
-        let drawn = Drawn {
+        let draw = RaySampler::new(observed, window, lands, strategy)?;
+        let drawn = SampledField {
             field: Box::new(field),
             draw: &draw,
             window,
@@ -332,31 +332,31 @@ fn best(
 }
 
 /// A light field and how its rays are drawn.
-struct Drawn<'a> {
+struct SampledField<'a> {
     field: Box<dyn RayField + 'a>,
-    draw: &'a Draw<'a>,
+    draw: &'a RaySampler<'a>,
     window: &'a Window,
 }
 
-impl Drawn<'_> {
-    fn node(&self, at: &[f64; DIMENSIONS]) -> Node {
+impl SampledField<'_> {
+    fn node(&self, at: &[f64; DIMENSIONS]) -> RayNode {
         let arrives = self.draw.draw(at).and_then(|(ray, density)| {
             let (z, weight) = (self.field)(ray)?;
             let [x, y, u, v] = z;
             let seen = self.window.value(&TwoPlane { x, y, u, v });
             let weight = weight * seen / density;
-            weight.is_finite().then_some(Node { z, weight })
+            weight.is_finite().then_some(RayNode { z, weight })
         });
-        arrives.unwrap_or(Node::DARK)
+        arrives.unwrap_or(RayNode::DARK)
     }
 }
 
-impl Integrand for Drawn<'_> {
+impl Integrand for SampledField<'_> {
     fn fields(&self) -> usize {
         1
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
         nodes[0] = self.node(at);
     }
 }
@@ -366,7 +366,7 @@ struct Differences<'a> {
     /// How far apart the two values of each parameter are.
     apart: Vec<f64>,
     /// With more and with less of each.
-    sides: Vec<Drawn<'a>>,
+    sides: Vec<SampledField<'a>>,
 }
 
 impl Integrand for Differences<'_> {
@@ -378,12 +378,12 @@ impl Integrand for Differences<'_> {
         2
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
         for (i, (side, node)) in self.sides.iter().zip(nodes).enumerate() {
             let sign = if i % 2 == 0 { 1.0 } else { -1.0 };
-            let Node { z, weight } = side.node(at);
+            let RayNode { z, weight } = side.node(at);
             let weight = sign * weight / self.apart[i / 2];
-            *node = Node { z, weight };
+            *node = RayNode { z, weight };
         }
     }
 }

@@ -8,7 +8,7 @@
 
 use super::region::{Finder, RayField};
 use super::sums::sums;
-use crate::nets::Node;
+use crate::nets::RayNode;
 use crate::numerics::distance;
 use etendue_field::{SliceGrid, Slices};
 use rayon::prelude::*;
@@ -64,7 +64,7 @@ impl<F: RayField> Finder<'_, F> {
     }
 
     /// All rays that land in the window. Always in the same order.
-    pub(super) fn nodes(&self, count: usize) -> Vec<Node> {
+    pub(super) fn nodes(&self, count: usize) -> Vec<RayNode> {
         let Some([a, b]) = self.region() else {
             return Vec::new();
         };

@@ -1,9 +1,9 @@
 //! Where in the emission's inner coordinates the rays are that land in a window.
 
-use super::emission::Emission;
-use super::{Plane, System};
+use super::emission::EmissionMeasure;
+use super::{Plane, SpecularSystem};
 use crate::geometry::Matrix;
-use crate::nets::Node;
+use crate::nets::RayNode;
 use etendue_field::{TwoPlane, Window};
 
 /// A box in two coordinates: lowest and highest along each.
@@ -30,7 +30,7 @@ const MARGIN: f64 = 1.5;
 pub(super) struct Finder<'a, F> {
     pub(super) field: &'a F,
     pub(super) window: &'a Window,
-    pub(super) emission: Emission,
+    pub(super) emission: EmissionMeasure,
     pub(super) neighbourhood: Neighbourhood,
 }
 
@@ -39,7 +39,7 @@ pub(super) type Neighbourhood = ([f64; 4], Matrix<4>);
 
 /// That of rays as they are, whatever masks stop; `None` if the central ray, or one beside it, does
 /// not arrive.
-pub(super) fn neighbourhood(system: &System, plane: &Plane) -> Option<Neighbourhood> {
+pub(super) fn neighbourhood(system: &SpecularSystem, plane: &Plane) -> Option<Neighbourhood> {
     const STEP: f64 = 1e-6;
     let lands = |ray| Some(plane.coordinates(&system.follow(ray)?)?.0);
     let mut jacobian = [[0.0; 4]; 4];
@@ -67,11 +67,11 @@ impl<F: RayField> Finder<'_, F> {
     }
 
     /// A ray at the plane, the window and all, times its share of emission coordinates.
-    pub(super) fn node(&self, ray: [f64; 4], share: f64) -> Node {
+    pub(super) fn node(&self, ray: [f64; 4], share: f64) -> RayNode {
         let (z, weight) = (self.field)(ray).unwrap_or(([0.0; 4], 0.0));
         let [x, y, u, v] = z;
         let weight = share * weight * self.window.value(&TwoPlane { x, y, u, v });
-        Node { z, weight }
+        RayNode { z, weight }
     }
 
     /// The region of rays that land in the window: the box about the parallelogram that a linear

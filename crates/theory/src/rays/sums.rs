@@ -4,7 +4,7 @@
 //! factor along ρ and one along ν. Summed over rays that is a matrix product of their real and
 //! imaginary parts; ± ν share it.
 
-use crate::nets::Node;
+use crate::nets::RayNode;
 use etendue_field::{Complex, SliceGrid, Slices, cis};
 use ndarray::linalg::general_mat_mul;
 use ndarray::{Array2, Axis};
@@ -22,7 +22,7 @@ const POWERS: usize = 32;
 const LANES: usize = 8;
 
 /// The sums on all slices. The same bytes on any number of threads; rounding below 10⁻¹² of Σ |w|.
-pub(super) fn sums(nodes: &[Node], grid: &SliceGrid) -> Slices {
+pub(super) fn sums(nodes: &[RayNode], grid: &SliceGrid) -> Slices {
     let part = nodes.len().div_ceil(PARTS).max(BLOCK);
     let parts: Vec<_> = nodes.chunks(part).collect();
     let tasks = grid.azimuths * parts.len();
@@ -49,7 +49,7 @@ pub(super) fn sums(nodes: &[Node], grid: &SliceGrid) -> Slices {
 }
 
 /// Sums of the products of the parts of both factors over some rays, [2m + part, 2n + part].
-fn product(nodes: &[Node], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
+fn product(nodes: &[RayNode], grid: &SliceGrid, azimuth: usize) -> Array2<f64> {
     let (sin, cos) = libm::sincos(grid.azimuth(azimuth));
     let [along_rho, along_nu] = [grid.rho.half, grid.nu.half].map(|half| 2 * (half + 1));
     let mut sum = Array2::zeros((along_rho, along_nu));

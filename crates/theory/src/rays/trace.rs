@@ -1,20 +1,20 @@
 //! One ray through the system.
 
-use super::{Element, System};
-use crate::obstacle::Obstacles;
+use super::{SpecularSurface, SpecularSystem};
+use crate::obstacle::PreparedObstacles;
 use etendue_field::{Frame, Patch, Specular};
 use glam::DVec3;
 
 /// A straight leg of a ray.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Ray {
+pub(crate) struct LegRay {
     /// Where it starts.
     pub(crate) point: DVec3,
     /// A unit vector.
     pub(crate) direction: DVec3,
 }
 
-impl Ray {
+impl LegRay {
     /// The ray (x, y, u, v) of the light's plane.
     pub(crate) fn new([x, y, u, v]: [f64; 4]) -> Self {
         Self {
@@ -86,9 +86,9 @@ impl Ray {
 /// Newton steps before a ray counts as a miss. Near misses of a surface wander.
 const MOST_STEPS: u32 = 40;
 
-impl Element {
+impl SpecularSurface {
     /// The ray that goes on.
-    pub(super) fn follow(&self, ray: &Ray) -> Option<Ray> {
+    pub(super) fn follow(&self, ray: &LegRay) -> Option<LegRay> {
         let (distance, normal) = ray.met(&self.patch)?;
         let point = ray.point + ray.direction * distance;
         self.turned(ray.direction, point, normal)
@@ -96,9 +96,9 @@ impl Element {
 
     /// The ray that goes on where one along `direction` hits `point`; `normal` is on the side of
     /// the patch's D.
-    pub(super) fn turned(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<Ray> {
+    pub(super) fn turned(&self, direction: DVec3, point: DVec3, normal: DVec3) -> Option<LegRay> {
         let direction = bent(self.event, &self.patch.frame, [direction, point, normal])?;
-        Some(Ray { point, direction })
+        Some(LegRay { point, direction })
     }
 }
 
@@ -136,14 +136,14 @@ pub(crate) fn bent(
     }
 }
 
-impl System {
+impl SpecularSystem {
     /// The last leg of the same ray, and the share of it that passes obstacles before that.
     pub(super) fn follow_past(
         &self,
-        obstacles: &Obstacles<'_>,
+        obstacles: &PreparedObstacles<'_>,
         emission: [f64; 4],
-    ) -> Option<(Ray, f64)> {
-        let mut ray = Ray::new(emission);
+    ) -> Option<(LegRay, f64)> {
+        let mut ray = LegRay::new(emission);
         let mut passes = 1.0;
         for (leg, element) in self.elements.iter().enumerate() {
             let (distance, normal) = ray.met(&element.patch)?;
@@ -155,8 +155,8 @@ impl System {
     }
 
     /// The last leg of the ray (x, y, u, v) of the light's plane; masks are not looked at.
-    pub(super) fn follow(&self, emission: [f64; 4]) -> Option<Ray> {
-        let start = Ray::new(emission);
+    pub(super) fn follow(&self, emission: [f64; 4]) -> Option<LegRay> {
+        let start = LegRay::new(emission);
         self.elements
             .iter()
             .try_fold(start, |ray, element| element.follow(&ray))

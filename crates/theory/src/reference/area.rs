@@ -20,7 +20,7 @@ fn area_light_under_a_hann_window() {
 #[test]
 fn square_light_in_4d() {
     let block = block("square_light_4d");
-    let Scene {
+    let ReferenceScene {
         bench,
         gaussian,
         profiles: [x, u],
@@ -53,7 +53,7 @@ fn strips(block: &Value) -> (Vec<f64>, f64) {
 #[test]
 fn opaque_strips() {
     let block = block("opaque_grid");
-    let Scene {
+    let ReferenceScene {
         bench,
         gaussian,
         profiles,
@@ -87,7 +87,7 @@ fn opaque_strips() {
 #[test]
 fn opaque_squares_in_4d() {
     let block = block("opaque_grid");
-    let Scene {
+    let ReferenceScene {
         bench,
         profiles: [x, u],
         ..

@@ -12,7 +12,7 @@ use std::f64::consts::{PI, TAU};
 
 /// The window exp(−π(x²/a² + v²/b²)).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Gaussian {
+pub(crate) struct GaussianWindow {
     /// Width a along the position, in metres.
     pub(crate) a: f64,
     /// Width b along the slope; may be infinite.
@@ -29,7 +29,7 @@ struct Travelled {
 }
 
 impl Travelled {
-    fn new(distance: f64, window: &Gaussian) -> Self {
+    fn new(distance: f64, window: &GaussianWindow) -> Self {
         let inverse_a2 = 1.0 / (window.a * window.a);
         let inverse_b2 = 1.0 / (window.b * window.b);
         let q = distance * distance * inverse_a2 + inverse_b2;
@@ -63,7 +63,7 @@ pub(crate) struct GaussianBlock {
 
 /// A transparency ½(1 + m cos(2πf x + p)).
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Grating {
+pub(crate) struct CosineGrating {
     /// Frequency f, cycles per metre.
     pub(crate) frequency: f64,
     /// Modulation m.
@@ -72,7 +72,7 @@ pub(crate) struct Grating {
     pub(crate) phase: f64,
 }
 
-impl Grating {
+impl CosineGrating {
     /// Its Fourier series: (frequency, coefficient).
     #[must_use]
     pub(crate) fn lines(&self) -> [(f64, Complex); 3] {
@@ -91,7 +91,7 @@ impl Grating {
 ///
 /// `distance` must not be zero when b is infinite.
 #[must_use]
-pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 2]) -> Complex {
+pub(crate) fn area_light(width: f64, distance: f64, window: &GaussianWindow, k: [f64; 2]) -> Complex {
     let travelled = Travelled::new(distance, window);
     let [omega, big_q] = travelled.frequencies(k);
     let Travelled { p, q, .. } = travelled;
@@ -107,7 +107,7 @@ pub(crate) fn area_light(width: f64, distance: f64, window: &Gaussian, k: [f64; 
 /// The field δ(x − D v) of a point light at distance D under the window: q^(−1/2) exp(−πω²/q), the
 /// area light's factor (docs/theory.md (20)).
 #[must_use]
-pub(crate) fn point_light(distance: f64, window: &Gaussian, k: [f64; 2]) -> f64 {
+pub(crate) fn point_light(distance: f64, window: &GaussianWindow, k: [f64; 2]) -> f64 {
     let travelled = Travelled::new(distance, window);
     let [omega, _] = travelled.frequencies(k);
     libm::exp(-PI * omega * omega / travelled.q) / travelled.q.sqrt()
@@ -120,11 +120,11 @@ pub(crate) fn spot(
     width: f64,
     lobe: f64,
     distance: f64,
-    window: &Gaussian,
+    window: &GaussianWindow,
     k: [f64; 2],
 ) -> Complex {
     let b = libm::hypot(window.b.recip(), lobe.recip()).recip();
-    area_light(width, distance, &Gaussian { a: window.a, b }, k)
+    area_light(width, distance, &GaussianWindow { a: window.a, b }, k)
 }
 
 /// The field of a disc of radius R at distance D, in 4D under the window of a and b along both
@@ -136,7 +136,7 @@ pub(crate) fn spot(
 pub(crate) fn disc_light(
     radius: f64,
     distance: f64,
-    window: &Gaussian,
+    window: &GaussianWindow,
     [x, y, u, v]: [f64; 4],
 ) -> f64 {
     let travelled = Travelled::new(distance, window);
@@ -187,8 +187,8 @@ fn dawson(x: f64) -> f64 {
 #[must_use]
 pub(crate) fn through_grating(
     bench: &GaussianBlock,
-    grating: &Grating,
-    window: &Gaussian,
+    grating: &CosineGrating,
+    window: &GaussianWindow,
     [x, v]: [f64; 2],
 ) -> Complex {
     let distance = bench.to_blockers + bench.below;
@@ -204,7 +204,7 @@ pub(crate) fn through_grating(
 pub(crate) fn blocked_by_strip(
     bench: &GaussianBlock,
     strip: [f64; 2],
-    window: &Gaussian,
+    window: &GaussianWindow,
     [omega_x, omega_v]: [f64; 2],
 ) -> Complex {
     let half = 0.5 * bench.light;
@@ -230,7 +230,7 @@ pub(crate) fn blocked_by_strip(
 ///
 /// The integrand is even and analytic in s: the trapezoid rule converges exponentially.
 #[must_use]
-pub(crate) fn shaded(window: &Gaussian, field: impl Fn(&Gaussian) -> Complex) -> Complex {
+pub(crate) fn shaded(window: &GaussianWindow, field: impl Fn(&GaussianWindow) -> Complex) -> Complex {
     // Step 0.25 errs by exp(−π²/0.25²) = 1e-69, the end at 6.5 by exp(−6.5²) = 5e-19.
     const STEP: f64 = 0.25;
     let nodes = (1..=26).map(|j| STEP * f64::from(j));
@@ -238,7 +238,7 @@ pub(crate) fn shaded(window: &Gaussian, field: impl Fn(&Gaussian) -> Complex) ->
         .map(|s| {
             let s2 = s * s;
             let b = (1.0 / (window.b * window.b) + s2 / PI).sqrt().recip();
-            field(&Gaussian { a: window.a, b }) * (s2 * libm::exp(-s2))
+            field(&GaussianWindow { a: window.a, b }) * (s2 * libm::exp(-s2))
         })
         .sum();
     sum * (4.0 * STEP / PI.sqrt())
@@ -247,7 +247,7 @@ pub(crate) fn shaded(window: &Gaussian, field: impl Fn(&Gaussian) -> Complex) ->
 /// The spectrum of the irradiance below a grating, no window:
 /// Σ cₙ w sinc(w(Ωx − n f)) ĝ(DΩx − d₁ n f) (Durand et al. 2005, Eq. 7 without the albedo).
 #[must_use]
-pub(crate) fn irradiance(bench: &GaussianBlock, grating: &Grating, x: f64) -> Complex {
+pub(crate) fn irradiance(bench: &GaussianBlock, grating: &CosineGrating, x: f64) -> Complex {
     let w = bench.light;
     let distance = bench.to_blockers + bench.below;
     let lines = grating.lines().into_iter();

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::geometry::covariance::{gaussian_lobe, gaussian_window, power_spectrum};
-use crate::geometry::{Map, Matrix, plane_sphere_kernel};
+use crate::geometry::{AffineMap, Matrix, plane_sphere_kernel};
 use std::f64::consts::PI;
 
 #[test]
@@ -14,21 +14,21 @@ fn caustic_of_a_hollow_mirror() {
         let exponent = (a * x).powi(2) + (s * t).powi(2);
         Complex::from(a * s * libm::exp(-PI * exponent))
     };
-    let map = |sample: &Value| Map::<2>::caustic(p("th0"), p("k"), number(&sample["d"]));
+    let map = |sample: &Value| AffineMap::<2>::caustic(p("th0"), p("k"), number(&sample["d"]));
     let all = samples(&block["samples"]).iter();
     let pairs = all.clone().map(|sample| {
         let got = map(sample).spectrum(frequency(sample), &beam);
         (got, complex(sample))
     });
     assert_close("caustic", deviation(16, pairs));
-    let focus = Map::<2>::mirror_reflection(p("th0"), p("k"))
+    let focus = AffineMap::<2>::mirror_reflection(p("th0"), p("k"))
         .focus()
         .unwrap();
     let expected = number(&block["focal_distance"]);
     assert_close("focus", deviation(1, [(focus.into(), expected.into())]));
     // The sign of the curvature, which Eq. 11 turns over, is seen.
     let wrong = all.map(|sample| {
-        let map = Map::<2>::caustic(p("th0"), -p("k"), number(&sample["d"]));
+        let map = AffineMap::<2>::caustic(p("th0"), -p("k"), number(&sample["d"]));
         (map.spectrum(frequency(sample), &beam), complex(sample))
     });
     assert!(deviation(16, wrong) > 0.1);
@@ -52,7 +52,7 @@ fn matrix<const N: usize>(value: &Value) -> Matrix<N> {
 
 /// What a row of a chain does.
 enum BlockStep<const N: usize> {
-    Map(Map<N>),
+    Map(AffineMap<N>),
     Window([f64; N]),
     Lobe(f64),
 }
@@ -83,7 +83,7 @@ fn assert_chain<const N: usize>(block: &Value, steps: &[BlockStep<N>]) {
             BlockStep::Lobe(std) => gaussian_lobe(&field, *std),
         };
         fields.extend(entries(field, &row["Sigma"]));
-        let volume = Map::linear(field).det();
+        let volume = AffineMap::linear(field).det();
         volumes.push((volume.into(), number(&row["det"]).into()));
         let expected = &row["power_spectrum_covariance"];
         if !expected.is_null() {
@@ -110,15 +110,15 @@ fn covariance_along_a_path_in_2d() {
     let p = |name: &str| number(&block["params"][name]);
     let [wx, wv] = [0, 1].map(|i| number(&block["params"]["win"][i]));
     let steps = [
-        BlockStep::Map(Map::travel(p("d1"))),
+        BlockStep::Map(AffineMap::travel(p("d1"))),
         BlockStep::Window([wx, wv]),
-        BlockStep::Map(Map::<2>::incidence(p("th0"))),
-        BlockStep::Map(Map::<2>::curvature(p("k"))),
-        BlockStep::Map(Map::mirror()),
+        BlockStep::Map(AffineMap::<2>::incidence(p("th0"))),
+        BlockStep::Map(AffineMap::<2>::curvature(p("k"))),
+        BlockStep::Map(AffineMap::mirror()),
         BlockStep::Lobe(p("lobe")),
-        BlockStep::Map(Map::<2>::back(p("k"))),
-        BlockStep::Map(Map::<2>::outgoing(p("th1"))),
-        BlockStep::Map(Map::travel(p("d2"))),
+        BlockStep::Map(AffineMap::<2>::back(p("k"))),
+        BlockStep::Map(AffineMap::<2>::outgoing(p("th1"))),
+        BlockStep::Map(AffineMap::travel(p("d2"))),
     ];
     assert_chain(&block, &steps);
 }
@@ -130,14 +130,14 @@ fn covariance_along_a_path_in_4d() {
     let shape = matrix::<2>(&block["params"]["M"]);
     let theta0 = p("th0");
     let steps = [
-        BlockStep::Map(Map::travel(p("d1"))),
-        BlockStep::Map(Map::<4>::incidence(theta0)),
-        BlockStep::Map(Map::<4>::curvature(shape, theta0)),
-        BlockStep::Map(Map::mirror()),
+        BlockStep::Map(AffineMap::travel(p("d1"))),
+        BlockStep::Map(AffineMap::<4>::incidence(theta0)),
+        BlockStep::Map(AffineMap::<4>::curvature(shape, theta0)),
+        BlockStep::Map(AffineMap::mirror()),
         BlockStep::Lobe(p("lobe")),
-        BlockStep::Map(Map::<4>::back(shape, -theta0)),
-        BlockStep::Map(Map::<4>::outgoing(-theta0)),
-        BlockStep::Map(Map::travel(p("d2"))),
+        BlockStep::Map(AffineMap::<4>::back(shape, -theta0)),
+        BlockStep::Map(AffineMap::<4>::outgoing(-theta0)),
+        BlockStep::Map(AffineMap::travel(p("d2"))),
     ];
     assert_chain(&block, &steps);
 }

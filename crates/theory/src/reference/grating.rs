@@ -2,12 +2,12 @@
 //! Fig. 6.
 
 use super::*;
-use crate::reference::gaussian::{self, Grating};
+use crate::reference::gaussian::{self, CosineGrating};
 
 /// A light, a grating and a receiver under a Gaussian window.
 struct GratingScene {
-    scene: Scene,
-    grating: Grating,
+    scene: ReferenceScene,
+    grating: CosineGrating,
 }
 
 impl GratingScene {
@@ -15,7 +15,7 @@ impl GratingScene {
         let p = |name: &str| number(&parameters[name]);
         Self {
             scene: scene(parameters),
-            grating: Grating {
+            grating: CosineGrating {
                 frequency: p("f"),
                 modulation: p("m"),
                 phase: p("ph"),
@@ -25,14 +25,14 @@ impl GratingScene {
 
     /// Steps 1 to 6, in closed form.
     fn closed(&self, step: usize, k: [f64; 2]) -> Complex {
-        let Scene {
+        let ReferenceScene {
             bench, gaussian, ..
         } = self.scene;
         let open = |distance| gaussian::area_light(bench.light, distance, &gaussian, k);
-        let seen = |below, window: &Gaussian| {
+        let seen = |below, window: &GaussianWindow| {
             gaussian::through_grating(&GaussianBlock { below, ..bench }, &self.grating, window, k)
         };
-        let endless = Gaussian {
+        let endless = GaussianWindow {
             b: f64::INFINITY,
             ..gaussian
         };
@@ -48,7 +48,7 @@ impl GratingScene {
 
     /// Steps 1 to 4 from the polygon of the light: a line of the grating is one more shift.
     fn polygons(&self, step: usize, [x, v]: [f64; 2]) -> Complex {
-        let Scene {
+        let ReferenceScene {
             bench, profiles, ..
         } = self.scene;
         let open = |distance, k| factor(&light(bench.light, distance), profiles, k);

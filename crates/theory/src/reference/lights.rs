@@ -7,7 +7,7 @@ use crate::reference::gaussian;
 fn disc_light_in_4d() {
     let block = block("disc_light_4d");
     let p = |name: &str| number(&block["params"][name]);
-    let window = Gaussian {
+    let window = GaussianWindow {
         a: p("a"),
         b: p("b"),
     };
@@ -23,7 +23,7 @@ fn point_and_spot() {
     let block = block("point_and_spot");
     let p = |name: &str| number(&block["params"][name]);
     let (distance, bulb, lobe) = (p("d"), p("bulb"), p("c"));
-    let window = Gaussian {
+    let window = GaussianWindow {
         a: p("a"),
         b: p("b"),
     };
@@ -42,7 +42,7 @@ fn point_and_spot() {
 
 #[test]
 fn narrow_lights_are_points() {
-    let window = Gaussian { a: 0.7, b: 0.35 };
+    let window = GaussianWindow { a: 0.7, b: 0.35 };
     let (k, distance, width) = ([0.8, -1.1], 2.0, 1e-5);
     let point = gaussian::point_light(distance, &window, k);
     let area = gaussian::area_light(width, distance, &window, k) / width;

@@ -18,7 +18,7 @@ use crate::parallel::expansion::Expansion;
 use crate::testing::{chain, lambertian, window};
 use crate::{Chain, g_hat, g_hat_3d};
 use etendue_field::{Complex, Profile, Rectangle};
-use gaussian::{Gaussian, GaussianBlock};
+use gaussian::{GaussianWindow, GaussianBlock};
 use jitter::{JitteredArray, jittered_array_power};
 use serde_json::Value;
 
@@ -100,22 +100,22 @@ fn light(width: f64, distance: f64) -> Chain {
     chain
 }
 
-struct Scene {
+struct ReferenceScene {
     bench: GaussianBlock,
-    gaussian: Gaussian,
+    gaussian: GaussianWindow,
     profiles: [Profile; 2],
 }
 
 /// Light, distances and Gaussian window of a block.
-fn scene(parameters: &Value) -> Scene {
+fn scene(parameters: &Value) -> ReferenceScene {
     let p = |name: &str| number(&parameters[name]);
-    Scene {
+    ReferenceScene {
         bench: GaussianBlock {
             light: p("w"),
             to_blockers: p("d1"),
             below: p("d2"),
         },
-        gaussian: Gaussian {
+        gaussian: GaussianWindow {
             a: p("a"),
             b: p("b"),
         },

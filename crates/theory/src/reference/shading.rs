@@ -109,13 +109,13 @@ fn fresnel_and_cosine() {
 }
 
 /// A Gaussian of a light field, A exp(−½ (z − μ)ᵀ C⁻¹ (z − μ)).
-struct Bell {
+struct GaussianField {
     amplitude: f64,
     mean: [f64; 2],
     covariance: [[f64; 2]; 2],
 }
 
-impl Bell {
+impl GaussianField {
     fn all(input: &Value) -> Vec<Self> {
         let of = |name: &str, i: usize| input[name][i].clone();
         let pair = |value: &Value| [number(&value[0]), number(&value[1])];
@@ -171,7 +171,7 @@ fn reflection<'a>(parameters: &Value, before: Factor<'a>, lobe: Option<Lobe>) ->
 fn every_step_of_a_reflection() {
     let block = block("reflection_chain");
     let parameters = &block["params"];
-    let bells = Bell::all(&block["input"]);
+    let bells = GaussianField::all(&block["input"]);
     let light = |omega: [f64; 2]| -> Complex { bells.iter().map(|b| b.spectrum(omega)).sum() };
     let lobe = Lobe::Gaussian {
         deviation: number(&parameters["lobe"]),
@@ -232,7 +232,7 @@ fn seen(k: f64, central: f64, s: f64, local: f64) -> ([f64; 2], f64) {
 
 /// Step 7 by trapezoids over arc length, local incident and local outgoing angle, of rays off the
 /// circle as it is.
-fn traced(parameters: &Value, bells: &[Bell], lobe: Option<f64>, omega: [f64; 2]) -> Complex {
+fn traced(parameters: &Value, bells: &[GaussianField], lobe: Option<f64>, omega: [f64; 2]) -> Complex {
     let p = |name: &str| number(&parameters[name]);
     let (k, theta0, theta1) = (p("k"), p("th0"), p("th1"));
     let lattice = |middle: f64, reach: f64, count: i32| {
@@ -272,11 +272,11 @@ fn traced(parameters: &Value, bells: &[Bell], lobe: Option<f64>, omega: [f64; 2]
 fn rays_off_the_circle() {
     let block = block("reflection_chain");
     let parameters = &block["params"];
-    let bells = Bell::all(&block["input"]);
+    let bells = GaussianField::all(&block["input"]);
     let lobe = number(&parameters["lobe"]);
     for (name, lobe) in [("step7", Some(lobe)), ("step7_mirror_brdf", None)] {
         let expected = samples(&block["exact_geometry_double_quadrature"][name]);
-        let off = |bells: &[Bell]| {
+        let off = |bells: &[GaussianField]| {
             let pairs = expected.iter().map(|sample| {
                 let omega = ["ox", "oth"].map(|name| number(&sample[name]));
                 (traced(parameters, bells, lobe, omega), complex(sample))

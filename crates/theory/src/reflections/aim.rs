@@ -4,10 +4,10 @@
 //! place there, so that a narrow window is met from anywhere on a wide surface. Elsewhere they are
 //! angles, and where light goes by them is known to first order alone.
 
-use super::chain::{Scatterer, towards};
+use super::chain::{ScatteringSurface, towards};
 use super::guide::Gaussian;
-use super::{Surface, System};
-use crate::geometry::{Map, Matrix, congruent, from_fn, times};
+use super::{PathSurface, ReflectionSystem};
+use crate::geometry::{AffineMap, Matrix, congruent, from_fn, times};
 use crate::model::Observed;
 use crate::rays::Plane;
 use etendue_field::{Frame, Orientation, Patch};
@@ -16,7 +16,7 @@ use std::f64::consts::FRAC_PI_2;
 
 /// What directions of a leg are told apart by.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Aim {
+pub(super) enum DirectionCoordinates {
     /// Longitude and latitude at the surface that the leg begins on, less those of the central ray.
     Angles,
     /// A place on the next scattering surface, along X and Y of its patch.
@@ -35,9 +35,9 @@ pub(super) enum Aim {
 /// beyond it.
 const MIN_DISTANCE: f64 = 2.0;
 
-impl Aim {
+impl DirectionCoordinates {
     /// Of the leg that begins at the light (0) or at a scatterer.
-    pub(super) fn new(view: &Observed<System>, scatterers: &[Scatterer], leg: usize) -> Self {
+    pub(super) fn new(view: &Observed<ReflectionSystem>, scatterers: &[ScatteringSurface], leg: usize) -> Self {
         let Observed { system, plane } = view;
         let from = leg.checked_sub(1).map(|before| &scatterers[before]);
         let first = from.map_or(0, |from| from.number + 1);
@@ -62,7 +62,7 @@ impl Aim {
         }
     }
 
-    fn at_plane(plane: &Plane, surface: &Surface) -> Self {
+    fn at_plane(plane: &Plane, surface: &PathSurface) -> Self {
         let beyond = (plane.frame.origin - surface.hit).dot(plane.frame.d);
         let is_across = plane.orientation == Orientation::Orthogonal;
         if is_across && beyond > MIN_DISTANCE * surface.patch.aperture {
@@ -74,7 +74,7 @@ impl Aim {
 
     /// What a Gaussian of angles becomes at a point of the surface, `map` leading to the end of the
     /// leg.
-    pub(super) fn seen(&self, angles: &Gaussian<2>, [s, t]: [f64; 2], map: &Map<4>) -> Gaussian<2> {
+    pub(super) fn seen(&self, angles: &Gaussian<2>, [s, t]: [f64; 2], map: &AffineMap<4>) -> Gaussian<2> {
         if matches!(self, Self::Angles) {
             return *angles;
         }
@@ -106,7 +106,7 @@ impl Aim {
         let (frame, t) = match self {
             Self::Angles => return None,
             Self::Patch { patch, .. } => {
-                let ray = crate::rays::Ray { point, direction };
+                let ray = crate::rays::LegRay { point, direction };
                 (&patch.frame, ray.met(patch)?.0)
             }
             Self::Plane(frame) => {
@@ -132,7 +132,7 @@ impl Aim {
         &self,
         point: DVec3,
         [a, b]: [f64; 2],
-        local: Option<(&Scatterer, DVec3)>,
+        local: Option<(&ScatteringSurface, DVec3)>,
     ) -> Option<(DVec3, f64)> {
         let (target, normal, area) = match self {
             Self::Angles => {

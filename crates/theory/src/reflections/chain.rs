@@ -1,9 +1,9 @@
 //! The first-order chain: affine maps between scattering surfaces, with their lobes between them.
 
-use super::{Interaction, Surface, System};
-use crate::geometry::{Map, Matrix};
+use super::{Interaction, PathSurface, ReflectionSystem};
+use crate::geometry::{AffineMap, Matrix};
 use crate::model::Observed;
-use crate::rays::{Incidence, Ray};
+use crate::rays::{Incidence, LegRay};
 use crate::scattering::{local, reflection};
 use crate::words::{self, degrees};
 use etendue_field::{Frame, Specular};
@@ -15,21 +15,21 @@ use glam::DVec3;
 /// and the longitude and latitude of a direction away from the surface about the local normal, T
 /// lying in the plane of incidence.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Chain {
+pub struct FirstOrderChain {
     /// The scattering surfaces, in the order of light.
-    pub scatterers: Vec<Scatterer>,
+    pub scatterers: Vec<ScatteringSurface>,
     /// One more than there are scatterers. The first leads from (x, y, u, v) at the light to local
     /// coordinates of where light comes from at the first scatterer. Each other leads from those of
     /// where light goes at a scatterer, less those of the central ray, to the next scatterer, and the
     /// last to the coordinates of the plane.
-    pub maps: Vec<Map<4>>,
+    pub maps: Vec<AffineMap<4>>,
     /// The steps in words, in the order of light.
     pub steps: Vec<String>,
 }
 
 /// A scattering surface where the central ray meets it.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Scatterer {
+pub struct ScatteringSurface {
     /// Its number among the surfaces of the path.
     pub number: usize,
     /// (T, B, N) at the central hit, N on the side from which light is scattered.
@@ -44,10 +44,10 @@ pub struct Scatterer {
 ///
 /// Its maps are the derivatives of where rays go.
 #[must_use]
-pub fn chain(view: &Observed<System>) -> Option<Chain> {
+pub fn chain(view: &Observed<ReflectionSystem>) -> Option<FirstOrderChain> {
     let scatterers = scatterers(view)?;
     let maps = (0..=scatterers.len()).map(|leg| map(view, &scatterers, leg));
-    Some(Chain {
+    Some(FirstOrderChain {
         maps: maps.collect::<Option<_>>()?,
         steps: steps(view, &scatterers)?,
         scatterers,
@@ -57,23 +57,23 @@ pub fn chain(view: &Observed<System>) -> Option<Chain> {
 /// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
 /// them: zero for that of [`chain`].
 #[must_use]
-pub fn defect(view: &Observed<System>, tried: &Chain) -> Option<f64> {
+pub fn defect(view: &Observed<ReflectionSystem>, tried: &FirstOrderChain) -> Option<f64> {
     let traced = chain(view)?;
     let pairs = tried.maps.iter().zip(&traced.maps);
     Some(pairs.fold(0.0, |most, (a, b)| a.apart(b, &[1.0; 4]).max(most)))
 }
 
-impl Chain {
+impl FirstOrderChain {
     /// A of the rays from the light to the plane by way of the mirror directions, z' = A z.
     #[must_use]
-    pub fn rays(&self) -> Map<4> {
+    pub fn rays(&self) -> AffineMap<4> {
         let mut maps = self.maps.iter();
-        let first = maps.next().copied().unwrap_or_else(Map::identity);
-        maps.fold(first, |rays, map| rays.then(&Map::<4>::mirror()).then(map))
+        let first = maps.next().copied().unwrap_or_else(AffineMap::identity);
+        maps.fold(first, |rays, map| rays.then(&AffineMap::<4>::mirror()).then(map))
     }
 }
 
-fn scatterers(view: &Observed<System>) -> Option<Vec<Scatterer>> {
+fn scatterers(view: &Observed<ReflectionSystem>) -> Option<Vec<ScatteringSurface>> {
     let Observed { system, plane } = view;
     let visited = &system.surfaces[..system.visited];
     let mut from = DVec3::ZERO;
@@ -100,7 +100,7 @@ fn scatterers(view: &Observed<System>) -> Option<Vec<Scatterer>> {
             d: incidence.n,
         };
         let [.., longitude, latitude] = local(&frame, hit, normal, leaving);
-        found.push(Scatterer {
+        found.push(ScatteringSurface {
             number,
             frame,
             incidence: incidence.theta0,
@@ -111,15 +111,15 @@ fn scatterers(view: &Observed<System>) -> Option<Vec<Scatterer>> {
 }
 
 /// The map from a scatterer, or the light, to the next, or the plane.
-fn map(view: &Observed<System>, scatterers: &[Scatterer], leg: usize) -> Option<Map<4>> {
+fn map(view: &Observed<ReflectionSystem>, scatterers: &[ScatteringSurface], leg: usize) -> Option<AffineMap<4>> {
     let Observed { system, plane } = view;
     let from = leg.checked_sub(1).map(|before| &scatterers[before]);
     let first = from.map_or(0, |from| from.number + 1);
     let to = scatterers.get(leg);
     let last = to.map_or(system.visited, |to| to.number);
-    Map::touching(|z| {
+    AffineMap::touching(|z| {
         let start = match from {
-            None => Ray::new(z),
+            None => LegRay::new(z),
             Some(from) => from.ray(&system.surfaces[from.number], z)?,
         };
         let specular = &system.surfaces[first..last];
@@ -139,21 +139,21 @@ fn map(view: &Observed<System>, scatterers: &[Scatterer], leg: usize) -> Option<
 }
 
 /// Where a ray meets a surface first.
-fn met(surface: &Surface, ray: &Ray) -> Option<DVec3> {
+fn met(surface: &PathSurface, ray: &LegRay) -> Option<DVec3> {
     let start = crate::obstacle::ROUNDING * ray.point.length();
     let t = surface.first(ray, start)?;
     Some(ray.point + t * ray.direction)
 }
 
-impl Scatterer {
+impl ScatteringSurface {
     /// The ray that leaves a surface at local coordinates, less those of the central ray.
-    fn ray(&self, surface: &Surface, [s, t, theta, phi]: [f64; 4]) -> Option<Ray> {
+    fn ray(&self, surface: &PathSurface, [s, t, theta, phi]: [f64; 4]) -> Option<LegRay> {
         let foot = self.frame.to_world(DVec3::new(s, t, 0.0));
-        let down = Ray::back(&surface.patch, foot, self.frame.d);
+        let down = LegRay::back(&surface.patch, foot, self.frame.d);
         let (distance, normal) = down.met(&surface.patch)?;
         let normal = normal * normal.dot(self.frame.d).signum();
         let [longitude, latitude] = self.outgoing;
-        Some(Ray {
+        Some(LegRay {
             point: down.point + distance * down.direction,
             direction: towards(&self.frame, normal, [longitude + theta, latitude + phi]),
         })
@@ -167,7 +167,7 @@ pub(super) fn towards(frame: &Frame, normal: DVec3, [theta, phi]: [f64; 2]) -> D
     frame.turned_to(normal).vector_to_world(away)
 }
 
-fn steps(view: &Observed<System>, scatterers: &[Scatterer]) -> Option<Vec<String>> {
+fn steps(view: &Observed<ReflectionSystem>, scatterers: &[ScatteringSurface]) -> Option<Vec<String>> {
     let Observed { system, plane } = view;
     let mut steps: Vec<String> = system.obstacles.iter().map(words::obstacle).collect();
     let (mut at, mut name) = (DVec3::ZERO, "light");

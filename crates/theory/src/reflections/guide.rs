@@ -4,7 +4,7 @@
 //! before; a lobe blurs its angles there; the edge of a surface narrows its positions. What is left
 //! at a surface tells which directions matter at each of its points, and at the light which rays.
 
-use crate::geometry::{Map, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times};
+use crate::geometry::{AffineMap, Matrix, congruent, diagonal, from_fn, inverse, product, sum, times};
 use crate::scattering::{bell, bell_density};
 use etendue_field::{Profile, Window};
 use std::f64::consts::{PI, TAU};
@@ -29,7 +29,7 @@ impl Gaussian<4> {
     }
 
     /// Of what a map takes to this one.
-    pub(super) fn before(&self, map: &Map<4>) -> Option<Self> {
+    pub(super) fn before(&self, map: &AffineMap<4>) -> Option<Self> {
         let back = map.inverse()?;
         Some(Self {
             mean: back.apply(self.mean),
@@ -52,7 +52,7 @@ impl Gaussian<4> {
                 }),
             };
         };
-        let mirror = Map::<4>::mirror();
+        let mirror = AffineMap::<4>::mirror();
         let blur = diagonal([0.0, 0.0, width * width, width * width]);
         Self {
             mean: mirror.apply([s, t, theta + outgoing[0], phi + outgoing[1]]),
@@ -143,7 +143,7 @@ impl Gaussian<2> {
 /// A density of two coordinates as wide as a Gaussian, with tails so long that no ray stands for
 /// much more than its share.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Bell {
+pub(super) struct HeavyTailedGaussian {
     mean: [f64; 2],
     /// Lower triangle R: points are mean + R q.
     root: [f64; 3],
@@ -152,7 +152,7 @@ pub(super) struct Bell {
 /// Width of a bell over the standard deviation of its Gaussian.
 const BROADENED: f64 = 1.8;
 
-impl Bell {
+impl HeavyTailedGaussian {
     pub(super) fn new(gaussian: &Gaussian<2>) -> Option<Self> {
         let [[a, b], [_, c]] = gaussian.covariance;
         let first = a.sqrt();
@@ -185,14 +185,14 @@ impl Bell {
 
 /// Bells of which one is drawn from in turn, each with its share.
 #[derive(Clone, Debug)]
-pub(super) struct Mixture(Vec<(f64, Bell)>);
+pub(super) struct GuideMixture(Vec<(f64, HeavyTailedGaussian)>);
 
-impl Mixture {
+impl GuideMixture {
     /// Of Gaussians with their shares, which add up to 1; those that are no density are left out.
     pub(super) fn new(parts: impl IntoIterator<Item = (f64, Option<Gaussian<2>>)>) -> Option<Self> {
         let bells = parts.into_iter();
-        let bells = bells.filter_map(|(share, part)| Some((share, Bell::new(&part?)?)));
-        let mut bells: Vec<(f64, Bell)> = bells.collect();
+        let bells = bells.filter_map(|(share, part)| Some((share, HeavyTailedGaussian::new(&part?)?)));
+        let mut bells: Vec<(f64, HeavyTailedGaussian)> = bells.collect();
         let total: f64 = bells.iter().map(|(share, _)| share).sum();
         for (share, _) in &mut bells {
             *share /= total;

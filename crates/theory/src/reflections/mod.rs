@@ -1,6 +1,6 @@
 //! Windowed spectra of light that several surfaces send on in turn, some of them by a BRDF.
 //!
-//! In goes a [`System`]: a light, masks and obstacles anywhere, and the surfaces that the central
+//! In goes a [`ReflectionSystem`]: a light, masks and obstacles anywhere, and the surfaces that the central
 //! ray visits, each a mirror, a refracting surface, a lens, a diffuse rectangle or a surface with a
 //! BRDF. In goes a [`Plane`](crate::rays::Plane) beyond some of them. The
 //! [`Observed`](crate::Observed) of both is a [`Model`](crate::Model): it sums paths from the light
@@ -31,7 +31,7 @@ mod surface;
 #[cfg(test)]
 mod tests;
 
-pub use chain::{Chain, chain, defect};
+pub use chain::{FirstOrderChain, chain, defect};
 
 use crate::obstacle::Obstacle;
 use etendue_field::{Light, Patch, Reflectance, Specular};
@@ -42,13 +42,13 @@ pub const MAX_SCATTERERS: usize = 3;
 
 /// A light and the surfaces of its path, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
-pub struct System {
+pub struct ReflectionSystem {
     /// What shines from the plane z = 0, along Z; neither an environment nor a ray file.
     pub light: Light,
     /// Masks, and whatever else stands in the way and is not on the path.
     pub obstacles: Vec<Obstacle>,
     /// All surfaces of the path, in the order of light.
-    pub surfaces: Vec<Surface>,
+    pub surfaces: Vec<PathSurface>,
     /// How many of them light has left before the plane. The next one, if any, ends the last leg and
     /// hides nothing of it.
     pub visited: usize,
@@ -56,7 +56,7 @@ pub struct System {
 
 /// A surface of the path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Surface {
+pub struct PathSurface {
     /// Its name, for texts.
     pub name: String,
     /// Where it is.

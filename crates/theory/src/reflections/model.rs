@@ -1,16 +1,16 @@
 //! Surfaces in a row and a plane behind them as a model: its parameters and its prediction.
 
-use super::{Interaction, Surface, System, predict};
-use crate::model::{Model, Moved, Observed, Over};
+use super::{Interaction, PathSurface, ReflectionSystem, predict};
+use crate::model::{Model, ShiftedModels, Observed, Over};
 use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
 use crate::rays::shrunk_light;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use etendue_field::{Complex, Light};
 
-impl System {
-    fn before_plane(&self) -> &[Surface] {
+impl ReflectionSystem {
+    fn before_plane(&self) -> &[PathSurface] {
         &self.surfaces[..self.visited]
     }
 
@@ -36,11 +36,11 @@ impl System {
 
     /// The last surface that scatters light before the plane.
     fn last_scatterer(&self) -> Option<usize> {
-        self.before_plane().iter().rposition(Surface::scatters)
+        self.before_plane().iter().rposition(PathSurface::scatters)
     }
 }
 
-impl Surface {
+impl PathSurface {
     /// The factor of its BRDF, if it scatters; where BRDFs add up, of the first alone.
     fn albedo_mut(&mut self) -> Option<&mut f64> {
         match &mut self.interaction {
@@ -69,7 +69,7 @@ impl Surface {
 
 /// The albedo and the lobe are those of the last surface that scatters: of albedos the light tells
 /// the product alone.
-impl Model for Observed<System> {
+impl Model for Observed<ReflectionSystem> {
     fn light(&self) -> &Light {
         &self.system.light
     }
@@ -114,7 +114,7 @@ impl Model for Observed<System> {
 
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
         let last = self.system.last_scatterer();
-        let System {
+        let ReflectionSystem {
             light, surfaces, ..
         } = &mut self.system;
         match parameter {
@@ -138,12 +138,12 @@ impl Model for Observed<System> {
     fn predict(&self, parameters: &[Parameter], over: Over<'_>, budget: Budget) -> Predicted {
         let last = self.system.last_scatterer();
         let surface = last.map(|last| self.system.surfaces[last].clone());
-        let albedo = surface.filter(Surface::is_in_proportion);
+        let albedo = surface.filter(PathSurface::is_in_proportion);
         let albedo = albedo.and_then(|mut surface| surface.albedo_mut().copied());
         let albedo = albedo.filter(|albedo| *albedo > 0.0);
         let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && albedo.is_some();
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
-        let moved: Option<Vec<_>> = others.map(|other| Moved::nearby(self, *other)).collect();
+        let moved: Option<Vec<_>> = others.map(|other| ShiftedModels::nearby(self, *other)).collect();
         let moved = moved.expect("parameters of these surfaces");
         let mut found = predict::predict(self, &moved, over, budget);
         let factor = parameters.iter().position(is_factor);
@@ -159,7 +159,7 @@ impl Model for Observed<System> {
         predict::with_rays(self, over, budget, then);
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
         work_of_nets(over.1, budget)
     }
 }

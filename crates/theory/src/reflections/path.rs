@@ -1,13 +1,13 @@
 //! One path from the light to the plane, drawn at a point of the unit cube.
 
-use super::aim::Aim;
-use super::chain::{Chain, Scatterer, chain};
-use super::guide::{Bell, Conditional, Gaussian, Mixture};
-use super::{Surface, System};
+use super::aim::DirectionCoordinates;
+use super::chain::{FirstOrderChain, ScatteringSurface, chain};
+use super::guide::{HeavyTailedGaussian, Conditional, Gaussian, GuideMixture};
+use super::{PathSurface, ReflectionSystem};
 use crate::model::Observed;
-use crate::nets::{DIMENSIONS, Node};
-use crate::obstacle::{Obstacles, ROUNDING};
-use crate::rays::{Ray, emitted, point_of};
+use crate::nets::{DIMENSIONS, RayNode};
+use crate::obstacle::{PreparedObstacles, ROUNDING};
+use crate::rays::{LegRay, emitted, point_of};
 use crate::scattering::local;
 use etendue_field::{Light, TwoPlane, Window};
 use glam::DVec3;
@@ -15,26 +15,26 @@ use std::f64::consts::TAU;
 
 /// Paths of a light field.
 #[derive(Debug)]
-pub(super) struct Paths<'a> {
-    view: &'a Observed<System>,
+pub(super) struct FieldPaths<'a> {
+    view: &'a Observed<ReflectionSystem>,
     window: &'a Window,
-    obstacles: Obstacles<'a>,
-    chain: Chain,
+    obstacles: PreparedObstacles<'a>,
+    chain: FirstOrderChain,
     /// Rays of the light, and directions away from each scatterer, that come into the window.
     guides: Vec<Conditional>,
     /// Of the leg from the light, and from each scatterer.
-    aims: Vec<Aim>,
+    aims: Vec<DirectionCoordinates>,
 }
 
 /// A path as it goes, and as the chain has it.
-pub(super) struct Drawn {
-    pub(super) exact: Node,
-    pub(super) first_order: Node,
+pub(super) struct DrawnPath {
+    pub(super) exact: RayNode,
+    pub(super) first_order: RayNode,
 }
 
 /// A path on its way.
 struct Going {
-    ray: Ray,
+    ray: LegRay,
     /// Flux over the density of what was drawn.
     flux: f64,
     /// The same by the chain: radiance times the volume that the path stands for.
@@ -45,9 +45,9 @@ struct Going {
     target: Option<DVec3>,
 }
 
-impl<'a> Paths<'a> {
+impl<'a> FieldPaths<'a> {
     /// `None` where the chain does not tell where light must go.
-    pub(super) fn new(view: &'a Observed<System>, window: &'a Window) -> Option<Self> {
+    pub(super) fn new(view: &'a Observed<ReflectionSystem>, window: &'a Window) -> Option<Self> {
         let chain = chain(view)?;
         let mut guides = Vec::new();
         let mut guide = Gaussian::of_window(window);
@@ -63,12 +63,12 @@ impl<'a> Paths<'a> {
         guides.push(at_light.given(known)?);
         guides.reverse();
         let legs = 0..chain.maps.len();
-        let aims = legs.map(|leg| Aim::new(view, &chain.scatterers, leg));
+        let aims = legs.map(|leg| DirectionCoordinates::new(view, &chain.scatterers, leg));
         Some(Self {
             view,
             window,
             aims: aims.collect(),
-            obstacles: Obstacles::new(&view.system.obstacles),
+            obstacles: PreparedObstacles::new(&view.system.obstacles),
             chain,
             guides,
         })
@@ -80,7 +80,7 @@ impl<'a> Paths<'a> {
     }
 
     /// The path at a point of the unit cube; `None` if it brings no light.
-    pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<Drawn> {
+    pub(super) fn draw(&self, at: &[f64; DIMENSIONS]) -> Option<DrawnPath> {
         let system = &self.view.system;
         let mut going = self.begin([at[0], at[1], at[2], at[3]])?;
         let mut scatterers = 0;
@@ -108,15 +108,15 @@ impl<'a> Paths<'a> {
         let (aim, guide) = (&self.aims[0], &self.guides[0]);
         let mut target = None;
         let (ray, density) = if light.is_distant() {
-            let rays = Bell::new(&guide.at(outer))?;
+            let rays = HeavyTailedGaussian::new(&guide.at(outer))?;
             let [x, y] = rays.draw([a, b]);
             ([x, y, 0.0, 0.0], rays.density([x, y]))
         } else {
             let [x, y] = outer;
-            let targets = Bell::new(&aim.seen(&guide.at(outer), outer, map))?;
+            let targets = HeavyTailedGaussian::new(&aim.seen(&guide.at(outer), outer, map))?;
             let at = targets.draw([a, b]);
             let density = targets.density(at);
-            if matches!(aim, Aim::Angles) {
+            if matches!(aim, DirectionCoordinates::Angles) {
                 ([x, y, at[0], at[1]], density)
             } else {
                 let (d, steradians) = aim.direction(DVec3::new(x, y, 0.0), at, None)?;
@@ -129,7 +129,7 @@ impl<'a> Paths<'a> {
         let flux = emitted(light, ray) * per_area / density;
         let [.., u, v] = ray;
         (flux > 0.0 && flux.is_finite()).then(|| Going {
-            ray: Ray::new(ray),
+            ray: LegRay::new(ray),
             flux,
             radiance: flux * (1.0 + u * u + v * v).powi(2) * map.det().abs(),
             at: map.apply(ray),
@@ -158,7 +158,7 @@ impl<'a> Paths<'a> {
 
     /// Whether a surface of the path stands in the way of a ray of a leg, other than that which ends
     /// the leg.
-    fn is_hidden(&self, leg: usize, ray: &Ray, [start, end]: [f64; 2]) -> bool {
+    fn is_hidden(&self, leg: usize, ray: &LegRay, [start, end]: [f64; 2]) -> bool {
         let surfaces = &self.view.system.surfaces;
         let ends = surfaces.get(leg).map(|surface| surface.patch);
         let others = surfaces.iter().filter(|other| Some(other.patch) != ends);
@@ -188,14 +188,14 @@ impl<'a> Paths<'a> {
         }
         let guide = seen(&self.guides[number + 1].at([s, t]));
         let both = guide.product(&lobe);
-        let targets = Mixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])?;
+        let targets = GuideMixture::new([(0.5, both), (0.25, Some(guide)), (0.25, Some(lobe))])?;
         let target = targets.draw(r);
         let (to, steradians) = aim.direction(point, target, Some((scatterer, normal)))?;
         let per_density = steradians / targets.density(target);
         let [.., longitude, latitude] = local(&scatterer.frame, point, normal, to);
         let value = surface.value(point, normal, [from, to]);
         going.flux *= value * normal.dot(to).max(0.0) * per_density;
-        going.ray = Ray {
+        going.ray = LegRay {
             point,
             direction: to,
         };
@@ -216,7 +216,7 @@ impl<'a> Paths<'a> {
     }
 
     /// The last leg, to the plane.
-    fn end(&self, going: &Going) -> Option<Drawn> {
+    fn end(&self, going: &Going) -> Option<DrawnPath> {
         let Going {
             ray,
             flux,
@@ -233,16 +233,16 @@ impl<'a> Paths<'a> {
             return None;
         }
         let passes = self.obstacles.passes(system.visited, ray, length);
-        let exact = plane.coordinates(ray).map(|(z, per_flux)| Node {
+        let exact = plane.coordinates(ray).map(|(z, per_flux)| RayNode {
             z,
             weight: passes * flux * per_flux * self.seen(z),
         });
-        let first_order = Node {
+        let first_order = RayNode {
             z: *at,
             weight: passes * radiance * plane.factor(*at) * self.seen(*at),
         };
-        Some(Drawn {
-            exact: exact.unwrap_or(Node::DARK),
+        Some(DrawnPath {
+            exact: exact.unwrap_or(RayNode::DARK),
             first_order,
         })
     }
@@ -260,8 +260,8 @@ const FRONT: f64 = 0.6;
 /// Where light must come from at a surface, by where it must go.
 fn on_surface(
     guide: &Gaussian<4>,
-    surface: &Surface,
-    scatterer: &Scatterer,
+    surface: &PathSurface,
+    scatterer: &ScatteringSurface,
 ) -> Option<Gaussian<4>> {
     let width = surface.width(surface.hit);
     // The mean square along an axis, of a disc or a rectangle.

@@ -1,9 +1,9 @@
 //! Slices of light that several surfaces send on, over scrambled nets of paths.
 
-use super::System;
-use super::path::Paths;
-use crate::model::{Moved, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
+use super::ReflectionSystem;
+use super::path::FieldPaths;
+use crate::model::{ShiftedModels, Observed, Over};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNode, RayNets};
 use crate::predicted::Predicted;
 use etendue_field::Slices;
 
@@ -13,13 +13,13 @@ use etendue_field::Slices;
 /// What the chain predicts, and the derivatives, are differences over the same paths: good to about
 /// a per cent of what they are.
 pub(crate) fn predict(
-    view: &Observed<System>,
-    moved: &[Moved<Observed<System>>],
+    view: &Observed<ReflectionSystem>,
+    moved: &[ShiftedModels<Observed<ReflectionSystem>>],
     over: Over<'_>,
     budget: Budget,
 ) -> Predicted {
     let (window, grid, picture) = over;
-    let of = |view| Paths::new(view, window);
+    let of = |view| FieldPaths::new(view, window);
     let Some(paths) = of(view) else {
         return dark(moved, over);
     };
@@ -27,7 +27,7 @@ pub(crate) fn predict(
         let [above, below] = &moved.sides;
         (moved.apart, [of(above), of(below)])
     });
-    let around = Around {
+    let around = ChainDifferences {
         paths: &paths,
         moved: sides.collect(),
     };
@@ -41,34 +41,34 @@ pub(crate) fn predict(
 
 /// Calls `then` with the paths that [`predict`] sums over nets, if there are any.
 pub(crate) fn with_rays(
-    view: &Observed<System>,
+    view: &Observed<ReflectionSystem>,
     (window, ..): Over<'_>,
     budget: Budget,
     then: &mut dyn FnMut(&dyn RayNets),
 ) {
-    if let Some(paths) = Paths::new(view, window) {
-        then(&nets::Sampled::new(&paths, budget));
+    if let Some(paths) = FieldPaths::new(view, window) {
+        then(&nets::SampledNets::new(&paths, budget));
     }
 }
 
 /// Of light that the chain does not lead to the plane.
-fn dark(moved: &[Moved<Observed<System>>], (_, grid, picture): Over<'_>) -> Predicted {
+fn dark(moved: &[ShiftedModels<Observed<ReflectionSystem>>], (_, grid, picture): Over<'_>) -> Predicted {
     Predicted {
         derivatives: vec![Slices::zeros(*grid); moved.len()],
         ..Predicted::dark(grid, picture)
     }
 }
 
-impl Integrand for Paths<'_> {
+impl Integrand for FieldPaths<'_> {
     fn fields(&self) -> usize {
         1
     }
 
     fn dimensions(&self) -> usize {
-        Paths::dimensions(self)
+        FieldPaths::dimensions(self)
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
         if let Some(drawn) = self.draw(at) {
             nodes[0] = drawn.exact;
         }
@@ -77,12 +77,12 @@ impl Integrand for Paths<'_> {
 
 /// The difference of the chain from a light field, and that of light fields with more and with less
 /// of each parameter.
-struct Around<'a> {
-    paths: &'a Paths<'a>,
-    moved: Vec<(f64, [Option<Paths<'a>>; 2])>,
+struct ChainDifferences<'a> {
+    paths: &'a FieldPaths<'a>,
+    moved: Vec<(f64, [Option<FieldPaths<'a>>; 2])>,
 }
 
-impl Integrand for Around<'_> {
+impl Integrand for ChainDifferences<'_> {
     fn fields(&self) -> usize {
         1 + self.moved.len()
     }
@@ -95,8 +95,8 @@ impl Integrand for Around<'_> {
         2
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
-        let times = |node: Node, factor: f64| Node {
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
+        let times = |node: RayNode, factor: f64| RayNode {
             weight: factor * node.weight,
             ..node
         };

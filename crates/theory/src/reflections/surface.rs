@@ -1,14 +1,14 @@
 //! One surface of the path: where rays meet it, and how it reflects.
 
-use super::{Interaction, Surface};
+use super::{Interaction, PathSurface};
 use crate::obstacle::on_patch;
-use crate::rays::{Ray, bent};
+use crate::rays::{LegRay, bent};
 use crate::scattering::{brdf, kernel, narrowest};
 use etendue_field::{Brdf, Fresnel, Lobe};
 use glam::DVec3;
 use std::f64::consts::FRAC_1_SQRT_2;
 
-impl Surface {
+impl PathSurface {
     /// Whether it draws a new direction for light.
     #[must_use]
     pub fn scatters(&self) -> bool {
@@ -16,14 +16,14 @@ impl Surface {
     }
 
     /// Distances beyond `start` at which a ray meets it.
-    pub(super) fn distances(&self, ray: &Ray, start: f64) -> impl Iterator<Item = f64> {
+    pub(super) fn distances(&self, ray: &LegRay, start: f64) -> impl Iterator<Item = f64> {
         let distances = on_patch(&self.patch, ray).into_iter().flatten();
         let inside = move |t: &f64| *t > start && self.holds(ray.point + *t * ray.direction);
         distances.filter(inside)
     }
 
     /// The first of these.
-    pub(super) fn first(&self, ray: &Ray, start: f64) -> Option<f64> {
+    pub(super) fn first(&self, ray: &LegRay, start: f64) -> Option<f64> {
         self.distances(ray, start).min_by(f64::total_cmp)
     }
 
@@ -44,13 +44,13 @@ impl Surface {
 
     /// Where a ray goes on that meets a specular surface at a point; `None` at a scattering one, and
     /// where all light is reflected that should pass.
-    pub(super) fn turned(&self, ray: &Ray, point: DVec3) -> Option<Ray> {
+    pub(super) fn turned(&self, ray: &LegRay, point: DVec3) -> Option<LegRay> {
         let Interaction::Specular(event) = self.interaction else {
             return None;
         };
         let normal = self.normal(point)?;
         let direction = bent(event, &self.patch.frame, [ray.direction, point, normal])?;
-        Some(Ray { point, direction })
+        Some(LegRay { point, direction })
     }
 
     /// The normal on the side from which light is scattered that arrives along a direction; `None`

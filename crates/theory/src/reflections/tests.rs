@@ -64,8 +64,8 @@ fn patch(at: DVec3, facing: DVec3, curvature: f64) -> Patch {
     }
 }
 
-fn surface(patch: Patch, interaction: Interaction) -> Surface {
-    Surface {
+fn surface(patch: Patch, interaction: Interaction) -> PathSurface {
+    PathSurface {
         name: "surface".into(),
         patch,
         outline: None,
@@ -74,8 +74,8 @@ fn surface(patch: Patch, interaction: Interaction) -> Surface {
     }
 }
 
-fn system(light: Light, surfaces: Vec<Surface>) -> System {
-    System {
+fn system(light: Light, surfaces: Vec<PathSurface>) -> ReflectionSystem {
+    ReflectionSystem {
         light,
         obstacles: vec![],
         visited: surfaces.len(),
@@ -125,7 +125,7 @@ fn one_surface_is_that_of_scattering() {
                 above: true,
             }],
         };
-        let scattering = scattering::System {
+        let scattering = scattering::ScatteringSystem {
             light: lamp(0.2),
             layers: vec![(0.5, mask.clone())],
             obstacles: vec![],

@@ -1,9 +1,9 @@
 //! The first-order chain: affine maps onto the surface and off it, with the lobe between them.
 
-use super::System;
-use crate::geometry::{Map, Matrix};
+use super::ScatteringSystem;
+use crate::geometry::{AffineMap, Matrix};
 use crate::model::Observed;
-use crate::rays::{Incidence, Plane, Ray};
+use crate::rays::{Incidence, Plane, LegRay};
 use crate::words::{self, degrees, number};
 use etendue_field::{
     AngleTable, Frame, Fresnel, Lobe, Orientation, Pattern, Quantity, Reflectance, Term, Weight,
@@ -18,10 +18,10 @@ use glam::DVec3;
 pub struct ReflectionChain {
     /// From (x, y, u, v) at the light to local coordinates of where light comes from: travel,
     /// incidence, curvature.
-    pub onto: Map<4>,
+    pub onto: AffineMap<4>,
     /// From local coordinates of where light goes to those of the plane: back, outgoing angle,
     /// travel.
-    pub off: Map<4>,
+    pub off: AffineMap<4>,
     /// Longitude θ₀ of where the central ray comes from.
     pub incidence: f64,
     /// Longitude θ₁ and latitude of where the central ray goes.
@@ -43,9 +43,9 @@ pub struct ReflectionChain {
 /// 2005, Eqs. 9–11 and 19, corrected (docs/theory.md, section 7), which its tests hold them
 /// against.
 #[must_use]
-pub fn chain(view: &Observed<System>) -> Option<ReflectionChain> {
+pub fn chain(view: &Observed<ScatteringSystem>) -> Option<ReflectionChain> {
     let Observed { system, plane } = view;
-    let central = Ray {
+    let central = LegRay {
         point: DVec3::ZERO,
         direction: DVec3::Z,
     };
@@ -59,7 +59,7 @@ pub fn chain(view: &Observed<System>) -> Option<ReflectionChain> {
         d: incidence.n,
     };
     let arrives = |[x, y, u, v]: [f64; 4]| {
-        let ray = Ray::new([x, y, u, v]);
+        let ray = LegRay::new([x, y, u, v]);
         let (distance, normal) = ray.met(&system.patch)?;
         let point = ray.point + ray.direction * distance;
         Some(local(&frame, point, normal, -ray.direction))
@@ -73,8 +73,8 @@ pub fn chain(view: &Observed<System>) -> Option<ReflectionChain> {
             leaving.direction,
         ))
     };
-    let onto = Map::touching(arrives)?;
-    let off = Map::touching(leaves)?.inverse()?;
+    let onto = AffineMap::touching(arrives)?;
+    let off = AffineMap::touching(leaves)?.inverse()?;
     let [.., longitude, latitude] = leaves([0.0; 4])?;
     let outgoing = [longitude, latitude];
     let curvature = incidence.shape(&system.patch, arriving.origin);
@@ -101,7 +101,7 @@ pub fn chain(view: &Observed<System>) -> Option<ReflectionChain> {
 /// How far the maps of a chain are from those of where rays go, in radians, metres, or shares of
 /// them: zero for that of [`chain`].
 #[must_use]
-pub fn defect(view: &Observed<System>, tried: &ReflectionChain) -> Option<f64> {
+pub fn defect(view: &Observed<ScatteringSystem>, tried: &ReflectionChain) -> Option<f64> {
     let traced = chain(view)?;
     let onto = tried.onto.apart(&traced.onto, &[1.0; 4]);
     Some(onto.max(tried.off.apart(&traced.off, &[1.0; 4])))
@@ -110,8 +110,8 @@ pub fn defect(view: &Observed<System>, tried: &ReflectionChain) -> Option<f64> {
 impl ReflectionChain {
     /// A of the rays from the light to the plane by way of the mirror direction, z' = A z.
     #[must_use]
-    pub fn rays(&self) -> Map<4> {
-        self.onto.then(&Map::<4>::mirror()).then(&self.off)
+    pub fn rays(&self) -> AffineMap<4> {
+        self.onto.then(&AffineMap::<4>::mirror()).then(&self.off)
     }
 }
 
@@ -128,7 +128,7 @@ pub(crate) fn local(frame: &Frame, point: DVec3, normal: DVec3, away: DVec3) -> 
 }
 
 fn steps(
-    system: &System,
+    system: &ScatteringSystem,
     plane: &Plane,
     incidence: &Incidence,
     distance: f64,

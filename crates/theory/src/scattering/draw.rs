@@ -6,11 +6,11 @@
 
 use super::brdf::narrowest;
 use super::exact::Leaving;
-use super::incoming::{Part, secant};
-use super::{ReflectionChain, System};
-use crate::geometry::{Map, Matrix, product, times};
-use crate::nets::Density;
-use crate::sky::Sky;
+use super::incoming::{LightPart, secant};
+use super::{ReflectionChain, ScatteringSystem};
+use crate::geometry::{AffineMap, Matrix, product, times};
+use crate::nets::LinearDensity;
+use crate::sky::SkyDensity;
 use etendue_field::{Frame, Light, Shape, Window};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
@@ -47,7 +47,7 @@ impl LightStrategy {
     }
 
     /// This one without what makes no difference to a system.
-    pub(super) fn in_effect(self, system: &System) -> Self {
+    pub(super) fn in_effect(self, system: &ScatteringSystem) -> Self {
         let has_extent = system.light.has_extent();
         let has_lobe = narrowest_of(system).is_some();
         let has_center = !matches!(system.light, Light::Environment { .. });
@@ -66,9 +66,9 @@ impl LightStrategy {
 
 /// Draws rays at a plane.
 #[derive(Clone, Debug)]
-pub(super) struct Rays {
+pub(super) struct PlaneRaySampler {
     /// Over x, y, u and v, by the window.
-    window: [Density; 4],
+    window: [LinearDensity; 4],
     /// Slopes towards where the central light is mirrored.
     mirrored: Option<Mirrored>,
 }
@@ -89,9 +89,9 @@ struct Mirrored {
 /// Widths of the lobe over which slopes are drawn about the mirror direction.
 const BROADENED: f64 = 1.5;
 
-impl Rays {
+impl PlaneRaySampler {
     pub(super) fn new(
-        system: &System,
+        system: &ScatteringSystem,
         window: &Window,
         chain: Option<&ReflectionChain>,
         strategy: LightStrategy,
@@ -99,7 +99,7 @@ impl Rays {
         let profiles = [window.x, window.y, window.u, window.v];
         let chain = chain.filter(|_| strategy.mirrored);
         Self {
-            window: profiles.map(|profile| Density::of(&profile)),
+            window: profiles.map(|profile| LinearDensity::of(&profile)),
             mirrored: chain.and_then(|chain| Mirrored::new(system, chain)),
         }
     }
@@ -126,9 +126,9 @@ impl Rays {
 
 impl Mirrored {
     /// `None` where light comes from everywhere, or slopes do not tell angles apart.
-    fn new(system: &System, chain: &ReflectionChain) -> Option<Self> {
+    fn new(system: &ScatteringSystem, chain: &ReflectionChain) -> Option<Self> {
         let off = chain.off.inverse()?;
-        let block = |map: &Map<4>, row: usize, column: usize| -> Matrix<2> {
+        let block = |map: &AffineMap<4>, row: usize, column: usize| -> Matrix<2> {
             crate::geometry::from_fn(|i, j| map.matrix[row + i][column + j])
         };
         // What the central point of the light, or the axis of a beam, shines along.
@@ -185,8 +185,8 @@ impl Mirrored {
 /// Draws parts of the light.
 #[derive(Clone, Debug)]
 pub(super) struct Lights<'a> {
-    system: &'a System,
-    sky: Option<Arc<Sky<'a>>>,
+    system: &'a ScatteringSystem,
+    sky: Option<Arc<SkyDensity<'a>>>,
     /// Whether half of them are drawn by the lobe.
     by_lobe: bool,
     /// Of how many along each side of the square one is drawn at a time.
@@ -195,20 +195,20 @@ pub(super) struct Lights<'a> {
 
 impl<'a> Lights<'a> {
     /// For a surface whose normal is this where the central ray meets it.
-    pub(super) fn new(system: &'a System, normal: DVec3, strategy: LightStrategy) -> Self {
+    pub(super) fn new(system: &'a ScatteringSystem, normal: DVec3, strategy: LightStrategy) -> Self {
         let sky = match &system.light {
-            Light::Environment { environment } => Sky::new(environment, normal).map(Arc::new),
+            Light::Environment { environment } => SkyDensity::new(environment, normal).map(Arc::new),
             _ => None,
         };
         Self::under(system, sky, strategy)
     }
 
     /// The same for a changed system in the same environment.
-    pub(super) fn of<'b>(&'b self, system: &'b System, strategy: LightStrategy) -> Lights<'b> {
+    pub(super) fn of<'b>(&'b self, system: &'b ScatteringSystem, strategy: LightStrategy) -> Lights<'b> {
         Lights::under(system, self.sky.clone(), strategy)
     }
 
-    fn under(system: &'a System, sky: Option<Arc<Sky<'a>>>, strategy: LightStrategy) -> Self {
+    fn under(system: &'a ScatteringSystem, sky: Option<Arc<SkyDensity<'a>>>, strategy: LightStrategy) -> Self {
         let strategy = strategy.in_effect(system);
         Self {
             system,
@@ -229,7 +229,7 @@ impl<'a> Lights<'a> {
         &'b self,
         leaving: &'b Leaving,
         [a, b]: [f64; 2],
-    ) -> impl Iterator<Item = (Part, f64)> + 'b {
+    ) -> impl Iterator<Item = (LightPart, f64)> + 'b {
         let side = self.side;
         (0..side * side).filter_map(move |k| {
             let cell = [(k / side) as f64, (k % side) as f64];
@@ -240,10 +240,10 @@ impl<'a> Lights<'a> {
     }
 
     /// A part of the light, and its density in the part's measure.
-    pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(Part, f64)> {
+    pub(super) fn draw(&self, leaving: &Leaving, [a, b]: [f64; 2]) -> Option<(LightPart, f64)> {
         let light = &self.system.light;
         if !light.has_extent() {
-            return Some((Part::Whole, 1.0));
+            return Some((LightPart::Whole, 1.0));
         }
         if !self.by_lobe {
             return self.by_light([a, b]);
@@ -259,10 +259,10 @@ impl<'a> Lights<'a> {
     }
 
     /// A part, and its density among those drawn by the light alone.
-    fn by_light(&self, at: [f64; 2]) -> Option<(Part, f64)> {
+    fn by_light(&self, at: [f64; 2]) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
-                let part = Part::Point(crate::rays::point_of(shape, at));
+                let part = LightPart::Point(crate::rays::point_of(shape, at));
                 Some((part, 1.0 / shape.area()))
             }
             Light::Environment { environment } => {
@@ -275,7 +275,7 @@ impl<'a> Lights<'a> {
 
     /// Light of an environment along a direction, from one in the axes of its map; with its
     /// density.
-    fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(Part, f64)> {
+    fn of_sky(&self, along: DVec3, from: DVec3) -> Option<(LightPart, f64)> {
         let (Light::Environment { environment }, Some(sky)) = (&self.system.light, &self.sky)
         else {
             return None;
@@ -283,19 +283,19 @@ impl<'a> Lights<'a> {
         let slopes = forward(along)?;
         let radiance = environment.map.radiance(from);
         let density = sky.density(from, radiance);
-        Some((Part::Sky { slopes, radiance }, density))
+        Some((LightPart::Sky { slopes, radiance }, density))
     }
 
     /// The part of the light in a direction, away from the surface, and its density among those
     /// drawn by the light alone.
-    fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(Part, f64)> {
+    fn towards(&self, leaving: &Leaving, wi: DVec3) -> Option<(LightPart, f64)> {
         match &self.system.light {
             Light::Area { shape, .. } => {
                 let [u, v] = forward(-wi)?;
                 let DVec3 { x, y, z } = leaving.point;
                 let [a, b] = [x - z * u, y - z * v];
                 let meets = shape.contains(a, b);
-                meets.then(|| (Part::Point([a, b]), 1.0 / shape.area()))
+                meets.then(|| (LightPart::Point([a, b]), 1.0 / shape.area()))
             }
             Light::Environment { environment } => self.of_sky(-wi, environment.origin_of(-wi)),
             _ => None,
@@ -303,20 +303,20 @@ impl<'a> Lights<'a> {
     }
 
     /// Where a part of the light is seen, a unit vector away from the surface.
-    fn direction(&self, leaving: &Leaving, part: Part) -> DVec3 {
+    fn direction(&self, leaving: &Leaving, part: LightPart) -> DVec3 {
         match part {
-            Part::Point([a, b]) => (DVec3::new(a, b, 0.0) - leaving.point).normalize(),
-            Part::Sky { slopes: [u, v], .. } => -DVec3::new(u, v, 1.0).normalize(),
-            Part::Whole => DVec3::ZERO,
+            LightPart::Point([a, b]) => (DVec3::new(a, b, 0.0) - leaving.point).normalize(),
+            LightPart::Sky { slopes: [u, v], .. } => -DVec3::new(u, v, 1.0).normalize(),
+            LightPart::Whole => DVec3::ZERO,
         }
     }
 
     /// Steradians per unit of the part's measure.
-    fn steradians(&self, leaving: &Leaving, part: Part) -> f64 {
+    fn steradians(&self, leaving: &Leaving, part: LightPart) -> f64 {
         let DVec3 { x, y, z } = leaving.point;
         match part {
-            Part::Point([a, b]) => 1.0 / (z * z * secant([(x - a) / z, (y - b) / z]).powi(3)),
-            Part::Sky { .. } | Part::Whole => 1.0,
+            LightPart::Point([a, b]) => 1.0 / (z * z * secant([(x - a) / z, (y - b) / z]).powi(3)),
+            LightPart::Sky { .. } | LightPart::Whole => 1.0,
         }
     }
 }
@@ -335,7 +335,7 @@ struct LobeDensity {
 }
 
 impl LobeDensity {
-    fn new(system: &System, leaving: &Leaving) -> Self {
+    fn new(system: &ScatteringSystem, leaving: &Leaving) -> Self {
         let at = system.patch.frame.to_local(leaving.point);
         let brdfs = system.reflectance.at(at.x, at.y).weighted();
         let local = Frame::IDENTITY.turned_to(leaving.normal);
@@ -370,7 +370,7 @@ impl LobeDensity {
 
 /// The width of the narrowest lobe of a surface. What wider ones send on beyond it is drawn by the
 /// window or the light.
-fn narrowest_of(system: &System) -> Option<f64> {
+fn narrowest_of(system: &ScatteringSystem) -> Option<f64> {
     narrowest(system.reflectance.terms.iter().map(|term| &term.brdf))
 }
 

@@ -1,10 +1,10 @@
 //! The radiance of a ray at a plane, as it is.
 
-use super::System;
+use super::ScatteringSystem;
 use super::brdf;
-use super::incoming::{Incoming, Part, secant};
+use super::incoming::{IncomingLight, LightPart, secant};
 use crate::mask::Masks;
-use crate::rays::{Plane, Ray};
+use crate::rays::{Plane, LegRay};
 use etendue_field::Orientation;
 use glam::DVec3;
 
@@ -18,7 +18,7 @@ pub(super) struct Leaving {
     pub(super) direction: DVec3,
 }
 
-impl System {
+impl ScatteringSystem {
     /// The ray at (x, y, u, v) of a plane, where it leaves the surface; `None` if it does not.
     pub(super) fn leaving(&self, plane: &Plane, [x, y, u, v]: [f64; 4]) -> Option<Leaving> {
         let frame = &plane.frame;
@@ -46,19 +46,19 @@ impl System {
 
     /// Where a line goes out through the surface: point, normal and the line's direction.
     fn on_line(&self, at: DVec3, direction: DVec3) -> Option<(DVec3, DVec3, DVec3)> {
-        let ray = Ray::back(&self.patch, at, direction);
+        let ray = LegRay::back(&self.patch, at, direction);
         let (distance, normal) = ray.met(&self.patch)?;
         Some((ray.point - direction * distance, normal, direction))
     }
 
     /// The radiance that leaves, of what a part of the light shines there, per unit of its measure.
-    pub(super) fn radiance(&self, masks: &Masks<'_>, leaving: &Leaving, part: Part) -> f64 {
+    pub(super) fn radiance(&self, masks: &Masks<'_>, leaving: &Leaving, part: LightPart) -> f64 {
         let Leaving {
             point,
             normal,
             direction,
         } = *leaving;
-        let Incoming { slopes, weight } = masks.incoming(&self.light, point, part);
+        let IncomingLight { slopes, weight } = masks.incoming(&self.light, point, part);
         let [u, v] = slopes;
         let secant = secant(slopes);
         let wi = DVec3::new(-u, -v, -1.0) / secant;

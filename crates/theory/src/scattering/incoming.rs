@@ -1,13 +1,13 @@
 //! What shines on a point from one part of the light.
 
 use crate::mask::Masks;
-use crate::rays::{Ray, emitted};
+use crate::rays::{LegRay, emitted};
 use etendue_field::Light;
 use glam::DVec3;
 
 /// A part of the light that is drawn.
 #[derive(Clone, Copy, Debug)]
-pub(super) enum Part {
+pub(super) enum LightPart {
     /// All of it: a point of the surface sees it from one direction alone.
     Whole,
     /// A point of an area light. Densities of such are per square metre.
@@ -24,7 +24,7 @@ pub(super) enum Part {
 
 /// Light that arrives with slopes (u, v).
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Incoming {
+pub(super) struct IncomingLight {
     pub(super) slopes: [f64; 2],
     /// Radiance times du dv per unit of the part's measure; of the whole light, their product.
     pub(super) weight: f64,
@@ -32,20 +32,20 @@ pub(super) struct Incoming {
 
 impl Masks<'_> {
     /// What a part of a light shines on a point in the frame at the light.
-    pub(super) fn incoming(&self, light: &Light, point: DVec3, part: Part) -> Incoming {
+    pub(super) fn incoming(&self, light: &Light, point: DVec3, part: LightPart) -> IncomingLight {
         let DVec3 { x, y, z } = point;
         // Where the ray leaves the plane at the light, and with what slopes.
         let ([a, b], [u, v]) = match part {
-            Part::Sky { slopes, .. } => ([0.0; 2], slopes),
-            Part::Whole if light.is_distant() => ([x, y], [0.0; 2]),
-            Part::Whole => ([0.0; 2], [x / z, y / z]),
-            Part::Point([a, b]) => ([a, b], [(x - a) / z, (y - b) / z]),
+            LightPart::Sky { slopes, .. } => ([0.0; 2], slopes),
+            LightPart::Whole if light.is_distant() => ([x, y], [0.0; 2]),
+            LightPart::Whole => ([0.0; 2], [x / z, y / z]),
+            LightPart::Point([a, b]) => ([a, b], [(x - a) / z, (y - b) / z]),
         };
         let slopes = [u, v];
         let weight = match part {
             // du dv = dω / cos³.
-            Part::Sky { radiance, .. } => radiance * secant(slopes).powi(3),
-            Part::Whole if light.is_distant() => emitted(light, [a, b, u, v]),
+            LightPart::Sky { radiance, .. } => radiance * secant(slopes).powi(3),
+            LightPart::Whole if light.is_distant() => emitted(light, [a, b, u, v]),
             // From flux per du dv to radiance, and du dv = dx dy / z².
             _ => emitted(light, [a, b, u, v]) * secant(slopes).powi(4) / (z * z),
         };
@@ -55,7 +55,7 @@ impl Masks<'_> {
         } else {
             0.0
         };
-        Incoming {
+        IncomingLight {
             slopes,
             weight: weight * passes,
         }
@@ -66,7 +66,7 @@ impl Masks<'_> {
     /// The share of light with these slopes that passes obstacles on its way to a point.
     fn past_obstacles(&self, point: DVec3, [u, v]: [f64; 2]) -> f64 {
         let along = DVec3::new(u, v, 1.0);
-        let ray = Ray {
+        let ray = LegRay {
             point: point - along * point.z,
             direction: along.normalize(),
         };

@@ -1,10 +1,10 @@
 //! The radiance of a ray at a plane by the first-order chain.
 
-use super::System;
+use super::ScatteringSystem;
 use super::brdf;
 use super::chain::ReflectionChain;
-use super::incoming::{Incoming, Part};
-use crate::geometry::{Map, Matrix};
+use super::incoming::{IncomingLight, LightPart};
+use crate::geometry::{AffineMap, Matrix};
 use crate::mask::Masks;
 use etendue_field::{Brdf, Frame, Lobe};
 use glam::DVec3;
@@ -13,10 +13,10 @@ use std::f64::consts::{PI, TAU};
 /// The chain, ready to be evaluated.
 #[derive(Clone, Debug)]
 pub(super) struct Linear<'a> {
-    pub(super) system: &'a System,
+    pub(super) system: &'a ScatteringSystem,
     chain: &'a ReflectionChain,
     /// From the plane to local coordinates of where light goes.
-    off: Map<4>,
+    off: AffineMap<4>,
     /// Positions on the surface to those at its distance across the light's axis, as a matrix.
     across: [[f64; 2]; 2],
     /// Angles on the surface of those from the light's axis, at a point of the surface.
@@ -26,7 +26,7 @@ pub(super) struct Linear<'a> {
 }
 
 impl<'a> Linear<'a> {
-    pub(super) fn new(system: &'a System, chain: &'a ReflectionChain) -> Option<Self> {
+    pub(super) fn new(system: &'a ScatteringSystem, chain: &'a ReflectionChain) -> Option<Self> {
         let m = &chain.onto.matrix;
         let [[a, b], [c, d]] = [[m[0][0], m[0][1]], [m[1][0], m[1][1]]];
         let det = a * d - b * c;
@@ -56,10 +56,10 @@ impl<'a> Linear<'a> {
     /// The radiance that leaves along the ray at z of the plane, of what a part of the light shines
     /// there, per unit of its measure: ℓ cos⁺ θ cos² φ ρ(θo − θr, φo − φr), r being the mirror
     /// direction about the normal (docs/theory.md (41)).
-    pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: Part) -> f64 {
+    pub(super) fn radiance(&self, masks: &Masks<'_>, z: [f64; 4], part: LightPart) -> f64 {
         let local = self.off.apply(z);
         let point = self.point(local);
-        let Incoming { slopes, weight } = masks.incoming(&self.system.light, point, part);
+        let IncomingLight { slopes, weight } = masks.incoming(&self.system.light, point, part);
         if weight <= 0.0 {
             return 0.0;
         }

@@ -1,6 +1,6 @@
 //! Windowed spectra behind a surface that reflects by a BRDF (docs/theory.md, section 10).
 //!
-//! In goes a [`System`]: a light, masks across its way, obstacles, and a curved surface with a BRDF that may
+//! In goes a [`ScatteringSystem`]: a light, masks across its way, obstacles, and a curved surface with a BRDF that may
 //! vary over it. In goes a [`Plane`](crate::rays::Plane) on the surface, light leaving it, or
 //! across its way onwards. The [`Observed`](crate::Observed) of both is a [`Model`](crate::Model):
 //! it sums rays of the plane over scrambled nets, and for each of them a part of the light that
@@ -43,7 +43,7 @@ use etendue_field::{Light, Mask, Patch, Reflectance};
 
 /// A light and the surface its central ray meets, in the frame at the light.
 #[derive(Clone, Debug, PartialEq)]
-pub struct System {
+pub struct ScatteringSystem {
     /// What shines from the plane z = 0, along Z.
     pub light: Light,
     /// Masks between them and their distances from the light, metres.

@@ -1,20 +1,20 @@
 //! A surface with a BRDF and a plane behind it as a model: its parameters and its prediction.
 
-use super::{System, chain, predict, with_rays};
-use crate::model::{Model, Moved, Observed, Over};
+use super::{ScatteringSystem, chain, predict, with_rays};
+use crate::model::{Model, ShiftedModels, Observed, Over};
 use crate::nets::{Budget, RayNets, work_of_nets};
 use crate::parameter::{New, Parameter, change_curvature, curvatures};
 use crate::predicted::Predicted;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use etendue_field::{Complex, Light, Lobe};
 
-impl Model for Observed<System> {
+impl Model for Observed<ScatteringSystem> {
     fn light(&self) -> &Light {
         &self.system.light
     }
 
     fn parameters(&self) -> Vec<Parameter> {
-        let System {
+        let ScatteringSystem {
             light,
             patch,
             reflectance,
@@ -50,7 +50,7 @@ impl Model for Observed<System> {
 
     /// Where BRDFs add up, of the first alone.
     fn change(&mut self, parameter: Parameter, new: New<'_>) -> Option<()> {
-        let System {
+        let ScatteringSystem {
             light,
             patch,
             reflectance,
@@ -78,7 +78,7 @@ impl Model for Observed<System> {
         let factor = only.filter(|albedo| *albedo > 0.0);
         let is_factor = |parameter: &Parameter| *parameter == Parameter::Albedo && factor.is_some();
         let others = parameters.iter().filter(|parameter| !is_factor(parameter));
-        let moved: Option<Vec<_>> = others.map(|other| Moved::nearby(self, *other)).collect();
+        let moved: Option<Vec<_>> = others.map(|other| ShiftedModels::nearby(self, *other)).collect();
         let moved = moved.expect("parameters of the surface");
         let mut found = predict(self, chain(self).as_ref(), &moved, over, budget);
         if let (Some(i), Some(albedo)) = (parameters.iter().position(is_factor), factor) {
@@ -93,7 +93,7 @@ impl Model for Observed<System> {
         with_rays(self, chain(self).as_ref(), over, budget, then);
     }
 
-    fn work(&self, over: Over<'_>, budget: Budget) -> Work {
+    fn work(&self, over: Over<'_>, budget: Budget) -> PredictionWork {
         work_of_nets(over.1, budget)
     }
 }

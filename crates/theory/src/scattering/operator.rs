@@ -40,17 +40,17 @@ pub fn semi_convolution(
 
 /// A wave A e^(2πi (f s + g t)) of a weight.
 #[derive(Clone, Copy)]
-struct Wave {
+struct WeightWave {
     frequency: [f64; 2],
     amplitude: Complex,
 }
 
-const CONSTANT: Wave = Wave {
+const CONSTANT: WeightWave = WeightWave {
     frequency: [0.0; 2],
     amplitude: Complex::new(1.0, 0.0),
 };
 
-fn waves(weight: &Weight) -> Option<Vec<Wave>> {
+fn waves(weight: &Weight) -> Option<Vec<WeightWave>> {
     match weight {
         Weight::One => Some(vec![CONSTANT]),
         Weight::Pattern(pattern) => cosine_waves(pattern),
@@ -66,7 +66,7 @@ fn waves(weight: &Weight) -> Option<Vec<Wave>> {
 }
 
 /// ½ + ¼ m (e^(2πi f t + ip) + its conjugate).
-fn cosine_waves(pattern: &Pattern) -> Option<Vec<Wave>> {
+fn cosine_waves(pattern: &Pattern) -> Option<Vec<WeightWave>> {
     let Pattern::Cosine(grating) = pattern else {
         return None;
     };
@@ -75,12 +75,12 @@ fn cosine_waves(pattern: &Pattern) -> Option<Vec<Wave>> {
         frequency[grating.axis] = sign * grating.frequency;
         let (sin, cos) = libm::sincos(sign * grating.phase);
         let amplitude = Complex::new(cos, sin) * (0.25 * grating.modulation);
-        Wave {
+        WeightWave {
             frequency,
             amplitude,
         }
     };
-    let mean = Wave {
+    let mean = WeightWave {
         amplitude: Complex::from(0.5),
         ..CONSTANT
     };

@@ -1,15 +1,15 @@
 //! Slices of scattered light, over scrambled nets of rays.
 
-use super::draw::{LightStrategy, Lights, Rays};
+use super::draw::{LightStrategy, Lights, PlaneRaySampler};
 use super::exact::Leaving;
-use super::incoming::Part;
+use super::incoming::LightPart;
 use super::linear::Linear;
-use super::{ReflectionChain, System};
+use super::{ReflectionChain, ScatteringSystem};
 use crate::mask::Masks;
-use crate::model::{Moved, Observed, Over};
-use crate::nets::{self, Budget, DIMENSIONS, Integrand, Node, RayNets};
+use crate::model::{ShiftedModels, Observed, Over};
+use crate::nets::{self, Budget, DIMENSIONS, Integrand, RayNode, RayNets};
 use crate::predicted::Predicted;
-use crate::rays::{Plane, Ray};
+use crate::rays::{Plane, LegRay};
 use etendue_field::{EnvironmentMap, Light, SliceGrid, TwoPlane, Window};
 use glam::DVec3;
 
@@ -24,16 +24,16 @@ use glam::DVec3;
 /// edges are no edges of a difference. Shadows do not move with masks: what is lit on one side
 /// alone adds noise, the less the farther the sides are apart.
 pub(crate) fn predict(
-    view: &Observed<System>,
+    view: &Observed<ScatteringSystem>,
     chain: Option<&ReflectionChain>,
-    moved: &[Moved<Observed<System>>],
+    moved: &[ShiftedModels<Observed<ScatteringSystem>>],
     (window, grid, picture): Over<'_>,
     budget: Budget,
 ) -> Predicted {
     let strategy = fastest(view, chain, (window, grid));
     let field = ScatteredField::new(view, window, chain, strategy);
     let budget = affordable(&view.system, budget);
-    let around = Around::new(&field, chain, moved, strategy);
+    let around = VariedFields::new(&field, chain, moved, strategy);
     let mut means = nets::means(&around, window, grid).into_iter();
     Predicted {
         to_first_order: around.linear.as_ref().and_then(|_| means.next()),
@@ -44,7 +44,7 @@ pub(crate) fn predict(
 
 /// Calls `then` with the rays that [`predict`] sums over nets.
 pub(crate) fn with_rays(
-    view: &Observed<System>,
+    view: &Observed<ScatteringSystem>,
     chain: Option<&ReflectionChain>,
     (window, grid, _): Over<'_>,
     budget: Budget,
@@ -52,7 +52,7 @@ pub(crate) fn with_rays(
 ) {
     let strategy = fastest(view, chain, (window, grid));
     let field = ScatteredField::new(view, window, chain, strategy);
-    then(&nets::Sampled::new(
+    then(&nets::SampledNets::new(
         &field,
         affordable(&view.system, budget),
     ));
@@ -60,7 +60,7 @@ pub(crate) fn with_rays(
 
 /// The strategy with the least error in the same time.
 fn fastest(
-    view: &Observed<System>,
+    view: &Observed<ScatteringSystem>,
     chain: Option<&ReflectionChain>,
     (window, grid): (&Window, &SliceGrid),
 ) -> LightStrategy {
@@ -71,7 +71,7 @@ fn fastest(
 }
 
 /// The nodes that take as long as those of a budget do with few lobes of light.
-fn affordable(system: &System, budget: Budget) -> Budget {
+fn affordable(system: &ScatteringSystem, budget: Budget) -> Budget {
     Budget {
         nodes: budget.nodes / cost(system),
         ..budget
@@ -82,7 +82,7 @@ fn affordable(system: &System, budget: Budget) -> Budget {
 /// it is, and its difference to the chain.
 #[must_use]
 pub fn beside(
-    view: &Observed<System>,
+    view: &Observed<ScatteringSystem>,
     chain: &ReflectionChain,
     over: Over<'_>,
     budget: Budget,
@@ -91,7 +91,7 @@ pub fn beside(
 }
 
 /// How many times as long a ray takes as one of few lobes of light.
-fn cost(system: &System) -> f64 {
+fn cost(system: &ScatteringSystem) -> f64 {
     const FEW_LOBES: f64 = 16.0;
     match &system.light {
         Light::Environment { environment } => match &environment.map {
@@ -103,7 +103,7 @@ fn cost(system: &System) -> f64 {
 }
 
 /// The strategy that costs least, each choice being tried once.
-fn best(system: &System, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
+fn best(system: &ScatteringSystem, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
     let mut best = LightStrategy::default();
     let mut least = cost(best);
     for choice in 0..best.neighbours().len() {
@@ -121,16 +121,16 @@ fn best(system: &System, cost: impl Fn(LightStrategy) -> f64) -> LightStrategy {
 
 /// A light field as it is.
 struct ScatteredField<'a> {
-    view: &'a Observed<System>,
+    view: &'a Observed<ScatteringSystem>,
     window: &'a Window,
     masks: Masks<'a>,
-    rays: Rays,
+    rays: PlaneRaySampler,
     lights: Lights<'a>,
 }
 
 impl<'a> ScatteredField<'a> {
     fn new(
-        view: &'a Observed<System>,
+        view: &'a Observed<ScatteringSystem>,
         window: &'a Window,
         chain: Option<&ReflectionChain>,
         strategy: LightStrategy,
@@ -141,7 +141,7 @@ impl<'a> ScatteredField<'a> {
             view,
             window,
             masks: Masks::new(&system.layers, &system.obstacles),
-            rays: Rays::new(system, window, chain, strategy),
+            rays: PlaneRaySampler::new(system, window, chain, strategy),
             lights: Lights::new(system, normal, strategy),
         }
     }
@@ -159,7 +159,7 @@ impl<'a> ScatteredField<'a> {
     }
 
     /// The radiance of a ray, of what a part of the light shines.
-    fn radiance(&self, leaving: &Leaving, part: Part) -> f64 {
+    fn radiance(&self, leaving: &Leaving, part: LightPart) -> f64 {
         radiance(self.view, &self.masks, leaving, part)
     }
 }
@@ -174,7 +174,7 @@ fn over(radiance: f64, density: f64) -> f64 {
 }
 
 /// The radiance of a ray at a plane, of what a part of the light shines, per unit of its measure.
-fn radiance(view: &Observed<System>, masks: &Masks<'_>, leaving: &Leaving, part: Part) -> f64 {
+fn radiance(view: &Observed<ScatteringSystem>, masks: &Masks<'_>, leaving: &Leaving, part: LightPart) -> f64 {
     let Observed { system, plane } = view;
     let passes = past_obstacles(plane, masks, leaving);
     let radiance = if passes > 0.0 {
@@ -192,7 +192,7 @@ fn radiance(view: &Observed<System>, masks: &Masks<'_>, leaving: &Leaving, part:
 
 /// The share of a ray that passes obstacles between the surface and the plane.
 fn past_obstacles(plane: &Plane, masks: &Masks<'_>, leaving: &Leaving) -> f64 {
-    let ray = Ray {
+    let ray = LegRay {
         point: leaving.point,
         direction: leaving.direction,
     };
@@ -205,13 +205,13 @@ impl Integrand for ScatteredField<'_> {
         1
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
         let Some((z, factor, leaving)) = self.draw(at) else {
             return;
         };
         let parts = self.lights.each(&leaving, [at[4], at[5]]);
         let radiance = parts.map(|(part, density)| over(self.radiance(&leaving, part), density));
-        nodes[0] = Node {
+        nodes[0] = RayNode {
             z,
             weight: factor * radiance.sum::<f64>(),
         };
@@ -219,22 +219,22 @@ impl Integrand for ScatteredField<'_> {
 }
 
 /// A part of the light, if there is one, and the density with which it was drawn.
-type Drawn = Option<(Part, f64)>;
+type DrawnPart = Option<(LightPart, f64)>;
 
 /// A light field with a parameter changed.
 ///
 /// Where it leaves a ray or the light as they are, it takes them from the light field itself.
-struct Side<'a> {
-    view: &'a Observed<System>,
+struct VariedField<'a> {
+    view: &'a Observed<ScatteringSystem>,
     moves_surface: bool,
     moves_light: bool,
     masks: Masks<'a>,
     lights: Lights<'a>,
 }
 
-impl<'a> Side<'a> {
+impl<'a> VariedField<'a> {
     fn new(
-        view: &'a Observed<System>,
+        view: &'a Observed<ScatteringSystem>,
         field: &'a ScatteredField<'a>,
         strategy: LightStrategy,
     ) -> Self {
@@ -252,7 +252,7 @@ impl<'a> Side<'a> {
 
     /// The radiance of a ray, over the density with which a part of the light was drawn. Beside it
     /// is what the light field itself has.
-    fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, Drawn)) -> Option<f64> {
+    fn radiance(&self, z: [f64; 4], at: [f64; 2], own: &(Leaving, DrawnPart)) -> Option<f64> {
         let Observed { system, plane } = self.view;
         let (mut leaving, mut drawn) = *own;
         if self.moves_surface {
@@ -268,20 +268,20 @@ impl<'a> Side<'a> {
 }
 
 /// What is around a light field: it to first order, and with parameters changed.
-struct Around<'a> {
+struct VariedFields<'a> {
     field: &'a ScatteredField<'a>,
     linear: Option<Linear<'a>>,
-    moved: Vec<(f64, [Side<'a>; 2])>,
+    moved: Vec<(f64, [VariedField<'a>; 2])>,
 }
 
-impl<'a> Around<'a> {
+impl<'a> VariedFields<'a> {
     fn new(
         field: &'a ScatteredField<'a>,
         chain: Option<&'a ReflectionChain>,
-        moved: &'a [Moved<Observed<System>>],
+        moved: &'a [ShiftedModels<Observed<ScatteringSystem>>],
         strategy: LightStrategy,
     ) -> Self {
-        let side = |view| Side::new(view, field, strategy);
+        let side = |view| VariedField::new(view, field, strategy);
         let moved = moved.iter();
         Self {
             field,
@@ -293,12 +293,12 @@ impl<'a> Around<'a> {
     }
 }
 
-impl Integrand for Around<'_> {
+impl Integrand for VariedFields<'_> {
     fn fields(&self) -> usize {
         usize::from(self.linear.is_some()) + self.moved.len()
     }
 
-    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [Node]) {
+    fn nodes(&self, at: &[f64; DIMENSIONS], nodes: &mut [RayNode]) {
         let Self {
             field,
             linear,
@@ -313,7 +313,7 @@ impl Integrand for Around<'_> {
         let mut put = |difference: f64| {
             if let Some(node) = nodes.next() {
                 let weight = factor * difference;
-                *node = Node { z, weight };
+                *node = RayNode { z, weight };
             }
         };
         if let Some(linear) = linear {

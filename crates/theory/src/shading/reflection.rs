@@ -2,7 +2,7 @@
 
 use super::product::{Lattice, TextureWave, angular_product, texture};
 use super::{Fresnel, Lobe, cosine_hat, table_hat};
-use crate::geometry::Map;
+use crate::geometry::AffineMap;
 use etendue_field::{AngleTable, Complex};
 use std::fmt;
 
@@ -12,19 +12,19 @@ type Spectrum<'a> = &'a dyn Fn([f64; 2]) -> Complex;
 /// Steps of a reflection in the order of light (Durand et al. 2005, section 4.1 and Fig. 10).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Step {
-    /// 1, onto the surface: [`Map::incidence`](Map::<2>::incidence).
+    /// 1, onto the surface: [`AffineMap::incidence`](Map::<2>::incidence).
     Incidence,
-    /// 2, into the frames of the local normals: [`Map::curvature`](Map::<2>::curvature).
+    /// 2, into the frames of the local normals: [`AffineMap::curvature`](Map::<2>::curvature).
     Curvature,
     /// 3, times cosine and other factors of the direction of incidence.
     Cosine,
-    /// 4, mirrored: [`Map::mirror`].
+    /// 4, mirrored: [`AffineMap::mirror`].
     Mirror,
     /// 5, convolved with the lobe, times factors of the outgoing direction.
     Brdf,
-    /// 6, back from the local normals: [`Map::back`](Map::<2>::back).
+    /// 6, back from the local normals: [`AffineMap::back`](Map::<2>::back).
     Back,
-    /// 7, off the surface: [`Map::outgoing`](Map::<2>::outgoing).
+    /// 7, off the surface: [`AffineMap::outgoing`](Map::<2>::outgoing).
     Outgoing,
 }
 
@@ -139,13 +139,13 @@ impl Reflection<'_> {
         let k = self.curvature;
         let until = |step: Step| move |w: [f64; 2]| self.spectrum(step, w, before);
         match step {
-            Step::Incidence => Map::<2>::incidence(self.incidence).spectrum(omega, before),
-            Step::Curvature => Map::<2>::curvature(k).spectrum(omega, &until(Step::Incidence)),
+            Step::Incidence => AffineMap::<2>::incidence(self.incidence).spectrum(omega, before),
+            Step::Curvature => AffineMap::<2>::curvature(k).spectrum(omega, &until(Step::Incidence)),
             Step::Cosine => self.sum(|term| self.lit(term, omega, before)),
-            Step::Mirror => Map::mirror().spectrum(omega, &until(Step::Cosine)),
+            Step::Mirror => AffineMap::mirror().spectrum(omega, &until(Step::Cosine)),
             Step::Brdf => self.sum(|term| self.reflected(term, omega, before)),
-            Step::Back => Map::<2>::back(k).spectrum(omega, &until(Step::Brdf)),
-            Step::Outgoing => Map::<2>::outgoing(self.outgoing).spectrum(omega, &until(Step::Back)),
+            Step::Back => AffineMap::<2>::back(k).spectrum(omega, &until(Step::Brdf)),
+            Step::Outgoing => AffineMap::<2>::outgoing(self.outgoing).spectrum(omega, &until(Step::Back)),
         }
     }
 
@@ -162,7 +162,7 @@ impl Reflection<'_> {
     /// Steps 3 to 5 of a term. The product with the lobe is Eq. 16 of Durand et al. 2005, the
     /// weights of a sum are textures (section 4.5).
     fn reflected(&self, term: &Term<'_>, omega: [f64; 2], before: Spectrum<'_>) -> Complex {
-        let mirrored = |w| Map::mirror().spectrum(w, &|w| self.lit(term, w, before));
+        let mirrored = |w| AffineMap::mirror().spectrum(w, &|w| self.lit(term, w, before));
         let blurred = |w: [f64; 2]| match &term.lobe {
             Some(lobe) => mirrored(w) * lobe.spectrum(w[1]),
             None => mirrored(w),

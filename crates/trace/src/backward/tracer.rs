@@ -13,9 +13,9 @@ use crate::heading::Heading;
 use crate::line::{direction, start};
 use crate::sampling::{LAMBERTIAN, by_cosine, point};
 use crate::sky::Sky;
-use etendue_field::random::{self, Stream};
 use etendue_field::{Crossing, Frame, Ledger, Light, PhotonSource, Specular, TwoPlane};
 use etendue_scene::{Object, Scene};
+use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 
 /// The backward tracer of a scene, the independent check of [`Tracer`](crate::Tracer).

@@ -1,8 +1,8 @@
 //! BRDFs: reciprocity, albedo, and samples against densities.
 
 use super::{densities, density, sample, towards, value};
-use etendue_field::random::{self, Stream};
 use etendue_field::{Brdf, Frame, Fresnel, Lobe, Mixture, Reflectance, Term, Weight};
+use etendue_transform::random::{self, Stream};
 use glam::DVec3;
 use std::f64::consts::{PI, TAU};
 

@@ -3,8 +3,8 @@
 use super::apart;
 use crate::covariance::{SpectralCovariance, Traced, Untraced, window};
 use crate::geometry::covariance::{gaussian_window, power_spectrum};
-use crate::geometry::{Edition, Map, Matrix, diagonal, sum};
-use crate::rays::{self, Element, Plane};
+use crate::geometry::{Edition, AffineMap, Matrix, diagonal, sum};
+use crate::rays::{self, SpecularSurface, Plane};
 use crate::testing::{chain_of, opaque};
 use crate::{Chain, Observed, Operator, scattering};
 use etendue_field::{
@@ -63,9 +63,9 @@ fn of(traced: &dyn Traced) -> Matrix<4> {
 fn between_parallel_planes() {
     let beside = opaque(vec![disc(-0.5, 0.2)]);
     let chain = chain_of(lamp(), [(0.6, Some(beside)), (0.9, None)]);
-    let met = Map::<4>::travel(0.6).covariance(&diagonal(LAMP));
+    let met = AffineMap::<4>::travel(0.6).covariance(&diagonal(LAMP));
     let passed = gaussian_window(&met, open(0.3)).unwrap();
-    let expected = windowed(&Map::<4>::travel(0.9).covariance(&passed));
+    let expected = windowed(&AffineMap::<4>::travel(0.9).covariance(&passed));
     assert!(apart(&of(&chain), &expected) < 1e-12); // rounding of inverses
     let across = chain_of(lamp(), [(0.6, Some(opaque(vec![disc(0.1, 0.2)])))]);
     assert_eq!(across.spectral_covariance(), Err(Untraced::Blocked));
@@ -78,7 +78,7 @@ fn a_receiver_leaves_the_irradiance_even_over_slopes() {
         name: "floor".into(),
         albedo: 0.5,
     });
-    let met = Map::<4>::travel(1.2).covariance(&diagonal(LAMP));
+    let met = AffineMap::<4>::travel(1.2).covariance(&diagonal(LAMP));
     let c = chain.spectral_covariance().unwrap().matrix().unwrap();
     assert!((c[0][0] * 8.0 * PI * PI * met[0][0] - 1.0).abs() < 1e-12); // rounding
     assert_eq!([c[2], c[3]], [[0.0; 4]; 2]);
@@ -123,11 +123,11 @@ fn layers() -> Vec<(f64, Mask)> {
 #[test]
 fn behind_a_curved_mirror() {
     let view = Observed {
-        system: rays::System {
+        system: rays::SpecularSystem {
             light: lamp(),
             layers: layers(),
             obstacles: vec![],
-            elements: vec![Element {
+            elements: vec![SpecularSurface {
                 name: "mirror".into(),
                 patch: patch(),
                 event: Specular::Mirror,
@@ -135,10 +135,10 @@ fn behind_a_curved_mirror() {
         },
         plane: beyond(),
     };
-    let met = Map::<4>::travel(0.4).covariance(&diagonal(LAMP));
+    let met = AffineMap::<4>::travel(0.4).covariance(&diagonal(LAMP));
     let passed = gaussian_window(&met, open(0.3)).unwrap();
     let whole = rays::chain(&view, Edition::Corrected).unwrap().map.rays();
-    let rest = Map::<4>::travel(-0.4).then(&whole);
+    let rest = AffineMap::<4>::travel(-0.4).then(&whole);
     let expected = windowed(&rest.covariance(&passed));
     assert!(apart(&of(&view), &expected) < 1e-12); // rounding of inverses
 }
@@ -152,7 +152,7 @@ fn behind_a_textured_lobe() {
         phase: 0.0,
     };
     let view = |texture: Option<Pattern>| Observed {
-        system: scattering::System {
+        system: scattering::ScatteringSystem {
             light: Light::Projector {
                 intensity: 1.0,
                 image: Image {
@@ -178,7 +178,7 @@ fn behind_a_textured_lobe() {
     let endless = f64::INFINITY;
     let cosine = [endless, endless, 0.5_f64.sqrt(), 0.375_f64.sqrt()];
     let lit = gaussian_window(&chain.onto.covariance(&light), cosine).unwrap();
-    let mirrored = Map::<4>::mirror().covariance(&lit);
+    let mirrored = AffineMap::<4>::mirror().covariance(&lit);
     let left = sum(&mirrored, &diagonal([0.0, 0.0, 0.01, 0.01]));
     let expected = windowed(&chain.off.covariance(&left));
     let plain = of(&view(None));

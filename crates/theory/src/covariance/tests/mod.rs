@@ -4,7 +4,7 @@ mod chains;
 mod factors;
 mod operators;
 
-use crate::geometry::{Map, Matrix};
+use crate::geometry::{AffineMap, Matrix};
 
 /// The largest difference of two matrices, relative to the geometric mean of their diagonals.
 fn apart(a: &Matrix<4>, b: &Matrix<4>) -> f64 {
@@ -14,9 +14,9 @@ fn apart(a: &Matrix<4>, b: &Matrix<4>) -> f64 {
 }
 
 /// Onto a curved surface, off it as a mirror does, and on: twisted, so that no entry is zero.
-fn bent() -> Map<4> {
+fn bent() -> AffineMap<4> {
     let shape = [[0.7, 0.2], [0.2, -0.4]];
-    Map::<4>::rotation(0.4)
-        .then(&Map::<4>::mirror_reflection(0.6, shape))
-        .then(&Map::travel(0.8))
+    AffineMap::<4>::rotation(0.4)
+        .then(&AffineMap::<4>::mirror_reflection(0.6, shape))
+        .then(&AffineMap::travel(0.8))
 }

@@ -3,7 +3,7 @@
 use super::{apart, bent};
 use crate::covariance::{SpectralCovariance, power};
 use crate::geometry::covariance::{gaussian_spectrum, gaussian_window, power_spectrum};
-use crate::geometry::{Map, Matrix, diagonal, sum};
+use crate::geometry::{AffineMap, Matrix, diagonal, sum};
 use std::f64::consts::PI;
 
 const LIGHT: [f64; 4] = [0.02, 0.03, 0.05, 0.04];
@@ -20,7 +20,7 @@ fn lobe() -> Matrix<4> {
 
 /// C of a Gaussian light field that is followed as a field: S alone is mapped, windowed and blurred.
 fn followed() -> Matrix<4> {
-    let travelled = Map::<4>::travel(1.3).covariance(&diagonal(LIGHT));
+    let travelled = AffineMap::<4>::travel(1.3).covariance(&diagonal(LIGHT));
     let blocked = gaussian_window(
         &travelled,
         [0.1, f64::INFINITY, f64::INFINITY, f64::INFINITY],
@@ -33,7 +33,7 @@ fn traced() -> SpectralCovariance {
     let mut blocker = [[0.0; 4]; 4];
     blocker[0][0] = 1.0 / (8.0 * PI * PI * 0.01);
     SpectralCovariance::new(LIGHT)
-        .mapped(&Map::travel(1.3))
+        .mapped(&AffineMap::travel(1.3))
         .unwrap()
         .multiplied(&blocker)
         .mapped(&bent())
@@ -82,10 +82,10 @@ fn the_definition_gives_what_is_traced() {
     let mut blocker = [[0.0; 4]; 4];
     blocker[0][0] = 1.0 / (8.0 * PI * PI * 0.01);
     let c = SpectralCovariance::new(LIGHT)
-        .mapped(&Map::travel(d))
+        .mapped(&AffineMap::travel(d))
         .unwrap()
         .multiplied(&blocker)
-        .mapped(&Map::travel(e))
+        .mapped(&AffineMap::travel(e))
         .unwrap()
         .multiplied(&window())
         .matrix()
@@ -150,7 +150,7 @@ fn diffuse_reflection_is_the_limit_of_lobes() {
     let flat = SpectralCovariance::new([f64::INFINITY; 4]);
     assert_eq!(flat.diffused().matrix(), Some([[0.0; 4]; 4]));
     let lamp = SpectralCovariance::new([0.0, 0.0, f64::INFINITY, f64::INFINITY]);
-    let lit = lamp.mapped(&Map::travel(2.0)).unwrap().diffused();
+    let lit = lamp.mapped(&AffineMap::travel(2.0)).unwrap().diffused();
     assert_eq!(lit.matrix(), Some([[0.0; 4]; 4]));
 }
 

@@ -17,10 +17,10 @@ const FIELD: Matrix<4> = [
 ];
 
 /// From a light to a surface and on: with an offset.
-fn path() -> Map<4> {
-    Map::<4>::travel(1.5)
-        .then(&Map::<4>::incidence(0.7))
-        .then(&Map::<4>::curvature(SHAPE, 0.7))
+fn path() -> AffineMap<4> {
+    AffineMap::<4>::travel(1.5)
+        .then(&AffineMap::<4>::incidence(0.7))
+        .then(&AffineMap::<4>::curvature(SHAPE, 0.7))
 }
 
 #[test]
@@ -42,7 +42,7 @@ fn spectrum_of_a_mapped_gaussian() {
 #[test]
 fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
     // A field without symmetry, (1 + x − θ/2) exp(−π(…)), transformed where the map has put it.
-    let map = Map::<2>::incidence(0.5).then(&Map::<2>::curvature(0.8));
+    let map = AffineMap::<2>::incidence(0.5).then(&AffineMap::<2>::curvature(0.8));
     let field = |[x, t]: [f64; 2]| {
         let gauss = libm::exp(-std::f64::consts::PI * (4.0 * x * x + 2.0 * x * t + 9.0 * t * t));
         (1.0 + x - 0.5 * t) * gauss
@@ -63,7 +63,7 @@ fn spectrum_of_a_map_is_the_transform_of_the_mapped_field() {
     let before = |omega| transform(&field, omega);
     // What the paper prints is another function.
     let printed = Edition::Equations.incidence(0.5);
-    let printed = printed.then(&Map::<2>::curvature(0.8).spectrum_map());
+    let printed = printed.then(&AffineMap::<2>::curvature(0.8).spectrum_map());
     for omega in [[0.0, 0.0], [1.0, -0.7], [-0.5, 1.0]] {
         let expected = transform(&after, omega);
         let off = |got: Complex| (got - expected).norm();
@@ -88,7 +88,7 @@ fn covariance_of_sampled_rays() {
     };
     let after: Vec<_> = rays.iter().map(|&z| map.apply(z)).collect();
     let (got, expected) = (map.covariance(&covariance(&rays)), covariance(&after));
-    let off = |a: &Matrix<4>, b: &Matrix<4>| apart(&Map::linear(*a), &Map::linear(*b));
+    let off = |a: &Matrix<4>, b: &Matrix<4>| apart(&AffineMap::linear(*a), &AffineMap::linear(*b));
     assert!(off(&got, &expected) < 1e-14); // rounding of sums of 200 numbers below one
     // The spectrum's covariance follows its content.
     let power = power_spectrum(&got).unwrap();
@@ -100,7 +100,7 @@ fn covariance_of_sampled_rays() {
 #[test]
 fn windows_and_lobes() {
     let wide = gaussian_window(&FIELD, [f64::INFINITY; 4]).unwrap();
-    assert!(apart(&Map::linear(wide), &Map::linear(FIELD)) < 1e-16); // rounding
+    assert!(apart(&AffineMap::linear(wide), &AffineMap::linear(FIELD)) < 1e-16); // rounding
     // The light of a point is singular, its window is not: on x = D u, 1/σ² adds up to 1/σu² +
     // D²/σx².
     let point = [[4.0, 2.0], [2.0, 1.0]];

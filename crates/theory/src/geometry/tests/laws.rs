@@ -7,26 +7,26 @@ const ROUNDING: f64 = 1e-14;
 
 #[test]
 fn travels_add_up() {
-    let both = Map::<4>::travel(0.7).then(&Map::travel(1.9));
-    assert!(apart(&both, &Map::travel(2.6)) < ROUNDING);
-    assert!(apart(&both, &Map::travel(2.5)) > 0.09); // the test can fail
+    let both = AffineMap::<4>::travel(0.7).then(&AffineMap::travel(1.9));
+    assert!(apart(&both, &AffineMap::travel(2.6)) < ROUNDING);
+    assert!(apart(&both, &AffineMap::travel(2.5)) > 0.09); // the test can fail
 }
 
 #[test]
 fn inverses() {
-    let shears = Map::<2>::curvature(0.6).then(&Map::<2>::back(0.6));
-    assert!(apart(&shears, &Map::identity()) < ROUNDING);
-    let shears = Map::<4>::curvature(SHAPE, 0.7).then(&Map::<4>::back(SHAPE, -0.7));
-    assert!(apart(&shears, &Map::identity()) < ROUNDING);
-    let twice = Map::<4>::mirror().then(&Map::mirror());
-    assert!(apart(&twice, &Map::identity()) < ROUNDING);
-    let off = Map::<4>::outgoing(-0.4)
-        .then(&Map::rotation(0.3))
-        .then(&Map::travel(2.0));
+    let shears = AffineMap::<2>::curvature(0.6).then(&AffineMap::<2>::back(0.6));
+    assert!(apart(&shears, &AffineMap::identity()) < ROUNDING);
+    let shears = AffineMap::<4>::curvature(SHAPE, 0.7).then(&AffineMap::<4>::back(SHAPE, -0.7));
+    assert!(apart(&shears, &AffineMap::identity()) < ROUNDING);
+    let twice = AffineMap::<4>::mirror().then(&AffineMap::mirror());
+    assert!(apart(&twice, &AffineMap::identity()) < ROUNDING);
+    let off = AffineMap::<4>::outgoing(-0.4)
+        .then(&AffineMap::rotation(0.3))
+        .then(&AffineMap::travel(2.0));
     let back = off.then(&off.inverse().unwrap());
-    assert!(apart(&back, &Map::identity()) < ROUNDING);
+    assert!(apart(&back, &AffineMap::identity()) < ROUNDING);
     assert!(
-        Map::<2>::linear([[1.0, 2.0], [2.0, 4.0]])
+        AffineMap::<2>::linear([[1.0, 2.0], [2.0, 4.0]])
             .inverse()
             .is_none()
     );
@@ -34,7 +34,7 @@ fn inverses() {
 
 #[test]
 fn composition_is_one_map_after_the_other() {
-    let (first, second) = (Map::<4>::incidence(0.5), Map::<4>::curvature(SHAPE, 0.5));
+    let (first, second) = (AffineMap::<4>::incidence(0.5), AffineMap::<4>::curvature(SHAPE, 0.5));
     let ray = [0.3, -0.2, 0.1, 0.4];
     let one = first.then(&second).apply(ray);
     let other = second.apply(first.apply(ray));
@@ -50,16 +50,16 @@ fn composition_is_one_map_after_the_other() {
 #[test]
 fn thin_lens_between_travels() {
     let (a, b, f) = (1.3, 0.8, 0.6);
-    let system = Map::<2>::travel(a)
-        .then(&Map::thin_lens(f))
-        .then(&Map::travel(b));
+    let system = AffineMap::<2>::travel(a)
+        .then(&AffineMap::thin_lens(f))
+        .then(&AffineMap::travel(b));
     let abcd = [[1.0 - b / f, a + b - a * b / f], [-1.0 / f, 1.0 - a / f]];
-    assert!(apart(&system, &Map::linear(abcd)) < ROUNDING);
+    assert!(apart(&system, &AffineMap::linear(abcd)) < ROUNDING);
     // 1/a + 1/b = 1/f: an image, where direction does not matter, b/a as large and upside down.
     let b = 1.0 / (1.0 / f - 1.0 / a);
-    let image = Map::<4>::travel(a)
-        .then(&Map::thin_lens(f))
-        .then(&Map::travel(b));
+    let image = AffineMap::<4>::travel(a)
+        .then(&AffineMap::thin_lens(f))
+        .then(&AffineMap::travel(b));
     let [x, y, ..] = image.apply([0.1, -0.2, 0.5, 0.7]);
     assert!((x + 0.1 * b / a).abs() < ROUNDING && (y - 0.2 * b / a).abs() < ROUNDING);
 }
@@ -68,19 +68,19 @@ fn thin_lens_between_travels() {
 fn closed_form_of_a_mirror() {
     let (theta0, k) = (0.7_f64, -0.4);
     let c0 = libm::cos(theta0);
-    let expected = Map::<2>::linear([[-1.0, 0.0], [-2.0 * k / c0, -1.0]]); // docs/theory.md (26)
-    let mirror = Map::<2>::mirror_reflection(theta0, k);
+    let expected = AffineMap::<2>::linear([[-1.0, 0.0], [-2.0 * k / c0, -1.0]]); // docs/theory.md (26)
+    let mirror = AffineMap::<2>::mirror_reflection(theta0, k);
     assert!(apart(&mirror, &expected) < ROUNDING);
     assert!((mirror.focus().unwrap() + c0 / (2.0 * k)).abs() < ROUNDING);
-    assert!(Map::<2>::mirror_reflection(theta0, 0.0).focus().is_none());
+    assert!(AffineMap::<2>::mirror_reflection(theta0, 0.0).focus().is_none());
     let [[m11, m12], [_, m22]] = SHAPE;
-    let expected = Map::<4>::linear([
+    let expected = AffineMap::<4>::linear([
         [-1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, 0.0, 0.0],
         [-2.0 * m11 / c0, 2.0 * m12, -1.0, 0.0],
         [-2.0 * m12, 2.0 * c0 * m22, 0.0, 1.0],
     ]);
-    assert!(apart(&Map::<4>::mirror_reflection(theta0, SHAPE), &expected) < ROUNDING);
+    assert!(apart(&AffineMap::<4>::mirror_reflection(theta0, SHAPE), &expected) < ROUNDING);
 }
 
 #[test]
@@ -88,13 +88,13 @@ fn lensmaker() {
     let (r1, r2, thickness, n) = (0.5, 0.8, 0.02, GLASS.after);
     let lens = |thickness| {
         // The second surface of a biconvex lens is hollow as seen from inside.
-        Map::<2>::refracting_surface(0.0, 1.0 / r1, &GLASS)
+        AffineMap::<2>::refracting_surface(0.0, 1.0 / r1, &GLASS)
             .unwrap()
-            .then(&Map::travel(thickness))
-            .then(&Map::<2>::refracting_surface(0.0, -1.0 / r2, &GLASS.reversed()).unwrap())
+            .then(&AffineMap::travel(thickness))
+            .then(&AffineMap::<2>::refracting_surface(0.0, -1.0 / r2, &GLASS.reversed()).unwrap())
     };
     let power = (n - 1.0) * (1.0 / r1 + 1.0 / r2);
-    assert!(apart(&lens(0.0), &Map::thin_lens(1.0 / power)) < ROUNDING);
+    assert!(apart(&lens(0.0), &AffineMap::thin_lens(1.0 / power)) < ROUNDING);
     // Hecht, Optics, Eq. 6.2, with the second radius negative.
     let thick = power - (n - 1.0).powi(2) * thickness / (n * r1 * r2);
     assert!((lens(thickness).matrix[1][0] + thick).abs() < ROUNDING);
@@ -104,16 +104,16 @@ fn lensmaker() {
 #[test]
 fn total_reflection_has_no_refracted_ray() {
     let out = GLASS.reversed();
-    assert!(Map::<4>::refracting_surface(0.72, SHAPE, &out).is_some());
-    assert!(Map::<4>::refracting_surface(0.74, SHAPE, &out).is_none()); // asin(1/1.5) = 0.7297
-    assert!(Map::<2>::refraction(f64::NAN, &out).is_none());
+    assert!(AffineMap::<4>::refracting_surface(0.72, SHAPE, &out).is_some());
+    assert!(AffineMap::<4>::refracting_surface(0.74, SHAPE, &out).is_none()); // asin(1/1.5) = 0.7297
+    assert!(AffineMap::<2>::refraction(f64::NAN, &out).is_none());
 }
 
 #[test]
 fn specular_steps_keep_etendue() {
-    let mirror = Map::<4>::mirror_reflection(0.7, SHAPE);
-    let surface = Map::<4>::refracting_surface(0.7, SHAPE, &GLASS).unwrap();
-    let same = Map::<4>::refracting_surface(
+    let mirror = AffineMap::<4>::mirror_reflection(0.7, SHAPE);
+    let surface = AffineMap::<4>::refracting_surface(0.7, SHAPE, &GLASS).unwrap();
+    let same = AffineMap::<4>::refracting_surface(
         0.7,
         SHAPE,
         &Media {
@@ -122,34 +122,34 @@ fn specular_steps_keep_etendue() {
         },
     )
     .unwrap();
-    let path = Map::travel(2.0)
+    let path = AffineMap::travel(2.0)
         .then(&mirror)
-        .then(&Map::rotation(0.4))
-        .then(&Map::travel(0.5))
-        .then(&Map::thin_lens(0.3));
+        .then(&AffineMap::rotation(0.4))
+        .then(&AffineMap::travel(0.5))
+        .then(&AffineMap::thin_lens(0.3));
     for kept in [mirror, same, path] {
         assert!(kept.symplectic_defect(1.0) < ROUNDING);
         assert!((kept.det() - 1.0).abs() < ROUNDING);
     }
     // Nothing happens where nothing changes, curved or not.
-    assert!(apart(&same, &Map::identity()) < ROUNDING);
+    assert!(apart(&same, &AffineMap::identity()) < ROUNDING);
     let ratio = GLASS.index_ratio();
     assert!(path.then(&surface).symplectic_defect(ratio) < ROUNDING);
     assert!((surface.det() - ratio * ratio).abs() < ROUNDING);
     assert!(surface.symplectic_defect(1.0) > 0.3); // 1 − 1/1.5
-    let flat = Map::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
+    let flat = AffineMap::<2>::refracting_surface(0.7, 0.4, &GLASS).unwrap();
     assert!(flat.symplectic_defect(ratio) < ROUNDING);
     assert!((flat.det() - ratio).abs() < ROUNDING);
     // A surface is no plane across the light; nor is a shear by M without its cosine a thing that light
     // does.
-    assert!(Map::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
-    let nan = Map::<2>::travel(f64::NAN);
+    assert!(AffineMap::<4>::incidence(0.7).symplectic_defect(1.0) > 0.3);
+    let nan = AffineMap::<2>::travel(f64::NAN);
     assert!(nan.symplectic_defect(1.0).is_nan());
 }
 
 /// Turns the frame round, (X, Y, D) to (−X, Y, −D), as for light that goes straight back.
-fn turn_round() -> Map<4> {
-    Map::<4>::linear([
+fn turn_round() -> AffineMap<4> {
+    AffineMap::<4>::linear([
         [-1.0, 0.0, 0.0, 0.0],
         [0.0, 1.0, 0.0, 0.0],
         [0.0, 0.0, 1.0, 0.0],
@@ -161,33 +161,33 @@ fn turn_round() -> Map<4> {
 fn paths_are_reversible() {
     let (distance, theta0, theta1) = (1.3, 0.7, -0.4);
     let theta2 = GLASS.refracted(theta1).unwrap();
-    let there = Map::<4>::mirror_reflection(theta0, SHAPE)
-        .then(&Map::travel(distance))
-        .then(&Map::<4>::refracting_surface(theta1, SHAPE, &GLASS).unwrap())
-        .then(&Map::thin_lens(0.7));
+    let there = AffineMap::<4>::mirror_reflection(theta0, SHAPE)
+        .then(&AffineMap::travel(distance))
+        .then(&AffineMap::<4>::refracting_surface(theta1, SHAPE, &GLASS).unwrap())
+        .then(&AffineMap::thin_lens(0.7));
     let [[m11, m12], [m21, m22]] = SHAPE;
     // From behind, hollow is convex, T points the other way, B does not.
     let behind = [[-m11, m12], [m21, -m22]];
     let back = |behind| {
-        Map::<4>::thin_lens(0.7)
-            .then(&Map::<4>::refracting_surface(theta2, behind, &GLASS.reversed()).unwrap())
-            .then(&Map::travel(distance))
-            .then(&Map::<4>::mirror_reflection(-theta0, SHAPE))
+        AffineMap::<4>::thin_lens(0.7)
+            .then(&AffineMap::<4>::refracting_surface(theta2, behind, &GLASS.reversed()).unwrap())
+            .then(&AffineMap::travel(distance))
+            .then(&AffineMap::<4>::mirror_reflection(-theta0, SHAPE))
     };
-    let home = |back: Map<4>| there.then(&turn_round()).then(&back).then(&turn_round());
-    assert!(apart(&home(back(behind)), &Map::identity()) < ROUNDING);
-    assert!(apart(&home(back(SHAPE)), &Map::identity()) > 0.1); // the test can fail
+    let home = |back: AffineMap<4>| there.then(&turn_round()).then(&back).then(&turn_round());
+    assert!(apart(&home(back(behind)), &AffineMap::identity()) < ROUNDING);
+    assert!(apart(&home(back(SHAPE)), &AffineMap::identity()) > 0.1); // the test can fail
 }
 
 #[test]
 fn sections_are_the_plane_of_incidence() {
     let k = SHAPE[0][0];
-    let mirror = Map::<4>::mirror_reflection(0.7, SHAPE).matrix;
-    let flat = Map::<2>::mirror_reflection(0.7, k).matrix;
-    let surface = Map::<4>::refracting_surface(0.7, SHAPE, &GLASS)
+    let mirror = AffineMap::<4>::mirror_reflection(0.7, SHAPE).matrix;
+    let flat = AffineMap::<2>::mirror_reflection(0.7, k).matrix;
+    let surface = AffineMap::<4>::refracting_surface(0.7, SHAPE, &GLASS)
         .unwrap()
         .matrix;
-    let line = Map::<2>::refracting_surface(0.7, k, &GLASS).unwrap().matrix;
+    let line = AffineMap::<2>::refracting_surface(0.7, k, &GLASS).unwrap().matrix;
     for n in 0..4 {
         let (i, j) = (n / 2, n % 2);
         assert!((mirror[2 * i][2 * j] - flat[i][j]).abs() < ROUNDING);
@@ -198,14 +198,14 @@ fn sections_are_the_plane_of_incidence() {
 #[test]
 fn turning_the_axes_turns_what_happens() {
     // A lens has no axes; a travel neither.
-    let turn = Map::<4>::rotation(0.4);
-    for step in [Map::travel(1.2), Map::thin_lens(0.6)] {
+    let turn = AffineMap::<4>::rotation(0.4);
+    for step in [AffineMap::travel(1.2), AffineMap::thin_lens(0.6)] {
         assert!(apart(&turn.then(&step), &step.then(&turn)) < ROUNDING);
     }
-    let full = (0..10).fold(Map::identity(), |all, _| {
-        all.then(&Map::<4>::rotation(std::f64::consts::TAU / 10.0))
+    let full = (0..10).fold(AffineMap::identity(), |all, _| {
+        all.then(&AffineMap::<4>::rotation(std::f64::consts::TAU / 10.0))
     });
-    assert!(apart(&full, &Map::identity()) < ROUNDING);
+    assert!(apart(&full, &AffineMap::identity()) < ROUNDING);
     // A point on the new first axis has no second coordinate.
     let (sin, cos) = libm::sincos(0.4_f64);
     let [x, y, ..] = turn.apply([cos, sin, 0.0, 0.0]);
@@ -223,7 +223,7 @@ fn turning_the_axes_turns_what_happens() {
         ],
     ];
     // T = −X before and X after: the axes of the surface turn the other way.
-    let one = turn.then(&Map::<4>::mirror_reflection(0.0, turned));
-    let other = Map::<4>::mirror_reflection(0.0, SHAPE).then(&Map::rotation(-0.4));
+    let one = turn.then(&AffineMap::<4>::mirror_reflection(0.0, turned));
+    let other = AffineMap::<4>::mirror_reflection(0.0, SHAPE).then(&AffineMap::rotation(-0.4));
     assert!(apart(&one, &other) < ROUNDING);
 }

@@ -8,7 +8,7 @@ mod rays;
 mod slopes;
 mod trace;
 
-use super::{Map, Matrix, Media};
+use super::{AffineMap, Matrix, Media};
 
 /// Not symmetric about anything, saddle-shaped.
 const SHAPE: Matrix<2> = [[0.6, 0.25], [0.25, -0.3]];
@@ -18,7 +18,7 @@ const GLASS: Media = Media {
 };
 
 /// The largest difference between two maps, entry by entry.
-fn apart<const N: usize>(a: &Map<N>, b: &Map<N>) -> f64 {
+fn apart<const N: usize>(a: &AffineMap<N>, b: &AffineMap<N>) -> f64 {
     let offsets = (0..N).map(|i| (a.offset[i] - b.offset[i]).abs());
     let entries = (0..N * N).map(|n| (a.matrix[n / N][n % N] - b.matrix[n / N][n % N]).abs());
     offsets.chain(entries).fold(0.0, f64::max)

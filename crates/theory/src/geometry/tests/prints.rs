@@ -2,7 +2,7 @@
 //! other.
 
 use super::rays::{circle, error_and_order};
-use super::trace::{Surface, reflected};
+use super::trace::{GraphSurface, reflected};
 use super::*;
 use crate::geometry::{Edition, SpectrumMap};
 use etendue_field::Complex;
@@ -25,7 +25,7 @@ fn mirror(
 ) -> SpectrumMap<2> {
     incidence
         .then(&curvature.curvature(K))
-        .then(&Map::mirror().spectrum_map())
+        .then(&AffineMap::mirror().spectrum_map())
         .then(&curvature.back(K))
         .then(outgoing)
 }
@@ -33,9 +33,9 @@ fn mirror(
 #[test]
 fn corrected_is_the_map() {
     let print = Edition::Corrected;
-    let map = Map::<2>::mirror_reflection(THETA0, K).spectrum_map();
+    let map = AffineMap::<2>::mirror_reflection(THETA0, K).spectrum_map();
     assert_eq!(print.mirror_reflection(THETA0, K), map);
-    let map = Map::<4>::mirror_reflection(THETA0, SHAPE).spectrum_map();
+    let map = AffineMap::<4>::mirror_reflection(THETA0, SHAPE).spectrum_map();
     let got = print.mirror_reflection_4d(THETA0, SHAPE);
     assert!((got.factor - map.factor).abs() < 1e-15); // rounding
     assert!(apart(&got.rays(), &map.rays()) < 1e-15); // rounding
@@ -92,10 +92,10 @@ fn a_shear_by_the_bilinear_form_alone_does_not_follow_the_rays() {
         let chain = right
             .incidence_4d(THETA0)
             .then(&print.curvature_4d(SHAPE, THETA0))
-            .then(&Map::mirror().spectrum_map())
+            .then(&AffineMap::mirror().spectrum_map())
             .then(&print.back_4d(SHAPE, -THETA0))
             .then(&right.outgoing_4d(-THETA0));
-        let traced = |z| reflected(Surface::graph(SHAPE), THETA0, z);
+        let traced = |z| reflected(GraphSurface::graph(SHAPE), THETA0, z);
         let (error, order) = error_and_order(&chain.rays(), traced);
         assert!(error > 0.05 && order.abs() < 0.1, "{error:e}, {order}");
         assert!(chain.rays().symplectic_defect(1.0) > 0.05);

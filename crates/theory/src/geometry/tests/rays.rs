@@ -1,7 +1,7 @@
 //! Maps against traced rays: the error falls with the neighbourhood's size, as its first or second
 //! power.
 
-use super::trace::{Axes, Surface, reflected, refracted};
+use super::trace::{LightAxes, GraphSurface, reflected, refracted};
 use super::*;
 use crate::geometry::plane_sphere::{to_angles, to_slopes};
 
@@ -11,7 +11,7 @@ const SIZE: f64 = 1e-3;
 /// The largest error of a map over rays of a neighbourhood of size e, relative to e, and the power
 /// of e it falls with.
 pub(super) fn error_and_order<const N: usize>(
-    map: &Map<N>,
+    map: &AffineMap<N>,
     traced: impl Fn([f64; N]) -> [f64; N],
 ) -> (f64, f64) {
     let error = |e: f64| {
@@ -29,7 +29,7 @@ pub(super) fn error_and_order<const N: usize>(
 const ORDER: f64 = 0.02;
 
 fn assert_order<const N: usize>(
-    map: &Map<N>,
+    map: &AffineMap<N>,
     traced: impl Fn([f64; N]) -> [f64; N],
     expected: f64,
 ) {
@@ -40,7 +40,7 @@ fn assert_order<const N: usize>(
 
 /// A circle's ray in the plane of incidence.
 pub(super) fn circle(k: f64, theta0: f64, [x, u]: [f64; 2]) -> [f64; 2] {
-    let [x, _, u, _] = reflected(Surface::sphere(k), theta0, [x, 0.0, u, 0.0]);
+    let [x, _, u, _] = reflected(GraphSurface::sphere(k), theta0, [x, 0.0, u, 0.0]);
     [x, u]
 }
 
@@ -48,7 +48,7 @@ pub(super) fn circle(k: f64, theta0: f64, [x, u]: [f64; 2]) -> [f64; 2] {
 fn circle_mirror() {
     for k in [0.5, -0.5] {
         for (theta0, order) in [(0.6, 1.0), (-1.1, 1.0), (0.0, 2.0)] {
-            let map = Map::<2>::mirror_reflection(theta0, k);
+            let map = AffineMap::<2>::mirror_reflection(theta0, k);
             assert_order(&map, |z| circle(k, theta0, z), order);
         }
     }
@@ -58,11 +58,11 @@ fn circle_mirror() {
 fn mirrors_in_space() {
     for (theta0, order) in [(0.7, 1.0), (-0.4, 1.0), (0.0, 2.0)] {
         for k in [0.5, -0.5] {
-            let map = Map::<4>::mirror_reflection(theta0, [[k, 0.0], [0.0, k]]);
-            assert_order(&map, |z| reflected(Surface::sphere(k), theta0, z), order);
+            let map = AffineMap::<4>::mirror_reflection(theta0, [[k, 0.0], [0.0, k]]);
+            assert_order(&map, |z| reflected(GraphSurface::sphere(k), theta0, z), order);
         }
-        let map = Map::<4>::mirror_reflection(theta0, SHAPE);
-        assert_order(&map, |z| reflected(Surface::graph(SHAPE), theta0, z), order);
+        let map = AffineMap::<4>::mirror_reflection(theta0, SHAPE);
+        assert_order(&map, |z| reflected(GraphSurface::graph(SHAPE), theta0, z), order);
     }
 }
 
@@ -71,12 +71,12 @@ fn refraction_in_space() {
     for media in [GLASS, GLASS.reversed()] {
         for (theta0, order) in [(0.6, 1.0), (-0.4, 1.0), (0.0, 2.0)] {
             for k in [0.5, -0.5] {
-                let map = Map::<4>::refracting_surface(theta0, [[k, 0.0], [0.0, k]], &media);
-                let sphere = |z| refracted(Surface::sphere(k), theta0, &media, z);
+                let map = AffineMap::<4>::refracting_surface(theta0, [[k, 0.0], [0.0, k]], &media);
+                let sphere = |z| refracted(GraphSurface::sphere(k), theta0, &media, z);
                 assert_order(&map.unwrap(), sphere, order);
             }
-            let map = Map::<4>::refracting_surface(theta0, SHAPE, &media);
-            let graph = |z| refracted(Surface::graph(SHAPE), theta0, &media, z);
+            let map = AffineMap::<4>::refracting_surface(theta0, SHAPE, &media);
+            let graph = |z| refracted(GraphSurface::graph(SHAPE), theta0, &media, z);
             assert_order(&map.unwrap(), graph, order);
         }
     }
@@ -86,23 +86,23 @@ fn refraction_in_space() {
 fn other_rules_of_refraction_do_not_converge() {
     let theta0 = 0.6;
     let theta2 = GLASS.refracted(theta0).unwrap();
-    let traced = |z| refracted(Surface::graph(SHAPE), theta0, &GLASS, z);
-    let in_plane = Map::<2>::refraction(theta0, &GLASS).unwrap();
-    let across = Map::<2>::refraction(0.0, &GLASS).unwrap();
-    let off = Map::<4>::incidence(theta2).inverse().unwrap();
+    let traced = |z| refracted(GraphSurface::graph(SHAPE), theta0, &GLASS, z);
+    let in_plane = AffineMap::<2>::refraction(theta0, &GLASS).unwrap();
+    let across = AffineMap::<2>::refraction(0.0, &GLASS).unwrap();
+    let off = AffineMap::<4>::incidence(theta2).inverse().unwrap();
     // Latitudes refracted by the rule for longitudes; nothing refracted across; the cosine of the
     // way in on the way back.
     let wrong = [
-        (Map::<2>::linear(in_plane.matrix), theta0, theta2),
-        (Map::identity(), theta0, theta2),
+        (AffineMap::<2>::linear(in_plane.matrix), theta0, theta2),
+        (AffineMap::identity(), theta0, theta2),
         (across, theta0, theta0),
         (across, 0.0, 0.0),
     ];
-    let chain = |latitude: &Map<2>, before, after| {
-        Map::<4>::incidence(theta0)
-            .then(&Map::<4>::curvature(SHAPE, before))
-            .then(&Map::sections(&in_plane, latitude))
-            .then(&Map::<4>::back(SHAPE, after))
+    let chain = |latitude: &AffineMap<2>, before, after| {
+        AffineMap::<4>::incidence(theta0)
+            .then(&AffineMap::<4>::curvature(SHAPE, before))
+            .then(&AffineMap::sections(&in_plane, latitude))
+            .then(&AffineMap::<4>::back(SHAPE, after))
             .then(&off)
     };
     assert_order(&chain(&across, theta0, theta2), traced, 1.0);
@@ -122,12 +122,12 @@ fn foci_of_a_hollow_sphere() {
         let ends = [-e, e].map(|offset| {
             let mut z = [0.0; 4];
             z[axis] = offset;
-            reflected(Surface::sphere(-1.0 / radius), theta0, z)
+            reflected(GraphSurface::sphere(-1.0 / radius), theta0, z)
         });
         let [low, high] = ends;
         -(high[axis] - low[axis]) / (high[axis + 2] - low[axis + 2])
     };
-    let map = Map::<4>::mirror_reflection(theta0, [[-0.5, 0.0], [0.0, -0.5]]).matrix;
+    let map = AffineMap::<4>::mirror_reflection(theta0, [[-0.5, 0.0], [0.0, -0.5]]).matrix;
     let expected = [
         0.5 * radius * libm::cos(theta0),
         0.5 * radius / libm::cos(theta0),
@@ -145,8 +145,8 @@ fn foci_of_a_hollow_sphere() {
 
 #[test]
 fn axes_turned_about_the_light() {
-    let axes = Axes::coming(0.6);
-    let map = Map::<4>::rotation(0.8);
+    let axes = LightAxes::coming(0.6);
+    let map = AffineMap::<4>::rotation(0.8);
     for z in bundle::<4>(20, 1.0) {
         let (got, expected) = (map.apply(z), axes.turned(0.8).coordinates(axes.ray(z)));
         let off = (0..4).map(|i| (got[i] - expected[i]).abs());
@@ -157,10 +157,10 @@ fn axes_turned_about_the_light() {
 #[test]
 fn axes_turned_about_a_normal() {
     // (θ, φ) are turned as a vector of the plane, which they are near the normal and nowhere else.
-    let axes = Axes::leaving(0.0);
+    let axes = LightAxes::leaving(0.0);
     let turned = |z| to_angles(axes.turned(0.8).coordinates(axes.ray(to_slopes(z))));
-    assert_order(&Map::<4>::rotation(0.8), turned, 2.0);
+    assert_order(&AffineMap::<4>::rotation(0.8), turned, 2.0);
     let [_, _, theta, phi] = turned([0.0, 0.0, 0.7, 0.0]);
-    let [_, _, x, y] = Map::<4>::rotation(0.8).apply([0.0, 0.0, 0.7, 0.0]);
+    let [_, _, x, y] = AffineMap::<4>::rotation(0.8).apply([0.0, 0.0, 0.7, 0.0]);
     assert!((theta - x).hypot(phi - y) > 0.03);
 }

@@ -19,9 +19,9 @@ fn scaled(a: Vector, t: f64) -> Vector {
 
 /// The axes (X, Y, D) of a light frame at the origin, in the axes (T, B, N) of the surface.
 #[derive(Clone, Copy)]
-pub(super) struct Axes([Vector; 3]);
+pub(super) struct LightAxes([Vector; 3]);
 
-impl Axes {
+impl LightAxes {
     /// Light that seems to come from the angle θ: D = −(sin θ T + cos θ N).
     pub(super) fn coming(theta: f64) -> Self {
         let (sin, cos) = libm::sincos(theta);
@@ -64,9 +64,9 @@ impl Axes {
 /// The surface 2 N·p + pᵀ Q p = 0 through the origin: a sphere of curvature k for Q = k 1, else a
 /// graph with the shape operator M.
 #[derive(Clone, Copy)]
-pub(super) struct Surface([Vector; 3]);
+pub(super) struct GraphSurface([Vector; 3]);
 
-impl Surface {
+impl GraphSurface {
     pub(super) fn sphere(k: f64) -> Self {
         Self([[k, 0.0, 0.0], [0.0, k, 0.0], [0.0, 0.0, k]])
     }
@@ -92,21 +92,21 @@ impl Surface {
 }
 
 /// A ray reflected by a surface met at θ₀, in the frames before and after.
-pub(super) fn reflected(surface: Surface, theta0: f64, z: [f64; 4]) -> [f64; 4] {
-    let ray = Axes::coming(theta0).ray(z);
+pub(super) fn reflected(surface: GraphSurface, theta0: f64, z: [f64; 4]) -> [f64; 4] {
+    let ray = LightAxes::coming(theta0).ray(z);
     let [point, n] = surface.hit(ray);
     let direction = along(ray[1], -2.0 * dot(ray[1], n), n);
-    Axes::leaving(-theta0).coordinates([point, direction])
+    LightAxes::leaving(-theta0).coordinates([point, direction])
 }
 
 /// A ray refracted by a surface met at θ₀, in the frames before and after.
-pub(super) fn refracted(surface: Surface, theta0: f64, media: &Media, z: [f64; 4]) -> [f64; 4] {
-    let ray = Axes::coming(theta0).ray(z);
+pub(super) fn refracted(surface: GraphSurface, theta0: f64, media: &Media, z: [f64; 4]) -> [f64; 4] {
+    let ray = LightAxes::coming(theta0).ray(z);
     let [point, n] = surface.hit(ray);
     let ratio = media.before / media.after;
     let cosine = -dot(ray[1], n);
     let after = (1.0 - ratio * ratio * (1.0 - cosine * cosine)).sqrt();
     let direction = along(scaled(ray[1], ratio), ratio * cosine - after, n);
     let theta2 = libm::asin(ratio * libm::sin(theta0));
-    Axes::coming(theta2).coordinates([point, direction])
+    LightAxes::coming(theta2).coordinates([point, direction])
 }

@@ -4,7 +4,7 @@ use super::{FREQUENCIES, brute_force, hann, zero};
 use crate::parallel::disc_resolution::DiscResolution;
 use crate::parallel::expansion::Expansion;
 use crate::parallel::slope::Slope;
-use crate::reference::gaussian::{Gaussian, disc_light, point_light};
+use crate::reference::gaussian::{GaussianWindow, disc_light, point_light};
 use crate::testing::*;
 use crate::{Chain, Model, Operator, Parameter, at};
 use etendue_field::{Complex, Light, Mask, Profile, Shape, Window};
@@ -157,7 +157,7 @@ fn gaussian_window(a: f64, b: f64) -> Window {
 
 #[test]
 fn discs_and_points_agree_with_closed_forms() {
-    let (gaussian, window) = (Gaussian { a: 0.7, b: 0.35 }, gaussian_window(0.7, 0.35));
+    let (gaussian, window) = (GaussianWindow { a: 0.7, b: 0.35 }, gaussian_window(0.7, 0.35));
     let (radius, distance) = (0.3, 2.0);
     let round = chain_of(spot(disc([0.0; 2], radius), 0.0), [(distance, None)]);
     let point = chain_of(Light::Point { intensity: 1.0 }, [(distance, None)]);

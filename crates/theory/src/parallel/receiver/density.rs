@@ -59,13 +59,13 @@ impl SlopePower {
 
 /// How many nodes a length of slopes needs.
 #[derive(Debug)]
-struct Counts {
+struct NodeCounts {
     /// The longest panel; that of level k is 2^k times as short.
     longest: f64,
     levels: [usize; LEVELS],
 }
 
-impl Counts {
+impl NodeCounts {
     fn new(power: f64, frequency: f64) -> Self {
         let halves = |level: usize| 4.0 * libm::pow(0.5_f64, level as f64);
         let mut lengths = (0..).map(halves);
@@ -122,7 +122,7 @@ fn nodes(power: f64, frequency: f64, length: f64) -> usize {
 pub(crate) struct Integrator {
     lobe: SlopePower,
     /// For u and for v.
-    counts: [Counts; 2],
+    counts: [NodeCounts; 2],
     /// Gauss rules on (−1, 1), by their number of nodes.
     rules: Vec<Vec<(f64, f64)>>,
 }
@@ -133,7 +133,7 @@ impl Integrator {
     pub(crate) fn new(power: f64, frequencies: [f64; 2]) -> Self {
         Self {
             lobe: SlopePower::new(power),
-            counts: frequencies.map(|f| Counts::new(power, f)),
+            counts: frequencies.map(|f| NodeCounts::new(power, f)),
             rules: (0..=MAX_NODES + ARC).map(gauss_legendre).collect(),
         }
     }
@@ -141,13 +141,13 @@ impl Integrator {
 
 /// The lobe times the gratings seen from one point.
 #[derive(Debug)]
-pub(crate) struct Density<'a> {
+pub(crate) struct LobeDensity<'a> {
     pub(crate) integrator: &'a Integrator,
     /// Gratings as functions of the slope: frequencies in cycles per slope, phases of this point.
     pub(crate) gratings: Vec<Grating>,
 }
 
-impl Density<'_> {
+impl LobeDensity<'_> {
     /// At one slope.
     pub(crate) fn value(&self, u: f64, v: f64) -> f64 {
         let gratings = self.gratings.iter().map(|g| g.transmittance(u, v));
@@ -282,15 +282,15 @@ mod tests {
     use super::*;
     use crate::numerics::quadrature::integrate;
 
-    fn density(integrator: &Integrator) -> Density<'_> {
-        Density {
+    fn density(integrator: &Integrator) -> LobeDensity<'_> {
+        LobeDensity {
             integrator,
             gratings: vec![],
         }
     }
 
     /// The same integral by many panels of many nodes.
-    fn brute(density: &Density<'_>, [u, v]: Bounds) -> f64 {
+    fn brute(density: &LobeDensity<'_>, [u, v]: Bounds) -> f64 {
         let cut = |[low, high]: [f64; 2], i: u32| {
             let step = (high - low) / 20.0;
             [low + step * f64::from(i), low + step * f64::from(i + 1)]
@@ -336,7 +336,7 @@ mod tests {
                 grating(0, frequency, 0.4),
                 grating(1, -0.3 * frequency, 1.1),
             ];
-            let density = Density {
+            let density = LobeDensity {
                 integrator: &integrator,
                 gratings,
             };

@@ -1,7 +1,7 @@
 //! The light that leaves a receiver, as slices and projections.
 
 use super::Receiver;
-use super::kernel::{Axis, Kernels};
+use super::kernel::{KernelAxis, Kernels};
 use crate::parallel::row::FrequencyRow;
 use etendue_field::{Complex, Projection, ProjectionGrid, Shape, SliceGrid, Slices, Window, cis};
 use ndarray::{Array1, Array2};
@@ -27,7 +27,7 @@ const PLACES: usize = 4;
 /// Radiance that leaves the receiver, times the area of a node. Reflection turns the frame
 /// round: x' = −x, y' = y, as D' = −D and X' = −X.
 pub(super) struct ExitantTable {
-    axes: [Axis; 2],
+    axes: [KernelAxis; 2],
     /// x' and y' of the nodes: the middles of equal cells.
     coordinates: [Vec<f64>; 2],
     /// [x', y'].
@@ -165,8 +165,8 @@ impl Receiver<'_> {
     }
 }
 
-pub(super) fn axes(window: &Window, after: f64) -> [Axis; 2] {
-    [(window.x, window.u), (window.y, window.v)].map(|(position, slope)| Axis {
+pub(super) fn axes(window: &Window, after: f64) -> [KernelAxis; 2] {
+    [(window.x, window.u), (window.y, window.v)].map(|(position, slope)| KernelAxis {
         position,
         slope,
         after,

@@ -1,14 +1,14 @@
 //! How light from one coordinate of the receiver adds to the spectrum of a window farther on.
 
 use crate::numerics::quadrature::gauss_legendre;
-use crate::parallel::row::{FrequencyRow, Parts, add_scaled};
+use crate::parallel::row::{FrequencyRow, ComplexRow, add_scaled};
 use etendue_field::{Complex, Profile, cis};
 use ndarray::{Array2, aview1};
 use std::f64::consts::TAU;
 
 /// One axis: a window in position and slope, `after` metres past the receiver.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct Axis {
+pub(crate) struct KernelAxis {
     pub(crate) position: Profile,
     pub(crate) slope: Profile,
     pub(crate) after: f64,
@@ -21,7 +21,7 @@ pub(crate) struct Kernels {
     pub(crate) im: Array2<f64>,
 }
 
-impl Axis {
+impl KernelAxis {
     /// The farthest coordinate of the receiver that is seen through the window.
     pub(crate) fn reach(&self) -> f64 {
         self.position.half_width() + self.after * self.slope.half_width()
@@ -49,9 +49,9 @@ impl Axis {
         Kernels { re, im }
     }
 
-    fn column(&self, t: f64, row: &FrequencyRow, rule: &[(f64, f64)]) -> Parts {
-        let mut sum = Parts::zeros(row.count());
-        let mut wave = Parts::zeros(row.count());
+    fn column(&self, t: f64, row: &FrequencyRow, rule: &[(f64, f64)]) -> ComplexRow {
+        let mut sum = ComplexRow::zeros(row.count());
+        let mut wave = ComplexRow::zeros(row.count());
         for (weight, x, u) in self.rays(t, rule) {
             row.exponentials([x, u], weight, &mut wave);
             add_scaled(&mut sum.re, &wave.re, 1.0);

@@ -17,8 +17,8 @@ mod tests;
 mod work;
 
 use crate::barrier::{Barrier, Bounds};
-use crate::parallel::chain::{Emitter, Layer};
-use density::{Density, Integrator};
+use crate::parallel::chain::{ParallelEmitter, MaskLayer};
+use density::{LobeDensity, Integrator};
 use etendue_field::{Disc, Grating, Rectangle, Shape};
 use region::ReceiverRegion;
 use std::f64::consts::{PI, TAU};
@@ -26,7 +26,7 @@ use std::f64::consts::{PI, TAU};
 /// A Lambertian receiver, what shines on it, and how far its light then travels.
 #[derive(Debug)]
 pub(crate) struct Receiver<'a> {
-    light: Emitter,
+    light: ParallelEmitter,
     barriers: Vec<Barrier<'a>>,
     /// From the light to the receiver.
     distance: f64,
@@ -115,8 +115,8 @@ impl<'a> Receiver<'a> {
     /// With `cosine` off, radiance is added up over slopes without (1 + u² + v²)⁻²: wrong on
     /// purpose.
     pub(crate) fn new(
-        light: Emitter,
-        layers: &[Layer<'a>],
+        light: ParallelEmitter,
+        layers: &[MaskLayer<'a>],
         distance: f64,
         cosine: bool,
         after: f64,
@@ -202,7 +202,7 @@ impl<'a> Receiver<'a> {
         bundle: &SlopeProjection,
         region: ReceiverRegion,
         barriers: &[Barrier<'_>],
-        density: &Density<'_>,
+        density: &LobeDensity<'_>,
     ) -> f64 {
         let Some((barrier, rest)) = barriers.split_first() else {
             return region.integral(density);
@@ -222,11 +222,11 @@ impl<'a> Receiver<'a> {
     }
 
     /// What is integrated over slopes behind the gratings of some barriers.
-    fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> Density<'_> {
+    fn density(&self, bundle: &SlopeProjection, barriers: &[Barrier<'_>]) -> LobeDensity<'_> {
         let gratings = barriers
             .iter()
             .filter_map(|b| b.mask.grating().map(|g| bundle.grating(g, b.distance)));
-        Density {
+        LobeDensity {
             integrator: &self.integrator,
             gratings: gratings.collect(),
         }

@@ -1,9 +1,9 @@
 //! Light that a diffuse receiver reflects.
 
-use crate::parallel::chain::Path;
+use crate::parallel::chain::ChainSegment;
 use crate::parallel::receiver::Receiver;
 
-impl<'a> Path<'a> {
+impl<'a> ChainSegment<'a> {
     /// The diffuse surface at the end of the path, if there is one, and what shines on it.
     ///
     /// # Panics

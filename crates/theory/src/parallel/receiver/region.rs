@@ -1,6 +1,6 @@
 //! Sets of slopes: a rectangle and discs, intersected.
 
-use super::density::Density;
+use super::density::LobeDensity;
 use crate::barrier::Bounds;
 use etendue_field::{Disc, Shape};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -97,7 +97,7 @@ impl ReceiverRegion {
     /// By Green's theorem that of A(u, v) = ∫ density du along its boundary over v: arcs of the
     /// circles, on which everything is smooth, and upright edges of the rectangle (docs/theory.md,
     /// Eq. 16).
-    pub(crate) fn integral(&self, density: &Density<'_>) -> f64 {
+    pub(crate) fn integral(&self, density: &LobeDensity<'_>) -> f64 {
         let Some(first) = self.discs.first() else {
             return density.rectangle(self.sides);
         };
@@ -108,7 +108,7 @@ impl ReceiverRegion {
     }
 
     /// Steps of [`Self::integral`], each circle being taken whole.
-    pub(crate) fn steps(&self, density: &Density<'_>) -> f64 {
+    pub(crate) fn steps(&self, density: &LobeDensity<'_>) -> f64 {
         if self.discs.is_empty() {
             return density.steps(self.sides);
         }
@@ -123,7 +123,7 @@ impl ReceiverRegion {
     }
 
     /// ∫ A dv up the part of the line at u inside the discs and between the lower and upper side.
-    fn edge(&self, u: f64, from: f64, density: &Density<'_>) -> f64 {
+    fn edge(&self, u: f64, from: f64, density: &LobeDensity<'_>) -> f64 {
         let chords = self.discs.iter().map(|disc| {
             let across = u - disc.center[0];
             let half = (disc.radius * disc.radius - across * across).sqrt();
@@ -145,7 +145,7 @@ impl ReceiverRegion {
     }
 
     /// ∫ A dv along the arcs of circle `i` that bound the region.
-    fn arcs(&self, i: usize, from: f64, density: &Density<'_>) -> f64 {
+    fn arcs(&self, i: usize, from: f64, density: &LobeDensity<'_>) -> f64 {
         let disc = self.discs[i];
         let ends = self.crossings(i);
         let arcs = (0..ends.len()).map(|k| match ends.get(k + 1) {
@@ -193,7 +193,7 @@ impl ReceiverRegion {
     clippy::cast_sign_loss,
     reason = "1 to 4 parts"
 )]
-fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &Density<'_>) -> f64 {
+fn along(disc: &Disc, [start, end]: [f64; 2], from: f64, density: &LobeDensity<'_>) -> f64 {
     let quarters = ((end - start) / FRAC_PI_2).ceil().max(1.0) as usize;
     let (panels, rule) = density.arc(disc.radius * (end - start) / quarters as f64);
     let parts = quarters * panels;

@@ -1,11 +1,11 @@
 //! What the light that leaves a receiver takes to predict, counted at some places of it.
 
-use super::density::Density;
-use super::kernel::Axis;
+use super::density::LobeDensity;
+use super::kernel::KernelAxis;
 use super::region::ReceiverRegion;
 use super::{Receiver, SlopeProjection, exitant};
 use crate::barrier::Barrier;
-use crate::work::Work;
+use crate::work::PredictionWork;
 use etendue_field::{ProjectionGrid, Rectangle, SliceGrid, Window};
 
 /// Places along each axis at which steps are counted.
@@ -26,14 +26,14 @@ impl Receiver<'_> {
         grid: &SliceGrid,
         picture: &ProjectionGrid,
         derivatives: f64,
-    ) -> Work {
+    ) -> PredictionWork {
         let nodes = self.nodes(window, grid.rho.max());
         let axes = exitant::axes(window, self.after);
         let place = self.mean_steps(&axes, nodes);
         let places = (nodes * nodes) as f64;
         // The error is told by a table with half as many nodes along each axis.
         let tables = 2.25 + derivatives;
-        let irradiance = Work {
+        let irradiance = PredictionWork {
             steps: tables * places * place,
             bytes: 3.0 * 8.0 * places,
             bytes_each: 0.0,
@@ -43,9 +43,9 @@ impl Receiver<'_> {
         };
         let cells = (picture.bins * picture.bins) as f64;
         let in_cell = 4.0_f64.max(nodes as f64 / picture.bins as f64 + 1.0);
-        let picture = Work {
+        let picture = PredictionWork {
             steps: 20.0 * cells * in_cell * in_cell,
-            ..Work::none()
+            ..PredictionWork::none()
         };
         irradiance
             .then(sums(&axes, nodes as f64, grid).times(1.25 + derivatives))
@@ -53,7 +53,7 @@ impl Receiver<'_> {
     }
 
     /// Steps for the irradiance at a place, in the mean over some.
-    fn mean_steps(&self, axes: &[Axis; 2], nodes: usize) -> f64 {
+    fn mean_steps(&self, axes: &[KernelAxis; 2], nodes: usize) -> f64 {
         let size = axes.map(|axis| 2.0 * axis.reach() / nodes as f64);
         let at = |k: usize, i: usize| {
             let share = (2 * i + 1) as f64 / SOME as f64 - 1.0;
@@ -93,7 +93,7 @@ impl Receiver<'_> {
         bundle: &SlopeProjection,
         region: &ReceiverRegion,
         barriers: &[Barrier<'_>],
-        density: &Density<'_>,
+        density: &LobeDensity<'_>,
         steps: &mut f64,
     ) {
         let Some((barrier, rest)) = barriers.split_first() else {
@@ -120,7 +120,7 @@ impl Receiver<'_> {
 }
 
 /// From a table to slices.
-fn sums(axes: &[Axis; 2], nodes: f64, grid: &SliceGrid) -> Work {
+fn sums(axes: &[KernelAxis; 2], nodes: f64, grid: &SliceGrid) -> PredictionWork {
     let [azimuths, rows, count] = grid.half_shape().map(|n| n as f64);
     let highest = [grid.rho.max(), grid.nu.max()];
     let travels = axes[0].after > 0.0;
@@ -136,7 +136,7 @@ fn sums(axes: &[Axis; 2], nodes: f64, grid: &SliceGrid) -> Work {
     } else {
         5.0 * nodes * nodes + 50.0 * count
     };
-    Work {
+    PredictionWork {
         steps: azimuths * rows * row,
         bytes: 32.0 * azimuths * rows * count,
         bytes_each: if travels {

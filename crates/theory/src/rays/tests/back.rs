@@ -2,10 +2,10 @@
 
 use super::super::back::Back;
 use super::*;
-use crate::geometry::{Map, from_fn};
+use crate::geometry::{AffineMap, from_fn};
 
 /// An area light, and surfaces that light meets aslant.
-fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> System {
+fn bent(surfaces: &[(&str, Specular, f64, [f64; 3])]) -> SpecularSystem {
     let light = Light::Area {
         shape: Shape::Rectangle(Rectangle {
             center: [0.0; 2],
@@ -39,7 +39,7 @@ const MIRROR: (&str, Specular, f64, [f64; 3]) =
     ("mirror", Specular::Mirror, 0.4, [-0.2, -0.3, -0.1]);
 
 /// Forward again rays land where they were drawn, and |∂z/∂ray| is that of differences.
-fn come_back(system: &System, plane: &Plane) {
+fn come_back(system: &SpecularSystem, plane: &Plane) {
     let back = Back::new(system, plane);
     for z in [
         [0.0; 4],
@@ -60,7 +60,7 @@ fn come_back(system: &System, plane: &Plane) {
         let differences = from_fn(|row, column| {
             (beside(column, 1.0)[row] - beside(column, -1.0)[row]) / (2.0 * step)
         });
-        let expected = Map::<4>::linear(differences).det().abs();
+        let expected = AffineMap::<4>::linear(differences).det().abs();
         // Differences are good to step² times third derivatives.
         assert!(
             (spread / expected - 1.0).abs() < 1e-7,

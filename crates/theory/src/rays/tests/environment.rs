@@ -1,9 +1,9 @@
 //! Light of an environment: on surfaces, past masks, and behind mirrors and glass.
 
-use super::super::draw::{Draw, RayStrategy};
+use super::super::draw::{RaySampler, RayStrategy};
 use super::super::region::neighbourhood;
 use super::*;
-use crate::nets::{DIMENSIONS, Net};
+use crate::nets::{DIMENSIONS, NetPoints};
 use etendue_field::{
     Environment, EnvironmentMap, Grating, LatLong, Mask, SphericalGaussian, TwoPlane,
 };
@@ -45,7 +45,7 @@ fn map() -> Environment {
     }
 }
 
-fn under(environment: &Environment, elements: Vec<Element>) -> System {
+fn under(environment: &Environment, elements: Vec<SpecularSurface>) -> SpecularSystem {
     let environment = environment.clone();
     system(Light::Environment { environment }, elements)
 }
@@ -119,7 +119,7 @@ fn by_rule(radiance: &dyn Fn([f64; 4]) -> f64, window: &Window, grid: &SliceGrid
         halves[axis] * ((2.0 * digit + 1.0) / f64::from(NODES) - 1.0)
     };
     let volume: f64 = halves.iter().map(|h| 2.0 * h / f64::from(NODES)).product();
-    let transform = etendue_field::transform::SliceTransform::new(grid);
+    let transform = etendue_transform::SliceTransform::new(grid);
     let mut sum = transform.accumulator();
     for i in 0..nodes {
         let [x, y, u, v] = std::array::from_fn(|axis| at(i, axis));
@@ -292,8 +292,8 @@ fn all_ways_to_draw_the_sky_agree() {
     for (system, plane) in cases {
         let lands = neighbourhood(system, &plane).unwrap();
         let drawn = |strategy: RayStrategy| {
-            let draw = Draw::new((system, Some(&plane)), &window, &lands, strategy)?;
-            let mut net = Net::new(3, DIMENSIONS);
+            let draw = RaySampler::new((system, Some(&plane)), &window, &lands, strategy)?;
+            let mut net = NetPoints::new(3, DIMENSIONS);
             let count = 1 << 18;
             let weight = |(ray, density): ([f64; 4], f64)| {
                 let arrives = system.follow(ray)?;

@@ -1,15 +1,15 @@
 //! The sums over rays.
 
 use super::*;
-use crate::nets::Node;
+use crate::nets::RayNode;
 use crate::rays::sums::sums;
 use std::f64::consts::TAU;
 
-fn nodes(count: usize) -> Vec<Node> {
+fn nodes(count: usize) -> Vec<RayNode> {
     let number = |i: usize, k: usize| {
         libm::sin((i * (2 * k + 3)) as f64 * 0.618_033_988_75 + k as f64 * 0.37)
     };
-    let node = |i| Node {
+    let node = |i| RayNode {
         z: std::array::from_fn(|k| number(i, k)),
         weight: 1.5 + number(i, 4),
     };
@@ -30,7 +30,7 @@ fn plain_summation() {
     let total: f64 = nodes.iter().map(|n| n.weight).sum();
     for ((k, m, n), value) in fast.half.indexed_iter() {
         let omega = grid.frequency(k, m as f64 * grid.rho.spacing, grid.nu.value(n));
-        let term = |node: &Node| {
+        let term = |node: &RayNode| {
             let phase: f64 = omega.iter().zip(node.z).map(|(o, z)| o * z).sum();
             Complex::from_polar(node.weight, -TAU * phase)
         };

@@ -16,20 +16,20 @@ const BUDGET: Budget = Budget {
     error: 1e-5,
 };
 
-fn view(system: &System, plane: &Plane) -> Observed<System> {
+fn view(system: &SpecularSystem, plane: &Plane) -> Observed<SpecularSystem> {
     Observed {
         system: system.clone(),
         plane: *plane,
     }
 }
 
-fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
+fn exact(system: &SpecularSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     let picture = ProjectionGrid::new(window, 32);
     view(system, plane).predict(&[], (window, grid, &picture), BUDGET)
 }
 
 fn linear(
-    system: &System,
+    system: &SpecularSystem,
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
@@ -97,8 +97,8 @@ fn across(frame: Frame) -> Plane {
     }
 }
 
-fn element(name: &str, patch: Patch, event: Specular) -> Element {
-    Element {
+fn element(name: &str, patch: Patch, event: Specular) -> SpecularSurface {
+    SpecularSurface {
         name: name.into(),
         patch,
         event,
@@ -106,7 +106,7 @@ fn element(name: &str, patch: Patch, event: Specular) -> Element {
 }
 
 /// The plane at the end of the last leg.
-fn after(system: &System, distance: f64) -> Plane {
+fn after(system: &SpecularSystem, distance: f64) -> Plane {
     let last = system
         .hits()
         .unwrap()
@@ -138,8 +138,8 @@ fn placed(
     }
 }
 
-fn system(light: Light, elements: Vec<Element>) -> System {
-    System {
+fn system(light: Light, elements: Vec<SpecularSurface>) -> SpecularSystem {
+    SpecularSystem {
         light,
         layers: vec![],
         obstacles: vec![],
@@ -148,7 +148,7 @@ fn system(light: Light, elements: Vec<Element>) -> System {
 }
 
 /// One mirror a metre from the light.
-fn mirror(light: Light, theta0: f64, turns: [f64; 2], curvature: [f64; 3]) -> System {
+fn mirror(light: Light, theta0: f64, turns: [f64; 2], curvature: [f64; 3]) -> SpecularSystem {
     let patch = placed(&Frame::IDENTITY, 1.0, theta0, turns, curvature);
     system(light, vec![element("mirror", patch, Specular::Mirror)])
 }

@@ -5,7 +5,7 @@ use super::*;
 
 /// ‖linear − exact‖/‖exact‖ at a size e: windows and light e times as wide, frequencies 1/e times
 /// as high.
-fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
+fn error(system: &SpecularSystem, plane: &Plane, widths: [f64; 2], e: f64, print: Edition) -> f64 {
     let window = window(Profile::Hann(widths[0] * e), Profile::Hann(widths[1] * e));
     let grid = grid(3, widths.map(|w| w * e));
     let system = system.shrunk(e);
@@ -19,7 +19,7 @@ fn error(system: &System, plane: &Plane, widths: [f64; 2], e: f64, print: Editio
 }
 
 /// The power of e with which it falls.
-fn order(system: &System, plane: &Plane, widths: [f64; 2]) -> f64 {
+fn order(system: &SpecularSystem, plane: &Plane, widths: [f64; 2]) -> f64 {
     let [wide, narrow] = [0.1, 0.05].map(|e| error(system, plane, widths, e, Edition::Corrected));
     assert!(wide < 0.5 && narrow > 0.0, "{wide} {narrow}");
     libm::log2(wide / narrow)

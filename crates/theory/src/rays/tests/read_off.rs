@@ -4,12 +4,12 @@ use super::*;
 use crate::rays::central::Incidence;
 
 /// Where a ray of the light lands.
-fn lands(system: &System, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
+fn lands(system: &SpecularSystem, plane: &Plane, ray: [f64; 4]) -> Option<[f64; 4]> {
     Some(plane.coordinates(&system.follow(ray)?)?.0)
 }
 
 /// ∂z'/∂z of the traced rays by central differences.
-fn traced(system: &System, plane: &Plane) -> [[f64; 4]; 4] {
+fn traced(system: &SpecularSystem, plane: &Plane) -> [[f64; 4]; 4] {
     const STEP: f64 = 1e-5;
     let mut rows = [[0.0; 4]; 4];
     for column in 0..4 {
@@ -27,7 +27,7 @@ fn traced(system: &System, plane: &Plane) -> [[f64; 4]; 4] {
 }
 
 /// Largest difference between the chain's rays and the traced ones, the offset included.
-fn off(system: &System, plane: &Plane, print: Edition) -> f64 {
+fn off(system: &SpecularSystem, plane: &Plane, print: Edition) -> f64 {
     let first = chain(&view(system, plane), print).unwrap();
     let center = lands(system, plane, [0.0; 4]).unwrap();
     let rays = first.map.rays();
@@ -46,7 +46,7 @@ fn light() -> Light {
 }
 
 /// The frame of leg `i`, at its start.
-fn leg(system: &System) -> Frame {
+fn leg(system: &SpecularSystem) -> Frame {
     system
         .hits()
         .unwrap()
@@ -54,12 +54,12 @@ fn leg(system: &System) -> Frame {
         .map_or(Frame::IDENTITY, |hit| hit.leaving)
 }
 
-fn with(mut system: System, name: &str, patch: Patch, event: Specular) -> System {
+fn with(mut system: SpecularSystem, name: &str, patch: Patch, event: Specular) -> SpecularSystem {
     system.elements.push(element(name, patch, event));
     system
 }
 
-fn systems() -> Vec<System> {
+fn systems() -> Vec<SpecularSystem> {
     let glass = |front, back| Specular::Refraction { front, back };
     let shapes = [
         [-0.5; 3],         // hollow sphere
@@ -156,7 +156,7 @@ fn on_surface(
     }
 }
 
-pub(super) fn surface_planes() -> Vec<(System, Plane)> {
+pub(super) fn surface_planes() -> Vec<(SpecularSystem, Plane)> {
     let glass = Specular::Refraction {
         front: 1.0,
         back: 1.5,

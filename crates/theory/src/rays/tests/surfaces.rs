@@ -111,7 +111,7 @@ fn derivatives_by_every_parameter() {
 fn rays_are_lost() {
     let system = mirror(beam([0.1, 0.1]), 0.0, [0.0; 2], [-2.0; 3]);
     let plane = after(&system, 0.1);
-    let lands = |system: &System, ray| {
+    let lands = |system: &SpecularSystem, ray| {
         let ray = system.follow(ray)?;
         plane.coordinates(&ray)
     };

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::Budget;
-use crate::geometry::Map;
+use crate::geometry::AffineMap;
 use crate::numerics::distance;
 use crate::rays::Plane;
 use crate::testing::{chain_of, opaque, window};
@@ -18,7 +18,7 @@ use std::sync::Arc;
 const DISTANCE: f64 = 1.0;
 
 /// Two million nodes: errors are far below what these tests look for.
-fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
+fn exact(system: &ScatteringSystem, plane: &Plane, window: &Window, grid: &SliceGrid) -> Predicted {
     by(
         system,
         plane,
@@ -30,7 +30,7 @@ fn exact(system: &System, plane: &Plane, window: &Window, grid: &SliceGrid) -> P
 
 /// ‖first order − exact‖/‖exact‖.
 fn linearised(
-    system: &System,
+    system: &ScatteringSystem,
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
@@ -42,7 +42,7 @@ fn linearised(
     distance(&near, &right.slices)
 }
 
-fn view(system: &System, plane: &Plane) -> Observed<System> {
+fn view(system: &ScatteringSystem, plane: &Plane) -> Observed<ScatteringSystem> {
     Observed {
         system: system.clone(),
         plane: *plane,
@@ -50,7 +50,7 @@ fn view(system: &System, plane: &Plane) -> Observed<System> {
 }
 
 fn by(
-    system: &System,
+    system: &ScatteringSystem,
     plane: &Plane,
     window: &Window,
     grid: &SliceGrid,
@@ -94,9 +94,9 @@ fn white(lobe: Lobe) -> Reflectance {
 }
 
 /// A surface a metre from the light, met at θ₀ in the plane of X.
-fn system(light: Light, theta0: f64, curvature: [f64; 3], reflectance: Reflectance) -> System {
+fn system(light: Light, theta0: f64, curvature: [f64; 3], reflectance: Reflectance) -> ScatteringSystem {
     let d = DVec3::new(libm::sin(theta0), 0.0, -libm::cos(theta0));
-    System {
+    ScatteringSystem {
         light,
         layers: vec![],
         obstacles: vec![],
@@ -131,7 +131,7 @@ fn across(theta0: f64, after: f64) -> Plane {
 }
 
 /// On the surface, light leaving.
-fn on(system: &System, theta0: f64, orientation: Orientation) -> Plane {
+fn on(system: &ScatteringSystem, theta0: f64, orientation: Orientation) -> Plane {
     let t = DVec3::new(-libm::cos(theta0), 0.0, -libm::sin(theta0));
     let n = system.patch.frame.d;
     Plane {
@@ -225,12 +225,12 @@ fn chain_is_the_product_of_operators() {
         let plane = across(theta0, 0.7);
         let read = chain(&view(&system, &plane)).unwrap();
         let shape = [[k, 0.0], [0.0, k]];
-        let onto = Map::<4>::travel(DISTANCE)
-            .then(&Map::<4>::incidence(theta0))
-            .then(&Map::<4>::curvature(shape, theta0));
-        let off = Map::<4>::back(shape, -theta0)
-            .then(&Map::<4>::outgoing(-theta0))
-            .then(&Map::<4>::travel(0.7));
+        let onto = AffineMap::<4>::travel(DISTANCE)
+            .then(&AffineMap::<4>::incidence(theta0))
+            .then(&AffineMap::<4>::curvature(shape, theta0));
+        let off = AffineMap::<4>::back(shape, -theta0)
+            .then(&AffineMap::<4>::outgoing(-theta0))
+            .then(&AffineMap::<4>::travel(0.7));
         for (read, put) in [(&read.onto, onto), (&read.off, off)] {
             let a = read.matrix.as_flattened().iter().chain(&read.offset);
             let b = put.matrix.as_flattened().iter().chain(&put.offset);
@@ -349,7 +349,7 @@ fn wrong_operators_are_seen() {
     let grid = grid([1.2 * e; 2]);
     let right = exact(&system, &plane, &window, &grid);
     let sound = chain(&view(&system, &plane)).unwrap();
-    let error = |system: &System, chain: &ReflectionChain| {
+    let error = |system: &ScatteringSystem, chain: &ReflectionChain| {
         linearised(system, &plane, &window, &grid, chain)
     };
     let least = error(&system, &sound);
@@ -361,7 +361,7 @@ fn wrong_operators_are_seen() {
     sheared.onto.matrix[2][0] *= -1.0;
     assert!(error(&system, &sheared) > 3.0 * least);
     let exact_error =
-        |other: &System| distance(&exact(other, &plane, &window, &grid).slices, &right.slices);
+        |other: &ScatteringSystem| distance(&exact(other, &plane, &window, &grid).slices, &right.slices);
     let sharper = view(&system, &plane)
         .with(Parameter::Lobe, 1.05 / (0.25 * e * e))
         .unwrap()
@@ -426,7 +426,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         let light = Light::Environment { environment };
         system(light, 0.0, [0.8; 3], white(Lobe::Lambertian))
     };
-    let on_it = |system: &System| Plane {
+    let on_it = |system: &ScatteringSystem| Plane {
         longitude: 0.0,
         ..on(system, 0.0, Orientation::LocalNormals)
     };
@@ -448,7 +448,7 @@ fn diffuse_sphere_under_an_environment_is_the_known_product() {
         for [s, t] in [[0.0, 0.0], [0.3, -0.1], [-0.4, 0.2]] {
             let leaving = system.leaving(&plane, [s, t, 0.1, 0.0]).unwrap();
             let lights = draw::Lights::new(&system, leaving.normal, draw::LightStrategy::default());
-            let mut net = crate::nets::Net::new(1, 6);
+            let mut net = crate::nets::NetPoints::new(1, 6);
             let count = 1 << 18;
             let points = (0..count).filter_map(|_| {
                 let [a, b, ..] = net.point();

@@ -4,7 +4,7 @@ mod points;
 mod spectra;
 
 use super::Receiver;
-use crate::parallel::chain::{Emitter, Layer};
+use crate::parallel::chain::{ParallelEmitter, MaskLayer};
 use crate::testing::square;
 use etendue_field::{Disc, Grating, HalfPlane, Light, Mask, Rectangle, Shape};
 
@@ -47,10 +47,10 @@ impl TestReceiver {
         }
     }
 
-    fn layers(&self) -> Vec<Layer<'_>> {
+    fn layers(&self) -> Vec<MaskLayer<'_>> {
         let masks = self.masks.iter();
         masks
-            .map(|(distance, mask)| Layer {
+            .map(|(distance, mask)| MaskLayer {
                 distance: *distance,
                 mask,
             })
@@ -64,7 +64,7 @@ impl TestReceiver {
     /// The receiver looked at that far on.
     fn after(&self, after: f64) -> Receiver<'_> {
         Receiver::new(
-            Emitter::new(&self.light),
+            ParallelEmitter::new(&self.light),
             &self.layers(),
             self.distance,
             true,

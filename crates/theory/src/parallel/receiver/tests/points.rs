@@ -140,12 +140,12 @@ fn two_discs_meet_in_a_lens() {
         (0.0, 0.25),
     ] {
         let mask = opaque(vec![disc([0.6 * offset, 0.8 * offset], radius)]);
-        let layers = [Layer {
+        let layers = [MaskLayer {
             distance: 1.0,
             mask: &mask,
         }];
-        let stopped = |layers: &[Layer<'_>]| {
-            Receiver::new(Emitter::new(&light), layers, 2.0, false, 0.0, 1.0).irradiance(0.0, 0.0)
+        let stopped = |layers: &[MaskLayer<'_>]| {
+            Receiver::new(ParallelEmitter::new(&light), layers, 2.0, false, 0.0, 1.0).irradiance(0.0, 0.0)
                 / 1.7
         };
         let (r, s, d) = (0.25, radius, offset);

@@ -133,7 +133,7 @@ fn planted_faults_are_seen() {
         let distance = bench.distance;
         deviation(
             &Receiver::new(
-                Emitter::new(&bench.light),
+                ParallelEmitter::new(&bench.light),
                 &layers,
                 distance,
                 cosine,

@@ -1,12 +1,8 @@
 //! The 4D transform against the plain sum.
 
-#![allow(clippy::unwrap_used, reason = "a test may panic")]
-
-mod common;
-
-use common::Random;
+use crate::random::Random;
 use etendue_field::Complex;
-use etendue_spectrum::field::{RealFft4, real, real_mut};
+use etendue_transform::{RealFft4, real, real_mut};
 use std::f64::consts::TAU;
 
 /// Random reals laid out for `plan`.

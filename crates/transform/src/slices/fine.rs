@@ -2,7 +2,7 @@
 
 use super::kernel::{Kernel, WIDTH};
 use super::spread::Placement;
-use crate::{Complex, FrequencyAxis, SliceGrid};
+use etendue_field::{Complex, FrequencyAxis, SliceGrid};
 use ndarray::ArrayViewMut2;
 use realfft::{RealFftPlanner, RealToComplex};
 use rustfft::{Fft, FftPlanner};
@@ -159,7 +159,7 @@ fn add(row: &mut [f64], more: &[f64]) {
 mod tests {
     use super::*;
     use crate::random::{Stream, unit, words};
-    use crate::{Slices, cis, modulus};
+    use etendue_field::{Slices, cis, modulus};
     use ndarray::Axis;
     use std::f64::consts::TAU;
 

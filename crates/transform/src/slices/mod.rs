@@ -8,8 +8,8 @@ mod fine;
 mod kernel;
 mod spread;
 
-use crate::{FrequencyAxis, SliceGrid, Slices, TwoPlane};
 use block::Block;
+use etendue_field::{FrequencyAxis, SliceGrid, Slices, TwoPlane};
 use fearless_simd::{Level, dispatch};
 use fine::{FineTransform, Workspace};
 use kernel::{Kernel, UPSAMPLING, WIDTH};

@@ -1,10 +1,8 @@
 //! The fast transform against the plain sum.
 
-mod common;
-
-use common::{Random, boxed, grid, hann};
+use crate::random::{Random, boxed, grid, hann};
 use etendue_field::{Complex, Crossing, SliceGrid, Slices, TwoPlane, Window};
-use etendue_spectrum::{SliceTransform, direct};
+use etendue_transform::{SliceTransform, direct};
 
 fn fast(crossings: &[Crossing], window: &Window, grid: &SliceGrid) -> Slices {
     let plan = SliceTransform::new(grid);

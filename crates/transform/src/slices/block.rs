@@ -1,6 +1,6 @@
 //! Rays that are spread on the fine grid together.
 
-use crate::TwoPlane;
+use etendue_field::TwoPlane;
 
 /// Rays that are spread in one go: coordinates and positions are worked out for a group, then
 /// added.

@@ -1,11 +1,11 @@
 //! Times the slice transform: nanoseconds for each ray and azimuth, milliseconds for the FFTs of a batch.
 //!
-//! `cargo run --release -p etendue-spectrum --example speed`
+//! `cargo run --release -p etendue-transform --example speed`
 
 #![allow(clippy::print_stdout, reason = "its purpose")]
 
 use etendue_field::{FrequencyAxis, Profile, SliceGrid, TwoPlane, Window};
-use etendue_spectrum::SliceTransform;
+use etendue_transform::SliceTransform;
 use std::time::Instant;
 
 const RAYS: u32 = 1 << 18;

@@ -1,8 +1,8 @@
 //! Times the 4D real transform, or transforms a file; the other side of `tests/peers/fft4d.py`.
 //!
-//!     cargo run --release -p etendue-spectrum --example fft4d -- time 64 [ROUNDS] [THREADS]
-//!     cargo run --release -p etendue-spectrum --example fft4d -- serve 64 kept|fresh
-//!     cargo run --release -p etendue-spectrum --example fft4d -- file NX NY NU NV IN OUT
+//!     cargo run --release -p etendue-transform --example fft4d -- time 64 [ROUNDS] [THREADS]
+//!     cargo run --release -p etendue-transform --example fft4d -- serve 64 kept|fresh
+//!     cargo run --release -p etendue-transform --example fft4d -- file NX NY NU NV IN OUT
 //!
 //! `serve` answers each line of its input with the milliseconds of one transform, and the end of it with its peak
 //! memory in megabytes. `file` reads and writes raw little-endian f64.
@@ -10,7 +10,7 @@
 #![allow(clippy::print_stdout, reason = "its purpose")]
 
 use etendue_field::Complex;
-use etendue_spectrum::field::{RealFft4, real_mut};
+use etendue_transform::{RealFft4, real_mut};
 use std::io::{BufRead, Write};
 use std::time::Instant;
 
